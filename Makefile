@@ -1,0 +1,83 @@
+# Every command of the project. Needs Rust (with rustfmt and clippy), Python >= 3.11 and make;
+# everything else goes into .venv, at the first use.
+
+PYTHON ?= python3
+BASELINE ?= last
+
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+VENV := .venv
+BIN := $(VENV)/bin
+SOURCES := Cargo.toml Cargo.lock pyproject.toml \
+	$(shell find src python -type f ! -name '*.py[cd]' ! -name '*.so')
+
+export VIRTUAL_ENV := $(CURDIR)/$(VENV)
+export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
+unexport CONDA_PREFIX PYTHONHOME PYTHONPATH
+
+# Stamps: what .venv holds.
+BUILD := $(VENV)/.build
+DEV := $(VENV)/.dev
+WHEEL := $(VENV)/.wheel
+
+.PHONY: help demo test check bench develop stubs docs
+
+help: ## list these commands
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
+
+demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under out/
+	$(BIN)/nacre paper --out out
+
+# PYO3_PYTHON=none: had Python any part in the crate that depends on nacre, it would not build.
+test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre, pytest on the wheel
+	@if cargo nextest --version >/dev/null 2>&1; \
+	then echo cargo nextest run; cargo nextest run; \
+	else echo cargo test --tests --examples; cargo test --tests --examples; fi
+	cargo test --doc
+	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
+	$(BIN)/pytest --doctest-modules --pyargs tests/python nacre
+
+check: $(WHEEL) $(DEV) ## formatting, lints, types, documentation links and stubs; changes nothing
+	cargo fmt --check
+	cargo fmt --check --manifest-path tests/dependent/Cargo.toml
+	cargo clippy --all-targets -- -D warnings
+	cargo clippy --all-targets --features python -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest nacre._core
+
+bench: ## time it, print the change since the last run, append to benches/history.csv
+	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true
+	cargo bench --bench '*' -- --save-baseline $(BASELINE)
+	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
+
+develop: $(DEV) ## build in place: Python files are used where they are, Rust after the next make develop
+	rm -f $(WHEEL)
+	$(BIN)/maturin develop --release --extras plot,cli
+
+stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
+	$(BIN)/python -m mypy.stubtest nacre._core
+
+docs: ## the Rust documentation, under target/doc/nacre
+	cargo doc --no-deps
+
+# pip takes --group since 25.1.
+$(BUILD): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit("nacre needs Python >= 3.11; make PYTHON=..." if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet --group build
+	@touch $@
+
+$(DEV): $(BUILD)
+	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+# The wheel as users get it, and not the checkout, is what is tested.
+$(WHEEL): $(SOURCES) $(BUILD)
+	rm -rf $(TARGET)/wheels
+	$(BIN)/maturin build --release --interpreter $(BIN)/python --out $(TARGET)/wheels
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(TARGET)/wheels/*.whl
+	$(BIN)/python -m pip install --quiet "$$(echo $(TARGET)/wheels/*.whl)[all]"
+	@touch $@

@@ -1,0 +1,114 @@
+"""The cases and figures of the paper: a coated sphere and a coated roller of finite length.
+
+``nacre paper`` runs this. From Python, ``nacre.paper.run("out")`` solves every case and writes
+table and figures; ``nacre.paper.solve()`` only solves.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from nacre.paper.cases import CENTRED, ECCENTRIC, RATIOS, SPHERE, Result, Series, of_series, solve
+from nacre.paper.evaluation import claims, deviations, table, thickness_note
+
+__all__ = [
+    "CENTRED",
+    "ECCENTRIC",
+    "RATIOS",
+    "SPHERE",
+    "Result",
+    "Series",
+    "claims",
+    "deviations",
+    "make_directory",
+    "of_series",
+    "run",
+    "solve",
+    "table",
+    "thickness_note",
+]
+
+
+def run(
+    out: str | os.PathLike[str] = "out",
+    *,
+    threads: int | None = None,
+    quick: bool = False,
+    progress: Callable[[int, int, str], object] | None = None,
+) -> list[Result]:
+    """Solve every case of the paper and write table, figures and their numbers.
+
+    Parameters
+    ----------
+    out
+        Directory for ``table.csv`` and ``figure1.png``, ``figure1.csv`` to ``figure6.png``,
+        ``figure6.csv``. It is made if need be; nothing is written unless every solve converged.
+    threads, quick, progress
+        As in `solve`.
+
+    Returns
+    -------
+    list of Result
+        As `solve` returns it.
+
+    Raises
+    ------
+    OSError
+        Where `out` cannot be written to; this is tried before solving.
+    ModuleNotFoundError
+        Where matplotlib is missing.
+    nacre.ConvergenceError
+        Where a solve does not converge.
+    """
+    try:
+        from nacre.paper import figures
+    except ModuleNotFoundError as missing:
+        message = f"figures need {missing.name}: pip install 'nacre[plot]'"
+        raise ModuleNotFoundError(message, name=missing.name) from missing
+
+    out = Path(out)
+    make_directory(out)
+    results = solve(threads=threads, quick=quick, progress=progress)
+    files = {"table.csv": _csv(*table(results))}
+    for number, drawing in enumerate(figures.draw(results), start=1):
+        files[f"figure{number}.png"] = drawing.png
+        files[f"figure{number}.csv"] = _csv(drawing.header, drawing.rows)
+    for name, content in files.items():
+        _write(out / name, content)
+    return results
+
+
+def make_directory(out: Path) -> None:
+    """Make `out` if need be.
+
+    Raises
+    ------
+    OSError
+        Where that, or writing into it, cannot be done.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    _write(out / "table.csv", None)
+
+
+def _write(path: Path, content: bytes | None) -> None:
+    """Write a file whole or not at all; with no content only try to."""
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        part.write_bytes(content or b"")
+        if content is not None:
+            part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _csv(header: Sequence[str], rows: Iterable[Sequence[str | float]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    for row in rows:
+        writer.writerow([cell if isinstance(cell, str) else f"{cell:.9g}" for cell in row])
+    return text.getvalue().encode()

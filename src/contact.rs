@@ -1,0 +1,394 @@
+//! The contact problem: g = h + u − δ − s_x x − s_y y ≥ 0, p ≥ 0, p g = 0.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use ndarray::{Array2, ArrayRef2};
+
+use crate::body::HalfSpace;
+use crate::convolution::Convolution;
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::influence::{Method, check_memory, coefficients_on};
+use crate::surface::{Extent, Surface};
+use crate::threads::Threads;
+
+mod automatic;
+mod freedoms;
+mod polonsky_keer;
+mod problem;
+mod solution;
+
+pub use automatic::{choose_grid, solve};
+pub use freedoms::Motion;
+pub use problem::Termination;
+pub use solution::{Balance, Report, Solution, Warning};
+
+use freedoms::Freedoms;
+use problem::{Limits, Problem, Quality};
+
+/// What is planned beside body and grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Setup {
+    /// The body that carries the shape; `None` is rigid.
+    pub counterbody: Option<HalfSpace>,
+    /// How influence coefficients are computed. Default: [`Method::Exact`].
+    pub method: Method,
+    /// Threads of the plan. Default: all of the machine's.
+    pub threads: Option<usize>,
+}
+
+/// How a solution is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Algorithm {
+    /// The constrained conjugate gradient method of the paper.
+    #[default]
+    PolonskyKeer,
+}
+
+/// When to end an iteration, and where to start it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Largest residual and overlap of a converged solution. Default: 1e-8.
+    pub tolerance: f64,
+    /// Iterations after which to give up. Default: 10 000.
+    pub max_iterations: Option<usize>,
+    /// Default: [`Algorithm::PolonskyKeer`].
+    pub algorithm: Algorithm,
+    /// Pressure to start from (nx, ny) \[Pa\]. Default: uniform.
+    pub initial: Option<Array2<f64>>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-8,
+            max_iterations: None,
+            algorithm: Algorithm::default(),
+            initial: None,
+        }
+    }
+}
+
+const MAX_ITERATIONS: usize = 10_000;
+
+/// Is told of each iteration, and breaks to stop.
+pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
+
+/// A body on a grid, planned once: influence coefficients and their transform.
+///
+/// ```
+/// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
+///
+/// // Hertz: δ = (9 W² / 16 R E*²)^{1/3}
+/// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+/// let solution = contact.solve(&Paraboloid::new(1e3, 1e3)?, &Motion::load(1e-3), &Options::default())?;
+/// let hertz = (9.0 * 1e-6 / (16.0 * 1e3_f64)).powf(1.0 / 3.0);
+/// assert!((solution.approach / hertz - 1.0).abs() < 2e-3);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Contact {
+    grid: Grid,
+    method: Method,
+    convolution: Convolution,
+}
+
+impl Contact {
+    /// Plans contacts of `body` on `grid`.
+    ///
+    /// # Errors
+    /// A method that does not suit, no threads, too little memory.
+    pub fn plan(body: &HalfSpace, grid: Grid, setup: Setup) -> Result<Self> {
+        // A plan, its coefficients, and the arrays of one solve.
+        let [nx, ny] = grid.shape();
+        check_memory(
+            &grid,
+            Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 11,
+        )?;
+        let threads = Threads::new(setup.threads)?;
+        let mut coefficients = coefficients_on(body, &grid, setup.method, &threads)?;
+        if let Some(counterbody) = &setup.counterbody {
+            coefficients += &coefficients_on(counterbody, &grid, setup.method, &threads)?;
+        }
+        let convolution = Convolution::plan_on(&coefficients, threads)?;
+        Ok(Self {
+            grid,
+            method: setup.method,
+            convolution,
+        })
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The convolution with the influence coefficients of both bodies together.
+    pub fn convolution(&self) -> &Convolution {
+        &self.convolution
+    }
+
+    /// Presses `shape` into the body. The solution says whether it converged.
+    ///
+    /// # Errors
+    /// Bad input alone.
+    pub fn solve(
+        &self,
+        shape: &dyn Surface,
+        motion: &Motion,
+        options: &Options,
+    ) -> Result<Solution> {
+        self.solve_watched(shape, motion, options, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// [`Contact::solve`], telling `progress` of each iteration; its break ends the solve with
+    /// [`Termination::Stopped`].
+    ///
+    /// # Errors
+    /// Bad input alone.
+    pub fn solve_watched(
+        &self,
+        shape: &dyn Surface,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        let start = Instant::now();
+        let freedoms = Freedoms::new(motion, &self.grid)?;
+        let limits = options.limits()?;
+        let heights = checked_gaps(shape, &self.grid)?;
+        freedoms.check_feasible(&heights)?;
+        let gap = freedoms.prescribed_gap(&heights);
+        let problem = Problem {
+            convolution: &self.convolution,
+            freedoms: &freedoms,
+            gap,
+        };
+        let mut p = self.first_pressure(&problem, options.initial.as_deref())?;
+        let mut workspace = self.convolution.workspace();
+
+        let mut report = Report {
+            termination: Termination::IterationLimit,
+            iterations: 0,
+            convolutions: 0,
+            residual: 0.0,
+            overlap: 0.0,
+            balance: Balance::default(),
+            warnings: Vec::new(),
+            grid: self.grid,
+            method: self.method,
+            seconds: 0.0,
+        };
+        let mut watch = |iterations: usize, convolutions: usize, quality: Quality| {
+            report.iterations = iterations;
+            report.convolutions = convolutions;
+            report.residual = quality.residual;
+            report.overlap = quality.overlap;
+            report.seconds = start.elapsed().as_secs_f64();
+            progress(&report).is_break()
+        };
+        let outcome = match options.algorithm {
+            Algorithm::PolonskyKeer => {
+                polonsky_keer::solve(&problem, &mut p, limits, &mut workspace, &mut watch)
+            }
+        };
+
+        // The certificate: all afresh.
+        let mut u = vec![0.0; p.len()];
+        problem.apply(&p, &mut u, &mut workspace);
+        let mut g = vec![0.0; p.len()];
+        let lambda = problem.gap_into(&p, &u, &mut g);
+        let quality = problem.quality(&p, &u, &g);
+        let (approach, tilt) = freedoms.motion(lambda);
+        report.termination = outcome.termination;
+        report.iterations = outcome.iterations;
+        report.convolutions = outcome.convolutions + 1;
+        report.residual = quality.residual;
+        report.overlap = quality.overlap;
+        let array = |v: Vec<f64>| {
+            let shape = self.grid.shape();
+            Array2::from_shape_fn(shape, |(i, j)| v[i * shape[1] + j])
+        };
+        let (pressure, displacement, gap) = (array(p), array(u), array(g));
+        let mut solution = Solution {
+            pressure,
+            gap,
+            displacement,
+            approach,
+            tilt,
+            report,
+        };
+        solution.report.balance = balance(&solution, motion);
+        solution.report.warnings = warnings(&solution, shape);
+        solution.report.seconds = start.elapsed().as_secs_f64();
+        Ok(solution)
+    }
+
+    /// The balanced pressure to start from.
+    fn first_pressure(
+        &self,
+        problem: &Problem,
+        initial: Option<&ArrayRef2<f64>>,
+    ) -> Result<Vec<f64>> {
+        let mut p: Vec<f64> = match initial {
+            Some(initial) => {
+                let found = [initial.nrows(), initial.ncols()];
+                if found != self.grid.shape() {
+                    let expected = self.grid.shape();
+                    return Err(Error::Shape {
+                        name: "initial",
+                        expected,
+                        found,
+                    });
+                }
+                if let Some((index, _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
+                    return Err(Error::NonFinite {
+                        name: "initial",
+                        index: [index.0, index.1],
+                    });
+                }
+                let touching = initial.iter().zip(&problem.gap);
+                touching
+                    .map(|(&p, h)| if h.is_finite() { p.max(0.0) } else { 0.0 })
+                    .collect()
+            }
+            None => vec![0.0; problem.gap.len()],
+        };
+        if problem.freedoms.balance(&mut p) {
+            return Ok(p);
+        }
+        // Nothing to start from, or cells that cannot carry the moments: all cells can.
+        let uniform = problem.freedoms.typical_pressure(p.len());
+        p = problem
+            .gap
+            .iter()
+            .map(|h| if h.is_finite() { uniform } else { 0.0 })
+            .collect();
+        if problem.freedoms.balance(&mut p) {
+            return Ok(p);
+        }
+        Err(Error::Inconsistent(
+            "eccentricity or moment is too near the rim of the cells that can touch",
+        ))
+    }
+}
+
+impl Options {
+    fn limits(&self) -> Result<Limits> {
+        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
+            return Err(Error::Parameter {
+                name: "tolerance",
+                requirement: "above 0 and below 1",
+                value: self.tolerance,
+            });
+        }
+        Ok(Limits {
+            tolerance: self.tolerance,
+            max_iterations: self.max_iterations.unwrap_or(MAX_ITERATIONS),
+        })
+    }
+}
+
+/// Gaps of `shape` on `grid`, finite or +∞.
+fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f64>> {
+    let gaps = shape.gaps(grid)?;
+    let found = [gaps.nrows(), gaps.ncols()];
+    if found != grid.shape() {
+        return Err(Error::Shape {
+            name: "shape",
+            expected: grid.shape(),
+            found,
+        });
+    }
+    let bad = |h: f64| h.is_nan() || h == f64::NEG_INFINITY;
+    if let Some((index, _)) = gaps.indexed_iter().find(|(_, h)| bad(**h)) {
+        return Err(Error::NonFinite {
+            name: "shape",
+            index: [index.0, index.1],
+        });
+    }
+    Ok(gaps)
+}
+
+fn balance(solution: &Solution, motion: &Motion) -> Balance {
+    let force = solution.load();
+    let scale = motion.load.unwrap_or(force);
+    let over = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
+    let half = solution.grid().size().map(|length| 0.5 * length);
+    let moments = solution.moment();
+    let moment = [0, 1].map(|k| {
+        let asked =
+            motion.moment[k].or_else(|| Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0)));
+        asked.map_or(0.0, |m| over((moments[k] - m).abs(), scale * half[k]))
+    });
+    Balance {
+        force: motion.load.map_or(0.0, |w| over((force - w).abs(), w)),
+        moment,
+    }
+}
+
+fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
+    let grid = solution.grid();
+    let [nx, ny] = grid.shape();
+    let [dx, dy] = grid.spacing();
+    let (x, y) = (grid.x(), grid.y());
+    let mut warnings = Vec::new();
+
+    let goes_on = |i: usize, j: usize| {
+        let beyond = |at: usize, n: usize, d: f64| match at {
+            0 => -d,
+            _ if at == n - 1 => d,
+            _ => 0.0,
+        };
+        shape
+            .gap(x[i] + beyond(i, nx, dx), y[j] + beyond(j, ny, dy))
+            .is_finite()
+    };
+    let on_edge = |i: usize, j: usize| i == 0 || j == 0 || i == nx - 1 || j == ny - 1;
+    let mut rim = solution
+        .pressure
+        .indexed_iter()
+        .filter(|((i, j), _)| on_edge(*i, *j));
+    if rim.any(|((i, j), p)| *p > 0.0 && goes_on(i, j)) {
+        warnings.push(Warning::GridEdge);
+    }
+
+    let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
+    for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
+        for (lane, at) in solution
+            .pressure
+            .axis_iter(ndarray::Axis(axis))
+            .zip(coordinates)
+        {
+            if lane.iter().any(|&p| p > 0.0) {
+                cells[axis] += 1;
+                ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
+            }
+        }
+    }
+    if cells[0] == 0 {
+        return warnings;
+    }
+    for axis in [0, 1] {
+        let spacing = grid.spacing()[axis];
+        if let Extent::CutOff([low, high]) = shape.extent()[axis]
+            && (ends[axis][0] - spacing < low || ends[axis][1] + spacing > high)
+        {
+            warnings.push(Warning::SharpEnd { axis });
+        }
+        if cells[axis] < solution::FEW_CELLS {
+            warnings.push(Warning::Coarse {
+                axis,
+                cells: cells[axis],
+            });
+        }
+        let half_width = 0.5 * (ends[axis][1] - ends[axis][0] + spacing);
+        let ratio = half_width / shape.radii()[axis];
+        if ratio > solution::LARGE_CONTACT {
+            warnings.push(Warning::LargeContact { axis, ratio });
+        }
+    }
+    warnings
+}

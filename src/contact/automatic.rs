@@ -1,0 +1,278 @@
+//! The grid that is chosen where none is given.
+
+use std::ops::ControlFlow;
+
+use super::{Contact, Motion, Options, Progress, Setup, Solution};
+use crate::body::HalfSpace;
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::response::limits;
+use crate::surface::{Extent, Surface};
+
+/// Cells across the narrower width of the contact.
+const ACROSS: f64 = 64.0;
+
+/// Free width on either side of the contact, over the contact's.
+const MARGIN: f64 = 0.25;
+
+/// Cells of the coarse grid in each direction.
+const COARSE: usize = 48;
+
+/// Largest ratio of a cell's sides, while there are fewer than [`MOST`] cells along the contact.
+const OBLONG: f64 = 16.0;
+const MOST: f64 = 1024.0;
+
+/// How often the coarse grid may grow.
+const ENLARGEMENTS: usize = 10;
+
+/// How often it may shrink around a contact that is small on it.
+const REDUCTIONS: usize = 40;
+
+/// Presses `shape` into `body` with every default: a grid from [`choose_grid`] (a measured
+/// surface's own), exact coefficients, all threads.
+///
+/// # Errors
+/// Bad input; a shape without end; [`Error::NoGrid`]; [`Error::NotConverged`].
+///
+/// ```
+/// use nacre::{Elastic, Motion, Sphere, solve};
+/// let steel = Elastic::new(210e9, 0.3)?;
+/// let solution = solve(&Sphere::new(5e-3)?, &steel.into(), &Motion::load(10.0))?;
+/// let hertz = nacre::hertz::Point::new(5e-3, steel.plane_strain_modulus(), 10.0)?;
+/// assert!((solution.peak_pressure() / hertz.peak_pressure - 1.0).abs() < 2e-3);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+pub fn solve(shape: &dyn Surface, body: &HalfSpace, motion: &Motion) -> Result<Solution> {
+    let (setup, options) = (Setup::default(), Options::default());
+    let grid = choose_grid(shape, body, &setup, motion, &options, &mut |_| {
+        ControlFlow::Continue(())
+    })?;
+    let solution = Contact::plan(body, grid, setup)?.solve(shape, motion, &options)?;
+    solution.require_converged(options.tolerance)
+}
+
+/// A grid for the contact of `shape` and `body`: a measured surface's own; else one with 64 cells
+/// across the narrower width of the contact, oblong where it is long, and a margin of a quarter of
+/// the contact on every side.
+///
+/// Found by solving on a coarse grid, which is enlarged while the contact touches its edge, ten
+/// times at most.
+///
+/// # Errors
+/// Bad input; a shape without end in a direction; [`Error::NoGrid`].
+pub fn choose_grid(
+    shape: &dyn Surface,
+    body: &HalfSpace,
+    setup: &Setup,
+    motion: &Motion,
+    options: &Options,
+    progress: &mut Progress,
+) -> Result<Grid> {
+    match shape.grid() {
+        Some(grid) => Ok(grid),
+        None => search(shape, body, setup, motion, options, progress),
+    }
+}
+
+/// A rectangle, by its sides.
+type Frame = [[f64; 2]; 2];
+
+fn search(
+    shape: &dyn Surface,
+    body: &HalfSpace,
+    setup: &Setup,
+    motion: &Motion,
+    options: &Options,
+    progress: &mut Progress,
+) -> Result<Grid> {
+    let extent = shape.extent();
+    if extent.contains(&Extent::Endless) {
+        return Err(Error::Inconsistent(
+            "grid must be given for a shape without end: its contact is as long as the grid",
+        ));
+    }
+    // Options that only the real grid can meet are checked here and left out.
+    options.limits()?;
+    let coarse = Options {
+        tolerance: 1e-4,
+        initial: None,
+        ..options.clone()
+    };
+    let mut frame = first_frame(shape, body, setup, motion)?;
+    let (mut enlargements, mut reductions) = (0, 0);
+    loop {
+        let grid = grid_over(frame, [COARSE; 2])?;
+        let solution = Contact::plan(body, grid, setup.clone())?
+            .solve_watched(shape, motion, &coarse, progress)?;
+        let Some(contact) = cells_in_contact(&solution) else {
+            // Nothing touches there: any grid shows that.
+            return Ok(grid);
+        };
+        if solution.report.termination == super::Termination::Stopped {
+            return Ok(grid);
+        }
+        let mut next = frame;
+        let (mut grown, mut shrunk) = (false, false);
+        for axis in [0, 1] {
+            let [low, high] = frame[axis];
+            let width = high - low;
+            let spacing = grid.spacing()[axis];
+            let [first, last] = contact[axis];
+            let range = extent[axis].range();
+            // An edge that is touched moves out by the width, as far as the shape goes.
+            let touched = [
+                first == 0 && low > range[0],
+                last == COARSE - 1 && high < range[1],
+            ];
+            if touched[0] || touched[1] {
+                grown = true;
+                next[axis] = [
+                    if touched[0] { low - width } else { low },
+                    if touched[1] { high + width } else { high },
+                ];
+            } else if last - first + 1 < COARSE / 4 {
+                shrunk = true;
+                let contact = [
+                    low + first as f64 * spacing,
+                    low + (last + 1) as f64 * spacing,
+                ];
+                let margin = contact[1] - contact[0];
+                next[axis] = [contact[0] - margin, contact[1] + margin];
+            }
+        }
+        if grown {
+            if enlargements == ENLARGEMENTS {
+                return Err(Error::NoGrid {
+                    enlargements,
+                    size: grid.size(),
+                });
+            }
+            enlargements += 1;
+        } else if shrunk && reductions < REDUCTIONS {
+            reductions += 1;
+        } else {
+            return final_grid(&solution, extent);
+        }
+        frame = next;
+    }
+}
+
+/// Around the load point, as far as the undeformed shape overlaps at the approach that carries the
+/// load by the estimate W = 2 E* δ √(a b) (exact for a flat square punch within 10 %).
+fn first_frame(
+    shape: &dyn Surface,
+    body: &HalfSpace,
+    setup: &Setup,
+    motion: &Motion,
+) -> Result<Frame> {
+    let extent = shape.extent();
+    let compliance = |body: &HalfSpace| limits(body).short.max(limits(body).long);
+    let compliance = compliance(body) + setup.counterbody.as_ref().map_or(0.0, compliance);
+    let modulus = 2.0 / compliance;
+    let center: [f64; 2] = std::array::from_fn(|axis| {
+        let [low, high] = extent[axis].range();
+        let middle = if low.is_finite() && high.is_finite() {
+            0.5 * (low + high)
+        } else {
+            0.0
+        };
+        motion.eccentricity[axis]
+            .filter(|e| *e > low && *e < high)
+            .unwrap_or(middle)
+    });
+    let base = shape.gap(center[0], center[1]);
+    let base = if base.is_finite() { base } else { 0.0 };
+    // Half-widths of the overlap at approach δ, along both axes.
+    let widths = |approach: f64| -> [f64; 2] {
+        std::array::from_fn(|axis| {
+            let inside = |d: f64| {
+                [-d, d].into_iter().any(|d| {
+                    let mut at = center;
+                    at[axis] += d;
+                    shape.gap(at[0], at[1]) < base + approach
+                })
+            };
+            // By powers of √2 from far below any contact to far above.
+            let mut width = f64::MIN_POSITIVE.sqrt();
+            while width < 1e12 && inside(width) {
+                width *= std::f64::consts::SQRT_2;
+            }
+            width
+        })
+    };
+    let approach = match (motion.load, motion.approach) {
+        (Some(load), _) => {
+            let carries = |approach: f64| {
+                let [a, b] = widths(approach);
+                2.0 * modulus * approach * (a * b).sqrt()
+            };
+            let mut approach = 1.0;
+            while approach > 1e-30 && carries(approach) > load {
+                approach *= 0.5;
+            }
+            while approach < 1e12 && carries(approach) < load {
+                approach *= 2.0;
+            }
+            approach
+        }
+        (None, Some(approach)) => (approach - base).max(0.0),
+        (None, None) => 0.0,
+    };
+    let halves = widths(approach);
+    let frame = std::array::from_fn(|axis| {
+        let half = 1.5 * halves[axis];
+        let [low, high] = extent[axis].range();
+        // Somewhat beyond the ends of the shape, where it has any.
+        let beyond = 0.02 * (high - low);
+        let (low, high) = (low - beyond, high + beyond);
+        [
+            (center[axis] - half).max(low),
+            (center[axis] + half).min(high),
+        ]
+    });
+    for [low, high] in &frame {
+        if high - low <= 1e-100 || !(high - low).is_finite() {
+            // Nothing overlaps: a grid of unit size shows that nothing touches.
+            return Ok([[-0.5, 0.5]; 2]);
+        }
+    }
+    Ok(frame)
+}
+
+fn grid_over(frame: Frame, shape: [usize; 2]) -> Result<Grid> {
+    Grid::new(shape, frame.map(|[low, high]| high - low))?
+        .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
+}
+
+/// First and last cell in contact along each axis.
+fn cells_in_contact(solution: &Solution) -> Option<[[usize; 2]; 2]> {
+    let mut found: Option<[[usize; 2]; 2]> = None;
+    for ((i, j), _) in solution.pressure.indexed_iter().filter(|(_, p)| **p > 0.0) {
+        let [x, y] = found.unwrap_or([[i; 2], [j; 2]]);
+        found = Some([[x[0].min(i), x[1].max(i)], [y[0].min(j), y[1].max(j)]]);
+    }
+    found
+}
+
+/// The contact of the coarse solution, a margin around it, and cells as fine as is asked.
+fn final_grid(solution: &Solution, extent: [Extent; 2]) -> Result<Grid> {
+    let contact = solution.contact_extent();
+    let widths = contact.map(|[low, high]| high - low);
+    let finest = widths[0].min(widths[1]) / ACROSS;
+    let frame: Frame = std::array::from_fn(|axis| {
+        let margin = MARGIN * widths[axis];
+        let [low, high] = extent[axis].range();
+        // A shape that ends needs no more than a cell beyond its end.
+        let low = (contact[axis][0] - margin).max(low - 2.0 * finest);
+        let high = (contact[axis][1] + margin).min(high + 2.0 * finest);
+        [low, high]
+    });
+    let shape = std::array::from_fn(|axis| {
+        let cells = (widths[axis] / finest).min((widths[axis] / (OBLONG * finest)).max(MOST));
+        let cell = widths[axis] / cells.max(ACROSS);
+        let count = ((frame[axis][1] - frame[axis][0]) / cell).ceil();
+        // Even, so that the middle of a symmetric contact lies between cells.
+        2 * (0.5 * count).ceil() as usize
+    });
+    grid_over(frame, shape)
+}

@@ -1,0 +1,444 @@
+//! The rigid motion of the body that is pressed on: what is prescribed, what is loaded.
+
+use ndarray::ArrayRef2;
+
+use crate::error::{Error, Result, finite, positive};
+use crate::grid::Grid;
+
+/// What is asked of the rigid motion (δ, s_x, s_y), in g = h + u − δ − s_x x − s_y y.
+///
+/// Each of the three freedoms is prescribed or loaded. Exactly one of `load` and `approach`; along
+/// x and along y at most one of `eccentricity` (which needs a load), `moment` and `tilt`, and a
+/// tilt of 0 where there is none. Lengths and moments are about the origin x = y = 0.
+///
+/// ```
+/// use nacre::Motion;
+/// // Free to tilt along x only, under a force at x = 2.87 mm.
+/// let motion = Motion { eccentricity: [Some(2.87e-3), None], ..Motion::load(1e3) };
+/// assert_eq!(motion.load, Some(1e3));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// Σ p dA \[N\], above 0.
+    pub load: Option<f64>,
+    /// Approach δ \[m\] of the origin, from the datum h = 0.
+    pub approach: Option<f64>,
+    /// Where the load acts \[m\]: Σ p x dA = W e_x, along y alike.
+    pub eccentricity: [Option<f64>; 2],
+    /// First moments of the pressure \[N m\]: Σ p x dA = M_x, along y alike.
+    pub moment: [Option<f64>; 2],
+    /// Slopes s_x, s_y.
+    pub tilt: [Option<f64>; 2],
+}
+
+impl Motion {
+    /// A force `load` \[N\], the tilt locked at 0.
+    pub fn load(load: f64) -> Self {
+        Self {
+            load: Some(load),
+            ..Self::default()
+        }
+    }
+
+    /// A prescribed `approach` \[m\], the tilt locked at 0.
+    pub fn approach(approach: f64) -> Self {
+        Self {
+            approach: Some(approach),
+            ..Self::default()
+        }
+    }
+}
+
+/// A [`Motion`] that was checked, on a grid: g = h + u − Bλ, where the columns of B are the loaded
+/// freedoms 1, (x − x0)/ℓx, (y − y0)/ℓy, and the prescribed ones are part of h.
+#[derive(Debug, Clone)]
+pub(super) struct Freedoms {
+    pub(super) loaded: [bool; 3],
+    /// Bᵀp for the loaded freedoms.
+    target: [f64; 3],
+    /// δ, s_x, s_y of the prescribed freedoms, 0 of the loaded ones.
+    prescribed: [f64; 3],
+    origin: [f64; 2],
+    scale: [f64; 2],
+    pub(super) columns: [Vec<f64>; 2],
+    coordinates: [Vec<f64>; 2],
+}
+
+const DIRECTIONS: [&str; 2] = [
+    "along x at most one of eccentricity, moment and tilt can be a number",
+    "along y at most one of eccentricity, moment and tilt can be a number",
+];
+
+impl Freedoms {
+    pub(super) fn new(motion: &Motion, grid: &Grid) -> Result<Self> {
+        let mut prescribed = [0.0; 3];
+        let mut loaded = [false; 3];
+        let mut target = [0.0; 3];
+        let area = grid.cell_area();
+        let scale = grid.size().map(|length| 0.5 * length);
+        match (motion.load, motion.approach) {
+            (Some(load), None) => {
+                loaded[0] = true;
+                target[0] = positive("load", load)? / area;
+            }
+            (None, Some(approach)) => prescribed[0] = finite("approach", approach)?,
+            _ => {
+                return Err(Error::Inconsistent(
+                    "exactly one of load and approach must be given",
+                ));
+            }
+        }
+        // Under a load the columns may be centred, which keeps them independent.
+        let origin = if loaded[0] { grid.center() } else { [0.0; 2] };
+        for k in 0..2 {
+            let moment = match (motion.eccentricity[k], motion.moment[k], motion.tilt[k]) {
+                (None, None, None) => continue,
+                (None, None, Some(tilt)) => {
+                    prescribed[k + 1] = finite("tilt", tilt)?;
+                    continue;
+                }
+                (None, Some(moment), None) => finite("moment", moment)?,
+                (Some(eccentricity), None, None) => {
+                    let load = motion.load.ok_or(Error::Inconsistent(
+                        "eccentricity needs load: under a given approach, give moment",
+                    ))?;
+                    finite("eccentricity", eccentricity)? * load
+                }
+                _ => return Err(Error::Inconsistent(DIRECTIONS[k])),
+            };
+            loaded[k + 1] = true;
+            target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
+        }
+        let coordinates = [0, 1].map(|k| grid.coordinates(k).to_vec());
+        let columns = [0, 1].map(|k| {
+            coordinates[k]
+                .iter()
+                .map(|x| (x - origin[k]) / scale[k])
+                .collect::<Vec<_>>()
+        });
+        Ok(Self {
+            loaded,
+            target,
+            prescribed,
+            origin,
+            scale,
+            columns,
+            coordinates,
+        })
+    }
+
+    /// An error unless some p ≥ 0 on the cells of finite `gap` carries the load and the moments,
+    /// with room on every side.
+    ///
+    /// The load point M/W must lie strictly inside the convex hull of those cells; where there are
+    /// moments without a load, the ray along M must cross its inside.
+    pub(super) fn check_feasible(&self, gap: &ArrayRef2<f64>) -> Result<()> {
+        let points = outline(gap, &self.columns);
+        if points.is_empty() {
+            return Err(Error::Inconsistent(
+                "no cell of the grid can touch: the gap is infinite",
+            ));
+        }
+        let half_planes = match (self.loaded[1], self.loaded[2]) {
+            (false, false) => return Ok(()),
+            (true, true) => hull_half_planes(&points),
+            (true, false) => interval(points.iter().map(|p| p[0]))
+                .map(|(s, c)| [s, 0.0, c])
+                .into(),
+            (false, true) => interval(points.iter().map(|p| p[1]))
+                .map(|(s, c)| [0.0, s, c])
+                .into(),
+        };
+        // n · (t M) > c for some t > 0, or at t = 1/W.
+        let (mut low, mut high) = if self.loaded[0] {
+            (1.0 / self.target[0], 1.0 / self.target[0])
+        } else {
+            (0.0, f64::MAX)
+        };
+        let mut inside = !half_planes.is_empty();
+        for [nx, ny, c] in half_planes {
+            let slope = nx * self.target[1] + ny * self.target[2];
+            let margin = 1e-9;
+            if self.loaded[0] || slope.abs() <= f64::MIN_POSITIVE {
+                inside &= slope * low > c + margin * c.abs().max(1.0) * f64::EPSILON.sqrt();
+            } else if slope > 0.0 {
+                low = low.max(c / slope);
+            } else {
+                high = high.min(c / slope);
+            }
+        }
+        if inside && (self.loaded[0] || low < high) {
+            return Ok(());
+        }
+        if !self.loaded[0] {
+            return Err(Error::Inconsistent(
+                "moment must be one that a pressure on the cells that can touch can have",
+            ));
+        }
+        let range = |k: usize| {
+            let map = |c: f64| self.origin[k] + self.scale[k] * c;
+            points
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+                    [a.min(map(p[k])), b.max(map(p[k]))]
+                })
+        };
+        let at = |k: usize| self.origin[k] + self.scale[k] * self.target[k + 1] / self.target[0];
+        Err(Error::LoadPoint {
+            x: at(0),
+            y: at(1),
+            x_range: range(0),
+            y_range: range(1),
+        })
+    }
+
+    /// A uniform pressure whose sum is of the size of what is asked.
+    pub(super) fn typical_pressure(&self, cells: usize) -> f64 {
+        let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        if asked > 0.0 {
+            asked / cells as f64
+        } else {
+            1.0
+        }
+    }
+
+    /// h − δ − s_x x − s_y y for the prescribed freedoms, in C order.
+    pub(super) fn prescribed_gap(&self, gap: &ArrayRef2<f64>) -> Vec<f64> {
+        let [delta, sx, sy] = self.prescribed;
+        let [x, y] = &self.coordinates;
+        gap.indexed_iter()
+            .map(|((i, j), h)| h - delta - sx * x[i] - sy * y[j])
+            .collect()
+    }
+
+    /// (δ, s_x, s_y) of all freedoms, from the multipliers λ of the loaded ones.
+    pub(super) fn motion(&self, lambda: [f64; 3]) -> (f64, [f64; 2]) {
+        let slope = [0, 1].map(|k| lambda[k + 1] / self.scale[k]);
+        let tilt = [0, 1].map(|k| self.prescribed[k + 1] + slope[k]);
+        let shift = slope[0] * self.origin[0] + slope[1] * self.origin[1];
+        (self.prescribed[0] + lambda[0] - shift, tilt)
+    }
+
+    /// Whether any freedom is loaded.
+    pub(super) fn any_loaded(&self) -> bool {
+        self.loaded.contains(&true)
+    }
+
+    /// Σ over cells of `f`(cell) · (1, x, y), by rows, in a fixed order.
+    pub(super) fn moments(&self, f: impl Fn(usize) -> f64) -> [f64; 3] {
+        let [x, y] = &self.columns;
+        let mut sums = [0.0; 3];
+        for (i, x) in x.iter().enumerate() {
+            let (mut row, mut row_y) = (0.0, 0.0);
+            for (j, y) in y.iter().enumerate() {
+                let value = f(i * self.columns[1].len() + j);
+                row += value;
+                row_y += value * y;
+            }
+            sums[0] += row;
+            sums[1] += row * x;
+            sums[2] += row_y;
+        }
+        sums
+    }
+
+    /// Σ weight · b bᵀ over cells.
+    pub(super) fn gram(&self, weight: impl Fn(usize) -> f64) -> [[f64; 3]; 3] {
+        let [x, y] = &self.columns;
+        let mut sums = [[0.0; 3]; 3];
+        for (i, x) in x.iter().enumerate() {
+            let (mut s, mut sy, mut syy) = (0.0, 0.0, 0.0);
+            for (j, y) in y.iter().enumerate() {
+                let w = weight(i * self.columns[1].len() + j);
+                s += w;
+                sy += w * y;
+                syy += w * y * y;
+            }
+            sums[0][0] += s;
+            sums[0][1] += s * x;
+            sums[0][2] += sy;
+            sums[1][1] += s * x * x;
+            sums[1][2] += sy * x;
+            sums[2][2] += syy;
+        }
+        sums[1][0] = sums[0][1];
+        sums[2][0] = sums[0][2];
+        sums[2][1] = sums[1][2];
+        sums
+    }
+
+    /// The multipliers λ that make `f` − Bλ least over the cells with `member`.
+    pub(super) fn fit(&self, f: &[f64], member: impl Fn(usize) -> bool) -> [f64; 3] {
+        if !self.any_loaded() {
+            return [0.0; 3];
+        }
+        let right = self.moments(|k| if member(k) { f[k] } else { 0.0 });
+        self.solve(&self.gram(|k| f64::from(u8::from(member(k)))), right)
+    }
+
+    /// Calls `f` with each cell and its Bλ.
+    pub(super) fn for_each(&self, lambda: [f64; 3], mut f: impl FnMut(usize, f64)) {
+        let [x, y] = &self.columns;
+        let mut cell = 0;
+        for x in x {
+            let row = lambda[0] + lambda[1] * x;
+            for y in y {
+                f(cell, row + lambda[2] * y);
+                cell += 1;
+            }
+        }
+    }
+
+    /// Solves for the loaded freedoms; one that the others determine (a contact of one cell has no
+    /// tilt) stays 0.
+    pub(super) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
+        let mut a = *matrix;
+        let mut b = right;
+        let mut pivots = self.loaded;
+        for k in 0..3 {
+            pivots[k] = pivots[k] && a[k][k] > 1e-13 * matrix[k][k];
+            if !pivots[k] {
+                continue;
+            }
+            for row in k + 1..3 {
+                let factor = a[row][k] / a[k][k];
+                for column in k..3 {
+                    a[row][column] -= factor * a[k][column];
+                }
+                b[row] -= factor * b[k];
+            }
+        }
+        let mut solution = [0.0; 3];
+        for k in (0..3).rev().filter(|&k| pivots[k]) {
+            let known: f64 = (k + 1..3).map(|c| a[k][c] * solution[c]).sum();
+            solution[k] = (b[k] - known) / a[k][k];
+        }
+        solution
+    }
+
+    /// Restores balance: p ← [p (1 + Bμ)]₊ with Bᵀp on target. Returns whether it got there.
+    ///
+    /// μ maximises the concave μᵀF − ½ Σ p [1 + Bμ]₊², of which the gradient is the mismatch: by
+    /// Newton's method, with steps halved until the mismatch falls.
+    pub(super) fn balance(&self, pressure: &mut [f64]) -> bool {
+        if !self.any_loaded() {
+            return true;
+        }
+        if self.loaded[0] {
+            // First the force alone, so that μ stays small against 1.
+            let force: f64 = self.moments(|k| pressure[k])[0];
+            if force <= 0.0 {
+                return false;
+            }
+            let factor = self.target[0] / force;
+            pressure.iter_mut().for_each(|p| *p *= factor);
+        }
+        let mismatch = |p: &[f64], mu: [f64; 3]| {
+            let mut factors = vec![0.0; p.len()];
+            self.for_each(mu, |k, b| factors[k] = p[k] * (1.0 + b).max(0.0));
+            let sums = self.moments(|k| factors[k]);
+            let gap = [0, 1, 2].map(|k| {
+                if self.loaded[k] {
+                    self.target[k] - sums[k]
+                } else {
+                    0.0
+                }
+            });
+            (factors, sums[0], gap)
+        };
+        let size = |gap: [f64; 3]| gap.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let mut mu = [0.0; 3];
+        let (mut factors, mut force, mut gap) = mismatch(pressure, mu);
+        let enough = |force: f64| 4.0 * f64::EPSILON * force.max(size(self.target));
+        for _ in 0..100 {
+            if size(gap) <= enough(force) {
+                break;
+            }
+            let matrix = self.gram(|k| if factors[k] > 0.0 { pressure[k] } else { 0.0 });
+            let step = self.solve(&matrix, gap);
+            let mut length = 1.0;
+            loop {
+                let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
+                let (f, w, g) = mismatch(pressure, trial);
+                if size(g) < size(gap) {
+                    (mu, factors, force, gap) = (trial, f, w, g);
+                    break;
+                }
+                length *= 0.5;
+                if length < 1e-9 {
+                    // No step helps: rounding, or no such pressure on these cells.
+                    let done = size(gap) <= 1e3 * enough(force);
+                    if done {
+                        pressure.copy_from_slice(&factors);
+                    }
+                    return done;
+                }
+            }
+        }
+        pressure.copy_from_slice(&factors);
+        size(gap) <= 1e3 * enough(force)
+    }
+}
+
+/// First and last cell of finite gap in each row, as scaled coordinates.
+fn outline(gap: &ArrayRef2<f64>, [x, y]: &[Vec<f64>; 2]) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    for (row, &x) in gap.rows().into_iter().zip(x) {
+        let touches = |h: &f64| h.is_finite();
+        let (Some(first), Some(last)) =
+            (row.iter().position(touches), row.iter().rposition(touches))
+        else {
+            continue;
+        };
+        points.push([x, y[first]]);
+        if last > first {
+            points.push([x, y[last]]);
+        }
+    }
+    points
+}
+
+/// The interval's inside as s · v > c, from both ends.
+fn interval(values: impl Iterator<Item = f64>) -> [(f64, f64); 2] {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+        (a.min(v), b.max(v))
+    });
+    [(1.0, low), (-1.0, -high)]
+}
+
+/// The inside of the convex hull as n · v > c for each edge; none where the hull has no inside.
+/// Points come in order of x, then y. Andrew, Inf. Process. Lett. 9 (1979) 216.
+fn hull_half_planes(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
+    let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain[..] {
+                if turn(a, b, point) > 1e-14 {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain
+    };
+    let lower = chain(&mut points.iter().copied());
+    let upper = chain(&mut points.iter().rev().copied());
+    if lower.len() + upper.len() < 5 {
+        return Vec::new();
+    }
+    lower
+        .windows(2)
+        .chain(upper.windows(2))
+        .map(|edge| {
+            // Counter-clockwise: the inside is to the left.
+            let [a, b] = [edge[0], edge[1]];
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+            let n = [-(b[1] - a[1]) / length, (b[0] - a[0]) / length];
+            [n[0], n[1], n[0] * a[0] + n[1] * a[1]]
+        })
+        .collect()
+}

@@ -1,0 +1,102 @@
+//! The contact problem in the form that the algorithms solve.
+
+use super::freedoms::Freedoms;
+use crate::convolution::{Convolution, Workspace};
+
+/// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
+///
+/// Its multipliers are the loaded freedoms of the rigid motion: g = K p + h − Bλ ≥ 0, p g = 0.
+/// Polonsky & Keer, Wear 231 (1999) 206, eqs (1)–(4), with one column of B a loaded freedom.
+pub(super) struct Problem<'a> {
+    pub(super) convolution: &'a Convolution,
+    pub(super) freedoms: &'a Freedoms,
+    /// h, less the prescribed motion; +∞ where the shape cannot touch.
+    pub(super) gap: Vec<f64>,
+}
+
+/// How well a pressure solves the problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Quality {
+    /// Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
+    pub(super) residual: f64,
+    /// max(−g, 0) / max u over them.
+    pub(super) overlap: f64,
+}
+
+impl Quality {
+    pub(super) fn meets(&self, tolerance: f64) -> bool {
+        self.residual <= tolerance && self.overlap <= tolerance
+    }
+}
+
+impl Problem<'_> {
+    pub(super) fn apply(&self, p: &[f64], out: &mut [f64], workspace: &mut Workspace) {
+        self.convolution.apply_slices(p, out, workspace);
+    }
+
+    /// The displacement of a cell under its own unit pressure.
+    pub(super) fn self_influence(&self) -> f64 {
+        self.convolution.self_influence()
+    }
+
+    /// Gap g = u + h − Bλ, where λ makes it least over the contact; and λ.
+    pub(super) fn gap_into(&self, p: &[f64], u: &[f64], g: &mut [f64]) -> [f64; 3] {
+        for ((g, u), h) in g.iter_mut().zip(u).zip(&self.gap) {
+            *g = u + h;
+        }
+        let lambda = self.freedoms.fit(g, |k| p[k] > 0.0);
+        self.freedoms.for_each(lambda, |k, b| g[k] -= b);
+        lambda
+    }
+
+    pub(super) fn quality(&self, p: &[f64], u: &[f64], g: &[f64]) -> Quality {
+        let (mut work, mut mismatch, mut deepest, mut largest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
+        for ((p, u), g) in p.iter().zip(u).zip(g) {
+            if g.is_finite() {
+                work += p * u;
+                mismatch += p * g.abs();
+                deepest = deepest.max(-g);
+                largest = largest.max(u.abs());
+            }
+        }
+        // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
+        let over = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
+            (true, true) => a / scale,
+            (true, false) => f64::INFINITY,
+            (false, _) => 0.0,
+        };
+        Quality {
+            residual: over(mismatch, work),
+            overlap: over(deepest, largest),
+        }
+    }
+}
+
+/// How an iteration ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Termination {
+    /// The tolerance was met.
+    Converged,
+    /// It was not, within the iterations allowed.
+    IterationLimit,
+    /// The caller asked to stop.
+    Stopped,
+}
+
+/// Counts of an iteration that ended.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outcome {
+    pub(super) termination: Termination,
+    pub(super) iterations: usize,
+    pub(super) convolutions: usize,
+}
+
+/// Reports an iteration's number, convolutions and quality; true asks to stop.
+pub(super) type Watch<'a> = dyn FnMut(usize, usize, Quality) -> bool + 'a;
+
+/// When to end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    pub(super) tolerance: f64,
+    pub(super) max_iterations: usize,
+}

@@ -1,0 +1,160 @@
+//! Discrete convolution by FFT (DC-FFT): displacement from pressure, exact for any pressure on the
+//! grid, with no periodic images.
+//!
+//! Liu, Wang & Liu, Wear 243 (2000) 101.
+
+use ndarray::{Array2, ArrayRef2};
+
+use crate::error::{Error, Result};
+use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
+use crate::threads::Threads;
+
+/// Influence coefficients, transformed once to be applied often.
+///
+/// ```text
+/// u[i, j] = Σ_kl C[|i−k|, |j−l|] p[k, l]
+/// ```
+///
+/// ```
+/// use ndarray::array;
+/// let coefficients = array![[1.0, 0.5], [0.25, 0.125]];
+/// let convolution = nacre::Convolution::plan(&coefficients, Some(1))?;
+/// let u = convolution.apply(&array![[1.0, 0.0], [0.0, 0.0]])?;
+/// assert!((&u - &coefficients).iter().all(|d| d.abs() < 1e-15));
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Convolution {
+    shape: [usize; 2],
+    self_influence: f64,
+    transform: PaddedTransform,
+    spectrum: EvenSpectrum,
+    threads: Threads,
+}
+
+/// Memory for one application at a time, of any convolution of the same shape.
+#[derive(Debug)]
+pub struct Workspace(FftWorkspace);
+
+impl Convolution {
+    /// Plans the convolution with `coefficients` (nx, ny), those of offsets ≥ 0, on `threads`
+    /// threads (all of the machine's where `None`).
+    ///
+    /// # Errors
+    /// Where a coefficient is not finite, the shape is empty, or `threads` is 0.
+    pub fn plan(coefficients: &ArrayRef2<f64>, threads: Option<usize>) -> Result<Self> {
+        Self::plan_on(coefficients, Threads::new(threads)?)
+    }
+
+    pub(crate) fn plan_on(coefficients: &ArrayRef2<f64>, threads: Threads) -> Result<Self> {
+        let shape = [coefficients.nrows(), coefficients.ncols()];
+        if coefficients.is_empty() {
+            return Err(Error::Shape {
+                name: "coefficients",
+                expected: [1, 1],
+                found: shape,
+            });
+        }
+        if let Some((index, _)) = coefficients.indexed_iter().find(|(_, c)| !c.is_finite()) {
+            return Err(Error::NonFinite {
+                name: "coefficients",
+                index: [index.0, index.1],
+            });
+        }
+        let transform = PaddedTransform::plan(shape, &threads);
+        let spectrum = transform.even_spectrum(coefficients, &threads);
+        Ok(Self {
+            shape,
+            self_influence: coefficients[[0, 0]],
+            transform,
+            spectrum,
+            threads,
+        })
+    }
+
+    /// Bytes that a plan of `shape` and its workspace hold.
+    pub(crate) fn memory(shape: [usize; 2]) -> u64 {
+        PaddedTransform::memory(shape)
+    }
+
+    /// Shape (nx, ny) of what it is applied to.
+    pub fn shape(&self) -> [usize; 2] {
+        self.shape
+    }
+
+    /// The coefficient of the loaded cell itself.
+    pub(crate) fn self_influence(&self) -> f64 {
+        self.self_influence
+    }
+
+    /// Threads that it uses.
+    pub fn threads(&self) -> usize {
+        self.threads.count()
+    }
+
+    /// Memory for [`Convolution::apply_into`].
+    pub fn workspace(&self) -> Workspace {
+        Workspace(self.transform.workspace())
+    }
+
+    /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
+    ///
+    /// # Errors
+    /// Where the shape is another.
+    pub fn apply(&self, pressure: &ArrayRef2<f64>) -> Result<Array2<f64>> {
+        let mut displacement = Array2::zeros(self.shape);
+        self.apply_into(pressure, &mut displacement, &mut self.workspace())?;
+        Ok(displacement)
+    }
+
+    /// [`Convolution::apply`] into `displacement`. Allocates nothing where both arrays are in C
+    /// order.
+    ///
+    /// # Errors
+    /// Where a shape is another.
+    pub fn apply_into(
+        &self,
+        pressure: &ArrayRef2<f64>,
+        displacement: &mut ArrayRef2<f64>,
+        workspace: &mut Workspace,
+    ) -> Result<()> {
+        for (name, found) in [
+            ("pressure", pressure.dim()),
+            ("displacement", displacement.dim()),
+        ] {
+            if [found.0, found.1] != self.shape {
+                let found = [found.0, found.1];
+                return Err(Error::Shape {
+                    name,
+                    expected: self.shape,
+                    found,
+                });
+            }
+        }
+        let standard = pressure.as_standard_layout();
+        let input = standard.as_slice().unwrap_or(&[]);
+        if let Some(output) = displacement.as_slice_mut() {
+            self.apply_slices(input, output, workspace);
+        } else {
+            let mut output = vec![0.0; input.len()];
+            self.apply_slices(input, &mut output, workspace);
+            displacement
+                .iter_mut()
+                .zip(output)
+                .for_each(|(d, o)| *d = o);
+        }
+        Ok(())
+    }
+
+    /// The same on slices in C order, which the solver uses.
+    pub(crate) fn apply_slices(
+        &self,
+        input: &[f64],
+        output: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
+        let workspace = &mut workspace.0;
+        self.transform
+            .convolve_into(&self.spectrum, input, output, workspace, &self.threads);
+    }
+}

@@ -1,0 +1,426 @@
+//! Fourier transforms of zero-padded real data, and the product with an even kernel in between.
+//!
+//! The forward transform is unscaled; the inverse divides by the number of points, here and
+//! nowhere else. Transforms of rows that are zero are skipped, both ways: of the padded mesh
+//! (mx, my) only nx rows are transformed along y, and nothing of the padding is stored.
+
+use std::fmt;
+use std::sync::Arc;
+
+use ndarray::{Array2, ArrayRef2};
+use rayon::prelude::*;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+
+use crate::threads::Threads;
+
+/// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
+/// columns of a few thousand points stay in the second-level cache.
+const BLOCK: usize = 16;
+
+/// Below this number of cells threads cost more than they save (measured: `benches/README.md`).
+const WORTH_THREADS: usize = 96 * 96;
+
+const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+
+/// The smallest length ≥ `n` of the form 2^a 3^b 5^c.
+pub(crate) fn fast_length(n: usize) -> usize {
+    let smooth = |mut m: usize| {
+        for p in [2, 3, 5] {
+            while m.is_multiple_of(p) {
+                m /= p;
+            }
+        }
+        m == 1
+    };
+    (n.max(1)..).find(|&m| smooth(m)).unwrap_or(n)
+}
+
+/// Transforms of (nx, ny) data, padded with zeros to (mx, my) ≥ (2nx−1, 2ny−1).
+pub(crate) struct PaddedTransform {
+    shape: [usize; 2],
+    padded: [usize; 2],
+    tasks: usize,
+    row_forward: Arc<dyn RealToComplex<f64>>,
+    row_inverse: Arc<dyn ComplexToReal<f64>>,
+    column_forward: Arc<dyn Fft<f64>>,
+    column_inverse: Arc<dyn Fft<f64>>,
+}
+
+impl fmt::Debug for PaddedTransform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "PaddedTransform({:?} in {:?})", self.shape, self.padded)
+    }
+}
+
+/// The transform of a kernel that is even along x and along y: real and even, so that a quarter of
+/// it is enough. Scaled by 1/(mx my), and stored by blocks of columns.
+#[derive(Debug, Clone)]
+pub(crate) struct EvenSpectrum(Vec<f64>);
+
+/// Memory for one convolution at a time.
+#[derive(Debug)]
+pub(crate) struct Workspace {
+    rows: Vec<Complex64>,
+    blocks: Vec<Complex64>,
+    tasks: Vec<TaskScratch>,
+}
+
+#[derive(Debug)]
+struct TaskScratch {
+    real: Vec<f64>,
+    spectrum: Vec<Complex64>,
+    columns: Vec<Complex64>,
+    fft: Vec<Complex64>,
+}
+
+impl PaddedTransform {
+    pub(crate) fn plan(shape: [usize; 2], threads: &Threads) -> Self {
+        let padded = shape.map(|n| fast_length(2 * n - 1));
+        let mut real = RealFftPlanner::new();
+        let mut complex = FftPlanner::new();
+        // More tasks than threads, so that one thread that is held up does not hold up the others.
+        let tasks = match threads.count() {
+            1 => 1,
+            _ if shape[0] * shape[1] < WORTH_THREADS => 1,
+            count => 4 * count,
+        };
+        Self {
+            shape,
+            padded,
+            tasks,
+            row_forward: real.plan_fft_forward(padded[1]),
+            row_inverse: real.plan_fft_inverse(padded[1]),
+            column_forward: complex.plan_fft_forward(padded[0]),
+            column_inverse: complex.plan_fft_inverse(padded[0]),
+        }
+    }
+
+    /// Bytes that a transform of `shape` holds: its workspace and one spectrum.
+    pub(crate) fn memory(shape: [usize; 2]) -> u64 {
+        let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
+        let half = padded[1] / 2 + 1;
+        shape[0] as u64 * half * 32 + (padded[0] / 2 + 1) * half * 8
+    }
+
+    /// Stored columns of the half spectrum.
+    fn columns(&self) -> usize {
+        self.padded[1] / 2 + 1
+    }
+
+    /// Stored rows of the quarter spectrum.
+    fn quarter_rows(&self) -> usize {
+        self.padded[0] / 2 + 1
+    }
+
+    fn blocks(&self) -> usize {
+        self.columns().div_ceil(BLOCK)
+    }
+
+    pub(crate) fn workspace(&self) -> Workspace {
+        let fft = self
+            .column_forward
+            .get_inplace_scratch_len()
+            .max(self.column_inverse.get_inplace_scratch_len())
+            .max(self.row_forward.get_scratch_len())
+            .max(self.row_inverse.get_scratch_len());
+        let task = || TaskScratch {
+            real: vec![0.0; self.padded[1]],
+            spectrum: vec![ZERO; self.columns()],
+            columns: vec![ZERO; BLOCK * self.padded[0]],
+            fft: vec![ZERO; fft],
+        };
+        Workspace {
+            rows: vec![ZERO; self.shape[0] * self.columns()],
+            blocks: vec![ZERO; self.blocks() * self.shape[0] * BLOCK],
+            tasks: (0..self.tasks).map(|_| task()).collect(),
+        }
+    }
+
+    /// Transform of the kernel whose values at offsets (i, j) ≥ 0 are `quarter` (nx, ny).
+    pub(crate) fn even_spectrum(
+        &self,
+        quarter: &ArrayRef2<f64>,
+        threads: &Threads,
+    ) -> EvenSpectrum {
+        let ([nx, ny], [mx, my]) = (self.shape, self.padded);
+        let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
+        let mut workspace = self.workspace();
+        let Workspace { rows, tasks, .. } = &mut workspace;
+        let scale = 1.0 / (mx as f64 * my as f64);
+        let rows_of_a_task = nx.div_ceil(self.tasks);
+        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
+            for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {
+                let real = &mut scratch.real;
+                real.fill(0.0);
+                for (j, &c) in quarter.row(first + row).iter().enumerate() {
+                    real[j] = c;
+                    real[(my - j) % my] = c;
+                }
+                self.rows_to_spectrum(real, spectrum, &mut scratch.fft);
+            }
+            debug_assert!(ny <= columns);
+        };
+        self.over_rows(
+            threads,
+            rows,
+            columns * rows_of_a_task,
+            tasks,
+            rows_of_a_task,
+            forward,
+        );
+        let mut spectrum = vec![0.0; self.blocks() * quarter_rows * BLOCK];
+        let rows = &*rows;
+        let transform = |first: usize, blocks: &mut [f64], scratch: &mut TaskScratch| {
+            for (block, values) in blocks.chunks_exact_mut(quarter_rows * BLOCK).enumerate() {
+                let start = (first + block) * BLOCK;
+                let width = BLOCK.min(columns - start);
+                scratch.columns.fill(ZERO);
+                for i in 0..nx {
+                    for b in 0..width {
+                        let value = Complex64::new(rows[i * columns + start + b].re, 0.0);
+                        scratch.columns[b * mx + i] = value;
+                        scratch.columns[b * mx + (mx - i) % mx] = value;
+                    }
+                }
+                let columns = &mut scratch.columns[..width * mx];
+                self.column_forward
+                    .process_with_scratch(columns, &mut scratch.fft);
+                for k in 0..quarter_rows {
+                    for b in 0..width {
+                        values[k * BLOCK + b] = columns[b * mx + k].re * scale;
+                    }
+                }
+            }
+        };
+        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
+        let chunk = blocks_of_a_task * quarter_rows * BLOCK;
+        self.over_rows(
+            threads,
+            &mut spectrum,
+            chunk,
+            tasks,
+            blocks_of_a_task,
+            transform,
+        );
+        EvenSpectrum(spectrum)
+    }
+
+    /// `output` = kernel ∗ `input`, both (nx, ny) in C order. Allocates nothing.
+    pub(crate) fn convolve_into(
+        &self,
+        spectrum: &EvenSpectrum,
+        input: &[f64],
+        output: &mut [f64],
+        workspace: &mut Workspace,
+        threads: &Threads,
+    ) {
+        let [nx, ny] = self.shape;
+        let mx = self.padded[0];
+        let columns = self.columns();
+        let Workspace {
+            rows,
+            blocks,
+            tasks,
+        } = workspace;
+        let rows_of_a_task = nx.div_ceil(self.tasks);
+
+        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
+            for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
+                let start = (first + row) * ny;
+                scratch.real[..ny].copy_from_slice(&input[start..start + ny]);
+                scratch.real[ny..].fill(0.0);
+                self.rows_to_spectrum(&mut scratch.real, half, &mut scratch.fft);
+            }
+        };
+        self.over_rows(
+            threads,
+            rows,
+            columns * rows_of_a_task,
+            tasks,
+            rows_of_a_task,
+            forward,
+        );
+
+        let rows = &*rows;
+        let quarter_rows = self.quarter_rows();
+        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
+            for (block, kept) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
+                let start = (first + block) * BLOCK;
+                let width = BLOCK.min(columns - start);
+                let buffer = &mut scratch.columns[..width * mx];
+                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
+                    column[nx..].fill(ZERO);
+                    for (i, value) in column[..nx].iter_mut().enumerate() {
+                        *value = rows[i * columns + start + b];
+                    }
+                }
+                self.column_forward
+                    .process_with_scratch(buffer, &mut scratch.fft);
+                let offset = (first + block) * quarter_rows * BLOCK;
+                let values = &spectrum.0[offset..offset + quarter_rows * BLOCK];
+                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
+                    column[0] *= values[b];
+                    let (low, high) = column[1..].split_at_mut(quarter_rows - 1);
+                    for (k, value) in low.iter_mut().enumerate() {
+                        *value *= values[(k + 1) * BLOCK + b];
+                    }
+                    for (k, value) in high.iter_mut().rev().enumerate() {
+                        *value *= values[(k + 1) * BLOCK + b];
+                    }
+                }
+                self.column_inverse
+                    .process_with_scratch(buffer, &mut scratch.fft);
+                for (b, column) in buffer.chunks_exact(mx).enumerate() {
+                    for (i, value) in column[..nx].iter().enumerate() {
+                        kept[i * BLOCK + b] = *value;
+                    }
+                }
+            }
+        };
+        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
+        let chunk = blocks_of_a_task * nx * BLOCK;
+        self.over_rows(threads, blocks, chunk, tasks, blocks_of_a_task, multiply);
+
+        let blocks = &*blocks;
+        let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
+            for (row, values) in output.chunks_exact_mut(ny).enumerate() {
+                let i = first + row;
+                for (block, part) in scratch.spectrum.chunks_mut(BLOCK).enumerate() {
+                    let start = (block * nx + i) * BLOCK;
+                    part.copy_from_slice(&blocks[start..start + part.len()]);
+                }
+                self.spectrum_to_rows(&mut scratch.spectrum, &mut scratch.real, &mut scratch.fft);
+                values.copy_from_slice(&scratch.real[..ny]);
+            }
+        };
+        self.over_rows(
+            threads,
+            output,
+            ny * rows_of_a_task,
+            tasks,
+            rows_of_a_task,
+            inverse,
+        );
+    }
+
+    /// Calls `work` with the number of its first item for each chunk of `data`, one task a chunk.
+    fn over_rows<T: Send>(
+        &self,
+        threads: &Threads,
+        data: &mut [T],
+        chunk: usize,
+        tasks: &mut [TaskScratch],
+        items: usize,
+        work: impl Fn(usize, &mut [T], &mut TaskScratch) + Sync + Send,
+    ) {
+        if self.tasks == 1 {
+            work(0, data, &mut tasks[0]);
+        } else {
+            threads.run(|| {
+                data.par_chunks_mut(chunk)
+                    .zip(tasks.par_iter_mut())
+                    .enumerate()
+                    .for_each(|(task, (part, scratch))| work(task * items, part, scratch));
+            });
+        }
+    }
+
+    fn rows_to_spectrum(
+        &self,
+        real: &mut [f64],
+        half: &mut [Complex64],
+        scratch: &mut [Complex64],
+    ) {
+        let scratch = &mut scratch[..self.row_forward.get_scratch_len()];
+        let done = self.row_forward.process_with_scratch(real, half, scratch);
+        debug_assert!(done.is_ok(), "lengths are the plan's own");
+    }
+
+    fn spectrum_to_rows(
+        &self,
+        half: &mut [Complex64],
+        real: &mut [f64],
+        scratch: &mut [Complex64],
+    ) {
+        // Real data have real entries there; rounding must not leave an imaginary part.
+        half[0].im = 0.0;
+        if self.padded[1].is_multiple_of(2) {
+            half[self.padded[1] / 2].im = 0.0;
+        }
+        let scratch = &mut scratch[..self.row_inverse.get_scratch_len()];
+        let done = self.row_inverse.process_with_scratch(half, real, scratch);
+        debug_assert!(done.is_ok(), "lengths are the plan's own");
+    }
+}
+
+/// Inverse transform of a real and even spectrum of (mx, my) points, of which `value(k, l)` gives
+/// the entries 0 ≤ k ≤ mx/2, 0 ≤ l ≤ my/2 (mx, my even); its corner (nx, ny) is returned.
+pub(crate) fn inverse_even(
+    [nx, ny]: [usize; 2],
+    [mx, my]: [usize; 2],
+    value: impl Fn(usize, usize) -> f64 + Sync,
+    threads: &Threads,
+) -> Array2<f64> {
+    let mut planner = FftPlanner::new();
+    let (along_x, along_y) = (planner.plan_fft_forward(mx), planner.plan_fft_forward(my));
+    let (half_x, half_y) = (mx / 2, my / 2);
+    // The transform of real, even data is real and even, and forward and inverse are the same.
+    let even = |fft: &Arc<dyn Fft<f64>>, buffer: &mut [Complex64], scratch: &mut Vec<Complex64>| {
+        scratch.resize(fft.get_inplace_scratch_len(), ZERO);
+        fft.process_with_scratch(buffer, scratch);
+    };
+    let mut columns = Array2::<f64>::zeros((half_y + 1, nx));
+    let mut out = Array2::<f64>::zeros((nx, ny));
+    let scale = 1.0 / (mx as f64 * my as f64);
+    threads.run(|| {
+        columns
+            .axis_iter_mut(ndarray::Axis(0))
+            .into_par_iter()
+            .enumerate()
+            .for_each_init(
+                || (vec![ZERO; mx], Vec::new()),
+                |(buffer, scratch), (l, mut column)| {
+                    for k in 0..=half_x {
+                        let entry = Complex64::new(value(k, l), 0.0);
+                        buffer[k] = entry;
+                        buffer[(mx - k) % mx] = entry;
+                    }
+                    even(&along_x, buffer, scratch);
+                    column.iter_mut().zip(&*buffer).for_each(|(c, b)| *c = b.re);
+                },
+            );
+        out.axis_iter_mut(ndarray::Axis(0))
+            .into_par_iter()
+            .enumerate()
+            .for_each_init(
+                || (vec![ZERO; my], Vec::new()),
+                |(buffer, scratch), (i, mut row)| {
+                    for l in 0..=half_y {
+                        let entry = Complex64::new(columns[[l, i]], 0.0);
+                        buffer[l] = entry;
+                        buffer[(my - l) % my] = entry;
+                    }
+                    even(&along_y, buffer, scratch);
+                    row.iter_mut()
+                        .zip(&*buffer)
+                        .for_each(|(c, b)| *c = b.re * scale);
+                },
+            );
+    });
+    out
+}
+
+/// Fourier coefficients of `samples`, c_m = 1/N Σ f_n e^{−2πi mn/N}, 0 ≤ m ≤ N/2, as (re, im).
+pub(crate) fn fourier_coefficients(mut samples: Vec<f64>) -> Vec<(f64, f64)> {
+    let scale = 1.0 / samples.len() as f64;
+    let fft = RealFftPlanner::new().plan_fft_forward(samples.len());
+    let mut spectrum = fft.make_output_vec();
+    let done = fft.process(&mut samples, &mut spectrum);
+    debug_assert!(done.is_ok(), "lengths are the plan's own");
+    spectrum
+        .iter()
+        .map(|c| (c.re * scale, c.im * scale))
+        .collect()
+}

@@ -1,0 +1,120 @@
+//! The grid of rectangular cells over which pressure is piecewise constant.
+
+use ndarray::Array1;
+
+use crate::error::{Error, Result, finite, positive};
+
+/// A uniform grid: `shape` cells over a rectangle of `size` around `center`.
+///
+/// ```text
+/// x_i = center_x − lx/2 + (i + ½) dx,   dx = lx / nx        (y alike)
+/// ```
+///
+/// ```
+/// let grid = nacre::Grid::new([4, 2], [8.0, 2.0])?;
+/// assert_eq!(grid.x().to_vec(), [-3.0, -1.0, 1.0, 3.0]);
+/// assert_eq!(grid.spacing(), [2.0, 1.0]);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    shape: [usize; 2],
+    size: [f64; 2],
+    center: [f64; 2],
+}
+
+impl Grid {
+    /// Cells `[nx, ny]` over a rectangle `[lx, ly]` \[m\] around the origin.
+    ///
+    /// # Errors
+    /// Unless there are at least two cells in each direction, countable in a `usize`, and the size
+    /// is finite and above 0.
+    pub fn new(shape: [usize; 2], size: [f64; 2]) -> Result<Self> {
+        for n in shape {
+            if n < 2 {
+                return Err(Error::Parameter {
+                    name: "shape",
+                    requirement: "at least 2 cells in each direction",
+                    value: n as f64,
+                });
+            }
+        }
+        // Padded meshes have up to (2·9/8)² as many points; 16 bytes each must be countable.
+        if shape[0]
+            .checked_mul(shape[1])
+            .and_then(|n| n.checked_mul(128))
+            .is_none()
+        {
+            return Err(Error::Parameter {
+                name: "shape",
+                requirement: "a number of cells that this machine can count",
+                value: shape[0] as f64 * shape[1] as f64,
+            });
+        }
+        positive("size", size[0])?;
+        positive("size", size[1])?;
+        Ok(Self {
+            shape,
+            size,
+            center: [0.0; 2],
+        })
+    }
+
+    /// The same grid around `center` \[m\].
+    ///
+    /// # Errors
+    /// Unless `center` is finite.
+    pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
+        finite("center", center[0])?;
+        finite("center", center[1])?;
+        Ok(Self { center, ..self })
+    }
+
+    /// Numbers of cells `[nx, ny]`.
+    pub fn shape(&self) -> [usize; 2] {
+        self.shape
+    }
+
+    /// Side lengths `[lx, ly]` \[m\].
+    pub fn size(&self) -> [f64; 2] {
+        self.size
+    }
+
+    /// Centre \[m\].
+    pub fn center(&self) -> [f64; 2] {
+        self.center
+    }
+
+    /// Side lengths of a cell `[dx, dy]` \[m\].
+    pub fn spacing(&self) -> [f64; 2] {
+        [
+            self.size[0] / self.shape[0] as f64,
+            self.size[1] / self.shape[1] as f64,
+        ]
+    }
+
+    /// Area of a cell \[m²\].
+    pub fn cell_area(&self) -> f64 {
+        let [dx, dy] = self.spacing();
+        dx * dy
+    }
+
+    /// Cell centres along x, (nx,) \[m\].
+    pub fn x(&self) -> Array1<f64> {
+        self.coordinates(0)
+    }
+
+    /// Cell centres along y, (ny,) \[m\].
+    pub fn y(&self) -> Array1<f64> {
+        self.coordinates(1)
+    }
+
+    /// Cell centres along `axis`. Counted from the centre, so that they are symmetric to the bit.
+    pub(crate) fn coordinates(&self, axis: usize) -> Array1<f64> {
+        let n = self.shape[axis];
+        let spacing = self.spacing()[axis];
+        Array1::from_shape_fn(n, |i| {
+            self.center[axis] + (i as f64 - 0.5 * (n - 1) as f64) * spacing
+        })
+    }
+}

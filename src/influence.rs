@@ -1,0 +1,147 @@
+//! Influence coefficients: the displacement of cell centres under uniform pressure on one cell.
+//!
+//! ```text
+//! C[i, j] = 1/4π² ∬ c11(α) · sin(m dx/2)/(m/2) · sin(n dy/2)/(n/2) · e^{i(m i dx + n j dy)} dm dn
+//! ```
+//!
+//! [`Method::Exact`] evaluates it without aliasing. The other methods sample the frequency
+//! response and transform it back, as the paper does: they cost an inverse FFT of χ² times as many
+//! points, and carry the errors that their descriptions state.
+
+use ndarray::{Array2, Zip};
+
+use crate::body::HalfSpace;
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::threads::Threads;
+
+mod conversion;
+mod exact;
+mod potential;
+mod quadrature;
+mod radial;
+
+pub use exact::CellInfluence;
+
+/// How the frequency response becomes influence coefficients.
+///
+/// Errors are those of E1/E2 = 4, h = 8 dx on a square of 64² cells and χ = 4, at the loaded cell,
+/// and the largest relative one at any offset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Method {
+    /// Closed forms, and radial tables of what they leave: no aliasing, for any thickness of layer
+    /// and any shape of cell. Relative error below 1e-9.
+    #[default]
+    Exact,
+    /// The response alone, sampled: a point load cut off at the Nyquist frequency. 6e-4 and 5e-2;
+    /// goes wrong on long thin domains.
+    Plain {
+        /// Refinement χ of the spectral mesh.
+        refinement: usize,
+    },
+    /// Love's closed form for the surface material, and the sampled rest of the response times the
+    /// transform of the cell. 6e-4 and 4e-2; goes wrong on long thin domains, where the rest, which
+    /// falls off like the substrate's 1/r, meets its periodic images (by 3 % at the loaded cell of
+    /// the paper's roller).
+    Difference {
+        /// Refinement χ of the spectral mesh.
+        refinement: usize,
+    },
+    /// The same with the rest's 1/α singularity taken by an image potential in closed form. 1e-5
+    /// and 1e-3; needs layers thicker than a cell.
+    Image {
+        /// Refinement χ of the spectral mesh.
+        refinement: usize,
+    },
+}
+
+/// Coefficients `C[i, j]` \[m/Pa\] of offsets (i dx, j dy) ≥ 0, in the shape (nx, ny) of `grid`.
+///
+/// Those of negative offsets are the same.
+///
+/// # Errors
+/// Where a refinement is 0, or there is too little memory.
+///
+/// ```
+/// use nacre::influence::{Method, influence_coefficients};
+/// let steel = nacre::Elastic::new(210e9, 0.3)?;
+/// let grid = nacre::Grid::new([8, 8], [8.0, 8.0])?;
+/// let c = influence_coefficients(&steel.into(), &grid, Method::Exact)?;
+/// // Mean of 1/r over a unit square, from its centre: 4 asinh(1)
+/// let loaded = 4.0 * 1.0_f64.asinh() / (std::f64::consts::PI * steel.plane_strain_modulus());
+/// assert!((c[[0, 0]] / loaded - 1.0).abs() < 1e-14);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+pub fn influence_coefficients(
+    body: &HalfSpace,
+    grid: &Grid,
+    method: Method,
+) -> Result<Array2<f64>> {
+    check_memory(grid, memory(grid))?;
+    coefficients_on(body, grid, method, &Threads::new(None)?)
+}
+
+/// The same on given threads, memory having been checked.
+pub(crate) fn coefficients_on(
+    body: &HalfSpace,
+    grid: &Grid,
+    method: Method,
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    match method {
+        Method::Exact => {
+            let spacing @ [dx, dy] = grid.spacing();
+            let [lx, ly] = grid.size();
+            let cell = CellInfluence::plan_on(body, spacing, lx.hypot(ly), threads)?;
+            let mut coefficients = Array2::zeros(grid.shape());
+            threads.run(|| {
+                Zip::indexed(&mut coefficients)
+                    .par_for_each(|(i, j), c| *c = cell.at([i as f64 * dx, j as f64 * dy]));
+            });
+            Ok(coefficients)
+        }
+        Method::Plain { refinement }
+        | Method::Difference { refinement }
+        | Method::Image { refinement } => {
+            if refinement == 0 {
+                return Err(Error::Parameter {
+                    name: "refinement",
+                    requirement: "at least 1",
+                    value: 0.0,
+                });
+            }
+            conversion::coefficients(body, grid, method, refinement, threads)
+        }
+    }
+}
+
+/// Bytes that the coefficients of a grid take.
+pub(crate) fn memory(grid: &Grid) -> u64 {
+    let [nx, ny] = grid.shape().map(|n| n as u64);
+    8 * nx * ny
+}
+
+/// An error where the machine has less than `needed` bytes.
+pub(crate) fn check_memory(grid: &Grid, needed: u64) -> Result<()> {
+    // A small grid needs no look at the machine.
+    if needed < 64 << 20 {
+        return Ok(());
+    }
+    let Ok(mut system) = sysinfo::System::new() else {
+        return Ok(());
+    };
+    system.refresh_memory();
+    let machine = system.available_memory();
+    let available = system
+        .cgroup_limits()
+        .map_or(machine, |limits| machine.min(limits.free_memory));
+    if available > 0 && needed > available {
+        return Err(Error::Memory {
+            shape: grid.shape(),
+            needed,
+            available,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! The paper's conversion: sample the response, transform it back, keep the middle.
+//!
+//! 1. A mesh of step Δ, N points and refinement χ is chosen: 2χN points in each direction, of
+//!    which the spectral step is 2π/(2χNΔ). (The paper prints 2π/(NΔ).)
+//! 2. Its nodes, 3. the response there, 4. in wrap-around order,
+//! 5. inverse FFT, of which the middle 2N points are kept: by symmetry, N offsets ≥ 0.
+
+use std::f64::consts::PI;
+
+use ndarray::Array2;
+use rayon::prelude::*;
+
+use super::Method;
+use super::potential::Rectangle;
+use crate::body::HalfSpace;
+use crate::error::{Error, Result};
+use crate::fft::inverse_even;
+use crate::grid::Grid;
+use crate::response::{alpha_compliance, limits};
+use crate::threads::Threads;
+
+pub(super) fn coefficients(
+    body: &HalfSpace,
+    grid: &Grid,
+    method: Method,
+    refinement: usize,
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let shape = grid.shape();
+    let [dx, dy] = grid.spacing();
+    let too_fine = || Error::Parameter {
+        name: "refinement",
+        requirement: "small enough for the number of points to be counted",
+        value: refinement as f64,
+    };
+    let mut mesh = [0; 2];
+    for (points, n) in mesh.iter_mut().zip(shape) {
+        *points = n
+            .checked_mul(2)
+            .and_then(|n| n.checked_mul(refinement))
+            .ok_or_else(too_fine)?;
+    }
+    let half_spectrum = (mesh[1] / 2 + 1)
+        .checked_mul(8 * shape[0])
+        .ok_or_else(too_fine)?;
+    super::check_memory(grid, super::memory(grid) + half_spectrum as u64)?;
+    let step = [
+        2.0 * PI / (mesh[0] as f64 * dx),
+        2.0 * PI / (mesh[1] as f64 * dy),
+    ];
+    let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
+    let limits = limits(body);
+    let rest = limits.long - limits.short;
+    let mean = mean_of_inverse(step);
+    let image_depth = 2.0 * thickness;
+
+    let (zero, with_cell): (f64, bool) = match method {
+        Method::Difference { .. } => (rest * mean + limits.constant, true),
+        Method::Image { .. } => (limits.constant + rest * image_depth, true),
+        Method::Plain { .. } | Method::Exact => (limits.long * mean + limits.constant, false),
+    };
+    let value = |k: usize, l: usize| {
+        if k == 0 && l == 0 {
+            return zero;
+        }
+        let (m, n) = (k as f64 * step[0], l as f64 * step[1]);
+        let alpha = m.hypot(n);
+        let response = alpha_compliance(body, alpha).c11;
+        let sampled = match method {
+            Method::Difference { .. } => response - limits.short,
+            Method::Image { .. } => response - limits.short - rest * (-alpha * image_depth).exp(),
+            Method::Plain { .. } | Method::Exact => response,
+        } / alpha;
+        if with_cell {
+            sampled * sinc(0.5 * m * dx) * sinc(0.5 * n * dy)
+        } else {
+            sampled
+        }
+    };
+    let mut coefficients = inverse_even(shape, mesh, value, threads);
+    if with_cell {
+        let cell = Rectangle::new([dx, dy]);
+        let image = if matches!(method, Method::Image { .. }) {
+            rest
+        } else {
+            0.0
+        };
+        threads.run(|| {
+            let rows = coefficients.axis_iter_mut(ndarray::Axis(0));
+            rows.into_par_iter().enumerate().for_each(|(i, mut row)| {
+                for (j, c) in row.iter_mut().enumerate() {
+                    let (x, y) = (i as f64 * dx, j as f64 * dy);
+                    *c += limits.short / (2.0 * PI) * cell.potential(x, y, 0.0);
+                    if image != 0.0 {
+                        *c += image / (2.0 * PI) * cell.potential(x, y, image_depth);
+                    }
+                }
+            });
+        });
+    }
+    Ok(coefficients)
+}
+
+fn sinc(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.sin() / x }
+}
+
+/// Mean of 1/α over a spectral cell around zero.
+///
+/// ```text
+/// 2 [dm asinh(dn/dm) + dn asinh(dm/dn)] / (dm dn)
+/// ```
+fn mean_of_inverse([dm, dn]: [f64; 2]) -> f64 {
+    2.0 * ((dn / dm).asinh() / dn + (dm / dn).asinh() / dm)
+}

@@ -1,0 +1,80 @@
+//! Elastic contact of coated bodies.
+//!
+//! A shape is pressed into a half-space that carries any number of layers, by a force that may act
+//! off-centre. nacre returns the pressure p, the contact area, the approach δ and the tilt s:
+//!
+//! ```text
+//! g = h + u(p) − δ − s_x x − s_y y ≥ 0      p ≥ 0      p g = 0      ∬ p {1, x, y} dA = W {1, e_x, e_y}
+//! ```
+//!
+//! ```
+//! use nacre::{Elastic, HalfSpace, Layer, Motion, Sphere, solve};
+//!
+//! let steel = Elastic::new(210e9, 0.3)?;
+//! let dlc = Elastic::new(420e9, 0.3)?;
+//! let body = HalfSpace::new(steel, [Layer::new(dlc, 40e-6)?])?;
+//! let solution = solve(&Sphere::new(5e-3)?, &body, &Motion::load(100.0))?;
+//! assert!((solution.load() / 100.0 - 1.0).abs() < 1e-12);
+//! assert!(solution.peak_pressure() > 2.5e9);
+//! # Ok::<(), nacre::Error>(())
+//! ```
+//!
+//! # Modules
+//!
+//! They form one chain; each imports from earlier ones only.
+//!
+//! | module | what it makes |
+//! |---|---|
+//! | [`material`], [`body`] | elastic materials, layers, half-spaces |
+//! | [`grid`], [`surface`] | cells of uniform pressure, undeformed shapes |
+//! | [`response`] | frequency response û(α)/p̂(α) of a layered half-space |
+//! | [`influence`] | influence coefficients `C[i, j]` |
+//! | [`convolution`] | displacement from pressure, by DC-FFT |
+//! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
+//! | [`hertz`] | closed forms to compare with |
+//!
+//! # Conventions
+//!
+//! - Any consistent units; documents and tests use m, N, Pa.
+//! - Arrays are (nx, ny), C order, `[i, j]` at the cell centre x_i = center_x − lx/2 + (i + ½) dx;
+//!   z points into the body.
+//! - Pressure is positive in compression, displacement positive into its own body, the gap positive
+//!   when open.
+//! - Fourier pair f̂(m, n) = ∬ f e^{−i(mx+ny)} dx dy; α = √(m² + n²). The discrete forward transform
+//!   is unscaled, and the inverse divides by the number of points.
+
+pub mod error;
+
+pub mod material;
+
+pub mod body;
+
+pub mod grid;
+
+pub mod surface;
+
+pub mod response;
+
+mod threads;
+
+mod fft;
+
+pub mod influence;
+
+pub mod convolution;
+
+pub mod contact;
+
+pub mod hertz;
+
+#[cfg(feature = "python")]
+mod python;
+
+pub use body::{HalfSpace, Interface, Layer, Substrate};
+pub use contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solution, Warning, solve};
+pub use convolution::Convolution;
+pub use error::{Error, Result};
+pub use grid::Grid;
+pub use influence::Method;
+pub use material::Elastic;
+pub use surface::{Cylinder, FlatPunch, HeightMap, Paraboloid, Roller, Sphere, Surface};

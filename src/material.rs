@@ -1,0 +1,55 @@
+//! Isotropic linear elastic materials.
+
+use crate::error::{Error, Result, positive};
+
+/// An isotropic linear elastic material.
+///
+/// ```
+/// let steel = nacre::Elastic::new(210e9, 0.3)?;
+/// assert!((steel.plane_strain_modulus() / 210e9 - 1.0 / 0.91).abs() < 1e-15);
+/// assert!((steel.shear() - 210e9 / 2.6).abs() < 1.0);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elastic {
+    young: f64,
+    poisson: f64,
+}
+
+impl Elastic {
+    /// Young's modulus `young` \[Pa\] and Poisson's ratio `poisson`.
+    ///
+    /// # Errors
+    /// Unless `young` > 0 and −1 < `poisson` ≤ 0.5.
+    pub fn new(young: f64, poisson: f64) -> Result<Self> {
+        positive("young", young)?;
+        if !(poisson > -1.0 && poisson <= 0.5) {
+            return Err(Error::Parameter {
+                name: "poisson",
+                requirement: "above -1 and at most 0.5",
+                value: poisson,
+            });
+        }
+        Ok(Self { young, poisson })
+    }
+
+    /// Young's modulus E \[Pa\].
+    pub fn young(&self) -> f64 {
+        self.young
+    }
+
+    /// Poisson's ratio ν.
+    pub fn poisson(&self) -> f64 {
+        self.poisson
+    }
+
+    /// Shear modulus G = E / (2 (1 + ν)) \[Pa\].
+    pub fn shear(&self) -> f64 {
+        self.young / (2.0 * (1.0 + self.poisson))
+    }
+
+    /// Plane strain modulus E / (1 − ν²) \[Pa\], the contact modulus against a rigid counterbody.
+    pub fn plane_strain_modulus(&self) -> f64 {
+        self.young / ((1.0 - self.poisson) * (1.0 + self.poisson))
+    }
+}

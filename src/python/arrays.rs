@@ -1,0 +1,88 @@
+//! Arrays and numbers from Python: real ones of any dtype, order and stride.
+
+use ndarray::{Array2, ArrayD, Ix2};
+use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// `object` as an array of f64.
+///
+/// Complex numbers, objects and text are a `TypeError` that names the argument.
+pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
+    let numpy = object.py().import("numpy")?;
+    let ragged =
+        |error: PyErr| PyTypeError::new_err(format!("{name} must be a real array: {error}"));
+    let array = numpy.call_method1("asarray", (object,)).map_err(ragged)?;
+    let dtype = array.getattr("dtype")?;
+    let kind: String = dtype.getattr("kind")?.extract()?;
+    if !["b", "i", "u", "f"].contains(&kind.as_str()) {
+        return Err(PyTypeError::new_err(format!(
+            "{name} must be a real array, got dtype {dtype}"
+        )));
+    }
+    let array = array.call_method1("astype", ("float64",))?;
+    let array: PyReadonlyArrayDyn<f64> = array.cast::<PyArrayDyn<f64>>()?.readonly();
+    Ok(array.as_array().to_owned())
+}
+
+/// `object` as an array of two dimensions.
+pub(super) fn real_matrix(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Array2<f64>> {
+    let array = real_array(name, object)?;
+    let shape = array.shape().to_vec();
+    array.into_dimensionality::<Ix2>().map_err(|_| {
+        PyValueError::new_err(format!(
+            "{name} must have two dimensions (nx, ny), got shape {shape:?}"
+        ))
+    })
+}
+
+/// `array` moved into NumPy, and locked.
+pub(super) fn read_only<'py, D: ndarray::Dimension, T: numpy::Element>(
+    py: Python<'py>,
+    array: ndarray::Array<T, D>,
+) -> PyResult<Bound<'py, PyArray<T, D>>> {
+    let array = PyArray::from_owned_array(py, array);
+    let flags = pyo3::types::PyDict::new(py);
+    flags.set_item("write", false)?;
+    array.call_method("setflags", (), Some(&flags))?;
+    Ok(array)
+}
+
+/// A number of things, ≥ `least`.
+pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let refuse = || {
+        PyValueError::new_err(format!(
+            "{name} must be an integer of at least {least}, got {value}"
+        ))
+    };
+    let index = value
+        .call_method0("__index__")
+        .map_err(|_| PyTypeError::new_err(format!("{name} must be an integer, got {value}")))?;
+    index
+        .extract::<usize>()
+        .ok()
+        .filter(|&n| n >= least)
+        .ok_or_else(refuse)
+}
+
+/// Two numbers, either of which may be `None`.
+pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2]> {
+    let Some(value) = value else {
+        return Ok([None; 2]);
+    };
+    value.extract().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "{name} must be a pair of numbers or None, got {value}"
+        ))
+    })
+}
+
+/// A real number.
+pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
+    let extract = |value: &Bound<'_, PyAny>| {
+        value
+            .extract::<f64>()
+            .map_err(|_| PyTypeError::new_err(format!("{name} must be a real number, got {value}")))
+    };
+    value.map(extract).transpose()
+}

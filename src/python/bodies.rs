@@ -1,0 +1,277 @@
+//! `nacre.Elastic`, `nacre.Layer`, `nacre.HalfSpace`, `nacre.RIGID`.
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::error::Error;
+use crate::material::Elastic;
+
+/// An isotropic linear elastic material.
+///
+/// Parameters
+/// ----------
+/// young : float
+///     Young's modulus [Pa], above 0.
+/// poisson : float
+///     Poisson's ratio, above -1 and at most 0.5.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If either is out of range.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> round(steel.plane_strain_modulus / 1e9, 2)
+/// 230.77
+#[pyclass(name = "Elastic", module = "nacre", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyElastic(pub(super) Elastic);
+
+#[pymethods]
+impl PyElastic {
+    #[new]
+    fn new(young: f64, poisson: f64) -> PyResult<Self> {
+        Ok(Self(Elastic::new(young, poisson)?))
+    }
+
+    /// Young's modulus [Pa].
+    #[getter]
+    fn young(&self) -> f64 {
+        self.0.young()
+    }
+
+    /// Poisson's ratio.
+    #[getter]
+    fn poisson(&self) -> f64 {
+        self.0.poisson()
+    }
+
+    /// Shear modulus ``E / (2 (1 + nu))`` [Pa].
+    #[getter]
+    fn shear(&self) -> f64 {
+        self.0.shear()
+    }
+
+    /// Plane strain modulus ``E / (1 - nu**2)`` [Pa], the contact modulus against a rigid body.
+    #[getter]
+    fn plane_strain_modulus(&self) -> f64 {
+        self.0.plane_strain_modulus()
+    }
+
+    fn __repr__(&self) -> String {
+        elastic_repr(&self.0)
+    }
+
+    fn __getnewargs__(&self) -> (f64, f64) {
+        (self.0.young(), self.0.poisson())
+    }
+}
+
+fn elastic_repr(material: &Elastic) -> String {
+    format!(
+        "Elastic(young={:?}, poisson={:?})",
+        material.young(),
+        material.poisson()
+    )
+}
+
+/// The type of `nacre.RIGID`, a rigid base.
+#[pyclass(name = "Rigid", module = "nacre", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyRigid;
+
+#[pymethods]
+impl PyRigid {
+    fn __repr__(&self) -> &'static str {
+        "RIGID"
+    }
+
+    fn __reduce__(&self) -> &'static str {
+        "RIGID"
+    }
+}
+
+/// One layer of uniform thickness, and the interface below it.
+///
+/// Parameters
+/// ----------
+/// material : Elastic
+///     What it is made of.
+/// thickness : float
+///     Its thickness [m], above 0.
+/// interface : {"bonded", "frictionless"}, optional
+///     How it is joined to what lies below: displacement and traction continuous, or slipping
+///     freely without ever opening.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If the thickness is not finite and above 0, or the interface is another word.
+///
+/// Examples
+/// --------
+/// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+/// >>> nacre.Layer(dlc, thickness=2e-6).interface
+/// 'bonded'
+#[pyclass(name = "Layer", module = "nacre", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyLayer(pub(super) Layer);
+
+#[pymethods]
+impl PyLayer {
+    #[new]
+    #[pyo3(signature = (material, thickness, interface="bonded"))]
+    fn new(material: PyElastic, thickness: f64, interface: &str) -> PyResult<Self> {
+        let interface = match interface {
+            "bonded" => Interface::Bonded,
+            "frictionless" => Interface::Frictionless,
+            other => {
+                return Err(Error::Choice {
+                    name: "interface",
+                    requirement: "\"bonded\" or \"frictionless\"",
+                    value: other.into(),
+                }
+                .into());
+            }
+        };
+        Ok(Self(
+            Layer::new(material.0, thickness)?.with_interface(interface),
+        ))
+    }
+
+    /// What it is made of.
+    #[getter]
+    fn material(&self) -> PyElastic {
+        PyElastic(self.0.material())
+    }
+
+    /// Its thickness [m].
+    #[getter]
+    fn thickness(&self) -> f64 {
+        self.0.thickness()
+    }
+
+    /// How it is joined to what lies below.
+    #[getter]
+    fn interface(&self) -> &'static str {
+        match self.0.interface() {
+            Interface::Bonded => "bonded",
+            Interface::Frictionless => "frictionless",
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Layer({}, thickness={:?}, interface='{}')",
+            elastic_repr(&self.0.material()),
+            self.0.thickness(),
+            self.interface()
+        )
+    }
+
+    fn __getnewargs__(&self) -> (PyElastic, f64, &'static str) {
+        (self.material(), self.0.thickness(), self.interface())
+    }
+}
+
+/// A half-space: a substrate, and layers from the surface down.
+///
+/// Parameters
+/// ----------
+/// substrate : Elastic or nacre.RIGID
+///     What lies below the layers.
+/// layers : sequence of Layer, optional
+///     From the surface down.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If the substrate is rigid and there is no layer.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+/// >>> nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)]).interfaces
+/// [2e-06]
+#[pyclass(name = "HalfSpace", module = "nacre", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyHalfSpace(pub(super) HalfSpace);
+
+#[pymethods]
+impl PyHalfSpace {
+    #[new]
+    #[pyo3(signature = (substrate, layers=None))]
+    fn new(substrate: &Bound<'_, PyAny>, layers: Option<Vec<PyLayer>>) -> PyResult<Self> {
+        let base: Substrate = if let Ok(material) = substrate.extract::<PyElastic>() {
+            material.0.into()
+        } else if substrate.cast::<PyRigid>().is_ok() {
+            Substrate::Rigid
+        } else {
+            return Err(PyTypeError::new_err(format!(
+                "substrate must be an Elastic or nacre.RIGID, got {substrate}"
+            )));
+        };
+        let layers = layers.unwrap_or_default().into_iter().map(|layer| layer.0);
+        Ok(Self(HalfSpace::new(base, layers)?))
+    }
+
+    /// What lies below the layers: an `Elastic`, or `nacre.RIGID`.
+    #[getter]
+    fn substrate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self.0.substrate() {
+            Substrate::Elastic(material) => Ok(Bound::new(py, PyElastic(material))?.into_any()),
+            Substrate::Rigid => py.import("nacre._core")?.getattr("RIGID"),
+        }
+    }
+
+    /// The layers, from the surface down.
+    #[getter]
+    fn layers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.layers().iter().map(|layer| PyLayer(*layer)))
+    }
+
+    /// Depths of the interfaces [m], from the surface down.
+    #[getter]
+    fn interfaces(&self) -> Vec<f64> {
+        self.0.interfaces()
+    }
+
+    pub(super) fn __repr__(&self) -> String {
+        let substrate = match self.0.substrate() {
+            Substrate::Elastic(material) => elastic_repr(&material),
+            Substrate::Rigid => "RIGID".into(),
+        };
+        let layers: Vec<_> = self
+            .0
+            .layers()
+            .iter()
+            .map(|l| PyLayer(*l).__repr__())
+            .collect();
+        format!("HalfSpace({substrate}, layers=[{}])", layers.join(", "))
+    }
+
+    fn __getnewargs__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        Ok((self.substrate(py)?, self.layers(py)?))
+    }
+}
+
+/// The body that a caller gave: a half-space, or a material that fills one.
+pub(super) fn body(object: &Bound<'_, PyAny>) -> PyResult<HalfSpace> {
+    if let Ok(body) = object.extract::<PyHalfSpace>() {
+        return Ok(body.0);
+    }
+    match object.extract::<PyElastic>() {
+        Ok(material) => Ok(material.0.into()),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "body and counterbody must be a HalfSpace or an Elastic, got {object}"
+        ))),
+    }
+}

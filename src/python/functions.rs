@@ -1,0 +1,106 @@
+//! `nacre.frequency_response` and `nacre.influence_coefficients`.
+
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::prelude::*;
+
+use super::arrays::{count, real_array};
+use super::bodies::body;
+use super::contact::method;
+use super::grid::PyGrid;
+use crate::influence;
+use crate::response;
+
+/// Normal surface displacement per unit pressure at one wavenumber.
+///
+/// Parameters
+/// ----------
+/// body : HalfSpace or Elastic
+///     The body.
+/// wavenumber : float or array_like
+///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
+///
+/// Returns
+/// -------
+/// float or numpy.ndarray
+///     ``u_z/p`` [m/Pa], in the shape of `wavenumber`. One layer: Nogi & Kato, J. Tribol. 119
+///     (1997) 493, with the sign of the denominator put right.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If a wavenumber is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> alpha = 1e3
+/// >>> round(nacre.frequency_response(steel, alpha) * alpha * steel.plane_strain_modulus, 12)
+/// 2.0
+#[pyfunction]
+pub(super) fn frequency_response<'py>(
+    py: Python<'py>,
+    #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+    wavenumber: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut values = real_array("wavenumber", wavenumber)?;
+    py.detach(|| {
+        values.iter_mut().try_for_each(|alpha| {
+            *alpha = response::frequency_response(&body, *alpha)?;
+            Ok::<_, crate::Error>(())
+        })
+    })?;
+    if values.ndim() == 0 {
+        return Ok(values.sum().into_pyobject(py)?.into_any());
+    }
+    Ok(values.into_pyarray(py).into_any())
+}
+
+/// Displacement at cell offsets from a cell under unit pressure.
+///
+/// Parameters
+/// ----------
+/// body : HalfSpace or Elastic
+///     The body.
+/// grid : Grid
+///     Gives the cell and the number of offsets.
+/// method : {"exact", "plain", "difference", "image"}, optional
+///     ``"exact"`` has no aliasing, for any thickness and any cell. The others sample the frequency
+///     response and transform it back: ``"plain"`` the response alone, ``"difference"`` what it
+///     differs from a body of the coating's material, ``"image"`` what is left of that beside an
+///     image potential. The first two go wrong on long thin domains; ``"image"`` needs layers that
+///     are thicker than a cell.
+/// refinement : int, optional
+///     Refinement of the spectral mesh of the conversions.
+///
+/// Returns
+/// -------
+/// numpy.ndarray
+///     Coefficients ``(nx, ny)`` [m/Pa] of the offsets ``(i dx, j dy)``, ``i, j >= 0``.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If the method is another word or the refinement is below 1.
+/// MemoryError
+///     If the grid does not fit.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> grid = nacre.Grid(shape=(8, 8), size=(8e-6, 8e-6))
+/// >>> nacre.influence_coefficients(steel, grid).shape
+/// (8, 8)
+#[pyfunction]
+#[pyo3(signature = (body, grid, method="exact", refinement=None))]
+pub(super) fn influence_coefficients<'py>(
+    py: Python<'py>,
+    #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+    grid: PyGrid,
+    method: &str,
+    refinement: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let refinement = refinement.map_or(Ok(4), |r| count("refinement", 1, r))?;
+    let method = self::method(method, refinement)?;
+    let coefficients = py.detach(|| influence::influence_coefficients(&body, &grid.0, method))?;
+    Ok(coefficients.into_pyarray(py))
+}

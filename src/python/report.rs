@@ -1,0 +1,190 @@
+//! `nacre.Report`.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::contact::{method, method_words};
+use super::grid::PyGrid;
+use crate::contact::{Balance, Report, Termination, Warning};
+
+/// How a solution came about, and how good it is: computed afresh at the end.
+#[pyclass(name = "Report", module = "nacre", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyReport(pub(super) Report);
+
+/// Termination, counts, quality, balance, warnings, grid, method, refinement, seconds.
+type State = (
+    String,
+    [usize; 2],
+    [f64; 2],
+    (f64, [f64; 2]),
+    Vec<(String, usize, f64)>,
+    PyGrid,
+    (String, usize),
+    f64,
+);
+
+fn termination_word(termination: Termination) -> &'static str {
+    match termination {
+        Termination::Converged => "converged",
+        Termination::IterationLimit => "iteration limit",
+        Termination::Stopped => "stopped",
+    }
+}
+
+#[pymethods]
+impl PyReport {
+    /// Whether the tolerance was met.
+    #[getter]
+    fn converged(&self) -> bool {
+        self.0.converged()
+    }
+
+    /// How the iteration ended: "converged", "iteration limit" or "stopped".
+    #[getter]
+    fn termination(&self) -> &'static str {
+        termination_word(self.0.termination)
+    }
+
+    /// Iterations done.
+    #[getter]
+    fn iterations(&self) -> usize {
+        self.0.iterations
+    }
+
+    /// Convolutions done.
+    #[getter]
+    fn convolutions(&self) -> usize {
+        self.0.convolutions
+    }
+
+    /// Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch.
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.0.residual
+    }
+
+    /// ``max(-g, 0) / max(u)`` over the cells that can touch.
+    #[getter]
+    fn overlap(&self) -> f64 {
+        self.0.overlap
+    }
+
+    /// Mismatch of the force over W, and of the moments over W times half the side.
+    #[getter]
+    fn balance(&self) -> (f64, f64, f64) {
+        let Balance {
+            force,
+            moment: [x, y],
+        } = self.0.balance;
+        (force, x, y)
+    }
+
+    /// What the user should know; each was also issued as a `nacre.NacreWarning`.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// The grid.
+    #[getter]
+    fn grid(&self) -> PyGrid {
+        PyGrid(self.0.grid)
+    }
+
+    /// How the influence coefficients were computed.
+    #[getter]
+    fn method(&self) -> &'static str {
+        method_words(self.0.method).0
+    }
+
+    /// Seconds the solve took, planning excluded.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.0.seconds
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<nacre.Report: {} after {} iterations, {} convolutions, {:.3} s; residual {:.1e}, \
+             overlap {:.1e}; {} warnings>",
+            self.termination(),
+            self.0.iterations,
+            self.0.convolutions,
+            self.0.seconds,
+            self.0.residual,
+            self.0.overlap,
+            self.0.warnings.len()
+        )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State,))> {
+        let report = &self.0;
+        let (word, refinement) = method_words(report.method);
+        let warnings = report.warnings.iter().map(|warning| match *warning {
+            Warning::GridEdge => ("grid edge", 0, 0.0),
+            Warning::SharpEnd { axis } => ("sharp end", axis, 0.0),
+            Warning::Coarse { axis, cells } => ("coarse", axis, cells as f64),
+            Warning::LargeContact { axis, ratio } => ("large contact", axis, ratio),
+        });
+        let state = (
+            self.termination().into(),
+            [report.iterations, report.convolutions],
+            [report.residual, report.overlap],
+            (report.balance.force, report.balance.moment),
+            warnings
+                .map(|(kind, axis, value)| (kind.into(), axis, value))
+                .collect(),
+            PyGrid(report.grid),
+            (word.into(), refinement),
+            report.seconds,
+        );
+        Ok((
+            py.import("nacre._core")?.getattr("_restore_report")?,
+            (state,),
+        ))
+    }
+}
+
+/// A report from its pickled state.
+#[pyfunction(name = "_restore_report")]
+pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
+    let (termination, counts, quality, balance, warnings, grid, (word, refinement), seconds) =
+        state;
+    let unknown = |word: &str| PyValueError::new_err(format!("not a pickled report: {word:?}"));
+    let termination = [
+        Termination::Converged,
+        Termination::IterationLimit,
+        Termination::Stopped,
+    ]
+    .into_iter()
+    .find(|t| termination_word(*t) == termination)
+    .ok_or_else(|| unknown(&termination))?;
+    let warnings = warnings
+        .into_iter()
+        .map(|(kind, axis, value)| match kind.as_str() {
+            "grid edge" => Ok(Warning::GridEdge),
+            "sharp end" => Ok(Warning::SharpEnd { axis }),
+            "coarse" => Ok(Warning::Coarse {
+                axis,
+                cells: value as usize,
+            }),
+            "large contact" => Ok(Warning::LargeContact { axis, ratio: value }),
+            other => Err(unknown(other)),
+        });
+    Ok(PyReport(Report {
+        termination,
+        iterations: counts[0],
+        convolutions: counts[1],
+        residual: quality[0],
+        overlap: quality[1],
+        balance: Balance {
+            force: balance.0,
+            moment: balance.1,
+        },
+        warnings: warnings.collect::<PyResult<_>>()?,
+        grid: grid.0,
+        method: method(&word, refinement)?,
+        seconds,
+    }))
+}

@@ -1,0 +1,470 @@
+//! Shapes: `nacre.Shape` and its kinds.
+
+use ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::PyClass;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use super::arrays::{read_only, real_matrix};
+use super::grid::PyGrid;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::surface::{Cylinder, Extent, FlatPunch, HeightMap, Paraboloid, Roller, Sphere, Surface};
+
+/// Any shape that Python can name: so that it has a value to compare, copy and print.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Shape {
+    Sphere(Sphere),
+    Paraboloid(Paraboloid),
+    Cylinder(Cylinder),
+    Roller(Roller),
+    FlatPunch(FlatPunch),
+    HeightMap(HeightMap),
+    Sum(Box<[Shape; 2]>),
+    Shifted(Box<Shape>, [f64; 2]),
+}
+
+impl Shape {
+    /// Calls `f` with the surface that this is.
+    fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
+        match self {
+            Self::Sphere(shape) => f(shape),
+            Self::Paraboloid(shape) => f(shape),
+            Self::Cylinder(shape) => f(shape),
+            Self::Roller(shape) => f(shape),
+            Self::FlatPunch(shape) => f(shape),
+            Self::HeightMap(shape) => f(shape),
+            Self::Sum(parts) => f(&(&parts[0]).plus(&parts[1])),
+            Self::Shifted(shape, [x, y]) => match shape.as_ref().shifted(*x, *y) {
+                Ok(shifted) => f(&shifted),
+                Err(_) => unreachable!("checked when it was made"),
+            },
+        }
+    }
+
+    fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let base = PyClassInitializer::from(PyShape(self.clone()));
+        Ok(match self {
+            Self::Sphere(_) => Bound::new(py, base.add_subclass(PySphere))?.into_any(),
+            Self::Paraboloid(_) => Bound::new(py, base.add_subclass(PyParaboloid))?.into_any(),
+            Self::Cylinder(_) => Bound::new(py, base.add_subclass(PyCylinder))?.into_any(),
+            Self::Roller(_) => Bound::new(py, base.add_subclass(PyRoller))?.into_any(),
+            Self::FlatPunch(_) => Bound::new(py, base.add_subclass(PyFlatPunch))?.into_any(),
+            Self::HeightMap(_) => Bound::new(py, base.add_subclass(PyHeightMap))?.into_any(),
+            Self::Sum(_) | Self::Shifted(..) => Bound::new(py, base)?.into_any(),
+        })
+    }
+
+    fn repr(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(match self {
+            Self::Sphere(s) => format!("Sphere(radius={:?})", s.radius()),
+            Self::Paraboloid(s) => {
+                format!(
+                    "Paraboloid(radius_x={:?}, radius_y={:?})",
+                    s.radius_x(),
+                    s.radius_y()
+                )
+            }
+            Self::Cylinder(s) => format!("Cylinder(radius={:?})", s.radius()),
+            Self::Roller(s) => format!(
+                "Roller(radius={:?}, flat_length={:?}, crown_radius={:?}, length={})",
+                s.radius(),
+                s.flat_length(),
+                s.crown_radius(),
+                s.length()
+                    .map_or("None".into(), |length| format!("{length:?}"))
+            ),
+            Self::FlatPunch(s) => format!("FlatPunch(radius={:?})", s.radius()),
+            Self::HeightMap(s) => {
+                let ([dx, dy], [x, y]) = (s.spacing(), s.center());
+                let heights = read_only(py, s.heights().to_owned())?.repr()?.to_string();
+                format!("HeightMap({heights}, spacing=({dx:?}, {dy:?}), center=({x:?}, {y:?}))")
+            }
+            Self::Sum(parts) => format!("{} + {}", parts[0].repr(py)?, parts[1].repr(py)?),
+            Self::Shifted(shape, [x, y]) => {
+                let inner = shape.repr(py)?;
+                let inner = if matches!(**shape, Self::Sum(_)) {
+                    format!("({inner})")
+                } else {
+                    inner
+                };
+                format!("{inner}.shifted({x:?}, {y:?})")
+            }
+        })
+    }
+}
+
+impl Surface for Shape {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.with(|shape| shape.gap(x, y))
+    }
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        self.with(|shape| shape.gaps(grid))
+    }
+    fn extent(&self) -> [Extent; 2] {
+        self.with(|shape| shape.extent())
+    }
+    fn radii(&self) -> [f64; 2] {
+        self.with(|shape| shape.radii())
+    }
+    fn grid(&self) -> Option<Grid> {
+        self.with(|shape| shape.grid())
+    }
+}
+
+/// An undeformed shape: the gap h(x, y) to the plane z = 0.
+///
+/// Shapes add (``sphere + roughness``) and move (``shape.shifted(x, y)``). A gap of +inf means
+/// 'cannot touch'.
+#[pyclass(name = "Shape", module = "nacre", frozen, eq, subclass)]
+#[derive(Clone, PartialEq)]
+pub(super) struct PyShape(pub(super) Shape);
+
+#[pymethods]
+impl PyShape {
+    /// Gaps at the cells of a grid.
+    ///
+    /// Parameters
+    /// ----------
+    /// grid : Grid
+    ///     The grid.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Gaps ``(nx, ny)`` [m]; +inf where the shape cannot touch.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a height map is too fine for the grid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> grid = nacre.Grid(shape=(2, 2), size=(2.0, 2.0))
+    /// >>> nacre.Paraboloid(1.0, 1.0).gaps(grid)
+    /// array([[0.25, 0.25],
+    ///        [0.25, 0.25]])
+    fn gaps<'py>(&self, py: Python<'py>, grid: PyGrid) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(self.0.gaps(&grid.0)?.into_pyarray(py))
+    }
+
+    /// The same shape, moved.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : float
+    ///     By how much [m].
+    ///
+    /// Returns
+    /// -------
+    /// Shape
+    ///     The moved shape.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a number is not finite.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.Sphere(5e-3).shifted(1e-3, 0.0)
+    /// Sphere(radius=0.005).shifted(0.001, 0.0)
+    fn shifted(&self, x: f64, y: f64) -> PyResult<Self> {
+        (&self.0).shifted(x, y)?;
+        Ok(Self(Shape::Shifted(Box::new(self.0.clone()), [x, y])))
+    }
+
+    fn __add__(&self, other: &Self) -> Self {
+        Self(Shape::Sum(Box::new([self.0.clone(), other.0.clone()])))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        self.0.repr(py)
+    }
+
+    /// How to make it again: a callable and its arguments.
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let py = slf.py();
+        let class = slf.get_type().into_any();
+        let operator = py.import("operator")?;
+        Ok(match &slf.get().0 {
+            Shape::Sphere(s) => (class, (s.radius(),).into_pyobject(py)?),
+            Shape::Paraboloid(s) => (class, (s.radius_x(), s.radius_y()).into_pyobject(py)?),
+            Shape::Cylinder(s) => (class, (s.radius(),).into_pyobject(py)?),
+            Shape::Roller(s) => (
+                class,
+                (s.radius(), s.flat_length(), s.crown_radius(), s.length()).into_pyobject(py)?,
+            ),
+            Shape::FlatPunch(s) => (class, (s.radius(),).into_pyobject(py)?),
+            Shape::HeightMap(s) => {
+                let heights = read_only(py, s.heights().to_owned())?;
+                let (spacing, center): ((f64, f64), (f64, f64)) =
+                    (s.spacing().into(), s.center().into());
+                (class, (heights, spacing, center).into_pyobject(py)?)
+            }
+            Shape::Sum(parts) => {
+                let [a, b] = parts.as_ref().clone();
+                let parts = (a.into_python(py)?, b.into_python(py)?).into_pyobject(py)?;
+                (operator.getattr("add")?, parts)
+            }
+            Shape::Shifted(shape, [x, y]) => {
+                let shift = operator.call_method1("methodcaller", ("shifted", *x, *y))?;
+                (
+                    shift,
+                    (shape.as_ref().clone().into_python(py)?,).into_pyobject(py)?,
+                )
+            }
+        })
+    }
+}
+
+/// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
+///
+/// Parameters
+/// ----------
+/// radius : float
+///     Radius [m], above 0.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If it is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> nacre.Sphere(radius=5e-3)
+/// Sphere(radius=0.005)
+#[pyclass(name = "Sphere", module = "nacre", frozen, extends = PyShape)]
+pub(super) struct PySphere;
+
+#[pymethods]
+impl PySphere {
+    #[new]
+    fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
+        Ok(subclass(Self, Shape::Sphere(Sphere::new(radius)?)))
+    }
+}
+
+/// An elliptic paraboloid: ``h = x**2/(2 R_x) + y**2/(2 R_y)``.
+///
+/// Parameters
+/// ----------
+/// radius_x, radius_y : float
+///     Radii of curvature at the apex [m], above 0.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If one is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> nacre.Paraboloid(5e-3, 5e-3)
+/// Paraboloid(radius_x=0.005, radius_y=0.005)
+#[pyclass(name = "Paraboloid", module = "nacre", frozen, extends = PyShape)]
+pub(super) struct PyParaboloid;
+
+#[pymethods]
+impl PyParaboloid {
+    #[new]
+    fn new(radius_x: f64, radius_y: f64) -> PyResult<PyClassInitializer<Self>> {
+        Ok(subclass(
+            Self,
+            Shape::Paraboloid(Paraboloid::new(radius_x, radius_y)?),
+        ))
+    }
+}
+
+/// An endless cylinder, axis along x: ``h = R - sqrt(R**2 - y**2)``, +inf beyond R.
+///
+/// Its contact is as long as the grid, which must be given.
+///
+/// Parameters
+/// ----------
+/// radius : float
+///     Radius [m], above 0.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If it is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> nacre.Cylinder(radius=5e-3)
+/// Cylinder(radius=0.005)
+#[pyclass(name = "Cylinder", module = "nacre", frozen, extends = PyShape)]
+pub(super) struct PyCylinder;
+
+#[pymethods]
+impl PyCylinder {
+    #[new]
+    fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
+        Ok(subclass(Self, Shape::Cylinder(Cylinder::new(radius)?)))
+    }
+}
+
+/// A crowned roller, axis along x: straight over `flat_length`, rounded beyond.
+///
+/// The axial drop is ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
+/// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``; then
+/// ``h = R - sqrt((R - d)**2 - y**2)``. Spinu et al., The normal contact of finite length coated
+/// cylinders, eq. (3).
+///
+/// Parameters
+/// ----------
+/// radius : float
+///     Radius R [m], above 0.
+/// flat_length : float
+///     Length of the straight part [m], at least 0.
+/// crown_radius : float
+///     Radius R_a of the rounded ends [m], above 0.
+/// length : float, optional
+///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If a length is out of range.
+///
+/// Examples
+/// --------
+/// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+/// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None)
+#[pyclass(name = "Roller", module = "nacre", frozen, extends = PyShape)]
+pub(super) struct PyRoller;
+
+#[pymethods]
+impl PyRoller {
+    #[new]
+    #[pyo3(signature = (radius, flat_length, crown_radius, length=None))]
+    fn new(
+        radius: f64,
+        flat_length: f64,
+        crown_radius: f64,
+        length: Option<f64>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let mut roller = Roller::new(radius, flat_length, crown_radius)?;
+        if let Some(length) = length {
+            roller = roller.with_length(length)?;
+        }
+        Ok(subclass(Self, Shape::Roller(roller)))
+    }
+}
+
+/// A flat circular punch: ``h = 0`` for ``r <= a``, +inf beyond.
+///
+/// Parameters
+/// ----------
+/// radius : float
+///     Radius a [m], above 0.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If it is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> nacre.FlatPunch(radius=1e-3)
+/// FlatPunch(radius=0.001)
+#[pyclass(name = "FlatPunch", module = "nacre", frozen, extends = PyShape)]
+pub(super) struct PyFlatPunch;
+
+#[pymethods]
+impl PyFlatPunch {
+    #[new]
+    fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
+        Ok(subclass(Self, Shape::FlatPunch(FlatPunch::new(radius)?)))
+    }
+}
+
+/// A measured surface: heights at cell centres, positive towards the other body.
+///
+/// ``h = max(heights) - heights`` at the samples; bilinear on another grid, +inf outside.
+///
+/// Parameters
+/// ----------
+/// heights : array_like
+///     Heights ``(nx, ny)`` [m], finite.
+/// spacing : float or tuple of float
+///     Distances between samples ``(dx, dy)`` [m], or one for both.
+/// center : tuple of float, optional
+///     Centre [m].
+///
+/// Raises
+/// ------
+/// TypeError
+///     If the heights are not real numbers.
+/// ValueError
+///     If a height is not finite, there are fewer than two samples in a direction, or the spacing
+///     is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> nacre.HeightMap([[0.0, 1e-6], [2e-6, 3e-6]], spacing=1e-6).spacing
+/// (1e-06, 1e-06)
+#[pyclass(name = "HeightMap", module = "nacre", frozen, extends = PyShape)]
+pub(super) struct PyHeightMap;
+
+#[derive(FromPyObject)]
+pub(super) enum Spacing {
+    Both(f64),
+    Each([f64; 2]),
+}
+
+#[pymethods]
+impl PyHeightMap {
+    #[new]
+    #[pyo3(signature = (heights, spacing, center=(0.0, 0.0)))]
+    fn new(
+        heights: &Bound<'_, PyAny>,
+        spacing: Spacing,
+        center: (f64, f64),
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let spacing = match spacing {
+            Spacing::Both(spacing) => [spacing; 2],
+            Spacing::Each(spacing) => spacing,
+        };
+        let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
+        Ok(subclass(
+            Self,
+            Shape::HeightMap(map.centered_at(center.into())?),
+        ))
+    }
+
+    /// The heights ``(nx, ny)`` [m].
+    #[getter]
+    fn heights<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let map = height_map(slf);
+        read_only(slf.py(), map.heights().to_owned())
+    }
+
+    /// Distances between samples ``(dx, dy)`` [m].
+    #[getter]
+    fn spacing(slf: &Bound<'_, Self>) -> (f64, f64) {
+        height_map(slf).spacing().into()
+    }
+
+    /// Centre [m].
+    #[getter]
+    fn center(slf: &Bound<'_, Self>) -> (f64, f64) {
+        height_map(slf).center().into()
+    }
+}
+
+/// A kind of shape, on its base.
+fn subclass<T: PyClass<BaseType = PyShape>>(kind: T, shape: Shape) -> PyClassInitializer<T> {
+    PyClassInitializer::from(PyShape(shape)).add_subclass(kind)
+}
+
+fn height_map<'a>(object: &'a Bound<'_, PyHeightMap>) -> &'a HeightMap {
+    match &object.as_super().get().0 {
+        Shape::HeightMap(map) => map,
+        _ => unreachable!("made by its own constructor"),
+    }
+}

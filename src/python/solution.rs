@@ -1,0 +1,216 @@
+//! `nacre.Solution`.
+
+use std::sync::Arc;
+
+use ndarray::Array2;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+
+use super::arrays::{read_only, real_matrix};
+use super::report::PyReport;
+use crate::contact::Solution;
+
+/// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
+#[pyclass(name = "Solution", module = "nacre", frozen)]
+pub(super) struct PySolution {
+    solution: Arc<Solution>,
+    pressure: PyOnceLock<Py<PyArray2<f64>>>,
+    gap: PyOnceLock<Py<PyArray2<f64>>>,
+    displacement: PyOnceLock<Py<PyArray2<f64>>>,
+}
+
+impl From<Solution> for PySolution {
+    fn from(solution: Solution) -> Self {
+        Self {
+            solution: Arc::new(solution),
+            pressure: PyOnceLock::new(),
+            gap: PyOnceLock::new(),
+            displacement: PyOnceLock::new(),
+        }
+    }
+}
+
+impl PySolution {
+    pub(super) fn pressure_field(&self) -> &Array2<f64> {
+        &self.solution.pressure
+    }
+}
+
+/// The array of `cell`, copied from `field` at the first use.
+fn cached<'py>(
+    py: Python<'py>,
+    cell: &PyOnceLock<Py<PyArray2<f64>>>,
+    field: &Array2<f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let array = cell.get_or_try_init(py, || read_only(py, field.clone()).map(Bound::unbind))?;
+    Ok(array.bind(py).clone())
+}
+
+#[pymethods]
+impl PySolution {
+    /// Pressure [Pa], at least 0.
+    #[getter]
+    fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        cached(py, &self.pressure, &self.solution.pressure)
+    }
+
+    /// Gap [m]: 0 in contact, within the tolerance; +inf where the shape cannot touch.
+    #[getter]
+    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        cached(py, &self.gap, &self.solution.gap)
+    }
+
+    /// Normal displacement of both bodies together [m], positive into them.
+    #[getter]
+    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        cached(py, &self.displacement, &self.solution.displacement)
+    }
+
+    /// Whether each cell is in contact: its pressure is above 0.
+    #[getter]
+    fn in_contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        read_only(py, self.solution.in_contact())
+    }
+
+    /// Cell centres along x, ``(nx,)`` [m].
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.solution.grid().x())
+    }
+
+    /// Cell centres along y, ``(ny,)`` [m].
+    #[getter]
+    fn y<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.solution.grid().y())
+    }
+
+    /// Normal force [N].
+    #[getter]
+    fn load(&self) -> f64 {
+        self.solution.load()
+    }
+
+    /// Where the force acts, ``(e_x, e_y)`` [m]; the origin where there is none.
+    #[getter]
+    fn eccentricity(&self) -> (f64, f64) {
+        self.solution.eccentricity().into()
+    }
+
+    /// First moments of the pressure about the origin [N m].
+    #[getter]
+    fn moment(&self) -> (f64, f64) {
+        self.solution.moment().into()
+    }
+
+    /// Approach of the origin [m].
+    #[getter]
+    fn approach(&self) -> f64 {
+        self.solution.approach
+    }
+
+    /// Slopes ``(s_x, s_y)``.
+    #[getter]
+    fn tilt(&self) -> (f64, f64) {
+        self.solution.tilt.into()
+    }
+
+    /// Area of the cells in contact [m^2].
+    #[getter]
+    fn contact_area(&self) -> f64 {
+        self.solution.contact_area()
+    }
+
+    /// Ends of the contact ``((x0, x1), (y0, y1))`` [m], within a fraction of a cell.
+    #[getter]
+    fn contact_extent(&self) -> ((f64, f64), (f64, f64)) {
+        let [x, y] = self.solution.contact_extent();
+        (x.into(), y.into())
+    }
+
+    /// Largest pressure of a cell [Pa].
+    #[getter]
+    fn peak_pressure(&self) -> f64 {
+        self.solution.peak_pressure()
+    }
+
+    /// Centre of the cell of the largest pressure [m].
+    #[getter]
+    fn peak_position(&self) -> (f64, f64) {
+        self.solution.peak_position().into()
+    }
+
+    /// Pressure at the origin [Pa], by cubic interpolation; 0 off the grid.
+    #[getter]
+    fn central_pressure(&self) -> f64 {
+        self.solution.central_pressure()
+    }
+
+    /// Force per length along x, ``(nx,)`` [N/m].
+    #[getter]
+    fn line_load<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.solution.line_load())
+    }
+
+    /// How the solution came about, and how good it is.
+    #[getter]
+    fn report(&self) -> PyReport {
+        PyReport(self.solution.report.clone())
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.solution == other.solution
+    }
+
+    fn __repr__(&self) -> String {
+        let s = &self.solution;
+        let [nx, ny] = s.grid().shape();
+        format!(
+            "<nacre.Solution on {nx} x {ny} cells: load {:.6e} N, peak pressure {:.6e} Pa, \
+             approach {:.6e} m, tilt ({:.3e}, {:.3e}), {}>",
+            s.load(),
+            s.peak_pressure(),
+            s.approach,
+            s.tilt[0],
+            s.tilt[1],
+            if s.report.converged() {
+                "converged"
+            } else {
+                "not converged"
+            }
+        )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Pickled<'py>)> {
+        let fields = (self.pressure(py)?, self.gap(py)?, self.displacement(py)?);
+        let motion = (self.approach(), self.tilt());
+        let restore = py.import("nacre._core")?.getattr("_restore_solution")?;
+        Ok((restore, (fields, motion, self.report())))
+    }
+}
+
+type Field<'py> = Bound<'py, PyArray2<f64>>;
+type Pickled<'py> = (
+    (Field<'py>, Field<'py>, Field<'py>),
+    (f64, (f64, f64)),
+    PyReport,
+);
+
+/// A solution from its pickled state.
+#[pyfunction(name = "_restore_solution")]
+pub(super) fn restore_solution(
+    fields: [Bound<'_, PyAny>; 3],
+    motion: (f64, (f64, f64)),
+    report: PyReport,
+) -> PyResult<PySolution> {
+    let [pressure, gap, displacement] = fields;
+    Ok(Solution {
+        pressure: real_matrix("pressure", &pressure)?,
+        gap: real_matrix("gap", &gap)?,
+        displacement: real_matrix("displacement", &displacement)?,
+        approach: motion.0,
+        tilt: motion.1.into(),
+        report: report.0,
+    }
+    .into())
+}

@@ -1,0 +1,161 @@
+//! One layer as an element between its two faces: the step of the recursion.
+
+use super::Compliance;
+use crate::body::Interface;
+use crate::material::Elastic;
+
+/// A layer of thickness h at wavenumber α, x = αh, with traction t = (P, τ) given on top and
+/// displacement u = (W, V) given at the bottom:
+///
+/// ```text
+/// u_top = H11 t_top + H12 u_bot      t_bot = H12ᵀ t_top − H22 u_bot
+/// ```
+///
+/// H11 is stored times α \[1/Pa\], H22 over α \[Pa\]. With η = 1−ν, ε = 1−2ν, k = 3−4ν,
+/// Δ = k cosh 2x + 2x² + 5 − 12ν + 8ν²:
+///
+/// ```text
+/// Gα H11 Δ :    11  η (k sinh 2x − 2x)      22  η (k sinh 2x + 2x)      12  εk sinh²x − x²
+/// H12 Δ :       11  4η (2η cosh x + x sinh x)     12  4η (ε sinh x − x cosh x)
+///               21  4η (ε sinh x + x cosh x)      22  4η (2η cosh x − x sinh x)
+/// H22 Δ/(Gα) :  11  4η (sinh 2x − 2x)       22  4η (sinh 2x + 2x)       12  4 (ε sinh²x + x²)
+/// det H22 = 8 (sinh²x − x²)/Δ · (Gα)²
+/// twist:        Gα h11 = h22/(Gα) = tanh x         h12 = 1/cosh x
+/// ```
+///
+/// Numerators and Δ are multiplied by 2e^{−2x}, so that nothing grows; the differences that cancel
+/// at small x come from their power series.
+pub(super) struct Slab {
+    h11: Symmetric,
+    h12: [[f64; 2]; 2],
+    h22: Symmetric,
+    det_h22: f64,
+    twist: Twist,
+}
+
+/// A symmetric 2 × 2 matrix: elements 11, 12, 22.
+struct Symmetric(f64, f64, f64);
+
+struct Twist {
+    h11: f64,
+    h12: f64,
+    h22: f64,
+}
+
+/// sinh 2x − 2x, x cosh x − sinh x, sinh²x − x², by their power series; for 0 ≤ x < ½, where
+/// twelve terms leave (2x)²⁴/27! < 1e-28.
+fn small_differences(x: f64) -> (f64, f64, f64) {
+    let (x2, y2) = (x * x, 4.0 * x * x);
+    // Each sum runs over k = 1, 2, …; its term is the one before times the ratio of the series.
+    let (mut sinh, mut mixed, mut square) = (0.0, 0.0, 0.0);
+    let mut a = 2.0 * x; // (2x)^{2k+1}/(2k+1)!
+    let mut b = x; // x^{2k+1}/(2k+1)!
+    let mut c = x2; // (2x)^{2k+2}/(2 (2k+2)!)
+    for k in 1..=12 {
+        let k = f64::from(k);
+        a *= y2 / (2.0 * k * (2.0 * k + 1.0));
+        b *= x2 / (2.0 * k * (2.0 * k + 1.0));
+        c *= y2 / ((2.0 * k + 1.0) * (2.0 * k + 2.0));
+        sinh += a;
+        mixed += 2.0 * k * b;
+        square += c;
+    }
+    (sinh, mixed, square)
+}
+
+impl Slab {
+    pub(super) fn new(material: Elastic, x: f64) -> Self {
+        let (g, nu) = (material.shear(), material.poisson());
+        let (eta, epsilon, k) = (1.0 - nu, 1.0 - 2.0 * nu, 3.0 - 4.0 * nu);
+        let e1 = (-x).exp();
+        let e2 = e1 * e1;
+        // All times 2e^{−2x}:
+        let scale = 2.0 * e2;
+        let (cosh, sinh) = (e1 * (1.0 + e2), -e1 * (-2.0 * x).exp_m1());
+        let (xs, x2s) = (x * scale, x * x * scale);
+        let (sinh2_2x, xcosh_sinh, sinhsq_x2) = if x < 0.5 {
+            let (a, b, c) = small_differences(x);
+            (scale * a, scale * b, scale * c)
+        } else {
+            let half = (-2.0 * x).exp_m1();
+            (
+                -(-4.0 * x).exp_m1() - 2.0 * xs,
+                x * cosh - sinh,
+                0.5 * half * half - x2s,
+            )
+        };
+        let delta = k * (1.0 + e2 * e2) + 2.0 * x2s + scale * (5.0 - 12.0 * nu + 8.0 * nu * nu);
+        let (xsinh, xcosh) = (x * sinh, x * cosh);
+        let h11 = 1.0 / (g * delta);
+        let h12 = 4.0 * eta / delta;
+        let h22 = 4.0 * g / delta;
+        Self {
+            h11: Symmetric(
+                h11 * eta * (k * sinh2_2x + 4.0 * epsilon * xs),
+                h11 * (epsilon * k * sinhsq_x2 + (epsilon * k - 1.0) * x2s),
+                h11 * eta * (k * sinh2_2x + 8.0 * eta * xs),
+            ),
+            h12: [
+                [
+                    h12 * (2.0 * eta * cosh + xsinh),
+                    -h12 * (2.0 * nu * xcosh + epsilon * xcosh_sinh),
+                ],
+                [
+                    h12 * (2.0 * eta * sinh + xcosh_sinh),
+                    h12 * (2.0 * eta * cosh - xsinh),
+                ],
+            ],
+            h22: Symmetric(
+                h22 * eta * sinh2_2x,
+                h22 * (epsilon * sinhsq_x2 + 2.0 * eta * x2s),
+                h22 * eta * (sinh2_2x + 4.0 * xs),
+            ),
+            det_h22: 8.0 * sinhsq_x2 / delta * g * g,
+            twist: Twist {
+                h11: x.tanh() / g,
+                h12: 2.0 * e1 / (1.0 + e2),
+                h22: x.tanh() * g,
+            },
+        }
+    }
+
+    /// α times the compliance of the top face of this layer on a body of compliance `below`.
+    ///
+    /// Bonded, with all terms positive:
+    ///
+    /// ```text
+    /// X = (C⁻¹ + H22)⁻¹ = (C + det C · adj H22) / (1 + tr(C H22) + det C · det H22)
+    /// C_top = H11 + H12 X H12ᵀ
+    /// ```
+    ///
+    /// Frictionless: C⁻¹ becomes diag(1/c11, 0).
+    pub(super) fn onto(&self, below: Compliance, interface: Interface) -> Compliance {
+        let Symmetric(k11, k12, k22) = self.h22;
+        let Compliance { c11, c12, c22, ct } = below;
+        let (x, twist) = match interface {
+            Interface::Bonded => {
+                let det = c11 * c22 - c12 * c12;
+                let den = 1.0 + c11 * k11 + 2.0 * c12 * k12 + c22 * k22 + det * self.det_h22;
+                let x = Symmetric(
+                    (c11 + det * k22) / den,
+                    (c12 - det * k12) / den,
+                    (c22 + det * k11) / den,
+                );
+                (x, ct / (1.0 + ct * self.twist.h22))
+            }
+            Interface::Frictionless => {
+                let den = c11 * self.det_h22 + k22;
+                let x = Symmetric(c11 * k22 / den, -c11 * k12 / den, (1.0 + c11 * k11) / den);
+                (x, 1.0 / self.twist.h22)
+            }
+        };
+        let [[a, b], [c, d]] = self.h12;
+        let Symmetric(x11, x12, x22) = x;
+        Compliance {
+            c11: self.h11.0 + a * a * x11 + 2.0 * a * b * x12 + b * b * x22,
+            c12: self.h11.1 + a * c * x11 + (a * d + b * c) * x12 + b * d * x22,
+            c22: self.h11.2 + c * c * x11 + 2.0 * c * d * x12 + d * d * x22,
+            ct: self.twist.h11 + self.twist.h12 * self.twist.h12 * twist,
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Undeformed shapes: the gap h(x, y) between the body's flat surface and what is pressed into it.
+//!
+//! A gap of +∞ means "cannot touch". The approach is measured from h = 0.
+
+use std::fmt;
+use std::sync::Arc;
+
+use ndarray::Array2;
+
+use crate::error::{Result, finite};
+use crate::grid::Grid;
+
+mod height_map;
+mod quadric;
+mod roller;
+
+pub use height_map::HeightMap;
+pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
+pub use roller::Roller;
+
+/// How far a shape goes in one direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Extent {
+    /// Its gap rises without end.
+    Rising,
+    /// Its gap is the same all along: a contact has no end there.
+    Endless,
+    /// It ends, by its geometry, at these coordinates \[m\]; its gap is +∞ beyond.
+    Within([f64; 2]),
+    /// It is cut off at these coordinates \[m\], as a roller by its faces or a map by its rim; its
+    /// gap is +∞ beyond, and a contact that reaches them has a sharp edge.
+    CutOff([f64; 2]),
+}
+
+impl Extent {
+    /// The range in which the gap can be finite.
+    pub fn range(&self) -> [f64; 2] {
+        match *self {
+            Self::Rising | Self::Endless => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Within(range) | Self::CutOff(range) => range,
+        }
+    }
+
+    fn shifted(self, by: f64) -> Self {
+        match self {
+            Self::Within([a, b]) => Self::Within([a + by, b + by]),
+            Self::CutOff([a, b]) => Self::CutOff([a + by, b + by]),
+            other => other,
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Endless, Self::Endless) => Self::Endless,
+            (Self::Rising | Self::Endless, Self::Rising | Self::Endless) => Self::Rising,
+            (a, b) => {
+                let ([a0, a1], [b0, b1]) = (a.range(), b.range());
+                let range = [a0.max(b0), a1.min(b1)];
+                match (a, b) {
+                    (Self::CutOff(_), _) | (_, Self::CutOff(_)) => Self::CutOff(range),
+                    _ => Self::Within(range),
+                }
+            }
+        }
+    }
+}
+
+/// An undeformed shape. A new one needs [`Surface::gap`] alone.
+pub trait Surface: fmt::Debug + Send + Sync {
+    /// Gap \[m\] to the plane z = 0 at (x, y) \[m\]; +∞ where the shape cannot touch; never NaN.
+    fn gap(&self, x: f64, y: f64) -> f64;
+
+    /// Gaps at the cells of `grid`, (nx, ny) \[m\]: at their centres, unless the shape's own
+    /// documentation says otherwise.
+    ///
+    /// # Errors
+    /// Where the grid does not suit the shape.
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let (x, y) = (grid.x(), grid.y());
+        Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
+            self.gap(x[i], y[j])
+        }))
+    }
+
+    /// How far it goes along x and along y.
+    fn extent(&self) -> [Extent; 2] {
+        [Extent::Rising; 2]
+    }
+
+    /// Smallest radii of curvature of its sections along x and along y \[m\]; ∞ where it has none
+    /// that a contact must be small against.
+    fn radii(&self) -> [f64; 2] {
+        [f64::INFINITY; 2]
+    }
+
+    /// The grid on which it is given, for measured surfaces.
+    fn grid(&self) -> Option<Grid> {
+        None
+    }
+
+    /// The same shape moved by (x, y) \[m\].
+    ///
+    /// # Errors
+    /// Unless both are finite.
+    fn shifted(self, x: f64, y: f64) -> Result<Shifted<Self>>
+    where
+        Self: Sized,
+    {
+        Ok(Shifted {
+            shape: self,
+            by: [finite("x", x)?, finite("y", y)?],
+        })
+    }
+
+    /// This shape with the gap of `other` added, as a rough surface to a sphere.
+    fn plus<S: Surface>(self, other: S) -> Sum<Self, S>
+    where
+        Self: Sized,
+    {
+        Sum(self, other)
+    }
+}
+
+macro_rules! forward_surface {
+    ($pointer:ty) => {
+        impl<S: Surface + ?Sized> Surface for $pointer {
+            fn gap(&self, x: f64, y: f64) -> f64 {
+                (**self).gap(x, y)
+            }
+            fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+                (**self).gaps(grid)
+            }
+            fn extent(&self) -> [Extent; 2] {
+                (**self).extent()
+            }
+            fn radii(&self) -> [f64; 2] {
+                (**self).radii()
+            }
+            fn grid(&self) -> Option<Grid> {
+                (**self).grid()
+            }
+        }
+    };
+}
+forward_surface!(&S);
+forward_surface!(Box<S>);
+forward_surface!(Arc<S>);
+
+/// A shape moved in the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shifted<S> {
+    shape: S,
+    by: [f64; 2],
+}
+
+impl<S: Surface> Surface for Shifted<S> {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.shape.gap(x - self.by[0], y - self.by[1])
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let [x, y] = grid.center();
+        self.shape
+            .gaps(&grid.centered_at([x - self.by[0], y - self.by[1]])?)
+    }
+
+    fn extent(&self) -> [Extent; 2] {
+        let [x, y] = self.shape.extent();
+        [x.shifted(self.by[0]), y.shifted(self.by[1])]
+    }
+
+    fn radii(&self) -> [f64; 2] {
+        self.shape.radii()
+    }
+
+    fn grid(&self) -> Option<Grid> {
+        let grid = self.shape.grid()?;
+        let [x, y] = grid.center();
+        grid.centered_at([x + self.by[0], y + self.by[1]]).ok()
+    }
+}
+
+/// The sum of two gaps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sum<A, B>(A, B);
+
+impl<A: Surface, B: Surface> Surface for Sum<A, B> {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.0.gap(x, y) + self.1.gap(x, y)
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        Ok(self.0.gaps(grid)? + self.1.gaps(grid)?)
+    }
+
+    fn extent(&self) -> [Extent; 2] {
+        let ([ax, ay], [bx, by]) = (self.0.extent(), self.1.extent());
+        [ax.and(bx), ay.and(by)]
+    }
+
+    fn radii(&self) -> [f64; 2] {
+        let ([ax, ay], [bx, by]) = (self.0.radii(), self.1.radii());
+        [ax.min(bx), ay.min(by)]
+    }
+
+    fn grid(&self) -> Option<Grid> {
+        self.0.grid().or_else(|| self.1.grid())
+    }
+}
