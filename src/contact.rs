@@ -338,6 +338,7 @@ fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
 
     let goes_on = |i: usize, j: usize| {
         let beyond = |at: usize, n: usize, d: f64| match at {
+            _ if n == 1 => 0.0,
             0 => -d,
             _ if at == n - 1 => d,
             _ => 0.0,
@@ -346,7 +347,8 @@ fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
             .gap(x[i] + beyond(i, nx, dx), y[j] + beyond(j, ny, dy))
             .is_finite()
     };
-    let on_edge = |i: usize, j: usize| i == 0 || j == 0 || i == nx - 1 || j == ny - 1;
+    let across = !grid.is_line();
+    let on_edge = |i: usize, j: usize| j == 0 || j == ny - 1 || (across && (i == 0 || i == nx - 1));
     let mut rim = solution
         .pressure
         .indexed_iter()
@@ -371,7 +373,7 @@ fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
     if cells[0] == 0 {
         return warnings;
     }
-    for axis in [0, 1] {
+    for axis in if grid.is_line() { 1..2 } else { 0..2 } {
         let spacing = grid.spacing()[axis];
         if let Extent::CutOff([low, high]) = shape.extent()[axis]
             && (ends[axis][0] - spacing < low || ends[axis][1] + spacing > high)

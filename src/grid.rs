@@ -21,6 +21,7 @@ pub struct Grid {
     shape: [usize; 2],
     size: [f64; 2],
     center: [f64; 2],
+    plane_strain: bool,
 }
 
 impl Grid {
@@ -57,7 +58,31 @@ impl Grid {
             shape,
             size,
             center: [0.0; 2],
+            plane_strain: false,
         })
+    }
+
+    /// Cells of a line contact: `cells` strips along y over `width` \[m\], endless along x.
+    ///
+    /// Its shape is (1, `cells`), and loads on it are per unit length along x: the force is in
+    /// \[N/m\]. In plane strain the displacement of an elastic half-space grows without end: here
+    /// it is relative to that of the substrate's surface at a distance `width` from the load, and
+    /// so is the approach.
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub fn line(cells: usize, width: f64) -> Result<Self> {
+        let grid = Self::new([2, cells], [1.0, width])?;
+        Ok(Self {
+            shape: [1, cells],
+            plane_strain: true,
+            ..grid
+        })
+    }
+
+    /// Whether it is that of a line contact.
+    pub fn is_line(&self) -> bool {
+        self.plane_strain
     }
 
     /// The same grid around `center` \[m\].

@@ -17,6 +17,7 @@ use crate::threads::Threads;
 
 mod conversion;
 mod exact;
+mod line;
 mod potential;
 mod quadrature;
 mod radial;
@@ -90,6 +91,10 @@ pub(crate) fn coefficients_on(
     threads: &Threads,
 ) -> Result<Array2<f64>> {
     match method {
+        Method::Exact if grid.is_line() => Ok(line::coefficients(body, grid)),
+        _ if grid.is_line() => Err(Error::Inconsistent(
+            "method must be \"exact\" on the grid of a line contact",
+        )),
         Method::Exact => {
             let spacing @ [dx, dy] = grid.spacing();
             let [lx, ly] = grid.size();

@@ -26,13 +26,13 @@
 //! | module | what it makes |
 //! |---|---|
 //! | [`material`], [`body`] | elastic materials, layers, half-spaces |
+//! | [`hertz`] | closed forms for scales and comparison |
 //! | [`grid`], [`surface`] | cells of uniform pressure, undeformed shapes |
 //! | [`response`] | frequency response û(α)/p̂(α) of a layered half-space |
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
-//! | [`hertz`] | closed forms to compare with |
-//!
+//! //!
 //! # Conventions
 //!
 //! - Any consistent units; documents and tests use m, N, Pa.
@@ -51,9 +51,13 @@ pub mod body;
 
 pub mod grid;
 
+pub mod hertz;
+
 pub mod surface;
 
 pub mod response;
+
+mod graded;
 
 mod threads;
 
@@ -65,8 +69,6 @@ pub mod convolution;
 
 pub mod contact;
 
-pub mod hertz;
-
 #[cfg(feature = "python")]
 mod python;
 
@@ -74,7 +76,11 @@ pub use body::{HalfSpace, Interface, Layer, Substrate};
 pub use contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solution, Warning, solve};
 pub use convolution::Convolution;
 pub use error::{Error, Result};
+pub use graded::graded_layers;
 pub use grid::Grid;
 pub use influence::Method;
 pub use material::Elastic;
-pub use surface::{Cylinder, FlatPunch, HeightMap, Paraboloid, Roller, Sphere, Surface};
+pub use surface::{
+    Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
+    Surface,
+};

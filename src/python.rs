@@ -11,6 +11,7 @@ mod bodies;
 mod contact;
 mod functions;
 mod grid;
+mod profiles;
 mod report;
 mod shapes;
 mod solution;
@@ -46,9 +47,11 @@ mod core {
     #[pymodule_export]
     use super::contact::{PyContact, solve};
     #[pymodule_export]
-    use super::functions::{frequency_response, influence_coefficients};
+    use super::functions::{frequency_response, graded_layers, influence_coefficients};
     #[pymodule_export]
     use super::grid::PyGrid;
+    #[pymodule_export]
+    use super::profiles::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
     use super::report::{PyReport, restore_report};
     #[pymodule_export]

@@ -11,10 +11,12 @@ use crate::error::{Result, finite};
 use crate::grid::Grid;
 
 mod height_map;
+mod profile;
 mod quadric;
 mod roller;
 
 pub use height_map::HeightMap;
+pub use profile::{CrownedProfile, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
 pub use roller::Roller;
 

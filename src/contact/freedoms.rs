@@ -106,6 +106,11 @@ impl Freedoms {
                 }
                 _ => return Err(Error::Inconsistent(DIRECTIONS[k])),
             };
+            if k == 0 && grid.is_line() {
+                return Err(Error::Inconsistent(
+                    "along x a line contact has no eccentricity and no moment",
+                ));
+            }
             loaded[k + 1] = true;
             target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
         }

@@ -250,9 +250,10 @@ impl Solution {
 
     /// Ends of the contact along x and along y \[m\], within a fraction of a cell.
     ///
-    /// Towards a smooth edge p² falls linearly: on each line of cells it is continued to zero from
-    /// the second to the fifth cell. At a sharp edge, where p grows, and where there is no such
-    /// zero within a cell, the line ends with its outermost cell. Both ends are 0 where there is no
+    /// p² falls to zero steeply and smoothly at an edge where the surfaces part: on each line of
+    /// cells a parabola through p² of the third to the ninth cell is continued to its zero. At a
+    /// sharp edge, where p grows, on lines of fewer than 18 cells, and where there is no such zero
+    /// within a cell, the contact ends with its outermost cell. Both ends are 0 where there is no
     /// contact.
     pub fn contact_extent(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|axis| {
@@ -280,27 +281,35 @@ fn line_ends(pressure: ndarray::ArrayView1<f64>) -> Option<[f64; 2]> {
 }
 
 /// How far the contact ends beyond the centre of its outermost cell, in cells: from p² of the cells
-/// from the edge inwards.
-fn edge_beyond(squares: impl Fn(usize) -> f64, width: usize) -> f64 {
+/// from the edge inwards, `square(k)`.
+fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
     const OUTER_CELL: f64 = 0.5;
-    // Up to the fifth cell, and not beyond the middle.
-    let last = 4.min((width - 1) / 2);
-    if last < 2 {
+    // The outer two cells carry the discretisation of the edge.
+    const FIRST: usize = 2;
+    const POINTS: usize = 7;
+    if width < 2 * (FIRST + POINTS) {
         return OUTER_CELL;
     }
-    let n = last as f64;
-    let points = (1..=last).map(|k| (k as f64, squares(k)));
-    let mean_k = (n + 1.0) / 2.0;
-    let mean_s = points.clone().map(|(_, s)| s).sum::<f64>() / n;
-    let (up, across) = points.fold((0.0, 0.0), |(up, across), (k, s)| {
-        (
-            up + (k - mean_k) * (s - mean_s),
-            across + (k - mean_k).powi(2),
-        )
-    });
-    let slope = up / across;
-    let beyond = mean_s / slope - mean_k;
-    if slope > 0.0 && (-1.0..=1.0).contains(&beyond) {
+    // Least squares on evenly spaced points, in orthogonal polynomials of t = −3 … 3:
+    // p² = mean + slope t + bend (t² − 4).
+    let half = (POINTS / 2) as f64;
+    let (mut mean, mut slope, mut bend) = (0.0, 0.0, 0.0);
+    for k in 0..POINTS {
+        let t = k as f64 - half;
+        let s = square(FIRST + k);
+        mean += s / 7.0;
+        slope += t * s / 28.0;
+        bend += (t * t - 4.0) * s / 84.0;
+    }
+    // The outer zero of it: t = −2c/(slope + √…), which holds for bend = 0 too.
+    let constant = mean - 4.0 * bend;
+    let discriminant = slope * slope - 4.0 * bend * constant;
+    if slope <= 0.0 || discriminant < 0.0 {
+        return OUTER_CELL;
+    }
+    let zero = -2.0 * constant / (slope + discriminant.sqrt());
+    let beyond = -(zero + half + FIRST as f64);
+    if (-1.0..=1.0).contains(&beyond) {
         beyond
     } else {
         OUTER_CELL

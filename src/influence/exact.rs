@@ -144,40 +144,29 @@ impl CellInfluence {
     /// ∫ K(√(x²+y²)) dx from x1 to x2 > |x1|.
     fn strip(&self, x1: f64, x2: f64, y: f64, kernel: &Table) -> f64 {
         if x1 > 0.0 {
-            return self.panels(x1.ln(), x2.ln(), |v| {
+            return self.panel.over_panels(x1.ln(), x2.ln(), |v| {
                 let x = v.exp();
                 x * kernel.at(x * x + y * y)
             });
         }
         let y = y.abs();
-        self.panels((x1 / y).asinh(), (x2 / y).asinh(), |u| {
-            let r = y * u.cosh();
-            r * kernel.at(r * r)
-        })
+        self.panel
+            .over_panels((x1 / y).asinh(), (x2 / y).asinh(), |u| {
+                let r = y * u.cosh();
+                r * kernel.at(r * r)
+            })
     }
 
     /// Integral of η's kernel over the rectangle from the origin to (x, y); odd in x and in y.
     fn corner(&self, x: f64, y: f64, mean: &Table) -> f64 {
         let (u, v) = (x.abs(), y.abs());
         let wedge = |near: f64, far: f64| {
-            near * self.panels(0.0, (far / near).asinh(), |u| {
+            near * self.panel.over_panels(0.0, (far / near).asinh(), |u| {
                 let r = near * u.cosh();
                 mean.at(r * r)
             })
         };
         x.signum() * y.signum() * (wedge(u, v) + wedge(v, u))
-    }
-
-    /// ∫ f over \[u1, u2\], in panels of length 1 at most.
-    fn panels(&self, u1: f64, u2: f64, f: impl Fn(f64) -> f64) -> f64 {
-        let count = (u2 - u1).ceil().max(1.0);
-        let width = (u2 - u1) / count;
-        (0..count as usize)
-            .map(|k| {
-                let start = u1 + k as f64 * width;
-                self.panel.integrate(start, start + width, &f)
-            })
-            .sum()
     }
 }
 

@@ -36,6 +36,18 @@ impl Rule {
             .map(|&(x, w)| w * f(middle + half * x))
             .sum::<f64>()
     }
+
+    /// ∫ f over \[a, b\], in panels of length 1 at most.
+    pub(super) fn over_panels(&self, a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+        let count = (b - a).ceil().max(1.0);
+        let width = (b - a) / count;
+        (0..count as usize)
+            .map(|k| {
+                let start = a + k as f64 * width;
+                self.integrate(start, start + width, &f)
+            })
+            .sum()
+    }
 }
 
 /// Rules for an integrand that is analytic up to some distance from the interval.

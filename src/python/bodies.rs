@@ -207,17 +207,8 @@ impl PyHalfSpace {
     #[new]
     #[pyo3(signature = (substrate, layers=None))]
     fn new(substrate: &Bound<'_, PyAny>, layers: Option<Vec<PyLayer>>) -> PyResult<Self> {
-        let base: Substrate = if let Ok(material) = substrate.extract::<PyElastic>() {
-            material.0.into()
-        } else if substrate.cast::<PyRigid>().is_ok() {
-            Substrate::Rigid
-        } else {
-            return Err(PyTypeError::new_err(format!(
-                "substrate must be an Elastic or nacre.RIGID, got {substrate}"
-            )));
-        };
         let layers = layers.unwrap_or_default().into_iter().map(|layer| layer.0);
-        Ok(Self(HalfSpace::new(base, layers)?))
+        Ok(Self(HalfSpace::new(self::substrate(substrate)?, layers)?))
     }
 
     /// What lies below the layers: an `Elastic`, or `nacre.RIGID`.
@@ -260,6 +251,19 @@ impl PyHalfSpace {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         Ok((self.substrate(py)?, self.layers(py)?))
+    }
+}
+
+/// The substrate that a caller gave.
+pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
+    if object.cast::<PyRigid>().is_ok() {
+        return Ok(Substrate::Rigid);
+    }
+    match object.extract::<PyElastic>() {
+        Ok(material) => Ok(material.0.into()),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "substrate must be an Elastic or nacre.RIGID, got {object}"
+        ))),
     }
 }
 

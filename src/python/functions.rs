@@ -1,10 +1,10 @@
-//! `nacre.frequency_response` and `nacre.influence_coefficients`.
+//! `nacre.frequency_response`, `nacre.influence_coefficients` and `nacre.graded_layers`.
 
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 
 use super::arrays::{count, real_array};
-use super::bodies::body;
+use super::bodies::{PyLayer, body, substrate};
 use super::contact::method;
 use super::grid::PyGrid;
 use crate::influence;
@@ -103,4 +103,71 @@ pub(super) fn influence_coefficients<'py>(
     let method = self::method(method, refinement)?;
     let coefficients = py.detach(|| influence::influence_coefficients(&body, &grid.0, method))?;
     Ok(coefficients.into_pyarray(py))
+}
+
+/// Layers that stand for a coating whose properties vary with depth.
+///
+/// The coating is cut into equal layers, each of the properties at its middle; their number is
+/// doubled until the frequency response, at wavelengths down to a fifth of the thickness, is within
+/// `tolerance` of its limit. The error falls with the second power of the layers' thickness.
+///
+/// Parameters
+/// ----------
+/// substrate : Elastic or nacre.RIGID
+///     What lies below the coating.
+/// thickness : float
+///     Thickness of the coating [m].
+/// young : float or callable
+///     Young's modulus [Pa], or a function of the depth z [m] that returns it.
+/// poisson : float or callable
+///     Poisson's ratio, or a function of the depth.
+/// tolerance : float, optional
+///     Relative error of the frequency response.
+///
+/// Returns
+/// -------
+/// list of Layer
+///     From the surface down; its length is the number of layers.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If an argument is out of range, or 4096 layers do not meet the tolerance.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> layers = nacre.graded_layers(steel, 10e-6, young=lambda z: 420e9 - 21e15 * z, poisson=0.3)
+/// >>> len(layers)
+/// 16
+/// >>> body = nacre.HalfSpace(steel, layers)
+#[pyfunction]
+#[pyo3(signature = (substrate, thickness, young, poisson, tolerance=1e-4))]
+pub(super) fn graded_layers(
+    #[pyo3(from_py_with = substrate)] substrate: crate::Substrate,
+    thickness: f64,
+    young: &Bound<'_, PyAny>,
+    poisson: &Bound<'_, PyAny>,
+    tolerance: f64,
+) -> PyResult<Vec<PyLayer>> {
+    let mut failure = None;
+    let at = |property: &Bound<'_, PyAny>, z: f64| -> PyResult<f64> {
+        if property.is_callable() {
+            property.call1((z,))?.extract()
+        } else {
+            property.extract()
+        }
+    };
+    let layers = crate::graded_layers(substrate, thickness, tolerance, |z| {
+        let values = at(young, z).and_then(|young| Ok((young, at(poisson, z)?)));
+        let (young, poisson) = values.unwrap_or_else(|error| {
+            failure = Some(error);
+            (f64::NAN, f64::NAN)
+        });
+        crate::Elastic::new(young, poisson)
+    });
+    match failure {
+        Some(error) => Err(error),
+        None => Ok(layers?.into_iter().map(PyLayer).collect()),
+    }
 }

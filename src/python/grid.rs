@@ -2,6 +2,7 @@
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use super::arrays::{count, read_only};
 use crate::grid::Grid;
@@ -41,6 +42,49 @@ impl PyGrid {
         Ok(Self(Grid::new(shape, size)?.centered_at(center.into())?))
     }
 
+    /// The grid of a line contact: strips along y, endless along x, in plane strain.
+    ///
+    /// Its shape is ``(1, cells)``, and loads on it are per unit length along x [N/m]. In plane
+    /// strain the displacement of an elastic half-space grows without end: it is relative to that
+    /// of the substrate's surface at a distance `width` from the load, and so is the approach.
+    ///
+    /// Parameters
+    /// ----------
+    /// cells : int
+    ///     Number of strips, at least 2.
+    /// width : float
+    ///     Width of all of them together [m].
+    /// center : float, optional
+    ///     Centre along y [m].
+    ///
+    /// Returns
+    /// -------
+    /// Grid
+    ///     The grid.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there are fewer than two cells, or the width is not finite and above 0.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.Grid.line(cells=256, width=1e-3).shape
+    /// (1, 256)
+    #[staticmethod]
+    #[pyo3(signature = (cells, width, center=0.0))]
+    fn line(cells: &Bound<'_, PyAny>, width: f64, center: f64) -> PyResult<Self> {
+        Ok(Self(
+            Grid::line(count("cells", 2, cells)?, width)?.centered_at([0.0, center])?,
+        ))
+    }
+
+    /// Whether this is the grid of a line contact.
+    #[getter]
+    fn is_line(&self) -> bool {
+        self.0.is_line()
+    }
+
     /// Numbers of cells ``(nx, ny)``.
     #[getter]
     fn shape(&self) -> (usize, usize) {
@@ -78,15 +122,29 @@ impl PyGrid {
     }
 
     pub(super) fn __repr__(&self) -> String {
-        format!(
-            "Grid(shape={:?}, size={:?}, center={:?})",
-            self.shape(),
-            self.size(),
-            self.center()
-        )
+        let ([nx, ny], [lx, ly], [x, y]) = (self.0.shape(), self.0.size(), self.0.center());
+        if self.0.is_line() {
+            format!("Grid.line(cells={ny}, width={ly:?}, center={y:?})")
+        } else {
+            format!("Grid(shape=({nx}, {ny}), size=({lx:?}, {ly:?}), center=({x:?}, {y:?}))")
+        }
     }
 
-    fn __getnewargs__(&self) -> ((usize, usize), (f64, f64), (f64, f64)) {
-        (self.shape(), self.size(), self.center())
+    /// How to make it again: a callable and its arguments.
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let py = slf.py();
+        let class = slf.get_type().into_any();
+        let grid = slf.get();
+        if grid.0.is_line() {
+            let ([_, cells], [_, width], [_, y]) = (grid.0.shape(), grid.0.size(), grid.0.center());
+            Ok((class.getattr("line")?, (cells, width, y).into_pyobject(py)?))
+        } else {
+            Ok((
+                class,
+                (grid.shape(), grid.size(), grid.center()).into_pyobject(py)?,
+            ))
+        }
     }
 }

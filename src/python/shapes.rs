@@ -8,9 +8,12 @@ use pyo3::types::PyTuple;
 
 use super::arrays::{read_only, real_matrix};
 use super::grid::PyGrid;
-use crate::error::Result;
+use super::profiles;
+use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::surface::{Cylinder, Extent, FlatPunch, HeightMap, Paraboloid, Roller, Sphere, Surface};
+use crate::surface::{
+    Cylinder, Extent, FlatPunch, HeightMap, Paraboloid, Profile, Roller, Sphere, Surface,
+};
 
 /// Any shape that Python can name: so that it has a value to compare, copy and print.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,14 +70,23 @@ impl Shape {
                 )
             }
             Self::Cylinder(s) => format!("Cylinder(radius={:?})", s.radius()),
-            Self::Roller(s) => format!(
-                "Roller(radius={:?}, flat_length={:?}, crown_radius={:?}, length={})",
-                s.radius(),
-                s.flat_length(),
-                s.crown_radius(),
-                s.length()
-                    .map_or("None".into(), |length| format!("{length:?}"))
-            ),
+            Self::Roller(s) => {
+                let length = s
+                    .length()
+                    .map_or("None".into(), |length| format!("{length:?}"));
+                let profile = match (s.profile(), profiles::to_python(py, s.profile())?) {
+                    (Profile::Crowned(p), _) => format!(
+                        "flat_length={:?}, crown_radius={:?}",
+                        p.flat_length(),
+                        p.crown_radius()
+                    ),
+                    (_, profile) => format!("profile={}", profile.into_pyobject(py)?.repr()?),
+                };
+                format!(
+                    "Roller(radius={:?}, {profile}, length={length})",
+                    s.radius()
+                )
+            }
             Self::FlatPunch(s) => format!("FlatPunch(radius={:?})", s.radius()),
             Self::HeightMap(s) => {
                 let ([dx, dy], [x, y]) = (s.spacing(), s.center());
@@ -195,10 +207,15 @@ impl PyShape {
             Shape::Sphere(s) => (class, (s.radius(),).into_pyobject(py)?),
             Shape::Paraboloid(s) => (class, (s.radius_x(), s.radius_y()).into_pyobject(py)?),
             Shape::Cylinder(s) => (class, (s.radius(),).into_pyobject(py)?),
-            Shape::Roller(s) => (
-                class,
-                (s.radius(), s.flat_length(), s.crown_radius(), s.length()).into_pyobject(py)?,
-            ),
+            Shape::Roller(s) => {
+                let (flat_length, crown_radius) = match s.profile() {
+                    Profile::Crowned(p) => (Some(p.flat_length()), Some(p.crown_radius())),
+                    _ => (None, None),
+                };
+                let profile = profiles::to_python(py, s.profile())?;
+                let arguments = (s.radius(), flat_length, crown_radius, s.length(), profile);
+                (class, arguments.into_pyobject(py)?)
+            }
             Shape::FlatPunch(s) => (class, (s.radius(),).into_pyobject(py)?),
             Shape::HeightMap(s) => {
                 let heights = read_only(py, s.heights().to_owned())?;
@@ -308,28 +325,31 @@ impl PyCylinder {
     }
 }
 
-/// A crowned roller, axis along x: straight over `flat_length`, rounded beyond.
+/// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
 ///
-/// The axial drop is ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
-/// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``; then
-/// ``h = R - sqrt((R - d)**2 - y**2)``. Spinu et al., The normal contact of finite length coated
-/// cylinders, eq. (3).
+/// Crowned: ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
+/// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``. Spinu et al., The normal
+/// contact of finite length coated cylinders, eq. (3). Any other profile is averaged over each cell,
+/// so that the ends do not depend on where a cell's centre falls.
 ///
 /// Parameters
 /// ----------
 /// radius : float
 ///     Radius R [m], above 0.
-/// flat_length : float
+/// flat_length : float, optional
 ///     Length of the straight part [m], at least 0.
-/// crown_radius : float
+/// crown_radius : float, optional
 ///     Radius R_a of the rounded ends [m], above 0.
 /// length : float, optional
 ///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
+/// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
+///     Another axial profile, in place of `flat_length` and `crown_radius`; a pair is positions and
+///     drops.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If a length is out of range.
+///     If a length is out of range, or there is neither a crown nor a profile, or both.
 ///
 /// Examples
 /// --------
@@ -341,14 +361,28 @@ pub(super) struct PyRoller;
 #[pymethods]
 impl PyRoller {
     #[new]
-    #[pyo3(signature = (radius, flat_length, crown_radius, length=None))]
+    #[pyo3(signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None))]
     fn new(
         radius: f64,
-        flat_length: f64,
-        crown_radius: f64,
+        flat_length: Option<f64>,
+        crown_radius: Option<f64>,
         length: Option<f64>,
+        profile: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let mut roller = Roller::new(radius, flat_length, crown_radius)?;
+        let mut roller = match (flat_length, crown_radius, profile) {
+            (Some(flat_length), Some(crown_radius), None) => {
+                Roller::new(radius, flat_length, crown_radius)?
+            }
+            (None, None, Some(profile)) => {
+                Roller::with_profile(radius, profiles::profile(profile)?)?
+            }
+            _ => {
+                return Err(Error::Inconsistent(
+                    "either flat_length and crown_radius or profile must be given",
+                )
+                .into());
+            }
+        };
         if let Some(length) = length {
             roller = roller.with_length(length)?;
         }

@@ -1,32 +1,38 @@
 //! Rollers of finite length.
 
+use ndarray::Array2;
+
+use super::profile::{CrownedProfile, Profile};
 use super::quadric::sagitta;
 use super::{Extent, Surface};
 use crate::error::{Error, Result, positive};
+use crate::grid::Grid;
 
-/// A crowned roller, axis along x: straight over `flat_length`, rounded beyond with `crown_radius`.
+/// A roller, axis along x, with an axial profile d(x).
 ///
 /// ```text
-/// d(x) = 0                            |x| ≤ L = flat_length / 2
-/// d(x) = R_a − √(R_a² − (|x| − L)²)   |x| > L
-/// h    = R − √((R − d)² − y²)
+/// h = R − √((R − d)² − y²)
 /// ```
 ///
-/// +∞ where a root has no value, and beyond |x| = `length` / 2 where a length is given.
-/// Spinu et al., The normal contact of finite length coated cylinders, eq. (3).
+/// +∞ where the root has no value, beyond the profile's ends, and beyond |x| = `length` / 2 where
+/// a length is given. On a grid, d is taken at cell centres for a crowned roller (Spinu et al., The
+/// normal contact of finite length coated cylinders, eq. (3)), and as its mean over each cell for
+/// other profiles, which are steep at the ends.
 ///
 /// ```
-/// use nacre::{Roller, Surface};
+/// use nacre::{LogarithmicProfile, Roller, Surface};
 /// let roller = Roller::new(5e-3, 19.13e-3, 7.5)?.with_length(26e-3)?;
 /// assert_eq!(roller.gap(0.0, 3e-3), 1e-3);
 /// assert_eq!(roller.gap(14e-3, 0.0), f64::INFINITY);
+///
+/// let iso = Roller::with_profile(5e-3, LogarithmicProfile::iso16281(10e-3, 20e-3)?)?;
+/// assert!((iso.gap(5e-3, 0.0) / (3.5e-6 * (4.0_f64 / 3.0).ln()) - 1.0).abs() < 1e-9);
 /// # Ok::<(), nacre::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Roller {
     radius: f64,
-    flat_length: f64,
-    crown_radius: f64,
+    profile: Profile,
     length: Option<f64>,
 }
 
@@ -37,17 +43,17 @@ impl Roller {
     /// # Errors
     /// Unless the radii are finite and above 0 and the flat length is finite and at least 0.
     pub fn new(radius: f64, flat_length: f64, crown_radius: f64) -> Result<Self> {
-        if !(flat_length >= 0.0 && flat_length.is_finite()) {
-            return Err(Error::Parameter {
-                name: "flat_length",
-                requirement: "finite and at least 0",
-                value: flat_length,
-            });
-        }
+        Self::with_profile(radius, CrownedProfile::new(flat_length, crown_radius)?)
+    }
+
+    /// A roller of `radius` \[m\] with any axial profile.
+    ///
+    /// # Errors
+    /// Unless the radius is finite and above 0.
+    pub fn with_profile(radius: f64, profile: impl Into<Profile>) -> Result<Self> {
         Ok(Self {
             radius: positive("radius", radius)?,
-            flat_length,
-            crown_radius: positive("crown_radius", crown_radius)?,
+            profile: profile.into(),
             length: None,
         })
     }
@@ -55,10 +61,12 @@ impl Roller {
     /// The same roller, cut off at |x| = `length` / 2 \[m\].
     ///
     /// # Errors
-    /// Unless `length` is finite, above 0 and at least the flat length.
+    /// Unless `length` is finite, above 0 and at least the flat length of a crowned profile.
     pub fn with_length(self, length: f64) -> Result<Self> {
         positive("length", length)?;
-        if length < self.flat_length {
+        if let Profile::Crowned(crowned) = &self.profile
+            && length < crowned.flat_length()
+        {
             return Err(Error::Parameter {
                 name: "length",
                 requirement: "at least flat_length",
@@ -76,14 +84,9 @@ impl Roller {
         self.radius
     }
 
-    /// Length of its straight part \[m\].
-    pub fn flat_length(&self) -> f64 {
-        self.flat_length
-    }
-
-    /// Radius of the crown beyond it \[m\].
-    pub fn crown_radius(&self) -> f64 {
-        self.crown_radius
+    /// Its axial profile.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
     }
 
     /// Its whole length \[m\], where it is cut off.
@@ -91,45 +94,71 @@ impl Roller {
         self.length
     }
 
-    /// Half the length beyond which the gap is +∞ \[m\].
-    fn half_length(&self) -> f64 {
-        // The crown ends where it has fallen by R, or at a quarter of its circle.
-        let (r, ra) = (self.radius, self.crown_radius);
-        let crown = if r < ra {
-            (r * (2.0 * ra - r)).sqrt()
-        } else {
-            ra
-        };
-        let natural = 0.5 * self.flat_length + crown;
-        self.length
-            .map_or(natural, |length| natural.min(0.5 * length))
+    /// Whether the roller is there at x.
+    fn reaches(&self, x: f64) -> bool {
+        self.length.is_none_or(|length| x.abs() <= 0.5 * length)
+    }
+
+    /// R − √((R − d)² − y²) where (R − d)² − y² = R² − (d (2R − d) + y²).
+    fn gap_at(&self, drop: f64, y: f64) -> f64 {
+        if drop > self.radius {
+            return f64::INFINITY;
+        }
+        sagitta(self.radius, drop * (2.0 * self.radius - drop) + y * y)
     }
 }
 
 impl Surface for Roller {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        if self.length.is_some_and(|length| x.abs() > 0.5 * length) {
-            return f64::INFINITY;
+        if self.reaches(x) {
+            self.gap_at(self.profile.drop(x), y)
+        } else {
+            f64::INFINITY
         }
-        let beyond = (x.abs() - 0.5 * self.flat_length).max(0.0);
-        let drop = sagitta(self.crown_radius, beyond * beyond);
-        if drop > self.radius {
-            return f64::INFINITY;
-        }
-        // (R − d)² − y² = R² − (d (2R − d) + y²)
-        sagitta(self.radius, drop * (2.0 * self.radius - drop) + y * y)
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let half = 0.5 * grid.spacing()[0];
+        let (x, y) = (grid.x(), grid.y());
+        let drops = x.mapv(|x| {
+            if self.reaches(x) {
+                self.profile.mean_drop(x - half, x + half)
+            } else {
+                f64::INFINITY
+            }
+        });
+        Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
+            self.gap_at(drops[i], y[j])
+        }))
     }
 
     fn extent(&self) -> [Extent; 2] {
-        let half = self.half_length();
-        let x = match self.length {
-            Some(_) => Extent::CutOff([-half, half]),
-            None => Extent::Within([-half, half]),
+        let natural = match &self.profile {
+            Profile::Crowned(crowned) => {
+                // The crown ends where it has fallen by R, or at a quarter of its circle.
+                let (r, ra) = (self.radius, crowned.crown_radius());
+                let crown = if r < ra {
+                    (r * (2.0 * ra - r)).sqrt()
+                } else {
+                    ra
+                };
+                let half = 0.5 * crowned.flat_length() + crown;
+                [-half, half]
+            }
+            other => other.ends(),
+        };
+        let half = 0.5 * self.length.unwrap_or(f64::INFINITY);
+        let ends = [natural[0].max(-half), natural[1].min(half)];
+        let cut = self.profile.has_sharp_ends() || half < natural[1] || -half > natural[0];
+        let x = if cut {
+            Extent::CutOff(ends)
+        } else {
+            Extent::Within(ends)
         };
         [x, Extent::Within([-self.radius, self.radius])]
     }
 
     fn radii(&self) -> [f64; 2] {
-        [self.crown_radius, self.radius]
+        [self.profile.radius(), self.radius]
     }
 }

@@ -1,0 +1,360 @@
+//! Axial profiles of rollers: the drop d(x) of the generatrix below its middle.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::quadric::sagitta;
+use crate::error::{Error, Result, positive};
+use crate::hertz::Line;
+
+/// An axial profile.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Profile {
+    /// Straight, with rounded ends.
+    Crowned(CrownedProfile),
+    /// Logarithmic.
+    Logarithmic(LogarithmicProfile),
+    /// Measured.
+    Sampled(SampledProfile),
+}
+
+impl From<CrownedProfile> for Profile {
+    fn from(profile: CrownedProfile) -> Self {
+        Self::Crowned(profile)
+    }
+}
+
+impl From<LogarithmicProfile> for Profile {
+    fn from(profile: LogarithmicProfile) -> Self {
+        Self::Logarithmic(profile)
+    }
+}
+
+impl From<SampledProfile> for Profile {
+    fn from(profile: SampledProfile) -> Self {
+        Self::Sampled(profile)
+    }
+}
+
+impl Profile {
+    /// Drop \[m\] at x \[m\]; +∞ beyond the ends.
+    pub fn drop(&self, x: f64) -> f64 {
+        match self {
+            Self::Crowned(profile) => profile.drop(x),
+            Self::Logarithmic(profile) => profile.drop(x),
+            Self::Sampled(profile) => profile.drop(x),
+        }
+    }
+
+    /// Mean drop \[m\] over the cell from a to b \[m\], as far as the roller goes; +∞ where it
+    /// covers less than half of the cell. A crowned profile is smooth, and is taken at the middle.
+    pub(super) fn mean_drop(&self, a: f64, b: f64) -> f64 {
+        let [low, high] = self.ends();
+        let (from, to) = (a.max(low), b.min(high));
+        if to - from < 0.5 * (b - a) * (1.0 - 1e-9) {
+            return f64::INFINITY;
+        }
+        match self {
+            Self::Crowned(profile) => profile.drop(0.5 * (a + b)),
+            Self::Logarithmic(profile) => {
+                (profile.integral(to) - profile.integral(from)) / (to - from)
+            }
+            Self::Sampled(profile) => (profile.integral(to) - profile.integral(from)) / (to - from),
+        }
+    }
+
+    /// Where it ends.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        match self {
+            Self::Crowned(_) => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Logarithmic(profile) => [-0.5 * profile.length, 0.5 * profile.length],
+            Self::Sampled(profile) => profile.ends(),
+        }
+    }
+
+    /// Whether it ends with a finite drop: as a sharp edge.
+    pub(super) fn has_sharp_ends(&self) -> bool {
+        match self {
+            Self::Crowned(_) => false,
+            Self::Logarithmic(profile) => profile.end_factor < 1.0,
+            Self::Sampled(_) => true,
+        }
+    }
+
+    /// Smallest radius of curvature that a contact must be small against.
+    pub(super) fn radius(&self) -> f64 {
+        match self {
+            Self::Crowned(profile) => profile.crown_radius,
+            Self::Logarithmic(_) | Self::Sampled(_) => f64::INFINITY,
+        }
+    }
+}
+
+/// Straight over `flat_length`, rounded beyond with `crown_radius`.
+///
+/// ```text
+/// d(x) = 0                            |x| ≤ L = flat_length / 2
+/// d(x) = R_a − √(R_a² − (|x| − L)²)   |x| > L
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrownedProfile {
+    flat_length: f64,
+    crown_radius: f64,
+}
+
+impl CrownedProfile {
+    /// Straight over `flat_length` \[m\] ≥ 0, rounded to `crown_radius` \[m\] beyond.
+    ///
+    /// # Errors
+    /// Unless the radius is finite and above 0, and the length finite and at least 0.
+    pub fn new(flat_length: f64, crown_radius: f64) -> Result<Self> {
+        if !(flat_length >= 0.0 && flat_length.is_finite()) {
+            return Err(Error::Parameter {
+                name: "flat_length",
+                requirement: "finite and at least 0",
+                value: flat_length,
+            });
+        }
+        Ok(Self {
+            flat_length,
+            crown_radius: positive("crown_radius", crown_radius)?,
+        })
+    }
+
+    /// Length of the straight part \[m\].
+    pub fn flat_length(&self) -> f64 {
+        self.flat_length
+    }
+
+    /// Radius of the ends \[m\].
+    pub fn crown_radius(&self) -> f64 {
+        self.crown_radius
+    }
+
+    fn drop(&self, x: f64) -> f64 {
+        let beyond = (x.abs() - 0.5 * self.flat_length).max(0.0);
+        sagitta(self.crown_radius, beyond * beyond)
+    }
+}
+
+/// A logarithmic profile, straight over its middle where `flat_length` > 0.
+///
+/// ```text
+/// d(x) = A ln 1/(1 − f u²)      u = (2|x| − flat_length)/(length − flat_length), 0 where negative
+/// ```
+///
+/// +∞ beyond |x| = `length` / 2. The amplitude A and the end factor f ≤ 1 follow from
+///
+/// - Lundberg: A = W/(π L E*), f = 1: the pressure of the load W is the same all along
+///   (Lundberg, Forsch. Ing.-Wes. 10 (1939) 201);
+/// - Johns & Gohar: f = 1 − 0.3033 b/a, of the half-width b and half-length a, for a finite drop at
+///   the ends (Johns & Gohar, Tribol. Int. 14 (1981) 131);
+/// - ISO/TS 16281: A = 0.00035 D, f = 1 for L ≤ 2.5 D; else A = 0.0005 D over the last 1.25 D at
+///   each end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogarithmicProfile {
+    amplitude: f64,
+    length: f64,
+    flat_length: f64,
+    end_factor: f64,
+}
+
+impl LogarithmicProfile {
+    /// A profile of `amplitude` A \[m\] over `length` \[m\], straight over `flat_length` \[m\], with
+    /// `end_factor` f.
+    ///
+    /// # Errors
+    /// Unless amplitude and length are finite and above 0, 0 ≤ flat length < length and
+    /// 0 < f ≤ 1.
+    pub fn new(amplitude: f64, length: f64, flat_length: f64, end_factor: f64) -> Result<Self> {
+        positive("amplitude", amplitude)?;
+        positive("length", length)?;
+        if !(0.0..length).contains(&flat_length) {
+            return Err(Error::Parameter {
+                name: "flat_length",
+                requirement: "at least 0 and below the length",
+                value: flat_length,
+            });
+        }
+        if !(end_factor > 0.0 && end_factor <= 1.0) {
+            return Err(Error::Parameter {
+                name: "end_factor",
+                requirement: "above 0 and at most 1",
+                value: end_factor,
+            });
+        }
+        Ok(Self {
+            amplitude,
+            length,
+            flat_length,
+            end_factor,
+        })
+    }
+
+    /// Lundberg's profile for a `load` W \[N\] and a `contact_modulus` E* \[Pa\].
+    ///
+    /// # Errors
+    /// Unless all are finite and above 0.
+    pub fn lundberg(length: f64, load: f64, contact_modulus: f64) -> Result<Self> {
+        positive("load", load)?;
+        positive("contact_modulus", contact_modulus)?;
+        Self::new(load / (PI * length * contact_modulus), length, 0.0, 1.0)
+    }
+
+    /// Johns & Gohar's profile for a `load` W \[N\], a `contact_modulus` E* \[Pa\] and the `radius`
+    /// \[m\], from which the Hertzian half-width follows.
+    ///
+    /// # Errors
+    /// Unless all are finite and above 0, and the contact is longer than wide.
+    pub fn johns_gohar(length: f64, load: f64, contact_modulus: f64, radius: f64) -> Result<Self> {
+        let lundberg = Self::lundberg(length, load, contact_modulus)?;
+        let b = Line::new(radius, contact_modulus, load / length)?.half_width;
+        Self::new(
+            lundberg.amplitude,
+            length,
+            0.0,
+            1.0 - 0.3033 * b / (0.5 * length),
+        )
+    }
+
+    /// The profile of ISO/TS 16281 for a roller of `diameter` D \[m\] and effective `length` \[m\].
+    ///
+    /// # Errors
+    /// Unless both are finite and above 0.
+    pub fn iso16281(diameter: f64, length: f64) -> Result<Self> {
+        positive("diameter", diameter)?;
+        positive("length", length)?;
+        let rounded = 2.5 * diameter;
+        if length <= rounded {
+            Self::new(0.00035 * diameter, length, 0.0, 1.0)
+        } else {
+            Self::new(0.0005 * diameter, length, length - rounded, 1.0)
+        }
+    }
+
+    /// Amplitude A \[m\].
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// Whole length \[m\].
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Length of the straight part \[m\].
+    pub fn flat_length(&self) -> f64 {
+        self.flat_length
+    }
+
+    /// End factor f.
+    pub fn end_factor(&self) -> f64 {
+        self.end_factor
+    }
+
+    fn drop(&self, x: f64) -> f64 {
+        if x.abs() > 0.5 * self.length {
+            return f64::INFINITY;
+        }
+        let beyond = (2.0 * x.abs() - self.flat_length).max(0.0);
+        let u = beyond / (self.length - self.flat_length);
+        -self.amplitude * (-self.end_factor * u * u).ln_1p()
+    }
+
+    /// ∫ d from 0 to x.
+    ///
+    /// ```text
+    /// ∫ −ln(1 − v²) dv = (1 − v) ln(1 − v) − (1 + v) ln(1 + v) + 2v
+    /// ```
+    fn integral(&self, x: f64) -> f64 {
+        let beyond = (2.0 * x.abs() - self.flat_length).max(0.0);
+        let root = self.end_factor.sqrt();
+        let v = (root * beyond / (self.length - self.flat_length)).min(1.0);
+        let xlnx = |x: f64| if x > 0.0 { x * x.ln() } else { 0.0 };
+        let sum = xlnx(1.0 - v) - xlnx(1.0 + v) + 2.0 * v;
+        let scale = 0.5 * (self.length - self.flat_length) / root;
+        x.signum() * self.amplitude * scale * sum
+    }
+}
+
+/// A measured profile: drops at increasing positions, linear in between, +∞ beyond.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledProfile {
+    /// Position, drop, and the integral of the drop up to there.
+    samples: Arc<[[f64; 3]]>,
+}
+
+impl SampledProfile {
+    /// Drops `drop` \[m\] at positions `x` \[m\].
+    ///
+    /// # Errors
+    /// Unless there are as many drops as positions, two at least, all finite, the positions
+    /// increasing.
+    pub fn new(x: &[f64], drop: &[f64]) -> Result<Self> {
+        if x.len() != drop.len() || x.len() < 2 {
+            return Err(Error::Shape {
+                name: "profile: positions and drops, at least two of each",
+                expected: [x.len().max(2); 2],
+                found: [x.len(), drop.len()],
+            });
+        }
+        for (index, (x, d)) in x.iter().zip(drop).enumerate() {
+            if !(x.is_finite() && d.is_finite()) {
+                return Err(Error::NonFinite {
+                    name: "profile",
+                    index: [index, 0],
+                });
+            }
+        }
+        if let Some(pair) = x.windows(2).find(|pair| pair[1] <= pair[0]) {
+            return Err(Error::Parameter {
+                name: "profile positions",
+                requirement: "increasing",
+                value: pair[1],
+            });
+        }
+        let mut integral = 0.0;
+        let samples = (0..x.len()).map(|k| {
+            if k > 0 {
+                integral += 0.5 * (drop[k] + drop[k - 1]) * (x[k] - x[k - 1]);
+            }
+            [x[k], drop[k], integral]
+        });
+        Ok(Self {
+            samples: samples.collect(),
+        })
+    }
+
+    /// Positions and drops \[m\].
+    pub fn samples(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.samples.iter().map(|&[x, drop, _]| [x, drop])
+    }
+
+    fn ends(&self) -> [f64; 2] {
+        [self.samples[0][0], self.samples[self.samples.len() - 1][0]]
+    }
+
+    /// The sample at or below x, and drop and position relative to it; clamped to the ends.
+    fn locate(&self, x: f64) -> ([f64; 3], f64, f64) {
+        let [low, high] = self.ends();
+        let x = x.clamp(low, high);
+        let above = self.samples.partition_point(|s| s[0] <= x);
+        let k = above.clamp(1, self.samples.len() - 1) - 1;
+        let ([x0, d0, integral], [x1, d1, _]) = (self.samples[k], self.samples[k + 1]);
+        ([x0, d0, integral], (d1 - d0) / (x1 - x0), x - x0)
+    }
+
+    fn drop(&self, x: f64) -> f64 {
+        let [low, high] = self.ends();
+        if !(low..=high).contains(&x) {
+            return f64::INFINITY;
+        }
+        let ([_, d0, _], slope, along) = self.locate(x);
+        d0 + slope * along
+    }
+
+    fn integral(&self, x: f64) -> f64 {
+        let ([_, d0, integral], slope, along) = self.locate(x);
+        integral + along * (d0 + 0.5 * slope * along)
+    }
+}
