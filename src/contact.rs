@@ -1,12 +1,13 @@
 //! The contact problem: g = h + u − δ − s_x x − s_y y ≥ 0, p ≥ 0, p g = 0.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use ndarray::{Array2, ArrayRef2};
 
 use crate::body::HalfSpace;
-use crate::convolution::Convolution;
+use crate::convolution::{Convolution, Workspace};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::{Method, check_memory, coefficients_on};
@@ -14,8 +15,10 @@ use crate::surface::{Extent, Surface};
 use crate::threads::Threads;
 
 mod automatic;
+mod cascade;
 mod freedoms;
 mod polonsky_keer;
+mod preconditioned;
 mod problem;
 mod solution;
 
@@ -24,8 +27,9 @@ pub use freedoms::Motion;
 pub use problem::Termination;
 pub use solution::{Balance, Report, Solution, Warning};
 
+use cascade::{Cascade, Levels};
 use freedoms::Freedoms;
-use problem::{Limits, Problem, Quality};
+use problem::{Limits, Outcome, Problem, Quality, Watch};
 
 /// What is planned beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -42,8 +46,10 @@ pub struct Setup {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Algorithm {
-    /// The constrained conjugate gradient method of the paper.
+    /// Preconditioned conjugate gradients on nested grids, in a window around the contact.
     #[default]
+    Cascade,
+    /// The constrained conjugate gradient method of the paper, as a reference.
     PolonskyKeer,
 }
 
@@ -54,7 +60,7 @@ pub struct Options {
     pub tolerance: f64,
     /// Iterations after which to give up. Default: 10 000.
     pub max_iterations: Option<usize>,
-    /// Default: [`Algorithm::PolonskyKeer`].
+    /// Default: [`Algorithm::Cascade`].
     pub algorithm: Algorithm,
     /// Pressure to start from (nx, ny) \[Pa\]. Default: uniform.
     pub initial: Option<Array2<f64>>,
@@ -93,6 +99,7 @@ pub struct Contact {
     grid: Grid,
     method: Method,
     convolution: Convolution,
+    levels: Levels,
 }
 
 impl Contact {
@@ -107,16 +114,18 @@ impl Contact {
             &grid,
             Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 11,
         )?;
-        let threads = Threads::new(setup.threads)?;
+        let threads = Arc::new(Threads::new(setup.threads)?);
         let mut coefficients = coefficients_on(body, &grid, setup.method, &threads)?;
         if let Some(counterbody) = &setup.counterbody {
             coefficients += &coefficients_on(counterbody, &grid, setup.method, &threads)?;
         }
         let convolution = Convolution::plan_on(&coefficients, threads)?;
+        let levels = Levels::new(coefficients, &convolution);
         Ok(Self {
             grid,
             method: setup.method,
             convolution,
+            levels,
         })
     }
 
@@ -166,52 +175,41 @@ impl Contact {
             freedoms: &freedoms,
             gap,
         };
-        let mut p = self.first_pressure(&problem, options.initial.as_deref())?;
-        let mut workspace = self.convolution.workspace();
-
-        let mut report = Report {
-            termination: Termination::IterationLimit,
-            iterations: 0,
-            convolutions: 0,
-            residual: 0.0,
-            overlap: 0.0,
-            balance: Balance::default(),
-            warnings: Vec::new(),
-            grid: self.grid,
-            method: self.method,
-            seconds: 0.0,
-        };
-        let mut watch = |iterations: usize, convolutions: usize, quality: Quality| {
+        let p = self.first_pressure(&problem, options.initial.as_deref())?;
+        let mut report = Report::new(self.grid, self.method);
+        let unit = self.convolution.work();
+        let mut watch = |iterations: usize, work: f64, quality: Quality| {
             report.iterations = iterations;
-            report.convolutions = convolutions;
+            report.convolutions = work / unit;
             report.residual = quality.residual;
             report.overlap = quality.overlap;
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let outcome = match options.algorithm {
+        let mut fields = Fields::new(p, &problem);
+        let solved = match options.algorithm {
+            Algorithm::Cascade => {
+                let given = options.initial.is_some();
+                self.solve_in_window(&problem, &mut fields, given, limits, &mut watch)
+            }
             Algorithm::PolonskyKeer => {
-                polonsky_keer::solve(&problem, &mut p, limits, &mut workspace, &mut watch)
+                let solved = polonsky_keer::solve(&problem, &mut fields, limits, &mut watch);
+                fields.certify(&problem);
+                solved
             }
         };
-
-        // The certificate: all afresh.
-        let mut u = vec![0.0; p.len()];
-        problem.apply(&p, &mut u, &mut workspace);
-        let mut g = vec![0.0; p.len()];
-        let lambda = problem.gap_into(&p, &u, &mut g);
-        let quality = problem.quality(&p, &u, &g);
-        let (approach, tilt) = freedoms.motion(lambda);
-        report.termination = outcome.termination;
-        report.iterations = outcome.iterations;
-        report.convolutions = outcome.convolutions + 1;
-        report.residual = quality.residual;
-        report.overlap = quality.overlap;
-        let array = |v: Vec<f64>| {
-            let shape = self.grid.shape();
-            Array2::from_shape_fn(shape, |(i, j)| v[i * shape[1] + j])
-        };
-        let (pressure, displacement, gap) = (array(p), array(u), array(g));
+        report.termination = solved.termination;
+        report.iterations = solved.iterations;
+        report.convolutions = solved.work / unit;
+        report.residual = fields.quality.residual;
+        report.overlap = fields.quality.overlap;
+        let (approach, tilt) = freedoms.motion(fields.lambda);
+        let Fields {
+            pressure,
+            gap,
+            displacement,
+            ..
+        } = fields;
         let mut solution = Solution {
             pressure,
             gap,
@@ -226,12 +224,64 @@ impl Contact {
         Ok(solution)
     }
 
+    /// Solves on nested grids and in a window, until nothing overlaps on the whole grid.
+    fn solve_in_window(
+        &self,
+        problem: &Problem,
+        fields: &mut Fields,
+        given: bool,
+        limits: Limits,
+        watch: &mut Watch,
+    ) -> Outcome {
+        let mut cascade = match Cascade::new(
+            problem,
+            &self.levels,
+            &mut fields.pressure,
+            given,
+            limits,
+            watch,
+        ) {
+            Ok(cascade) => cascade,
+            Err(stopped) => {
+                fields.certify(problem);
+                return stopped;
+            }
+        };
+        let mut iterations = 0;
+        loop {
+            let left = Limits {
+                max_iterations: limits.max_iterations - iterations,
+                ..limits
+            };
+            let mut outcome = cascade.solve(&mut fields.pressure, left, watch);
+            fields.certify(problem);
+            cascade.work += problem.convolution.work();
+            iterations += outcome.iterations;
+            outcome = Outcome {
+                iterations,
+                work: cascade.work,
+                ..outcome
+            };
+            let converged = outcome.termination == Termination::Converged;
+            if !converged || fields.quality.meets(limits.tolerance) {
+                return outcome;
+            }
+            if !cascade.open(slice(&fields.gap)) || iterations >= limits.max_iterations {
+                return Outcome {
+                    termination: Termination::IterationLimit,
+                    ..outcome
+                };
+            }
+        }
+    }
+
     /// The balanced pressure to start from.
     fn first_pressure(
         &self,
         problem: &Problem,
         initial: Option<&ArrayRef2<f64>>,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<Array2<f64>> {
+        let shape = self.grid.shape();
         let mut p: Vec<f64> = match initial {
             Some(initial) => {
                 let found = [initial.nrows(), initial.ncols()];
@@ -257,22 +307,68 @@ impl Contact {
             None => vec![0.0; problem.gap.len()],
         };
         if problem.freedoms.balance(&mut p) {
-            return Ok(p);
+            return Ok(array(shape, p));
         }
         // Nothing to start from, or cells that cannot carry the moments: all cells can.
         let uniform = problem.freedoms.typical_pressure(p.len());
-        p = problem
-            .gap
-            .iter()
-            .map(|h| if h.is_finite() { uniform } else { 0.0 })
-            .collect();
+        for (p, h) in p.iter_mut().zip(&problem.gap) {
+            *p = if h.is_finite() { uniform } else { 0.0 };
+        }
         if problem.freedoms.balance(&mut p) {
-            return Ok(p);
+            return Ok(array(shape, p));
         }
         Err(Error::Inconsistent(
             "eccentricity or moment is too near the rim of the cells that can touch",
         ))
     }
+}
+
+/// Pressure, displacement and gap of a problem, in C order.
+struct Fields {
+    pressure: Array2<f64>,
+    displacement: Array2<f64>,
+    gap: Array2<f64>,
+    lambda: [f64; 3],
+    quality: Quality,
+    workspace: Workspace,
+}
+
+impl Fields {
+    fn new(pressure: Array2<f64>, problem: &Problem) -> Self {
+        Self {
+            displacement: Array2::zeros(pressure.raw_dim()),
+            gap: Array2::zeros(pressure.raw_dim()),
+            pressure,
+            lambda: [0.0; 3],
+            quality: Quality {
+                residual: 0.0,
+                overlap: 0.0,
+            },
+            workspace: problem.convolution.workspace(),
+        }
+    }
+
+    /// Computes displacement, rigid motion, gap and quality of the pressure afresh.
+    fn certify(&mut self, problem: &Problem) {
+        let p = slice(&self.pressure);
+        problem.apply(p, slice_mut(&mut self.displacement), &mut self.workspace);
+        let u = slice(&self.displacement);
+        self.lambda = problem.gap_into(p, u, slice_mut(&mut self.gap));
+        self.quality = problem.quality(p, u, slice(&self.gap));
+    }
+}
+
+fn array([nx, ny]: [usize; 2], values: Vec<f64>) -> Array2<f64> {
+    Array2::from_shape_fn((nx, ny), |(i, j)| values[i * ny + j])
+}
+
+/// Arrays here are made in C order, and stay so.
+fn slice(array: &Array2<f64>) -> &[f64] {
+    array.as_slice().unwrap_or(&[])
+}
+
+fn slice_mut(array: &mut Array2<f64>) -> &mut [f64] {
+    array.as_slice_mut().unwrap_or(&mut [])
 }
 
 impl Options {

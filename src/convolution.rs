@@ -3,6 +3,8 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101.
 
+use std::sync::Arc;
+
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result};
@@ -29,7 +31,7 @@ pub struct Convolution {
     self_influence: f64,
     transform: PaddedTransform,
     spectrum: EvenSpectrum,
-    threads: Threads,
+    threads: Arc<Threads>,
 }
 
 /// Memory for one application at a time, of any convolution of the same shape.
@@ -43,10 +45,10 @@ impl Convolution {
     /// # Errors
     /// Where a coefficient is not finite, the shape is empty, or `threads` is 0.
     pub fn plan(coefficients: &ArrayRef2<f64>, threads: Option<usize>) -> Result<Self> {
-        Self::plan_on(coefficients, Threads::new(threads)?)
+        Self::plan_on(coefficients, Arc::new(Threads::new(threads)?))
     }
 
-    pub(crate) fn plan_on(coefficients: &ArrayRef2<f64>, threads: Threads) -> Result<Self> {
+    pub(crate) fn plan_on(coefficients: &ArrayRef2<f64>, threads: Arc<Threads>) -> Result<Self> {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         if coefficients.is_empty() {
             return Err(Error::Shape {
@@ -70,6 +72,47 @@ impl Convolution {
             spectrum,
             threads,
         })
+    }
+
+    /// Convolution with part of the coefficients of this one, for a part of its grid.
+    pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
+        let shape = [coefficients.nrows(), coefficients.ncols()];
+        let transform = PaddedTransform::plan(shape, &self.threads);
+        self.with(coefficients, transform, |_, spectrum| spectrum)
+    }
+
+    /// An approximate inverse of the convolution with `coefficients`: the inverse of their periodic
+    /// convolution on a mesh that is not padded, at a third of the cost. Symmetric and positive
+    /// definite.
+    pub(crate) fn approximate_inverse(&self, coefficients: &ArrayRef2<f64>) -> Self {
+        // Exact coefficients have a positive transform, of which the smallest is above this.
+        const FLOOR: f64 = 1e-6;
+        let shape = [coefficients.nrows(), coefficients.ncols()];
+        let transform = PaddedTransform::plan_periodic(shape, &self.threads);
+        self.with(coefficients, transform, |transform, spectrum| {
+            transform.inverse_spectrum(&spectrum, FLOOR)
+        })
+    }
+
+    fn with(
+        &self,
+        coefficients: &ArrayRef2<f64>,
+        transform: PaddedTransform,
+        map: impl Fn(&PaddedTransform, EvenSpectrum) -> EvenSpectrum,
+    ) -> Self {
+        let spectrum = transform.even_spectrum(coefficients, &self.threads);
+        Self {
+            shape: [coefficients.nrows(), coefficients.ncols()],
+            self_influence: coefficients[[0, 0]],
+            spectrum: map(&transform, spectrum),
+            transform,
+            threads: Arc::clone(&self.threads),
+        }
+    }
+
+    /// Points of the padded mesh, times their logarithm: what an application costs.
+    pub(crate) fn work(&self) -> f64 {
+        self.transform.work()
     }
 
     /// Bytes that a plan of `shape` and its workspace hold.

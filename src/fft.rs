@@ -37,7 +37,7 @@ pub(crate) fn fast_length(n: usize) -> usize {
     (n.max(1)..).find(|&m| smooth(m)).unwrap_or(n)
 }
 
-/// Transforms of (nx, ny) data, padded with zeros to (mx, my) ≥ (2nx−1, 2ny−1).
+/// Transforms of (nx, ny) data, padded with zeros to (mx, my).
 pub(crate) struct PaddedTransform {
     shape: [usize; 2],
     padded: [usize; 2],
@@ -76,8 +76,17 @@ struct TaskScratch {
 }
 
 impl PaddedTransform {
+    /// Padded so that the convolution has no periodic images: lengths ≥ 2n − 1.
     pub(crate) fn plan(shape: [usize; 2], threads: &Threads) -> Self {
-        let padded = shape.map(|n| fast_length(2 * n - 1));
+        Self::on(shape, shape.map(|n| fast_length(2 * n - 1)), threads)
+    }
+
+    /// Not padded: the data are repeated, with a period of n or somewhat more.
+    pub(crate) fn plan_periodic(shape: [usize; 2], threads: &Threads) -> Self {
+        Self::on(shape, shape.map(fast_length), threads)
+    }
+
+    fn on(shape: [usize; 2], padded: [usize; 2], threads: &Threads) -> Self {
         let mut real = RealFftPlanner::new();
         let mut complex = FftPlanner::new();
         // More tasks than threads, so that one thread that is held up does not hold up the others.
@@ -95,6 +104,12 @@ impl PaddedTransform {
             column_forward: complex.plan_fft_forward(padded[0]),
             column_inverse: complex.plan_fft_inverse(padded[0]),
         }
+    }
+
+    /// Points of the mesh, times their logarithm.
+    pub(crate) fn work(&self) -> f64 {
+        let points = self.padded[0] as f64 * self.padded[1] as f64;
+        points * points.ln()
     }
 
     /// Bytes that a transform of `shape` holds: its workspace and one spectrum.
@@ -138,13 +153,14 @@ impl PaddedTransform {
         }
     }
 
-    /// Transform of the kernel whose values at offsets (i, j) ≥ 0 are `quarter` (nx, ny).
+    /// Transform of the kernel whose values at offsets (i, j) ≥ 0 are `quarter` (nx, ny); on a
+    /// periodic mesh, up to half a period.
     pub(crate) fn even_spectrum(
         &self,
         quarter: &ArrayRef2<f64>,
         threads: &Threads,
     ) -> EvenSpectrum {
-        let ([nx, ny], [mx, my]) = (self.shape, self.padded);
+        let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let mut workspace = self.workspace();
         let Workspace { rows, tasks, .. } = &mut workspace;
@@ -154,13 +170,12 @@ impl PaddedTransform {
             for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {
                 let real = &mut scratch.real;
                 real.fill(0.0);
-                for (j, &c) in quarter.row(first + row).iter().enumerate() {
+                for (j, &c) in quarter.row(first + row).iter().take(columns).enumerate() {
                     real[j] = c;
                     real[(my - j) % my] = c;
                 }
                 self.rows_to_spectrum(real, spectrum, &mut scratch.fft);
             }
-            debug_assert!(ny <= columns);
         };
         self.over_rows(
             threads,
@@ -177,7 +192,7 @@ impl PaddedTransform {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
                 scratch.columns.fill(ZERO);
-                for i in 0..nx {
+                for i in 0..nx.min(quarter_rows) {
                     for b in 0..width {
                         let value = Complex64::new(rows[i * columns + start + b].re, 0.0);
                         scratch.columns[b * mx + i] = value;
@@ -205,6 +220,14 @@ impl PaddedTransform {
             transform,
         );
         EvenSpectrum(spectrum)
+    }
+
+    /// The transform of the inverse, with entries below `floor` times the largest raised to that.
+    pub(crate) fn inverse_spectrum(&self, spectrum: &EvenSpectrum, floor: f64) -> EvenSpectrum {
+        let points = self.padded[0] as f64 * self.padded[1] as f64;
+        let largest = spectrum.0.iter().fold(0.0, |a: f64, &b| a.max(b));
+        let inverse = |c: &f64| 1.0 / (c.max(floor * largest) * points * points);
+        EvenSpectrum(spectrum.0.iter().map(inverse).collect())
     }
 
     /// `output` = kernel ∗ `input`, both (nx, ny) in C order. Allocates nothing.

@@ -1,5 +1,7 @@
 //! The rigid motion of the body that is pressed on: what is prescribed, what is loaded.
 
+use std::ops::Range;
+
 use ndarray::ArrayRef2;
 
 use crate::error::{Error, Result, finite, positive};
@@ -224,6 +226,40 @@ impl Freedoms {
         (self.prescribed[0] + lambda[0] - shift, tilt)
     }
 
+    /// Those of a part of the grid.
+    pub(super) fn part(&self, [x, y]: [Range<usize>; 2]) -> Self {
+        let part =
+            |lines: &[Vec<f64>; 2]| [lines[0][x.clone()].to_vec(), lines[1][y.clone()].to_vec()];
+        Self {
+            columns: part(&self.columns),
+            coordinates: part(&self.coordinates),
+            ..self.clone()
+        }
+    }
+
+    /// Those of a grid of cells twice as long in the directions of `halved`.
+    pub(super) fn coarse(&self, halved: [bool; 2]) -> Self {
+        let coarse = |lines: &[Vec<f64>; 2]| {
+            [0, 1].map(|k| {
+                if !halved[k] {
+                    return lines[k].clone();
+                }
+                let step = lines[k][1] - lines[k][0];
+                lines[k].iter().step_by(2).map(|x| x + 0.5 * step).collect()
+            })
+        };
+        let cells = halved
+            .iter()
+            .map(|&h| if h { 2.0 } else { 1.0 })
+            .product::<f64>();
+        Self {
+            columns: coarse(&self.columns),
+            coordinates: coarse(&self.coordinates),
+            target: self.target.map(|sum| sum / cells),
+            ..self.clone()
+        }
+    }
+
     /// Whether any freedom is loaded.
     pub(super) fn any_loaded(&self) -> bool {
         self.loaded.contains(&true)
@@ -319,6 +355,15 @@ impl Freedoms {
             solution[k] = (b[k] - known) / a[k][k];
         }
         solution
+    }
+
+    /// Whether Bᵀp is on target within rounding.
+    pub(super) fn balanced(&self, pressure: &[f64]) -> bool {
+        let sums = self.moments(|k| pressure[k]);
+        let force = sums[0].abs();
+        (0..3).all(|k| {
+            !self.loaded[k] || (sums[k] - self.target[k]).abs() <= 64.0 * f64::EPSILON * force
+        })
     }
 
     /// Restores balance: p ← [p (1 + Bμ)]₊ with Bᵀp on target. Returns whether it got there.

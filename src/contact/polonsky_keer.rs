@@ -8,40 +8,45 @@
 //! - it ends on complementarity and overlap, not on the change of pressure.
 
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
-use crate::convolution::Workspace;
+use super::{Fields, slice_mut};
 
 /// Solves from the balanced pressure `p`, which becomes the solution.
 pub(super) fn solve(
     problem: &Problem,
-    p: &mut [f64],
+    fields: &mut Fields,
     limits: Limits,
-    workspace: &mut Workspace,
     watch: &mut Watch,
 ) -> Outcome {
     let freedoms = problem.freedoms;
+    let Fields {
+        pressure,
+        displacement,
+        gap,
+        workspace,
+        ..
+    } = fields;
+    let (p, u, g) = (slice_mut(pressure), slice_mut(displacement), slice_mut(gap));
     let cells = p.len();
-    let mut u = vec![0.0; cells];
-    let mut g = vec![0.0; cells];
     let mut direction = vec![0.0; cells];
     let mut response = vec![0.0; cells];
     let mut steepness_before = 1.0;
     let mut conjugate = false;
-    let mut convolutions = 0;
+    let mut work = 0.0;
 
     for iterations in 0.. {
-        problem.apply(p, &mut u, workspace);
-        convolutions += 1;
-        problem.gap_into(p, &u, &mut g);
-        let quality = problem.quality(p, &u, &g);
+        problem.apply(p, u, workspace);
+        work += problem.convolution.work();
+        problem.gap_into(p, u, g);
+        let quality = problem.quality(p, u, g);
         let end = |termination| Outcome {
             termination,
             iterations,
-            convolutions,
+            work,
         };
         if quality.meets(limits.tolerance) {
             return end(Termination::Converged);
         }
-        if watch(iterations, convolutions, quality) {
+        if watch(iterations, work, quality) {
             return end(Termination::Stopped);
         }
         if iterations == limits.max_iterations {
@@ -52,7 +57,7 @@ pub(super) fn solve(
         let empty = p.iter().all(|&p| p == 0.0);
         let in_contact = |p: f64, g: f64| p > 0.0 || (empty && g < 0.0);
         let mut steepness = 0.0;
-        for (&p, &g) in p.iter().zip(&g) {
+        for (&p, &g) in p.iter().zip(&*g) {
             if in_contact(p, g) {
                 steepness += g * g;
             }
@@ -63,12 +68,12 @@ pub(super) fn solve(
             0.0
         };
         steepness_before = steepness;
-        for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&g) {
+        for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&*g) {
             *t = if in_contact(p, g) { g + beta * *t } else { 0.0 };
         }
 
         problem.apply(&direction, &mut response, workspace);
-        convolutions += 1;
+        work += problem.convolution.work();
         let mean = freedoms.fit(&response, |k| p[k] > 0.0);
         freedoms.for_each(mean, |k, b| response[k] -= b);
         let (mut slope, mut curvature) = (0.0, 0.0);

@@ -88,11 +88,12 @@ pub enum Termination {
 pub(super) struct Outcome {
     pub(super) termination: Termination,
     pub(super) iterations: usize,
-    pub(super) convolutions: usize,
+    /// In the unit of [`Convolution::work`].
+    pub(super) work: f64,
 }
 
-/// Reports an iteration's number, convolutions and quality; true asks to stop.
-pub(super) type Watch<'a> = dyn FnMut(usize, usize, Quality) -> bool + 'a;
+/// Is told an iteration's number, the work done and the quality; true asks to stop.
+pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> bool + 'a;
 
 /// When to end.
 #[derive(Debug, Clone, Copy)]

@@ -89,8 +89,9 @@ pub struct Report {
     pub termination: Termination,
     /// Iterations done.
     pub iterations: usize,
-    /// Convolutions done: applications of the influence coefficients.
-    pub convolutions: usize,
+    /// Work done, in convolutions of the whole grid: those of coarser grids, of windows and of the
+    /// preconditioner count by the points P of their meshes, as P log P.
+    pub convolutions: f64,
     /// Complementarity: Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
     pub residual: f64,
     /// max(−g, 0) / max u over them.
@@ -108,6 +109,22 @@ pub struct Report {
 }
 
 impl Report {
+    /// Of an iteration that has not begun.
+    pub(super) fn new(grid: Grid, method: Method) -> Self {
+        Self {
+            termination: Termination::IterationLimit,
+            iterations: 0,
+            convolutions: 0.0,
+            residual: 0.0,
+            overlap: 0.0,
+            balance: Balance::default(),
+            warnings: Vec::new(),
+            grid,
+            method,
+            seconds: 0.0,
+        }
+    }
+
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged

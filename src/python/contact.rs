@@ -53,10 +53,11 @@ const REFINEMENT: usize = 4;
 
 fn algorithm(word: &str) -> PyResult<Algorithm> {
     match word {
+        "cascade" => Ok(Algorithm::Cascade),
         "polonsky-keer" => Ok(Algorithm::PolonskyKeer),
         other => Err(Error::Choice {
             name: "algorithm",
-            requirement: "\"polonsky-keer\"",
+            requirement: "\"cascade\" or \"polonsky-keer\"",
             value: other.into(),
         }
         .into()),
@@ -354,8 +355,9 @@ impl PyContact {
     ///     Largest residual and overlap of a converged solution.
     /// max_iterations : int, optional
     ///     Iterations after which to give up; 10 000 by default.
-    /// algorithm : {"polonsky-keer"}, optional
-    ///     Constrained conjugate gradients, doi:10.1016/S0043-1648(99)00113-1.
+    /// algorithm : {"cascade", "polonsky-keer"}, optional
+    ///     Preconditioned conjugate gradients on nested grids, in a window around the contact; or
+    ///     the paper's solver (doi:10.1016/S0043-1648(99)00113-1), as a reference.
     /// initial : Solution or array_like, optional
     ///     Pressure to start from ``(nx, ny)`` [Pa].
     /// progress : callable, optional
@@ -387,7 +389,7 @@ impl PyContact {
         reason = "keywords of the public signature"
     )]
     #[pyo3(signature = (shape, *, load=None, approach=None, eccentricity=None, moment=None, tilt=None,
-        tolerance=1e-8, max_iterations=None, algorithm="polonsky-keer", initial=None, progress=None,
+        tolerance=1e-8, max_iterations=None, algorithm="cascade", initial=None, progress=None,
         check=true))]
     fn solve<'py>(
         &self,
@@ -517,7 +519,7 @@ impl PyContact {
 #[pyfunction]
 #[pyo3(signature = (shape, body, counterbody=None, *, grid=None, method="exact", refinement=None,
     threads=None, load=None, approach=None, eccentricity=None, moment=None, tilt=None,
-    tolerance=1e-8, max_iterations=None, algorithm="polonsky-keer", initial=None, progress=None,
+    tolerance=1e-8, max_iterations=None, algorithm="cascade", initial=None, progress=None,
     check=true))]
 pub(super) fn solve<'py>(
     py: Python<'py>,

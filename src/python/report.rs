@@ -12,10 +12,10 @@ use crate::contact::{Balance, Report, Termination, Warning};
 #[derive(Clone, PartialEq)]
 pub(super) struct PyReport(pub(super) Report);
 
-/// Termination, counts, quality, balance, warnings, grid, method, refinement, seconds.
+/// Termination, iterations and convolutions, quality, balance, warnings, grid, method, refinement, seconds.
 type State = (
     String,
-    [usize; 2],
+    (usize, f64),
     [f64; 2],
     (f64, [f64; 2]),
     Vec<(String, usize, f64)>,
@@ -52,9 +52,9 @@ impl PyReport {
         self.0.iterations
     }
 
-    /// Convolutions done.
+    /// Work done, in convolutions of the whole grid.
     #[getter]
-    fn convolutions(&self) -> usize {
+    fn convolutions(&self) -> f64 {
         self.0.convolutions
     }
 
@@ -106,7 +106,7 @@ impl PyReport {
 
     fn __repr__(&self) -> String {
         format!(
-            "<nacre.Report: {} after {} iterations, {} convolutions, {:.3} s; residual {:.1e}, \
+            "<nacre.Report: {} after {} iterations, {:.1} convolutions, {:.3} s; residual {:.1e}, \
              overlap {:.1e}; {} warnings>",
             self.termination(),
             self.0.iterations,
@@ -129,7 +129,7 @@ impl PyReport {
         });
         let state = (
             self.termination().into(),
-            [report.iterations, report.convolutions],
+            (report.iterations, report.convolutions),
             [report.residual, report.overlap],
             (report.balance.force, report.balance.moment),
             warnings
@@ -174,8 +174,8 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
         });
     Ok(PyReport(Report {
         termination,
-        iterations: counts[0],
-        convolutions: counts[1],
+        iterations: counts.0,
+        convolutions: counts.1,
         residual: quality[0],
         overlap: quality[1],
         balance: Balance {
