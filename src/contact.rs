@@ -175,7 +175,7 @@ impl Contact {
             freedoms: &freedoms,
             gap,
         };
-        let p = self.first_pressure(&problem, options.initial.as_deref())?;
+        let initial = self.given_pressure(&problem, options.initial.as_deref())?;
         let mut report = Report::new(self.grid, self.method);
         let unit = self.convolution.work();
         let mut watch = |iterations: usize, work: f64, quality: Quality| {
@@ -186,23 +186,27 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let mut fields = Fields::new(p, &problem);
-        let solved = match options.algorithm {
+        let mut fields = Fields::new(self.grid.shape(), &self.convolution);
+        let cascade = match options.algorithm {
             Algorithm::Cascade => {
-                let given = options.initial.is_some();
-                self.solve_in_window(&problem, &mut fields, given, limits, &mut watch)
+                Cascade::new(&problem, &self.levels, initial.as_ref(), limits, &mut watch)
             }
-            Algorithm::PolonskyKeer => {
-                let solved = polonsky_keer::solve(&problem, &mut fields, limits, &mut watch);
-                fields.certify(&problem);
-                solved
+            Algorithm::PolonskyKeer => Err(None),
+        };
+        let solved = match cascade {
+            Ok(cascade) => solve_in_window(&problem, cascade, &mut fields, limits, &mut watch),
+            Err(Some(stopped)) => stopped,
+            Err(None) => {
+                fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
+                polonsky_keer::solve(&problem, &mut fields, limits, &mut watch)
             }
         };
+        let quality = fields.quality.unwrap_or_else(|| fields.certify(&problem));
         report.termination = solved.termination;
         report.iterations = solved.iterations;
         report.convolutions = solved.work / unit;
-        report.residual = fields.quality.residual;
-        report.overlap = fields.quality.overlap;
+        report.residual = quality.residual;
+        report.overlap = quality.overlap;
         let (approach, tilt) = freedoms.motion(fields.lambda);
         let Fields {
             pressure,
@@ -224,142 +228,131 @@ impl Contact {
         Ok(solution)
     }
 
-    /// Solves on nested grids and in a window, until nothing overlaps on the whole grid.
-    fn solve_in_window(
-        &self,
-        problem: &Problem,
-        fields: &mut Fields,
-        given: bool,
-        limits: Limits,
-        watch: &mut Watch,
-    ) -> Outcome {
-        let mut cascade = match Cascade::new(
-            problem,
-            &self.levels,
-            &mut fields.pressure,
-            given,
-            limits,
-            watch,
-        ) {
-            Ok(cascade) => cascade,
-            Err(stopped) => {
-                fields.certify(problem);
-                return stopped;
-            }
-        };
-        let mut iterations = 0;
-        loop {
-            let left = Limits {
-                max_iterations: limits.max_iterations - iterations,
-                ..limits
-            };
-            let mut outcome = cascade.solve(&mut fields.pressure, left, watch);
-            fields.certify(problem);
-            cascade.work += problem.convolution.work();
-            iterations += outcome.iterations;
-            outcome = Outcome {
-                iterations,
-                work: cascade.work,
-                ..outcome
-            };
-            let converged = outcome.termination == Termination::Converged;
-            if !converged || fields.quality.meets(limits.tolerance) {
-                return outcome;
-            }
-            if !cascade.open(slice(&fields.gap)) || iterations >= limits.max_iterations {
-                return Outcome {
-                    termination: Termination::IterationLimit,
-                    ..outcome
-                };
-            }
-        }
-    }
-
-    /// The balanced pressure to start from.
-    fn first_pressure(
+    /// The pressure to start from that the caller gave, balanced.
+    fn given_pressure(
         &self,
         problem: &Problem,
         initial: Option<&ArrayRef2<f64>>,
-    ) -> Result<Array2<f64>> {
-        let shape = self.grid.shape();
-        let mut p: Vec<f64> = match initial {
-            Some(initial) => {
-                let found = [initial.nrows(), initial.ncols()];
-                if found != self.grid.shape() {
-                    let expected = self.grid.shape();
-                    return Err(Error::Shape {
-                        name: "initial",
-                        expected,
-                        found,
-                    });
-                }
-                if let Some((index, _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
-                    return Err(Error::NonFinite {
-                        name: "initial",
-                        index: [index.0, index.1],
-                    });
-                }
-                let touching = initial.iter().zip(&problem.gap);
-                touching
-                    .map(|(&p, h)| if h.is_finite() { p.max(0.0) } else { 0.0 })
-                    .collect()
-            }
-            None => vec![0.0; problem.gap.len()],
+    ) -> Result<Option<Array2<f64>>> {
+        let Some(initial) = initial else {
+            return Ok(None);
         };
-        if problem.freedoms.balance(&mut p) {
-            return Ok(array(shape, p));
+        let (name, expected) = ("initial", self.grid.shape());
+        let found = [initial.nrows(), initial.ncols()];
+        if found != expected {
+            return Err(Error::Shape {
+                name,
+                expected,
+                found,
+            });
         }
-        // Nothing to start from, or cells that cannot carry the moments: all cells can.
-        let uniform = problem.freedoms.typical_pressure(p.len());
-        for (p, h) in p.iter_mut().zip(&problem.gap) {
-            *p = if h.is_finite() { uniform } else { 0.0 };
+        if let Some(((i, j), _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
+            return Err(Error::NonFinite {
+                name,
+                index: [i, j],
+            });
         }
-        if problem.freedoms.balance(&mut p) {
-            return Ok(array(shape, p));
-        }
-        Err(Error::Inconsistent(
-            "eccentricity or moment is too near the rim of the cells that can touch",
-        ))
+        let cells = initial.iter().zip(&problem.gap);
+        let mut p: Vec<f64> = cells
+            .map(|(&p, h)| if h.is_finite() { p.max(0.0) } else { 0.0 })
+            .collect();
+        // One that cannot carry the load is no help.
+        Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))
     }
 }
 
-/// Pressure, displacement and gap of a problem, in C order.
+/// A balanced pressure on all cells that can touch.
+fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
+    let shape = problem.convolution.shape();
+    let mut p = vec![0.0; problem.gap.len()];
+    if problem.freedoms.balance(&mut p) {
+        return Ok(array(shape, p));
+    }
+    let uniform = problem.freedoms.typical_pressure(p.len());
+    for (p, h) in p.iter_mut().zip(&problem.gap) {
+        *p = if h.is_finite() { uniform } else { 0.0 };
+    }
+    if problem.freedoms.balance(&mut p) {
+        return Ok(array(shape, p));
+    }
+    Err(Error::Inconsistent(
+        "eccentricity or moment is too near the rim of the cells that can touch",
+    ))
+}
+
+/// Solves in a window, which opens until nothing overlaps on the whole grid.
+fn solve_in_window(
+    problem: &Problem,
+    mut cascade: Cascade,
+    fields: &mut Fields,
+    limits: Limits,
+    watch: &mut Watch,
+) -> Outcome {
+    let mut iterations = 0;
+    loop {
+        let left = Limits {
+            max_iterations: limits.max_iterations - iterations,
+            ..limits
+        };
+        let outcome = cascade.solve(&mut fields.pressure, left, watch);
+        let quality = fields.certify(problem);
+        cascade.work += problem.convolution.work();
+        iterations += outcome.iterations;
+        let outcome = Outcome {
+            iterations,
+            work: cascade.work,
+            ..outcome
+        };
+        let converged = outcome.termination == Termination::Converged;
+        if !converged || quality.meets(limits.tolerance) {
+            return outcome;
+        }
+        if iterations >= limits.max_iterations || !cascade.open(&fields.gap) {
+            return Outcome {
+                termination: Termination::IterationLimit,
+                ..outcome
+            };
+        }
+    }
+}
+
+/// Pressure, displacement and gap of a problem, and how good they are, once that was seen.
 struct Fields {
     pressure: Array2<f64>,
     displacement: Array2<f64>,
     gap: Array2<f64>,
     lambda: [f64; 3],
-    quality: Quality,
+    quality: Option<Quality>,
     workspace: Workspace,
 }
 
 impl Fields {
-    fn new(pressure: Array2<f64>, problem: &Problem) -> Self {
+    fn new(shape: [usize; 2], convolution: &Convolution) -> Self {
         Self {
-            displacement: Array2::zeros(pressure.raw_dim()),
-            gap: Array2::zeros(pressure.raw_dim()),
-            pressure,
+            pressure: Array2::zeros(shape),
+            displacement: Array2::zeros(shape),
+            gap: Array2::zeros(shape),
             lambda: [0.0; 3],
-            quality: Quality {
-                residual: 0.0,
-                overlap: 0.0,
-            },
-            workspace: problem.convolution.workspace(),
+            quality: None,
+            workspace: convolution.workspace(),
         }
     }
 
     /// Computes displacement, rigid motion, gap and quality of the pressure afresh.
-    fn certify(&mut self, problem: &Problem) {
+    fn certify(&mut self, problem: &Problem) -> Quality {
         let p = slice(&self.pressure);
         problem.apply(p, slice_mut(&mut self.displacement), &mut self.workspace);
         let u = slice(&self.displacement);
         self.lambda = problem.gap_into(p, u, slice_mut(&mut self.gap));
-        self.quality = problem.quality(p, u, slice(&self.gap));
+        let quality = problem.quality(p, u, slice(&self.gap));
+        self.quality = Some(quality);
+        quality
     }
 }
 
-fn array([nx, ny]: [usize; 2], values: Vec<f64>) -> Array2<f64> {
-    Array2::from_shape_fn((nx, ny), |(i, j)| values[i * ny + j])
+/// Values in C order as an array.
+fn array(shape: [usize; 2], values: Vec<f64>) -> Array2<f64> {
+    Array2::from_shape_vec(shape, values).unwrap_or_else(|_| Array2::zeros(shape))
 }
 
 /// Arrays here are made in C order, and stay so.

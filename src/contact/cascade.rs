@@ -12,7 +12,6 @@ use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 use super::freedoms::Freedoms;
 use super::preconditioned::Preconditioned;
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
-use super::slice_mut;
 use crate::convolution::Convolution;
 
 /// A direction with fewer cells is not halved.
@@ -22,7 +21,7 @@ const COARSEST: usize = 32;
 const COARSE_TOLERANCE: f64 = 1e-4;
 
 /// Cells around the contact in a window.
-const MARGIN: usize = 4;
+const MARGIN: usize = 6;
 
 /// A window that covers more of the grid than this is not worth its planning.
 const WORTH_WINDOW: f64 = 0.6;
@@ -116,99 +115,136 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
     })
 }
 
-/// Linear interpolation of a coarse pressure between the centres of its cells, constant beyond the
-/// outermost ones.
-fn interpolate(coarse: &Array2<f64>, shape: [usize; 2], halved: [bool; 2]) -> Array2<f64> {
-    let (cx, cy) = coarse.dim();
-    let taps = |i: usize, n: usize, halved: bool| -> [(usize, f64); 2] {
-        if !halved {
-            return [(i, 1.0), (i, 0.0)];
-        }
-        let near = i / 2;
-        let next = if i.is_multiple_of(2) {
-            near.saturating_sub(1)
-        } else {
-            (near + 1).min(n - 1)
-        };
-        [(near, 0.75), (next, 0.25)]
-    };
-    Array2::from_shape_fn(shape, |(i, j)| {
-        let (x, y) = (taps(i, cx, halved[0]), taps(j, cy, halved[1]));
-        x.iter()
-            .map(|(i, a)| y.iter().map(|(j, b)| a * b * coarse[[*i, *j]]).sum::<f64>())
-            .sum()
-    })
+/// Cells i0..i1, j0..j1 of a grid.
+type Window = [Range<usize>; 2];
+
+/// A pressure that is zero outside a window.
+#[derive(Debug, Clone)]
+struct Patch {
+    window: Window,
+    values: Vec<f64>,
 }
 
-/// Cells i0..i1, j0..j1 of a grid.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Window([Range<usize>; 2]);
-
-impl Window {
-    pub(super) fn whole([nx, ny]: [usize; 2]) -> Self {
-        Self([0..nx, 0..ny])
+/// `cells` and a margin around them; the whole grid where that is not worth a window.
+fn widened(cells: &Window, shape: [usize; 2]) -> Window {
+    let window = [0, 1]
+        .map(|k| cells[k].start.saturating_sub(MARGIN)..(cells[k].end + MARGIN).min(shape[k]));
+    let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
+    if part > WORTH_WINDOW {
+        shape.map(|n| 0..n)
+    } else {
+        window
     }
+}
 
-    /// Around the cells of which `member` holds, with a margin; none without any.
-    fn around(shape: [usize; 2], member: impl Fn(usize, usize) -> bool) -> Option<Self> {
-        let mut found: Option<[Range<usize>; 2]> = None;
-        for i in 0..shape[0] {
-            for j in (0..shape[1]).filter(|&j| member(i, j)) {
-                found = Some(match found {
-                    Some([x, y]) => [x.start..i + 1, y.start.min(j)..y.end.max(j + 1)],
-                    None => [i..i + 1, j..j + 1],
-                });
-            }
+/// The smallest window that holds both.
+fn hull(a: &Window, b: &Window) -> Window {
+    [0, 1].map(|k| a[k].start.min(b[k].start)..a[k].end.max(b[k].end))
+}
+
+/// Rows and columns of an array.
+fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> {
+    let mut view = array.view();
+    view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
+    view.slice_axis_inplace(Axis(1), Slice::from(y.clone()));
+    view
+}
+
+/// The smallest window that holds all cells of which `member` holds; none without any.
+fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
+    let mut found: Option<Window> = None;
+    for i in window[0].clone() {
+        let row = window[1].clone();
+        let Some(first) = row.clone().find(|&j| member(i, j)) else {
+            continue;
+        };
+        let last = row.rev().find(|&j| member(i, j)).unwrap_or(first);
+        let line = [i..i + 1, first..last + 1];
+        found = Some(found.map_or(line.clone(), |found| hull(&found, &line)));
+    }
+    found
+}
+
+impl Patch {
+    /// All of a grid.
+    fn whole(pressure: &Array2<f64>) -> Self {
+        let window = [0..pressure.nrows(), 0..pressure.ncols()];
+        Self {
+            window,
+            values: pressure.iter().copied().collect(),
         }
-        let [x, y] = found?;
-        let widen =
-            |r: Range<usize>, n: usize| r.start.saturating_sub(MARGIN)..(r.end + MARGIN).min(n);
-        let window = Self([widen(x, shape[0]), widen(y, shape[1])]);
-        let part = window.cells() as f64 / (shape[0] * shape[1]) as f64;
-        Some(if part > WORTH_WINDOW {
-            Self::whole(shape)
+    }
+
+    fn at(&self, i: usize, j: usize) -> f64 {
+        let [x, y] = &self.window;
+        if x.contains(&i) && y.contains(&j) {
+            self.values[(i - x.start) * y.len() + j - y.start]
         } else {
-            window
-        })
+            0.0
+        }
     }
 
-    /// Around the contact; the whole grid where there is none.
-    fn of_contact(p: &Array2<f64>) -> Self {
-        let shape = [p.nrows(), p.ncols()];
-        Self::around(shape, |i, j| p[[i, j]] > 0.0).unwrap_or_else(|| Self::whole(shape))
+    /// The smallest window around its contact.
+    fn contact(&self) -> Option<Window> {
+        bounds(&self.window, |i, j| self.at(i, j) > 0.0)
     }
 
-    fn cells(&self) -> usize {
-        self.0[0].len() * self.0[1].len()
+    /// The same pressure in another window.
+    fn moved(&self, window: Window) -> Self {
+        let [x, y] = window.clone();
+        let values = x
+            .flat_map(|i| y.clone().map(move |j| self.at(i, j)))
+            .collect();
+        Self { window, values }
     }
 
-    fn contains(&self, i: usize, j: usize) -> bool {
-        self.0[0].contains(&i) && self.0[1].contains(&j)
-    }
-
-    fn cut(&self, array: &ArrayRef2<f64>) -> Vec<f64> {
-        block(array, &self.0).iter().copied().collect()
-    }
-
-    /// Zero but for `values` inside.
-    fn paste(&self, array: &mut Array2<f64>, values: &[f64]) {
+    fn paste(&self, array: &mut Array2<f64>) {
         array.fill(0.0);
-        let [x, y] = self.0.clone();
+        let [x, y] = &self.window;
         let rows = array.outer_iter_mut().skip(x.start);
-        for (mut row, values) in rows.zip(values.chunks_exact(y.len())) {
+        for (mut row, values) in rows.zip(self.values.chunks_exact(y.len())) {
             for (to, from) in row.iter_mut().skip(y.start).zip(values) {
                 *to = *from;
             }
         }
     }
-}
 
-/// Rows and columns of an array.
-fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &[Range<usize>; 2]) -> ArrayView2<'a, f64> {
-    let mut view = array.view();
-    view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
-    view.slice_axis_inplace(Axis(1), Slice::from(y.clone()));
-    view
+    /// Linear interpolation between the centres of its cells, on a grid of `shape` of which the
+    /// directions of `halved` have half as many cells here; in a window around the contact.
+    fn interpolated(&self, shape: [usize; 2], halved: [bool; 2]) -> Self {
+        let none = || [0..0, 0..0];
+        let contact = self.contact().unwrap_or_else(none);
+        let fine = [0, 1].map(|k| {
+            let factor = if halved[k] { 2 } else { 1 };
+            factor * contact[k].start..(factor * contact[k].end).min(shape[k])
+        });
+        let window = widened(&fine, shape);
+        let taps = |k: usize, i: usize| -> [(usize, f64); 2] {
+            if !halved[k] {
+                return [(i, 1.0), (i, 0.0)];
+            }
+            let (near, last) = (i / 2, shape[k].div_ceil(2) - 1);
+            let next = if i.is_multiple_of(2) {
+                near.saturating_sub(1)
+            } else {
+                (near + 1).min(last)
+            };
+            [(near, 0.75), (next, 0.25)]
+        };
+        let mut values = Vec::with_capacity(window[0].len() * window[1].len());
+        for i in window[0].clone() {
+            let x = taps(0, i);
+            for j in window[1].clone() {
+                let y = taps(1, j);
+                values.push(
+                    x[0].1 * (y[0].1 * self.at(x[0].0, y[0].0) + y[1].1 * self.at(x[0].0, y[1].0))
+                        + x[1].1
+                            * (y[0].1 * self.at(x[1].0, y[0].0) + y[1].1 * self.at(x[1].0, y[1].0)),
+                );
+            }
+        }
+        Self { window, values }
+    }
 }
 
 /// One grid: its coefficients, and its problem.
@@ -224,12 +260,23 @@ impl Level<'_> {
         [self.gap.nrows(), self.gap.ncols()]
     }
 
-    /// Solves in a window around the contact of `p`, which opens while the contact reaches its
-    /// edge; `p` becomes the solution.
+    /// Makes a pressure one that cells can carry and that is balanced. False where that cannot be.
+    fn balance(&self, patch: &mut Patch) -> bool {
+        for (p, h) in patch.values.iter_mut().zip(block(&self.gap, &patch.window)) {
+            if !h.is_finite() {
+                *p = 0.0;
+            }
+        }
+        self.freedoms
+            .part(patch.window.clone())
+            .balance(&mut patch.values)
+    }
+
+    /// Solves in the window of `patch`, which opens while the contact reaches its edge; `patch`
+    /// becomes the solution.
     fn solve(
         &self,
-        p: &mut Array2<f64>,
-        window: &mut Window,
+        patch: &mut Patch,
         limits: Limits,
         work: &mut f64,
         watch: &mut Watch,
@@ -237,84 +284,92 @@ impl Level<'_> {
         let shape = self.shape();
         let mut done = 0;
         loop {
-            let whole = *window == Window::whole(shape);
-            let [x, y] = &window.0;
-            let corner = block(self.coefficients, &[0..x.len(), 0..y.len()]);
+            let window = &patch.window;
+            let whole = *window == shape.map(|n| 0..n);
+            let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
             let part = (!whole).then(|| self.convolution.part(&corner));
             let inverse = self.convolution.approximate_inverse(&corner);
-            let freedoms = self.freedoms.part(window.0.clone());
+            let freedoms = self.freedoms.part(window.clone());
             let problem = Problem {
                 convolution: part.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
-                gap: window.cut(&self.gap),
+                gap: block(&self.gap, window).iter().copied().collect(),
             };
-            let mut inside = window.cut(p);
-            freedoms.balance(&mut inside);
             let mut solver = Preconditioned::new(&problem, &inverse);
             let before = *work;
-            let limits = Limits {
+            let left = Limits {
                 max_iterations: limits.max_iterations - done,
                 ..limits
             };
-            let outcome = solver.solve(&mut inside, limits, &mut |iterations, spent, quality| {
-                watch(done + iterations, before + spent, quality)
-            });
+            let outcome = solver.solve(
+                &mut patch.values,
+                left,
+                &mut |iterations, spent, quality| watch(done + iterations, before + spent, quality),
+            );
             *work += solver.work;
             done += outcome.iterations;
-            window.paste(p, &inside);
             let outcome = Outcome {
                 iterations: done,
+                work: *work,
                 ..outcome
             };
-            let next = Window::around(shape, |i, j| p[[i, j]] > 0.0 || window.contains(i, j));
-            let touches = |i: usize, j: usize| {
-                p[[i, j]] > 0.0
-                    && ((i == x.start && i > 0)
-                        || (i + 1 == x.end && x.end < shape[0])
-                        || (j == y.start && j > 0)
-                        || (j + 1 == y.end && y.end < shape[1]))
+            let Some(contact) = patch.contact() else {
+                return outcome;
             };
-            let reached = x.clone().any(|i| y.clone().any(|j| touches(i, j)));
-            match next {
-                Some(next) if reached && outcome.termination == Termination::Converged => {
-                    *window = next;
-                }
-                _ => return outcome,
+            let reached = (0..2).any(|k| {
+                (contact[k].start == patch.window[k].start && contact[k].start > 0)
+                    || (contact[k].end == patch.window[k].end && contact[k].end < shape[k])
+            });
+            if whole || !reached || outcome.termination != Termination::Converged {
+                return outcome;
             }
+            *patch = patch.moved(widened(&hull(&contact, &patch.window), shape));
         }
     }
 }
 
-/// What the contact of a finer grid starts from.
+/// The finest grid, and where its contact is.
 pub(super) struct Cascade<'a> {
     finest: Level<'a>,
-    window: Window,
+    patch: Patch,
     pub(super) work: f64,
 }
 
 impl<'a> Cascade<'a> {
-    /// Solves on the coarser grids, and takes the interpolated pressure as `p`; with a given
-    /// pressure there is nothing to solve for.
+    /// Solves on the coarser grids, and starts the finest one from the interpolated pressure; with
+    /// a `given` pressure there is nothing to solve for.
     ///
-    /// The error is the outcome where the caller stopped it.
+    /// Fails with the outcome where the caller stopped it, and with nothing where no balanced
+    /// pressure was found: coarse cells may not carry the moments that fine ones can.
     pub(super) fn new(
         problem: &Problem<'a>,
         planned: &'a Levels,
-        p: &mut Array2<f64>,
-        given: bool,
+        given: Option<&Array2<f64>>,
         limits: Limits,
         watch: &mut Watch,
-    ) -> Result<Self, Outcome> {
-        let shape = [p.nrows(), p.ncols()];
-        let gap = Array2::from_shape_fn(shape, |(i, j)| problem.gap[i * shape[1] + j]);
+    ) -> Result<Self, Option<Outcome>> {
+        let finest = &planned.coefficients[0];
         let mut levels = vec![Level {
-            coefficients: &planned.coefficients[0],
+            coefficients: finest,
             convolution: problem.convolution,
             freedoms: problem.freedoms.clone(),
-            gap,
+            gap: super::array([finest.nrows(), finest.ncols()], problem.gap.clone()),
         }];
-        let coarser = planned.coefficients[1..].iter().zip(&planned.convolutions);
-        for (coefficients, convolution) in coarser.filter(|_| !given) {
+        let mut work = 0.0;
+        if let Some(given) = given {
+            let mut patch = Patch::whole(given);
+            if let Some(contact) = patch.contact() {
+                patch = patch.moved(widened(&contact, levels[0].shape()));
+            }
+            return Ok(Self {
+                finest: levels.swap_remove(0),
+                patch,
+                work,
+            });
+        }
+        for (coefficients, convolution) in
+            planned.coefficients[1..].iter().zip(&planned.convolutions)
+        {
             let fine = &levels[levels.len() - 1];
             let halved = halved(fine.shape());
             let (freedoms, gap) = (fine.freedoms.coarse(halved), coarse_gap(&fine.gap, halved));
@@ -325,71 +380,68 @@ impl<'a> Cascade<'a> {
                 gap,
             });
         }
-        let mut work = 0.0;
-        let mut coarse: Option<Array2<f64>> = None;
         let coarse_limits = Limits {
             tolerance: COARSE_TOLERANCE.max(limits.tolerance),
             ..limits
         };
+        let mut coarse: Option<Patch> = None;
         for (depth, level) in levels.iter().enumerate().rev() {
             let shape = level.shape();
-            let mut start = match &coarse {
-                Some(coarse) => interpolate(coarse, shape, halved(shape)),
-                None if depth == 0 => break,
-                None => Array2::from_elem(shape, level.freedoms.typical_pressure(level.gap.len())),
-            };
-            start.zip_mut_with(&level.gap, |p, h| {
-                if !h.is_finite() {
-                    *p = 0.0;
+            let mut patch = match &coarse {
+                Some(coarse) => coarse.interpolated(shape, halved(shape)),
+                None => {
+                    let uniform = level.freedoms.typical_pressure(level.gap.len());
+                    Patch::whole(&Array2::from_elem(shape, uniform))
                 }
-            });
-            if !level.freedoms.balance(slice_mut(&mut start)) {
-                // Coarse cells cannot carry the moments; finer ones may.
+            };
+            if !level.balance(&mut patch) {
                 coarse = None;
                 continue;
             }
             if depth == 0 {
-                *p = start;
-                break;
+                return Ok(Self {
+                    finest: levels.swap_remove(0),
+                    patch,
+                    work,
+                });
             }
-            let mut window = Window::of_contact(&start);
-            let outcome = level.solve(&mut start, &mut window, coarse_limits, &mut work, watch);
+            let outcome = level.solve(&mut patch, coarse_limits, &mut work, watch);
             if outcome.termination == Termination::Stopped {
-                return Err(Outcome { work, ..outcome });
+                return Err(Some(outcome));
             }
-            coarse = Some(start);
+            coarse = Some(patch);
         }
-        let window = Window::of_contact(p);
-        Ok(Self {
-            finest: levels.swap_remove(0),
-            window,
-            work,
-        })
+        Err(None)
     }
 
-    /// Solves on the finest grid from `p`.
+    /// Solves on the finest grid; `pressure` becomes the solution.
     pub(super) fn solve(
         &mut self,
-        p: &mut Array2<f64>,
+        pressure: &mut Array2<f64>,
         limits: Limits,
         watch: &mut Watch,
     ) -> Outcome {
-        self.finest
-            .solve(p, &mut self.window, limits, &mut self.work, watch)
+        let outcome = self
+            .finest
+            .solve(&mut self.patch, limits, &mut self.work, watch);
+        self.patch.paste(pressure);
+        outcome
     }
 
     /// Opens the window around the cells where the gap `g` is negative. False where there is none
     /// outside it.
-    pub(super) fn open(&mut self, g: &[f64]) -> bool {
+    pub(super) fn open(&mut self, g: &ArrayRef2<f64>) -> bool {
         let shape = self.finest.shape();
-        let overlaps = |i: usize, j: usize| g[i * shape[1] + j] < 0.0;
-        let outside = (0..shape[0])
-            .any(|i| (0..shape[1]).any(|j| !self.window.contains(i, j) && overlaps(i, j)));
-        if outside {
-            let old = self.window.clone();
-            let around = Window::around(shape, |i, j| old.contains(i, j) || overlaps(i, j));
-            self.window = around.unwrap_or_else(|| Window::whole(shape));
+        let [x, y] = self.patch.window.clone();
+        let outside = |i: usize, j: usize| !(x.contains(&i) && y.contains(&j));
+        let found = bounds(&shape.map(|n| 0..n), |i, j| {
+            outside(i, j) && g[[i, j]] < 0.0
+        });
+        if let Some(cells) = &found {
+            self.patch = self
+                .patch
+                .moved(widened(&hull(cells, &self.patch.window), shape));
         }
-        outside
+        found.is_some()
     }
 }

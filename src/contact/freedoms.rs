@@ -213,9 +213,12 @@ impl Freedoms {
     pub(super) fn prescribed_gap(&self, gap: &ArrayRef2<f64>) -> Vec<f64> {
         let [delta, sx, sy] = self.prescribed;
         let [x, y] = &self.coordinates;
-        gap.indexed_iter()
-            .map(|((i, j), h)| h - delta - sx * x[i] - sy * y[j])
-            .collect()
+        let mut gaps = Vec::with_capacity(gap.len());
+        for (row, x) in gap.rows().into_iter().zip(x) {
+            let shift = delta + sx * x;
+            gaps.extend(row.iter().zip(y).map(|(h, y)| h - shift - sy * y));
+        }
+        gaps
     }
 
     /// (δ, s_x, s_y) of all freedoms, from the multipliers λ of the loaded ones.

@@ -1,0 +1,180 @@
+//! One group for each step of the chain; `benches/README.md` says what each isolates.
+//!
+//! Inputs are fixed, results are asserted once before timing, and all run on one thread unless the
+//! id says otherwise.
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use nacre::influence::{CellInfluence, Method, influence_coefficients};
+use nacre::{
+    Algorithm, Contact, Convolution, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid,
+    Result, Roller, Setup, Solution, Surface,
+};
+use ndarray::Array2;
+
+const HERTZ_RADIUS: f64 = 1e3;
+
+/// E1/E2 = 4, `layers` layers of 8 cells of unit size together.
+fn coated(layers: usize) -> Result<HalfSpace> {
+    let hard = Elastic::new(4.0, 0.3)?;
+    let layer = Layer::new(hard, 8.0 / layers as f64)?;
+    HalfSpace::new(Elastic::new(1.0, 0.3)?, vec![layer; layers])
+}
+
+/// A square of n cells of unit size.
+fn square(n: usize) -> Result<Grid> {
+    Grid::new([n, n], [n as f64; 2])
+}
+
+fn response(c: &mut Criterion) {
+    let mut group = c.benchmark_group("response");
+    for layers in [1, 10] {
+        let body = coated(layers).expect("valid");
+        let wavenumbers: Vec<f64> = (0..1024).map(|k| 1e-3 * 1.01_f64.powi(k)).collect();
+        group.throughput(Throughput::Elements(wavenumbers.len() as u64));
+        group.bench_function(BenchmarkId::new("layers", layers), |b| {
+            b.iter(|| {
+                let responses = wavenumbers
+                    .iter()
+                    .map(|&alpha| nacre::response::frequency_response(&body, alpha));
+                responses.sum::<Result<f64>>()
+            });
+        });
+    }
+    group.finish();
+}
+
+fn coefficients(c: &mut Criterion) {
+    let mut group = c.benchmark_group("coefficients");
+    group.sample_size(10);
+    let bare = HalfSpace::from(Elastic::new(1.0, 0.3).expect("valid"));
+    let (one, ten) = (coated(1).expect("valid"), coated(10).expect("valid"));
+    for n in [128, 512, 1024] {
+        let grid = square(n).expect("valid");
+        group.throughput(Throughput::Elements((n * n) as u64));
+        for (name, body) in [("bare", &bare), ("coated", &one), ("ten_layers", &ten)] {
+            group.bench_function(BenchmarkId::new(name, n), |b| {
+                b.iter(|| influence_coefficients(body, &grid, Method::Exact));
+            });
+        }
+    }
+    let grid = square(128).expect("valid");
+    let image = Method::Image { refinement: 4 };
+    group.bench_function("image/128", |b| {
+        b.iter(|| influence_coefficients(&one, &grid, image))
+    });
+    group.bench_function("tables", |b| {
+        b.iter(|| CellInfluence::plan(&one, [1.0; 2], 1500.0))
+    });
+    group.finish();
+}
+
+fn convolution(c: &mut Criterion) {
+    let mut group = c.benchmark_group("convolution");
+    group.sample_size(20);
+    let bare = HalfSpace::from(Elastic::new(1.0, 0.3).expect("valid"));
+    for n in [128, 256, 512, 1024] {
+        let grid = square(n).expect("valid");
+        let coefficients = influence_coefficients(&bare, &grid, Method::Exact).expect("valid");
+        group.throughput(Throughput::Elements((n * n) as u64));
+        group.bench_function(BenchmarkId::new("plan", n), |b| {
+            b.iter(|| Convolution::plan(&coefficients, Some(1)));
+        });
+        for (name, threads) in [("apply", 1), ("apply_two_threads", 2)] {
+            let convolution = Convolution::plan(&coefficients, Some(threads)).expect("valid");
+            let mut workspace = convolution.workspace();
+            let mut point = Array2::zeros((n, n));
+            point[[0, 0]] = 1.0;
+            let mut out = Array2::zeros((n, n));
+            convolution
+                .apply_into(&point, &mut out, &mut workspace)
+                .expect("same shape");
+            assert!(
+                (&out - &coefficients)
+                    .iter()
+                    .all(|d| d.abs() < 1e-14 * coefficients[[0, 0]])
+            );
+            group.bench_function(BenchmarkId::new(name, n), |b| {
+                b.iter(|| convolution.apply_into(black_box(&point), &mut out, &mut workspace));
+            });
+        }
+    }
+    group.finish();
+}
+
+fn hertz(n: usize, threads: usize) -> Result<(Contact, Paraboloid, Motion)> {
+    let grid = Grid::new([n, n], [2.0, 2.0])?;
+    let setup = Setup {
+        threads: Some(threads),
+        ..Setup::default()
+    };
+    let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), grid, setup)?;
+    // Contact radius a third: 4/3 E* a³/R.
+    let load = 4.0 / 81.0 / HERTZ_RADIUS;
+    Ok((
+        contact,
+        Paraboloid::new(HERTZ_RADIUS, HERTZ_RADIUS)?,
+        Motion::load(load),
+    ))
+}
+
+fn converged(
+    contact: &Contact,
+    shape: &dyn Surface,
+    motion: &Motion,
+    options: &Options,
+) -> Solution {
+    let solution = contact.solve(shape, motion, options).expect("valid");
+    assert!(solution.report.converged());
+    solution
+}
+
+fn contact(c: &mut Criterion) {
+    let mut group = c.benchmark_group("contact");
+    group.sample_size(10);
+    let options = Options::default();
+    for n in [128, 256, 512, 1024] {
+        for (name, threads) in [("hertz", 1), ("hertz_two_threads", 2)] {
+            let (contact, shape, motion) = hertz(n, threads).expect("valid");
+            let solution = converged(&contact, &shape, &motion, &options);
+            assert!((solution.approach * HERTZ_RADIUS * 9.0 - 1.0).abs() < 1e-3);
+            group.bench_function(BenchmarkId::new(name, n), |b| {
+                b.iter(|| converged(&contact, &shape, &motion, &options));
+            });
+        }
+    }
+    let reference = Options {
+        algorithm: Algorithm::PolonskyKeer,
+        ..Options::default()
+    };
+    let (plan, shape, motion) = hertz(256, 1).expect("valid");
+    group.bench_function("hertz_polonsky_keer/256", |b| {
+        b.iter(|| converged(&plan, &shape, &motion, &reference));
+    });
+    let (plan, motion) = roller().expect("valid");
+    let shape = Roller::new(5e-3, 19.13e-3, 7.5).expect("valid");
+    group.bench_function("roller/1024x128", |b| {
+        b.iter(|| converged(&plan, &shape, &motion, &options));
+    });
+    group.finish();
+}
+
+/// The paper's roller, E1/E2 = 4, under a force off-centre.
+fn roller() -> Result<(Contact, Motion)> {
+    let steel = Elastic::new(210e9, 0.3)?;
+    let body = HalfSpace::new(steel, [Layer::new(Elastic::new(840e9, 0.3)?, 40e-6)?])?;
+    let grid = Grid::new([1024, 128], [29e-3, 0.16e-3])?;
+    let setup = Setup {
+        threads: Some(1),
+        ..Setup::default()
+    };
+    let motion = Motion {
+        eccentricity: [Some(2.8695e-3), Some(0.0)],
+        ..Motion::load(1e3)
+    };
+    Ok((Contact::plan(&body, grid, setup)?, motion))
+}
+
+criterion_group!(chain, response, coefficients, convolution, contact);
+criterion_main!(chain);
