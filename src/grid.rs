@@ -92,7 +92,11 @@ impl Grid {
     pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
         finite("center", center[0])?;
         finite("center", center[1])?;
-        Ok(Self { center, ..self })
+        // Not −0.0, which would compare equal and print otherwise.
+        Ok(Self {
+            center: center.map(|c| c + 0.0),
+            ..self
+        })
     }
 
     /// Numbers of cells `[nx, ny]`.

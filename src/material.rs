@@ -30,7 +30,11 @@ impl Elastic {
                 value: poisson,
             });
         }
-        Ok(Self { young, poisson })
+        // Not −0.0, which would compare equal and print otherwise.
+        Ok(Self {
+            young,
+            poisson: poisson + 0.0,
+        })
     }
 
     /// Young's modulus E \[Pa\].

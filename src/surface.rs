@@ -110,7 +110,7 @@ pub trait Surface: fmt::Debug + Send + Sync {
     {
         Ok(Shifted {
             shape: self,
-            by: [finite("x", x)?, finite("y", y)?],
+            by: [finite("x", x)? + 0.0, finite("y", y)? + 0.0],
         })
     }
 

@@ -263,7 +263,7 @@ impl Table {
         polynomial
             .iter()
             .rev()
-            .fold(0.0, |sum, c| sum.mul_add(position, *c))
+            .fold(0.0, |sum, c| sum * position + c)
     }
 }
 

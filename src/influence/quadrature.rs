@@ -57,16 +57,16 @@ pub(super) struct Rules {
 }
 
 impl Rules {
-    /// With a singularity at q half-intervals from it, n points leave an error of about
-    /// (q + √(q² + 1))^{−2n}, times a factor that is small for 1/r: 1e-13 at these bounds.
+    /// With a singularity at q half-intervals from it, n points leave an error of the order of
+    /// (q + √(q² + 1))^{−2n}: for 1/r, some 1e-12 at these bounds.
     pub(super) fn new() -> Self {
         let rule = |q: f64, n: usize| (q, Rule::gauss_legendre(n));
         Self {
             rules: [
-                rule(1000.0, 2),
-                rule(80.0, 3),
-                rule(25.0, 4),
-                rule(12.0, 5),
+                rule(400.0, 2),
+                rule(40.0, 3),
+                rule(16.0, 4),
+                rule(8.0, 5),
                 rule(5.0, 7),
                 rule(NEAREST, 11),
             ],

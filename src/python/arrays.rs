@@ -1,5 +1,7 @@
 //! Arrays and numbers from Python: real ones of any dtype, order and stride.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use ndarray::{Array2, ArrayD, Ix2};
 use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -85,4 +87,11 @@ pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<O
             .map_err(|_| PyTypeError::new_err(format!("{name} must be a real number, got {value}")))
     };
     value.map(extract).transpose()
+}
+
+/// Hash of a value, by its `repr`: equal values print alike.
+pub(super) fn hash(repr: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    repr.hash(&mut hasher);
+    hasher.finish()
 }

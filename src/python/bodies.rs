@@ -4,6 +4,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use super::arrays::hash;
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::error::Error;
 use crate::material::Elastic;
@@ -64,6 +65,10 @@ impl PyElastic {
 
     fn __repr__(&self) -> String {
         elastic_repr(&self.0)
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash(&self.__repr__())
     }
 
     fn __getnewargs__(&self) -> (f64, f64) {
@@ -173,6 +178,10 @@ impl PyLayer {
         )
     }
 
+    fn __hash__(&self) -> u64 {
+        hash(&self.__repr__())
+    }
+
     fn __getnewargs__(&self) -> (PyElastic, f64, &'static str) {
         (self.material(), self.0.thickness(), self.interface())
     }
@@ -244,6 +253,10 @@ impl PyHalfSpace {
             .map(|l| PyLayer(*l).__repr__())
             .collect();
         format!("HalfSpace({substrate}, layers=[{}])", layers.join(", "))
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash(&self.__repr__())
     }
 
     fn __getnewargs__<'py>(

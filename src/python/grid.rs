@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arrays::{count, read_only};
+use super::arrays::{count, hash, read_only};
 use crate::grid::Grid;
 
 /// A uniform grid of rectangular cells, over each of which the pressure is constant.
@@ -128,6 +128,10 @@ impl PyGrid {
         } else {
             format!("Grid(shape=({nx}, {ny}), size=({lx:?}, {ly:?}), center=({x:?}, {y:?}))")
         }
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash(&self.__repr__())
     }
 
     /// How to make it again: a callable and its arguments.

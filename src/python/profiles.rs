@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::arrays::{read_only, real_array};
+use super::arrays::{hash, read_only, real_array};
 use crate::surface::{LogarithmicProfile, Profile, SampledProfile};
 
 /// A logarithmic axial profile of a roller, straight over its middle where `flat_length` > 0.
@@ -198,6 +198,10 @@ impl PyLogarithmicProfile {
             self.flat_length(),
             self.end_factor()
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash(&self.__repr__())
     }
 
     fn __getnewargs__(&self) -> (f64, f64, f64, f64) {

@@ -6,13 +6,14 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arrays::{read_only, real_matrix};
+use super::arrays::{hash, read_only, real_matrix};
 use super::grid::PyGrid;
 use super::profiles;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::surface::{
-    Cylinder, Extent, FlatPunch, HeightMap, Paraboloid, Profile, Roller, Sphere, Surface,
+    CrownedProfile, Cylinder, Extent, FlatPunch, HeightMap, Paraboloid, Profile, Roller, Sphere,
+    Surface,
 };
 
 /// Any shape that Python can name: so that it has a value to compare, copy and print.
@@ -185,7 +186,10 @@ impl PyShape {
     /// Sphere(radius=0.005).shifted(0.001, 0.0)
     fn shifted(&self, x: f64, y: f64) -> PyResult<Self> {
         (&self.0).shifted(x, y)?;
-        Ok(Self(Shape::Shifted(Box::new(self.0.clone()), [x, y])))
+        Ok(Self(Shape::Shifted(
+            Box::new(self.0.clone()),
+            [x + 0.0, y + 0.0],
+        )))
     }
 
     fn __add__(&self, other: &Self) -> Self {
@@ -194,6 +198,10 @@ impl PyShape {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         self.0.repr(py)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(hash(&self.0.repr(py)?))
     }
 
     /// How to make it again: a callable and its arguments.
@@ -264,6 +272,15 @@ impl PySphere {
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
         Ok(subclass(Self, Shape::Sphere(Sphere::new(radius)?)))
     }
+
+    /// Radius [m].
+    #[getter]
+    fn radius(slf: &Bound<'_, Self>) -> f64 {
+        match &slf.as_super().get().0 {
+            Shape::Sphere(shape) => shape.radius(),
+            _ => unreachable!("made by its own constructor"),
+        }
+    }
 }
 
 /// An elliptic paraboloid: ``h = x**2/(2 R_x) + y**2/(2 R_y)``.
@@ -294,6 +311,24 @@ impl PyParaboloid {
             Shape::Paraboloid(Paraboloid::new(radius_x, radius_y)?),
         ))
     }
+
+    /// Radius of curvature along x [m].
+    #[getter]
+    fn radius_x(slf: &Bound<'_, Self>) -> f64 {
+        match &slf.as_super().get().0 {
+            Shape::Paraboloid(shape) => shape.radius_x(),
+            _ => unreachable!("made by its own constructor"),
+        }
+    }
+
+    /// Radius of curvature along y [m].
+    #[getter]
+    fn radius_y(slf: &Bound<'_, Self>) -> f64 {
+        match &slf.as_super().get().0 {
+            Shape::Paraboloid(shape) => shape.radius_y(),
+            _ => unreachable!("made by its own constructor"),
+        }
+    }
 }
 
 /// An endless cylinder, axis along x: ``h = R - sqrt(R**2 - y**2)``, +inf beyond R.
@@ -322,6 +357,15 @@ impl PyCylinder {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
         Ok(subclass(Self, Shape::Cylinder(Cylinder::new(radius)?)))
+    }
+
+    /// Radius [m].
+    #[getter]
+    fn radius(slf: &Bound<'_, Self>) -> f64 {
+        match &slf.as_super().get().0 {
+            Shape::Cylinder(shape) => shape.radius(),
+            _ => unreachable!("made by its own constructor"),
+        }
     }
 }
 
@@ -388,6 +432,36 @@ impl PyRoller {
         }
         Ok(subclass(Self, Shape::Roller(roller)))
     }
+
+    /// Radius [m].
+    #[getter]
+    fn radius(slf: &Bound<'_, Self>) -> f64 {
+        roller(slf).radius()
+    }
+
+    /// Length of the straight part of a crowned roller [m].
+    #[getter]
+    fn flat_length(slf: &Bound<'_, Self>) -> Option<f64> {
+        crown(slf).map(|crown| crown.flat_length())
+    }
+
+    /// Radius of the ends of a crowned roller [m].
+    #[getter]
+    fn crown_radius(slf: &Bound<'_, Self>) -> Option<f64> {
+        crown(slf).map(|crown| crown.crown_radius())
+    }
+
+    /// Whole length [m], where it is cut off.
+    #[getter]
+    fn length(slf: &Bound<'_, Self>) -> Option<f64> {
+        roller(slf).length()
+    }
+
+    /// The axial profile, where it is not a crown.
+    #[getter]
+    fn profile<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        profiles::to_python(slf.py(), roller(slf).profile())
+    }
 }
 
 /// A flat circular punch: ``h = 0`` for ``r <= a``, +inf beyond.
@@ -414,6 +488,15 @@ impl PyFlatPunch {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
         Ok(subclass(Self, Shape::FlatPunch(FlatPunch::new(radius)?)))
+    }
+
+    /// Radius [m].
+    #[getter]
+    fn radius(slf: &Bound<'_, Self>) -> f64 {
+        match &slf.as_super().get().0 {
+            Shape::FlatPunch(shape) => shape.radius(),
+            _ => unreachable!("made by its own constructor"),
+        }
     }
 }
 
@@ -500,5 +583,19 @@ fn height_map<'a>(object: &'a Bound<'_, PyHeightMap>) -> &'a HeightMap {
     match &object.as_super().get().0 {
         Shape::HeightMap(map) => map,
         _ => unreachable!("made by its own constructor"),
+    }
+}
+
+fn roller<'a>(object: &'a Bound<'_, PyRoller>) -> &'a Roller {
+    match &object.as_super().get().0 {
+        Shape::Roller(roller) => roller,
+        _ => unreachable!("made by its own constructor"),
+    }
+}
+
+fn crown<'a>(object: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
+    match roller(object).profile() {
+        Profile::Crowned(crown) => Some(crown),
+        Profile::Logarithmic(_) | Profile::Sampled(_) => None,
     }
 }

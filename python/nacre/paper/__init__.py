@@ -12,13 +12,26 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from nacre.paper.cases import CENTRED, ECCENTRIC, RATIOS, SPHERE, Result, Series, of_series, solve
+from nacre.paper.cases import (
+    CENTRED,
+    ECCENTRIC,
+    PROBLEM,
+    RATIOS,
+    SERIES,
+    SPHERE,
+    Result,
+    Series,
+    of_series,
+    solve,
+)
 from nacre.paper.evaluation import claims, deviations, table, thickness_note
 
 __all__ = [
     "CENTRED",
     "ECCENTRIC",
+    "PROBLEM",
     "RATIOS",
+    "SERIES",
     "SPHERE",
     "Result",
     "Series",
@@ -38,7 +51,7 @@ def run(
     *,
     threads: int | None = None,
     quick: bool = False,
-    progress: Callable[[int, int, str], object] | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> list[Result]:
     """Solve every case of the paper and write table, figures and their numbers.
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
+import os
+import threading
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import Literal
 
@@ -27,10 +30,12 @@ SPHERE_LOAD = 4 / 3 * SUBSTRATE.plane_strain_modulus * HERTZ_RADIUS**3 / SPHERE_
 HERTZ_PRESSURE = 1.5 * SPHERE_LOAD / (math.pi * HERTZ_RADIUS**2)
 HERTZ_APPROACH = HERTZ_RADIUS**2 / SPHERE_RADIUS
 
-ROLLER = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
-ROLLER_LOAD = 1e3
+ROLLER_RADIUS = 5e-3
 HALF_FLAT = 19.13e-3 / 2
 """L, half the length of the roller's cylindrical part [m]."""
+CROWN_RADIUS = 7.5
+ROLLER = nacre.Roller(ROLLER_RADIUS, flat_length=2 * HALF_FLAT, crown_radius=CROWN_RADIUS)
+ROLLER_LOAD = 1e3
 
 MAIN_THICKNESS = 0.04e-3
 PRINTED_THICKNESS = 0.2e-3
@@ -76,7 +81,7 @@ def _roller(name: str, thickness: float, eccentricity: float) -> Series:
         thickness,
         eccentricity=(eccentricity, 0.0),
         size=(31e-3, 0.18e-3),
-        cells=(1125, 135),
+        cells=(1125, 201),
         quick_cells=(225, 45),
     )
 
@@ -98,6 +103,15 @@ ECCENTRIC = tuple(
     _roller("roller, e/L = 0.3", thickness, 0.3 * HALF_FLAT)
     for thickness in (MAIN_THICKNESS, PRINTED_THICKNESS)
 )
+SERIES = (SPHERE, CENTRED[0], ECCENTRIC[0], CENTRED[1], ECCENTRIC[1])
+PROBLEM = (
+    f"A rigid sphere (R = {1e3 * SPHERE_RADIUS:g} mm, W = {SPHERE_LOAD:.1f} N, hence a_H = "
+    f"{1e3 * HERTZ_RADIUS:g} mm) and a rigid roller (R = {1e3 * ROLLER_RADIUS:g} mm, cylindrical "
+    f"part 2L = {2e3 * HALF_FLAT:g} mm, R_a = {1e3 * CROWN_RADIUS:g} mm, W = {ROLLER_LOAD:g} N) "
+    "on a coating of modulus E₁ and thickness h, bonded to a half-space of modulus "
+    f"E₂ = {1e-9 * SUBSTRATE.young:g} GPa; ν = {SUBSTRATE.poisson:g} in both."
+)
+"""What is solved, in words."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +143,71 @@ class Result:
         return y, pressure[np.argmin(np.abs(x)), :]
 
 
+def solve(
+    *,
+    threads: int | None = None,
+    quick: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> list[Result]:
+    """Solve every case of the paper.
+
+    Parameters
+    ----------
+    threads
+        Cases that are solved at a time, each on one thread; all of the machine's by default.
+    quick
+        Take coarse grids, for a first look: pressures err by a few per cent.
+    progress
+        Called after each solve with the number of solves done and that of all.
+
+    Returns
+    -------
+    list of Result
+        Series by series, in each the ratios from soft to stiff.
+
+    Raises
+    ------
+    nacre.ConvergenceError
+        Where a solve does not converge; a note says which.
+    """
+    if threads is None:
+        threads = os.cpu_count() or 1
+    cases = list(itertools.product(SERIES, RATIOS))
+    stop = threading.Event()
+    with ThreadPoolExecutor(threads) as pool:
+        futures = [pool.submit(_solve, *case, quick=quick, stop=stop) for case in cases]
+        try:
+            for done, future in enumerate(as_completed(futures), start=1):
+                future.result()
+                if progress is not None:
+                    progress(done, len(cases))
+        except BaseException:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [future.result() for future in futures]
+
+
+def _solve(series: Series, ratio: float, *, quick: bool, stop: threading.Event) -> Result:
+    contact = nacre.Contact(series.body(ratio), series.grid(quick=quick), threads=1)
+    try:
+        solution = contact.solve(
+            series.shape,
+            load=series.load,
+            eccentricity=series.eccentricity,
+            progress=lambda report: not stop.is_set(),
+        )
+    except nacre.ConvergenceError as error:
+        error.add_note(f"{series.title}, E1/E2 = {ratio:g}")
+        raise
+    return Result(series, ratio, solution)
+
+
+def of_series(results: Iterable[Result], series: Series) -> list[Result]:
+    """Return the results of one series, from soft to stiff."""
+    return [result for result in results if result.series == series]
+
+
 def half_width(y: Array, pressure: Array) -> float:
     """Return where `pressure` ends along `y`, for a contact symmetric in y.
 
@@ -141,61 +220,3 @@ def half_width(y: Array, pressure: Array) -> float:
     inner = loaded[-6:-1]
     slope, offset = np.polyfit(y[inner] ** 2, pressure[inner] ** 2, 1)
     return math.sqrt(-offset / slope)
-
-
-def solve(
-    *,
-    threads: int | None = None,
-    quick: bool = False,
-    progress: Callable[[int, int, str], object] | None = None,
-) -> list[Result]:
-    """Solve every case of the paper.
-
-    Parameters
-    ----------
-    threads
-        Threads to solve with; all of the machine's by default.
-    quick
-        Take coarse grids, for a first look: pressures err by a few per cent.
-    progress
-        Called before each solve with the number of solves done, the number of all of them, and
-        what is solved next.
-
-    Returns
-    -------
-    list of Result
-        Series by series, in each the ratios from soft to stiff.
-
-    Raises
-    ------
-    nacre.ConvergenceError
-        Where a solve does not converge; a note says which.
-    """
-    # Series of equal thickness share influence coefficients: they are solved side by side.
-    groups = [(SPHERE,), *zip(CENTRED, ECCENTRIC, strict=True)]
-    total = len(RATIOS) * sum(len(group) for group in groups)
-    solved: dict[Series, list[Result]] = {SPHERE: []} | {s: [] for s in CENTRED + ECCENTRIC}
-    done = itertools.count()
-    for group, ratio in itertools.product(groups, RATIOS):
-        contact = None
-        for series in group:
-            name = f"{series.title}, E1/E2 = {ratio:g}"
-            if progress is not None:
-                progress(next(done), total, name)
-            contact = contact or nacre.Contact(
-                series.body(ratio), series.grid(quick=quick), threads=threads
-            )
-            try:
-                solution = contact.solve(
-                    series.shape, load=series.load, eccentricity=series.eccentricity
-                )
-            except nacre.ConvergenceError as error:
-                error.add_note(name)
-                raise
-            solved[series].append(Result(series, ratio, solution))
-    return list(itertools.chain.from_iterable(solved.values()))
-
-
-def of_series(results: Iterable[Result], series: Series) -> list[Result]:
-    """Return the results of one series, from soft to stiff."""
-    return [result for result in results if result.series == series]

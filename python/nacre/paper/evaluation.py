@@ -17,6 +17,7 @@ from nacre.paper.cases import (
     HERTZ_RADIUS,
     PRINTED_THICKNESS,
     ROLLER_LOAD,
+    SERIES,
     SPHERE,
     Array,
     Result,
@@ -46,19 +47,17 @@ class Claim:
 
 
 def claims(results: Iterable[Result]) -> list[Claim]:
-    """Return, for each roller and each ratio but 1, how riser and area differ from E1 = E2."""
+    """Return how riser and area of the roller differ from E1 = E2, for each ratio but 1."""
     results = list(results)
-    plain = {result.series: result for result in results if result.ratio == 1}
-    return [
-        Claim(
-            result.series,
-            result.ratio,
-            result.riser / plain[result.series].riser - 1,
-            result.solution.contact_area / plain[result.series].solution.contact_area - 1,
-        )
-        for result in results
-        if result.series != SPHERE and result.ratio != 1
-    ]
+    found = []
+    for series in SERIES[1:]:
+        plain = next(r for r in of_series(results, series) if r.ratio == 1)
+        for result in of_series(results, series):
+            riser = result.riser / plain.riser - 1
+            area = result.solution.contact_area / plain.solution.contact_area - 1
+            if result is not plain:
+                found.append(Claim(series, result.ratio, riser, area))
+    return found
 
 
 @dataclass(frozen=True)
@@ -146,37 +145,41 @@ def thickness_note(results: Iterable[Result]) -> str:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the table: what it shows, in which unit, and how many decimals are printed."""
+    """A column of the table: what it shows, in which unit, and how many decimals are printed.
+
+    `heading` is its name over several lines, for a narrow table.
+    """
 
     name: str
+    heading: str
     unit: str
     decimals: int
     value: Callable[[Result], float]
 
-    @property
-    def header(self) -> str:
-        """Name and unit."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
-
 
 COLUMNS = (
-    Column("peak", "MPa", 0, lambda r: 1e-6 * r.solution.peak_pressure),
-    Column("central", "MPa", 0, lambda r: 1e-6 * r.solution.central_pressure),
-    Column("riser", "", 3, lambda r: r.riser),
-    Column("half-width", "mm", 4, lambda r: 1e3 * r.half_width),
-    Column("left end", "mm", 2, lambda r: 1e3 * r.solution.contact_extent[0][0]),
-    Column("right end", "mm", 2, lambda r: 1e3 * r.solution.contact_extent[0][1]),
-    Column("area", "mm²", 3, lambda r: 1e6 * r.solution.contact_area),
-    Column("approach", "µm", 3, lambda r: 1e6 * r.solution.approach),
-    Column("tilt", "1e-5", 2, lambda r: 1e5 * r.solution.tilt[0]),
-    Column("iterations", "", 0, lambda r: r.solution.report.iterations),
-    Column("time", "s", 2, lambda r: r.solution.report.seconds),
+    Column("peak", "peak", "MPa", 0, lambda r: 1e-6 * r.solution.peak_pressure),
+    Column("central", "central", "MPa", 0, lambda r: 1e-6 * r.solution.central_pressure),
+    Column("riser", "riser", "", 3, lambda r: r.riser),
+    Column("half-width", "half-\nwidth", "mm", 4, lambda r: 1e3 * r.half_width),
+    Column("left end", "left\nend", "mm", 2, lambda r: 1e3 * r.solution.contact_extent[0][0]),
+    Column("right end", "right\nend", "mm", 2, lambda r: 1e3 * r.solution.contact_extent[0][1]),
+    Column("area", "area", "mm²", 3, lambda r: 1e6 * r.solution.contact_area),
+    Column("approach", "ap-\nproach", "µm", 3, lambda r: 1e6 * r.solution.approach),
+    Column("tilt", "tilt", "1e-5", 2, lambda r: 1e5 * r.solution.tilt[0]),
+    Column("iterations", "iter-\nations", "", 0, lambda r: r.solution.report.iterations),
+    Column("time", "time", "s", 1, lambda r: r.solution.report.seconds),
 )
 
 
 def table(results: Iterable[Result]) -> tuple[list[str], list[list[str | float]]]:
     """Return header and rows of the table, as they go into ``table.csv``."""
-    header = ["case", "h [mm]", "E1/E2", *(column.header for column in COLUMNS)]
+    header = [
+        "case",
+        "h [mm]",
+        "E1/E2",
+        *(f"{c.name} [{c.unit}]" if c.unit else c.name for c in COLUMNS),
+    ]
     rows: list[list[str | float]] = [
         [r.series.name, 1e3 * r.series.thickness, r.ratio, *(c.value(r) for c in COLUMNS)]
         for r in results

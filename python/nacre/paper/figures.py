@@ -32,7 +32,7 @@ from nacre.paper.evaluation import references, sphere_profile, thickness_note
 WIDTH = 18 / 2.54
 """Width of a page between its margins [inch]."""
 
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.size": 9,
     "axes.titlesize": 9,
     "axes.titlelocation": "left",
@@ -172,7 +172,9 @@ def _surface(results: list[Result], series: Series) -> Drawing:
     result = next(r for r in of_series(results, series) if r.ratio == 1)
     x, y, pressure = _mesh(result)
     figure = Figure(figsize=(WIDTH, 0.55 * WIDTH))
-    axes = figure.add_axes((-0.04, -0.03, 1.04, 1.06), projection="3d", computed_zorder=False)
+    place = (-0.07, 0.0, 1.07, 1.02)
+    # Any: Matplotlib's three-dimensional axes are not typed.
+    axes: Any = figure.add_axes(place, projection="3d", computed_zorder=False)
     corners = np.stack([pressure[:-1, :-1], pressure[1:, :-1], pressure[:-1, 1:], pressure[1:, 1:]])
     colours = mpl.colormaps["viridis"](corners.mean(axis=0) / pressure.max())
     facets = {"rstride": 1, "cstride": 1, "shade": False, "antialiased": False, "clip_on": False}
@@ -190,7 +192,7 @@ def _surface(results: list[Result], series: Series) -> Drawing:
     axes.set_zlim(bottom=0)
     axes.set_yticks(np.arange(-0.04, 0.05, 0.02))
     axes.tick_params(pad=1)
-    axes.set_box_aspect((2.4, 1, 0.9), zoom=1.3)
+    axes.set_box_aspect((2.4, 1, 0.9), zoom=1.2)
     axes.view_init(elev=28, azim=-60)
     load = "centred" if series in CENTRED else "at $e/L = 0.3$"
     figure.text(0.02, 0.94, f"$E_1 = E_2$: the same for every $h$; load {load}")
@@ -205,7 +207,7 @@ def _mesh(result: Result) -> tuple[Array, Array, Array]:
     p² is interpolated in y², in which it is nearly linear.
     """
     solution = result.solution
-    steps = np.sin(np.linspace(-0.5, 0.5, 181) * np.pi)
+    steps = np.sin(np.linspace(-0.5, 0.5, 141) * np.pi)
     ends = np.flatnonzero(solution.pressure.any(axis=1))[[0, -1]]
     lines = np.unique(np.interp(steps, (-1, 1), ends).round().astype(int))
     x = np.concatenate(([0.0], solution.x[lines], [0.0]))

@@ -1,0 +1,60 @@
+"""The command ``nacre``.
+
+It needs the extra ``nacre[cli]``. Exit codes: 0 where everything converged, 1 where something
+failed, 2 for bad input, 130 after Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit.
+
+    Parameters
+    ----------
+    arguments
+        What follows the command's name; that of the process by default.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # not every terminal has Greek letters
+    try:
+        sys.exit(_run(arguments))
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    """Run one command, and return its exit code; errors are one line on stderr."""
+    try:
+        import typer
+
+        from nacre._commands import app
+    except ModuleNotFoundError as missing:
+        return _fail(f"the command line needs {missing.name}: pip install 'nacre[cli]'", 2)
+
+    import nacre
+
+    try:
+        return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)
+    except typer.TyperException as error:
+        return _fail(error.format_message(), 2)
+    except ModuleNotFoundError as missing:
+        return _fail(str(missing), 2)
+    except nacre.ConvergenceError as error:
+        return _fail("; ".join([*getattr(error, "__notes__", ()), str(error)]), 1)
+    except OSError as error:
+        return _fail(str(error), 1)
+
+
+def _fail(message: str, code: int) -> int:
+    print(f"nacre: {' '.join(message.split())}", file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    main()
