@@ -346,8 +346,9 @@ impl Freedoms {
             }
             for row in k + 1..3 {
                 let factor = a[row][k] / a[k][k];
-                for column in k..3 {
-                    a[row][column] -= factor * a[k][column];
+                let pivot_row = a[k];
+                for (entry, above) in a[row].iter_mut().zip(pivot_row).skip(k) {
+                    *entry -= factor * above;
                 }
                 b[row] -= factor * b[k];
             }

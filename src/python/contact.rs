@@ -170,7 +170,7 @@ impl<'py> Call<'py> {
                         return Ok(true);
                     };
                     let answer = callback.bind(py).call1((PyReport(report.clone()),))?;
-                    Ok(!(answer.is_instance_of::<pyo3::types::PyBool>() && !answer.is_truthy()?))
+                    Ok(answer.is_none() || answer.is_truthy()?)
                 });
                 match outcome {
                     Ok(true) => return ControlFlow::Continue(()),

@@ -271,13 +271,12 @@ impl PySampledProfile {
         ))
     }
 
-    fn __getnewargs__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Line<'py>, Line<'py>)> {
         Ok((self.x(py)?, self.drop(py)?))
     }
 }
+
+type Line<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The profile that a caller gave: one of the classes, or a pair (x, drop).
 pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
