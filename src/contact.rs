@@ -112,7 +112,7 @@ impl Contact {
         let [nx, ny] = grid.shape();
         check_memory(
             &grid,
-            Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 11,
+            Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 24,
         )?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let mut coefficients = coefficients_on(body, &grid, setup.method, &threads)?;
@@ -303,14 +303,32 @@ fn solve_in_window(
             work: cascade.work,
             ..outcome
         };
-        let converged = outcome.termination == Termination::Converged;
-        if !converged || quality.meets(limits.tolerance) {
+        if outcome.termination == Termination::Stopped || quality.meets(limits.tolerance) {
             return outcome;
         }
-        if iterations >= limits.max_iterations || !cascade.open(&fields.gap) {
+        if iterations >= limits.max_iterations {
             return Outcome {
                 termination: Termination::IterationLimit,
                 ..outcome
+            };
+        }
+        let converged = outcome.termination == Termination::Converged;
+        if !(converged && cascade.open(&fields.gap)) {
+            // It broke down, by rounding: the reference goes on from there.
+            let left = Limits {
+                max_iterations: limits.max_iterations - iterations,
+                ..limits
+            };
+            let before = cascade.work;
+            let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
+                watch(iterations + more, before + work, quality)
+            });
+            fields.certify(problem);
+            let (iterations, work) = (iterations + end.iterations, before + end.work);
+            return Outcome {
+                iterations,
+                work,
+                ..end
             };
         }
     }

@@ -17,31 +17,37 @@ pub(super) struct Preconditioned<'a> {
     inverse: &'a Convolution,
     workspace: Workspace,
     inverse_workspace: Workspace,
-    /// The inverse applied to the loaded freedoms.
+    /// The inverse applied to the loaded freedoms on a contact, see [`Self::invert_freedoms`].
     inverse_freedoms: [Vec<f64>; 3],
     pub(super) work: f64,
 }
 
 impl<'a> Preconditioned<'a> {
     pub(super) fn new(problem: &'a Problem<'a>, inverse: &'a Convolution) -> Self {
-        let cells = problem.gap.len();
-        let mut new = Self {
+        Self {
             problem,
             inverse,
             workspace: problem.convolution.workspace(),
             inverse_workspace: inverse.workspace(),
             inverse_freedoms: [Vec::new(), Vec::new(), Vec::new()],
             work: 0.0,
-        };
-        let mut column = vec![0.0; cells];
-        for freedom in (0..3).filter(|&k| problem.freedoms.loaded[k]) {
-            let unit = [0, 1, 2].map(|k| if k == freedom { 1.0 } else { 0.0 });
-            problem.freedoms.for_each(unit, |cell, b| column[cell] = b);
-            let mut image = vec![0.0; cells];
-            new.precondition(&column, &mut image);
-            new.inverse_freedoms[freedom] = image;
         }
-        new
+    }
+
+    /// Applies the inverse to the loaded freedoms, as they are on the contact.
+    fn invert_freedoms(&mut self, contact: &[bool]) {
+        let freedoms = self.problem.freedoms;
+        let mut column = vec![0.0; contact.len()];
+        for freedom in (0..3).filter(|&k| freedoms.loaded[k]) {
+            let unit = [0, 1, 2].map(|k| if k == freedom { 1.0 } else { 0.0 });
+            freedoms.for_each(unit, |cell, b| {
+                column[cell] = if contact[cell] { b } else { 0.0 }
+            });
+            let mut image = std::mem::take(&mut self.inverse_freedoms[freedom]);
+            image.resize(contact.len(), 0.0);
+            self.precondition(&column, &mut image);
+            self.inverse_freedoms[freedom] = image;
+        }
     }
 
     fn apply(&mut self, p: &[f64], out: &mut [f64]) {
@@ -69,6 +75,10 @@ impl<'a> Preconditioned<'a> {
         let mut contact: Vec<bool> = p.iter().map(|&p| p > 0.0).collect();
         let mut descent_before = 0.0;
         let mut conjugate = false;
+        // Whether the inverse freedoms are those of another contact, and whether the contact has
+        // changed since the last iteration.
+        let (mut stale, mut changed) = (false, false);
+        self.invert_freedoms(&contact);
         self.apply(p, &mut u);
         // Whether u is that of p, or the sum of the changes.
         let mut fresh = true;
@@ -100,9 +110,18 @@ impl<'a> Preconditioned<'a> {
             for (k, inside) in contact.iter_mut().enumerate() {
                 if !*inside && g[k] < 0.0 && problem.gap[k].is_finite() {
                     *inside = true;
+                    changed = true;
                     conjugate = false;
                 }
             }
+            // The projection is symmetric only if these belong to the contact. While the contact
+            // changes they need not: once it stays, they must.
+            if stale && !changed {
+                self.invert_freedoms(&contact);
+                conjugate = false;
+            }
+            stale = changed;
+            changed = false;
             // The part of the last residual along the new direction, for Polak and Ribière's β.
             let mut overlap = 0.0;
             std::mem::swap(&mut r, &mut response);
@@ -138,13 +157,15 @@ impl<'a> Preconditioned<'a> {
                 };
             }
 
+            let mut slope = dot(&r, &direction);
+            if slope <= 0.0 {
+                // The direction lost too many cells: start again along the gradient.
+                direction.copy_from_slice(&z);
+                slope = descent;
+            }
             let response = before;
             self.apply(&direction, response);
-            let (mut slope, mut curvature) = (0.0, 0.0);
-            for k in 0..cells {
-                slope += r[k] * direction[k];
-                curvature += response[k] * direction[k];
-            }
+            let curvature = dot(response, &direction);
             if !(curvature > 0.0 && slope > 0.0) {
                 // Rounding is all that is left.
                 return end(Termination::IterationLimit);
@@ -158,6 +179,7 @@ impl<'a> Preconditioned<'a> {
                     p[k] = 0.0;
                     truncated = true;
                 }
+                changed |= contact[k] != (p[k] > 0.0);
                 contact[k] = p[k] > 0.0;
             }
             conjugate = true;
