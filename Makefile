@@ -34,7 +34,7 @@ test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre,
 	else echo cargo test --tests --examples; cargo test --tests --examples; fi
 	cargo test --doc
 	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
-	$(BIN)/pytest --doctest-modules --pyargs tests/python nacre
+	$(BIN)/pytest
 
 check: $(WHEEL) $(DEV) ## formatting, lints, types, documentation links and stubs; changes nothing
 	cargo fmt --check

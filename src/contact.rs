@@ -10,7 +10,8 @@ use crate::body::HalfSpace;
 use crate::convolution::{Convolution, Workspace};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::influence::{Method, check_memory, coefficients_on};
+use crate::influence::{Method, coefficients_on};
+use crate::memory::check_memory;
 use crate::surface::{Extent, Surface};
 use crate::threads::Threads;
 
@@ -97,7 +98,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
 #[derive(Debug)]
 pub struct Contact {
     grid: Grid,
-    method: Method,
+    setup: Setup,
     convolution: Convolution,
     levels: Levels,
 }
@@ -111,7 +112,7 @@ impl Contact {
         // A plan, its coefficients, and the arrays of one solve.
         let [nx, ny] = grid.shape();
         check_memory(
-            &grid,
+            grid.shape(),
             Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 24,
         )?;
         let threads = Arc::new(Threads::new(setup.threads)?);
@@ -123,7 +124,7 @@ impl Contact {
         let levels = Levels::new(coefficients, &convolution);
         Ok(Self {
             grid,
-            method: setup.method,
+            setup,
             convolution,
             levels,
         })
@@ -176,7 +177,7 @@ impl Contact {
             gap,
         };
         let initial = self.given_pressure(&problem, options.initial.as_deref())?;
-        let mut report = Report::new(self.grid, self.method);
+        let mut report = Report::new(self.grid, &self.setup);
         let unit = self.convolution.work();
         let mut watch = |iterations: usize, work: f64, quality: Quality| {
             report.iterations = iterations;
@@ -191,17 +192,27 @@ impl Contact {
             Algorithm::Cascade => {
                 Cascade::new(&problem, &self.levels, initial.as_ref(), limits, &mut watch)
             }
-            Algorithm::PolonskyKeer => Err(None),
+            Algorithm::PolonskyKeer => Err(()),
         };
         let solved = match cascade {
-            Ok(cascade) => solve_in_window(&problem, cascade, &mut fields, limits, &mut watch),
-            Err(Some(stopped)) => stopped,
-            Err(None) => {
+            Ok((mut cascade, Some(stopped))) => {
+                cascade.paste(&mut fields.pressure);
+                stopped
+            }
+            Ok((cascade, None)) => {
+                solve_in_window(&problem, cascade, &mut fields, limits, &mut watch)
+            }
+            Err(()) => {
                 fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
                 polonsky_keer::solve(&problem, &mut fields, limits, &mut watch)
             }
         };
         let quality = fields.quality.unwrap_or_else(|| fields.certify(&problem));
+        if !slice(&fields.displacement).iter().all(|u| u.is_finite()) {
+            return Err(Error::Inconsistent(
+                "load, lengths and moduli must be in units in which their products do not overflow",
+            ));
+        }
         report.termination = solved.termination;
         report.iterations = solved.iterations;
         report.convolutions = solved.work / unit;
@@ -252,9 +263,16 @@ impl Contact {
                 index: [i, j],
             });
         }
+        if let Some(&value) = initial.iter().find(|p| **p < 0.0) {
+            return Err(Error::Parameter {
+                name,
+                requirement: "at least 0 everywhere",
+                value,
+            });
+        }
         let cells = initial.iter().zip(&problem.gap);
         let mut p: Vec<f64> = cells
-            .map(|(&p, h)| if h.is_finite() { p.max(0.0) } else { 0.0 })
+            .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
             .collect();
         // One that cannot carry the load is no help.
         Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))

@@ -3,6 +3,7 @@
 use ndarray::Array1;
 
 use crate::error::{Error, Result, finite, positive};
+use crate::memory::check_memory;
 
 /// A uniform grid: `shape` cells over a rectangle of `size` around `center`.
 ///
@@ -28,8 +29,8 @@ impl Grid {
     /// Cells `[nx, ny]` over a rectangle `[lx, ly]` \[m\] around the origin.
     ///
     /// # Errors
-    /// Unless there are at least two cells in each direction, countable in a `usize`, and the size
-    /// is finite and above 0.
+    /// Unless there are at least two cells in each direction, one field of them fits into memory,
+    /// and the size is finite and above 0.
     pub fn new(shape: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for n in shape {
             if n < 2 {
@@ -52,6 +53,8 @@ impl Grid {
                 value: shape[0] as f64 * shape[1] as f64,
             });
         }
+        // One field must fit, at least.
+        check_memory(shape, 8 * shape[0] as u64 * shape[1] as u64)?;
         positive("size", size[0])?;
         positive("size", size[1])?;
         Ok(Self {
@@ -72,6 +75,7 @@ impl Grid {
     /// # Errors
     /// As [`Grid::new`].
     pub fn line(cells: usize, width: f64) -> Result<Self> {
+        positive("width", width)?;
         let grid = Self::new([2, cells], [1.0, width])?;
         Ok(Self {
             shape: [1, cells],

@@ -13,6 +13,7 @@ use ndarray::{Array2, Zip};
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+use crate::memory::check_memory;
 use crate::threads::Threads;
 
 mod conversion;
@@ -79,7 +80,7 @@ pub fn influence_coefficients(
     grid: &Grid,
     method: Method,
 ) -> Result<Array2<f64>> {
-    check_memory(grid, memory(grid))?;
+    check_memory(grid.shape(), memory(grid))?;
     coefficients_on(body, grid, method, &Threads::new(None)?)
 }
 
@@ -91,14 +92,15 @@ pub(crate) fn coefficients_on(
     threads: &Threads,
 ) -> Result<Array2<f64>> {
     match method {
-        Method::Exact if grid.is_line() => Ok(line::coefficients(body, grid)),
+        Method::Exact if grid.is_line() => Ok(line::coefficients(body, grid, threads)),
         _ if grid.is_line() => Err(Error::Inconsistent(
             "method must be \"exact\" on the grid of a line contact",
         )),
         Method::Exact => {
             let spacing @ [dx, dy] = grid.spacing();
             let [lx, ly] = grid.size();
-            let cell = CellInfluence::plan_on(body, spacing, lx.hypot(ly), threads)?;
+            let cell =
+                CellInfluence::plan_on(body, spacing, exact::WHOLE_CELLS, lx.hypot(ly), threads)?;
             let mut coefficients = Array2::zeros(grid.shape());
             threads.run(|| {
                 Zip::indexed(&mut coefficients)
@@ -125,28 +127,4 @@ pub(crate) fn coefficients_on(
 pub(crate) fn memory(grid: &Grid) -> u64 {
     let [nx, ny] = grid.shape().map(|n| n as u64);
     8 * nx * ny
-}
-
-/// An error where the machine has less than `needed` bytes.
-pub(crate) fn check_memory(grid: &Grid, needed: u64) -> Result<()> {
-    // A small grid needs no look at the machine.
-    if needed < 64 << 20 {
-        return Ok(());
-    }
-    let Ok(mut system) = sysinfo::System::new() else {
-        return Ok(());
-    };
-    system.refresh_memory();
-    let machine = system.available_memory();
-    let available = system
-        .cgroup_limits()
-        .map_or(machine, |limits| machine.min(limits.free_memory));
-    if available > 0 && needed > available {
-        return Err(Error::Memory {
-            shape: grid.shape(),
-            needed,
-            available,
-        });
-    }
-    Ok(())
 }

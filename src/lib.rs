@@ -32,7 +32,7 @@
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
-//! //!
+//!
 //! # Conventions
 //!
 //! - Any consistent units; documents and tests use m, N, Pa.
@@ -48,6 +48,8 @@ pub mod error;
 pub mod material;
 
 pub mod body;
+
+mod memory;
 
 pub mod grid;
 
@@ -84,3 +86,8 @@ pub use surface::{
     Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
     Surface,
 };
+
+/// README's Rust runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

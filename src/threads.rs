@@ -7,6 +7,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
 
+/// More threads than that are a mistake: each has a stack and memory of its own.
+const MOST: usize = 256;
+
 /// A number of threads, and the pool that is made at the first use.
 ///
 /// The pool sleeps when idle. A process that was forked has the plan but not its threads: there
@@ -31,6 +34,11 @@ impl Threads {
                 name: "threads",
                 requirement: "at least 1",
                 value: 0.0,
+            }),
+            count if count > MOST => Err(Error::Parameter {
+                name: "threads",
+                requirement: "at most 256",
+                value: count as f64,
             }),
             count => Ok(Self {
                 count,

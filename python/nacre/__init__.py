@@ -13,7 +13,7 @@ Examples
 >>> body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=40e-6)])
 >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=100.0)
 >>> round(solution.peak_pressure / 1e9, 2)
-2.77
+3.86
 """
 
 from nacre._core import (

@@ -9,8 +9,9 @@ use crate::grid::Grid;
 use crate::response::limits;
 use crate::surface::{Extent, Surface};
 
-/// Cells across the narrower width of the contact.
-const ACROSS: f64 = 64.0;
+/// Cells across the narrower width of the contact, and some more, since the coarse grid takes the
+/// contact for up to 6 % wider than it is.
+const ACROSS: f64 = 64.0 * 1.07;
 
 /// Free width on either side of the contact, over the contact's.
 const MARGIN: f64 = 0.25;
@@ -165,7 +166,7 @@ fn first_frame(
     setup: &Setup,
     motion: &Motion,
 ) -> Result<Frame> {
-    let extent = shape.extent();
+    let (extent, radii) = (shape.extent(), shape.radii());
     let compliance = |body: &HalfSpace| limits(body).short.max(limits(body).long);
     let compliance = compliance(body) + setup.counterbody.as_ref().map_or(0.0, compliance);
     let modulus = 2.0 / compliance;
@@ -232,8 +233,19 @@ fn first_frame(
     });
     for [low, high] in &frame {
         if high - low <= 1e-100 || !(high - low).is_finite() {
-            // Nothing overlaps: a grid of unit size shows that nothing touches.
-            return Ok([[-0.5, 0.5]; 2]);
+            // Nothing overlaps: a grid around the middle shows that nothing touches.
+            let sizes = [
+                extent[0].range()[1],
+                extent[1].range()[1],
+                radii[0],
+                radii[1],
+            ];
+            let size = sizes
+                .into_iter()
+                .map(f64::abs)
+                .filter(|s| s.is_finite() && *s > 0.0);
+            let half = 0.01 * size.reduce(f64::min).unwrap_or(1.0);
+            return Ok(center.map(|c| [c - half, c + half]));
         }
     }
     Ok(frame)

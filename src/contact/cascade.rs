@@ -339,15 +339,15 @@ impl<'a> Cascade<'a> {
     /// Solves on the coarser grids, and starts the finest one from the interpolated pressure; with
     /// a `given` pressure there is nothing to solve for.
     ///
-    /// Fails with the outcome where the caller stopped it, and with nothing where no balanced
-    /// pressure was found: coarse cells may not carry the moments that fine ones can.
+    /// Says how it ended where the caller stopped it. Fails where no balanced pressure was found:
+    /// coarse cells may not carry the moments that fine ones can.
     pub(super) fn new(
         problem: &Problem<'a>,
         planned: &'a Levels,
         given: Option<&Array2<f64>>,
         limits: Limits,
         watch: &mut Watch,
-    ) -> Result<Self, Option<Outcome>> {
+    ) -> Result<(Self, Option<Outcome>), ()> {
         let finest = &planned.coefficients[0];
         let mut levels = vec![Level {
             coefficients: finest,
@@ -356,16 +356,20 @@ impl<'a> Cascade<'a> {
             gap: super::array([finest.nrows(), finest.ncols()], problem.gap.clone()),
         }];
         let mut work = 0.0;
+        let mut stopped = None;
         if let Some(given) = given {
             let mut patch = Patch::whole(given);
             if let Some(contact) = patch.contact() {
                 patch = patch.moved(widened(&contact, levels[0].shape()));
             }
-            return Ok(Self {
-                finest: levels.swap_remove(0),
-                patch,
-                work,
-            });
+            return Ok((
+                Self {
+                    finest: levels.swap_remove(0),
+                    patch,
+                    work,
+                },
+                stopped,
+            ));
         }
         for (coefficients, convolution) in
             planned.coefficients[1..].iter().zip(&planned.convolutions)
@@ -399,19 +403,29 @@ impl<'a> Cascade<'a> {
                 continue;
             }
             if depth == 0 {
-                return Ok(Self {
-                    finest: levels.swap_remove(0),
-                    patch,
-                    work,
-                });
+                return Ok((
+                    Self {
+                        finest: levels.swap_remove(0),
+                        patch,
+                        work,
+                    },
+                    stopped,
+                ));
             }
-            let outcome = level.solve(&mut patch, coarse_limits, &mut work, watch);
-            if outcome.termination == Termination::Stopped {
-                return Err(Some(outcome));
+            if stopped.is_none() {
+                let outcome = level.solve(&mut patch, coarse_limits, &mut work, watch);
+                if outcome.termination == Termination::Stopped {
+                    stopped = Some(outcome);
+                }
             }
             coarse = Some(patch);
         }
-        Err(None)
+        Err(())
+    }
+
+    /// Gives the pressure that it starts from.
+    pub(super) fn paste(&mut self, pressure: &mut Array2<f64>) {
+        self.patch.paste(pressure);
     }
 
     /// Solves on the finest grid; `pressure` becomes the solution.

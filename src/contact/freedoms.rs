@@ -66,6 +66,9 @@ pub(super) struct Freedoms {
     coordinates: [Vec<f64>; 2],
 }
 
+/// Mismatch of force and scaled moments, over the force, that rounding leaves in large sums.
+const BALANCED: f64 = 2e-13;
+
 const DIRECTIONS: [&str; 2] = [
     "along x at most one of eccentricity, moment and tilt can be a number",
     "along y at most one of eccentricity, moment and tilt can be a number",
@@ -364,10 +367,9 @@ impl Freedoms {
     /// Whether Bᵀp is on target within rounding.
     pub(super) fn balanced(&self, pressure: &[f64]) -> bool {
         let sums = self.moments(|k| pressure[k]);
-        let force = sums[0].abs();
-        (0..3).all(|k| {
-            !self.loaded[k] || (sums[k] - self.target[k]).abs() <= 64.0 * f64::EPSILON * force
-        })
+        let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let force = sums[0].abs().max(asked);
+        (0..3).all(|k| !self.loaded[k] || (sums[k] - self.target[k]).abs() <= BALANCED * force)
     }
 
     /// Restores balance: p ← [p (1 + Bμ)]₊ with Bᵀp on target. Returns whether it got there.

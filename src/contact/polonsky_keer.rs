@@ -49,7 +49,9 @@ pub(super) fn solve(
         if watch(iterations, work, quality) {
             return end(Termination::Stopped);
         }
-        if iterations == limits.max_iterations {
+        // Numbers that overflow do not come back.
+        let lost = quality.residual.is_infinite() && p.iter().any(|p| !p.is_finite());
+        if lost || iterations == limits.max_iterations {
             return end(Termination::IterationLimit);
         }
 
@@ -103,7 +105,7 @@ pub(super) fn solve(
             }
         }
         conjugate = !joined;
-        freedoms.balance(p);
+        problem.rebalance(p);
     }
     unreachable!("the loop ends by its limit")
 }

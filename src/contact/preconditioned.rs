@@ -186,8 +186,9 @@ impl<'a> Preconditioned<'a> {
             fresh = false;
             // A direction that lost cells since it was made is out of balance, too.
             if truncated || !freedoms.balanced(p) {
-                freedoms.balance(p);
+                problem.rebalance(p);
                 for k in 0..cells {
+                    changed |= contact[k] != (p[k] > 0.0);
                     contact[k] = p[k] > 0.0;
                 }
                 self.apply(p, &mut u);

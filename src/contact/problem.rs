@@ -21,11 +21,13 @@ pub(super) struct Quality {
     pub(super) residual: f64,
     /// max(−g, 0) / max u over them.
     pub(super) overlap: f64,
+    /// Whether force and moments are balanced.
+    pub(super) balanced: bool,
 }
 
 impl Quality {
     pub(super) fn meets(&self, tolerance: f64) -> bool {
-        self.residual <= tolerance && self.overlap <= tolerance
+        self.balanced && self.residual <= tolerance && self.overlap <= tolerance
     }
 }
 
@@ -49,6 +51,21 @@ impl Problem<'_> {
         lambda
     }
 
+    /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
+    /// that can touch join it.
+    pub(super) fn rebalance(&self, p: &mut [f64]) {
+        if self.freedoms.balance(p) {
+            return;
+        }
+        let little = 1e-3 * self.freedoms.typical_pressure(p.len());
+        for (p, h) in p.iter_mut().zip(&self.gap) {
+            if h.is_finite() {
+                *p += little;
+            }
+        }
+        self.freedoms.balance(p);
+    }
+
     pub(super) fn quality(&self, p: &[f64], u: &[f64], g: &[f64]) -> Quality {
         let (mut work, mut mismatch, mut deepest, mut largest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
         for ((p, u), g) in p.iter().zip(u).zip(g) {
@@ -61,13 +78,16 @@ impl Problem<'_> {
         }
         // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
         let over = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
+            _ if !(a + scale).is_finite() => f64::INFINITY,
             (true, true) => a / scale,
             (true, false) => f64::INFINITY,
             (false, _) => 0.0,
         };
+        let balanced = self.freedoms.balanced(p);
         Quality {
             residual: over(mismatch, work),
             overlap: over(deepest, largest),
+            balanced,
         }
     }
 }

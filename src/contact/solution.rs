@@ -4,7 +4,9 @@ use std::fmt;
 
 use ndarray::{Array1, Array2};
 
+use super::Setup;
 use super::problem::Termination;
+use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Method;
@@ -102,6 +104,8 @@ pub struct Report {
     pub warnings: Vec<Warning>,
     /// The grid.
     pub grid: Grid,
+    /// The body that carries the shape; rigid where `None`.
+    pub counterbody: Option<HalfSpace>,
     /// How the influence coefficients were computed.
     pub method: Method,
     /// Seconds the solve took, planning excluded.
@@ -110,7 +114,7 @@ pub struct Report {
 
 impl Report {
     /// Of an iteration that has not begun.
-    pub(super) fn new(grid: Grid, method: Method) -> Self {
+    pub(super) fn new(grid: Grid, setup: &Setup) -> Self {
         Self {
             termination: Termination::IterationLimit,
             iterations: 0,
@@ -120,7 +124,8 @@ impl Report {
             balance: Balance::default(),
             warnings: Vec::new(),
             grid,
-            method,
+            counterbody: setup.counterbody.clone(),
+            method: setup.method,
             seconds: 0.0,
         }
     }

@@ -16,6 +16,7 @@ use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::fft::inverse_even;
 use crate::grid::Grid;
+use crate::memory::check_memory;
 use crate::response::{alpha_compliance, limits};
 use crate::threads::Threads;
 
@@ -43,7 +44,7 @@ pub(super) fn coefficients(
     let half_spectrum = (mesh[1] / 2 + 1)
         .checked_mul(8 * shape[0])
         .ok_or_else(too_fine)?;
-    super::check_memory(grid, super::memory(grid) + half_spectrum as u64)?;
+    check_memory(shape, super::memory(grid) + half_spectrum as u64)?;
     let step = [
         2.0 * PI / (mesh[0] as f64 * dx),
         2.0 * PI / (mesh[1] as f64 * dy),

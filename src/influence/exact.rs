@@ -59,27 +59,31 @@ pub struct CellInfluence {
     error: f64,
 }
 
+/// Tables of the radial kernels, over the squared distance.
 #[derive(Debug)]
-struct Tables {
-    /// K, over the squared distance.
+pub(super) struct Tables {
+    /// K.
     kernel: Table,
     /// η.
-    mean: Table,
+    pub(super) mean: Table,
 }
 
 impl CellInfluence {
     /// Plans the displacement of `body` around a cell of sides `spacing` \[m\], for offsets up to
-    /// `reach` \[m\].
+    /// `reach` \[m\]; beyond it falls as 1/r.
     ///
     /// # Errors
     /// Unless the lengths are finite and above 0.
     pub fn plan(body: &HalfSpace, spacing: [f64; 2], reach: f64) -> Result<Self> {
-        Self::plan_on(body, spacing, reach, &Threads::new(None)?)
+        Self::plan_on(body, spacing, NEAREST_RIM, reach, &Threads::new(None)?)
     }
 
+    /// The same for offsets of which no corner of the cell is nearer than `nearest` shorter sides:
+    /// half a side, for whole cells.
     pub(super) fn plan_on(
         body: &HalfSpace,
         spacing @ [dx, dy]: [f64; 2],
+        nearest: f64,
         reach: f64,
         threads: &Threads,
     ) -> Result<Self> {
@@ -87,8 +91,8 @@ impl CellInfluence {
         positive("spacing", dy)?;
         positive("reach", reach)?;
         let limits = limits(body);
-        // Nodes of the quadratures lie inside the cells, corners on their rims.
-        let range = [0.49 * dx.min(dy), 1.01 * (reach + dx.hypot(dy))];
+        // Nodes of the quadratures lie inside the cells.
+        let range = [nearest * dx.min(dy), 1.01 * (reach + dx.hypot(dy))];
         let kernel = RadialKernel::new(body, range[0], range[1]);
         let scale = limits.short.max(limits.long);
         let tables = kernel.map(|kernel| threads.run(|| Tables::new(&kernel, range)));
@@ -132,28 +136,26 @@ impl CellInfluence {
                 + corner(x - a, y - b);
         };
         match self.rules.at(distance / a) {
-            Some(along) => across.integrate(y - b, y + b, |y| {
-                along.integrate(x - a, x + a, |x| tables.kernel.at(x * x + y * y))
+            Some(along) => across.around(y, b, |y| {
+                along.around(x, a, |x| tables.kernel(x * x + y * y))
             }),
-            None => across.integrate(y - b, y + b, |y| {
-                self.strip(x - a, x + a, y, &tables.kernel)
-            }),
+            None => across.around(y, b, |y| self.strip(x - a, x + a, y, tables)),
         }
     }
 
     /// ∫ K(√(x²+y²)) dx from x1 to x2 > |x1|.
-    fn strip(&self, x1: f64, x2: f64, y: f64, kernel: &Table) -> f64 {
+    fn strip(&self, x1: f64, x2: f64, y: f64, tables: &Tables) -> f64 {
         if x1 > 0.0 {
             return self.panel.over_panels(x1.ln(), x2.ln(), |v| {
                 let x = v.exp();
-                x * kernel.at(x * x + y * y)
+                x * tables.kernel(x * x + y * y)
             });
         }
         let y = y.abs();
         self.panel
             .over_panels((x1 / y).asinh(), (x2 / y).asinh(), |u| {
                 let r = y * u.cosh();
-                r * kernel.at(r * r)
+                r * tables.kernel(r * r)
             })
     }
 
@@ -161,6 +163,9 @@ impl CellInfluence {
     fn corner(&self, x: f64, y: f64, mean: &Table) -> f64 {
         let (u, v) = (x.abs(), y.abs());
         let wedge = |near: f64, far: f64| {
+            if near <= f64::MIN_POSITIVE {
+                return 0.0;
+            }
             near * self.panel.over_panels(0.0, (far / near).asinh(), |u| {
                 let r = near * u.cosh();
                 mean.at(r * r)
@@ -178,9 +183,25 @@ const QUADRATURE: f64 = 1e-12;
 /// nearer than its origin is.
 const SECTOR: f64 = 0.7;
 
+/// How near to the rim of the cell the public tables go, in shorter sides.
+const NEAREST_RIM: f64 = 1e-6;
+
+/// The same for offsets of whole cells: corners lie half a side from the axes.
+pub(super) const WHOLE_CELLS: f64 = 0.49;
+
 impl Tables {
+    /// K at the squared distance s; as 1/r beyond the table.
+    fn kernel(&self, s: f64) -> f64 {
+        let end = self.kernel.range[1];
+        if s > end {
+            self.kernel.at(end) * (end / s).sqrt()
+        } else {
+            self.kernel.at(s)
+        }
+    }
+
     /// Tables for distances in `range`, and the error of their values.
-    fn new(kernel: &RadialKernel, range: [f64; 2]) -> (Self, f64) {
+    pub(super) fn new(kernel: &RadialKernel, range: [f64; 2]) -> (Self, f64) {
         let at = |r: f64| {
             let (kappa, eta) = kernel.at(r);
             [(kernel.short + kappa) / r, eta]
@@ -214,7 +235,9 @@ const BITS: u32 = 3;
 /// A function of s > 0 that is smooth in ln s: polynomials of degree 7 over eighths of octaves,
 /// found by the leading bits of s.
 #[derive(Debug)]
-struct Table {
+pub(super) struct Table {
+    /// Of s.
+    range: [f64; 2],
     first: usize,
     /// Powers of the position in the piece, from −1 to 1.
     pieces: Vec<[f64; NODES]>,
@@ -249,13 +272,15 @@ impl Table {
             })
             .collect();
         [0, 1].map(|k| Self {
+            range: range.map(|r| r * r),
             first,
             pieces: both.iter().map(|pair| pair[k]).collect(),
         })
     }
 
-    fn at(&self, s: f64) -> f64 {
-        let bits = s.to_bits();
+    /// The function at s, or at the nearer end of the table.
+    pub(super) fn at(&self, s: f64) -> f64 {
+        let bits = s.clamp(self.range[0], self.range[1]).to_bits();
         let polynomial = &self.pieces[(bits >> (52 - BITS)) as usize - self.first];
         // The bits that are left are the position in the piece, from 1 to 2 under this exponent.
         let left = (bits << BITS) & ((1 << 52) - 1);

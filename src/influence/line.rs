@@ -14,31 +14,35 @@ use std::f64::consts::PI;
 
 use ndarray::Array2;
 
+use super::exact::Tables;
 use super::quadrature::Rule;
 use super::radial::RadialKernel;
 use crate::body::HalfSpace;
 use crate::grid::Grid;
 use crate::response::limits;
+use crate::threads::Threads;
 
 /// Beyond this many thicknesses of the coating, η − η(∞) is its leading term, of order 1/R; the
 /// next one is of relative order R^{−2}.
 const FAR: f64 = 1e7;
 
 /// Coefficients (1, ny) \[m/Pa\].
-pub(super) fn coefficients(body: &HalfSpace, grid: &Grid) -> Array2<f64> {
+pub(super) fn coefficients(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Array2<f64> {
     let [_, ny] = grid.shape();
     let dy = grid.spacing()[1];
     let datum = grid.size()[1];
     let limits = limits(body);
     let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
     let far = FAR * thickness.max(datum);
-    let kernel = RadialKernel::new(body, 0.49 * dy, far);
+    let range = [0.49 * dy, 1.01 * far];
+    let tables = RadialKernel::new(body, range[0], range[1])
+        .map(|kernel| threads.run(|| Tables::new(&kernel, range).0));
     let rule = Rule::gauss_legendre(10);
     let end = limits.long - limits.short;
     let coating = |y: f64| {
-        let Some(kernel) = &kernel else { return 0.0 };
+        let Some(tables) = &tables else { return 0.0 };
         let last = (far / y).acosh();
-        let rest = |u: f64| kernel.at(y * u.cosh()).1 - end;
+        let rest = |u: f64| tables.mean.at((y * u.cosh()).powi(2)) - end;
         // Beyond: rest(u) ≈ rest(last) cosh(last)/cosh u, of which ∫ 1/cosh u = 2 atan e^{−u}.
         let tail = rest(last) * (far / y) * 2.0 * (-last).exp().atan();
         rule.over_panels(0.0, last, rest) + tail

@@ -43,11 +43,11 @@ impl Rectangle {
                 + corner(x - a, y - b, d);
         };
         match self.rules.at(distance / a) {
-            Some(along) => across.integrate(y - b, y + b, |y| {
+            Some(along) => across.around(y, b, |y| {
                 let s2 = y * y + d2;
-                along.integrate(x - a, x + a, |x| 1.0 / (x * x + s2).sqrt())
+                along.around(x, a, |x| 1.0 / (x * x + s2).sqrt())
             }),
-            None => across.integrate(y - b, y + b, |y| segment(x - a, x + a, y * y + d2)),
+            None => across.around(y, b, |y| segment(x - a, x + a, y * y + d2)),
         }
     }
 }

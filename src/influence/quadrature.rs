@@ -28,8 +28,12 @@ impl Rule {
     }
 
     /// ∫ f over \[a, b\].
-    pub(super) fn integrate(&self, a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+    pub(super) fn integrate(&self, a: f64, b: f64, f: impl FnMut(f64) -> f64) -> f64 {
+        self.around(0.5 * (a + b), 0.5 * (b - a), f)
+    }
+
+    /// ∫ f over \[middle − half, middle + half\], which keeps the digits of a short interval.
+    pub(super) fn around(&self, middle: f64, half: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
         half * self
             .0
             .iter()

@@ -12,6 +12,11 @@ use pyo3::prelude::*;
 /// Complex numbers, objects and text are a `TypeError` that names the argument.
 pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
     let numpy = object.py().import("numpy")?;
+    if object.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
+        return Err(PyTypeError::new_err(format!(
+            "{name} must be a real array without a mask: fill what is missing first"
+        )));
+    }
     let ragged =
         |error: PyErr| PyTypeError::new_err(format!("{name} must be a real array: {error}"));
     let array = numpy.call_method1("asarray", (object,)).map_err(ragged)?;
@@ -53,13 +58,18 @@ pub(super) fn read_only<'py, D: ndarray::Dimension, T: numpy::Element>(
 /// A number of things, ≥ `least`.
 pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyResult<usize> {
     let refuse = || {
-        PyValueError::new_err(format!(
-            "{name} must be an integer of at least {least}, got {value}"
-        ))
+        let few = value.lt(least).unwrap_or(false);
+        let least = format!("an integer of at least {least}");
+        let asked = if few {
+            &least
+        } else {
+            "an integer that this machine can count to"
+        };
+        PyValueError::new_err(format!("{name} must be {asked}, got {value}"))
     };
-    let index = value
-        .call_method0("__index__")
-        .map_err(|_| PyTypeError::new_err(format!("{name} must be an integer, got {value}")))?;
+    let index = value.call_method0("__index__").map_err(|_| {
+        PyTypeError::new_err(format!("{name} must be an integer, got {}", Repr(value)))
+    })?;
     index
         .extract::<usize>()
         .ok()
@@ -74,7 +84,8 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
     };
     value.extract().map_err(|_| {
         PyTypeError::new_err(format!(
-            "{name} must be a pair of numbers or None, got {value}"
+            "{name} must be a pair of numbers or None, got {}",
+            Repr(value)
         ))
     })
 }
@@ -82,9 +93,9 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
 /// A real number.
 pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
     let extract = |value: &Bound<'_, PyAny>| {
-        value
-            .extract::<f64>()
-            .map_err(|_| PyTypeError::new_err(format!("{name} must be a real number, got {value}")))
+        value.extract::<f64>().map_err(|_| {
+            PyTypeError::new_err(format!("{name} must be a real number, got {}", Repr(value)))
+        })
     };
     value.map(extract).transpose()
 }
@@ -94,4 +105,31 @@ pub(super) fn hash(repr: &str) -> u64 {
     let mut hasher = DefaultHasher::new();
     repr.hash(&mut hasher);
     hasher.finish()
+}
+
+/// Prints what Python's `repr` does.
+pub(super) struct Repr<'a, 'py>(pub(super) &'a Bound<'py, PyAny>);
+
+impl std::fmt::Display for Repr<'_, '_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0.repr() {
+            Ok(repr) => write!(f, "{repr}"),
+            Err(_) => write!(f, "a {}", self.0.get_type()),
+        }
+    }
+}
+
+/// An array as Python text: exact where it is short, abbreviated where it is long.
+pub(super) fn array_repr<D: ndarray::Dimension>(
+    py: Python<'_>,
+    array: ndarray::Array<f64, D>,
+) -> PyResult<String> {
+    let short = array.len() <= 1000;
+    let array = read_only(py, array)?;
+    let text = if short {
+        array.call_method0("tolist")?.repr()?
+    } else {
+        array.repr()?
+    };
+    Ok(text.to_string())
 }

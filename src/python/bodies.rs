@@ -4,7 +4,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arrays::hash;
+use super::arrays::{Repr, hash};
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::error::Error;
 use crate::material::Elastic;
@@ -275,7 +275,8 @@ pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
     match object.extract::<PyElastic>() {
         Ok(material) => Ok(material.0.into()),
         Err(_) => Err(PyTypeError::new_err(format!(
-            "substrate must be an Elastic or nacre.RIGID, got {object}"
+            "substrate must be an Elastic or nacre.RIGID, got {}",
+            Repr(object)
         ))),
     }
 }
@@ -288,7 +289,8 @@ pub(super) fn body(object: &Bound<'_, PyAny>) -> PyResult<HalfSpace> {
     match object.extract::<PyElastic>() {
         Ok(material) => Ok(material.0.into()),
         Err(_) => Err(PyTypeError::new_err(format!(
-            "body and counterbody must be a HalfSpace or an Elastic, got {object}"
+            "body and counterbody must be a HalfSpace or an Elastic, got {}",
+            Repr(object)
         ))),
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::arrays::{count, number, pair, real_matrix};
+use super::arrays::{Repr, count, number, pair, real_matrix};
 use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
 use super::report::PyReport;
@@ -93,11 +93,12 @@ impl<'py> Call<'py> {
         check: bool,
     ) -> PyResult<Self> {
         let shape = shape.cast::<PyShape>().map_err(|_| {
-            PyTypeError::new_err(format!("shape must be a nacre.Shape, got {shape}"))
+            PyTypeError::new_err(format!("shape must be a nacre.Shape, got {}", Repr(shape)))
         })?;
         if let Some(progress) = progress.filter(|p| !p.is_callable()) {
             return Err(PyTypeError::new_err(format!(
-                "progress must be callable, got {progress}"
+                "progress must be callable, got {}",
+                Repr(progress)
             )));
         }
         let initial = match initial {

@@ -1,9 +1,10 @@
 //! `nacre.frequency_response`, `nacre.influence_coefficients` and `nacre.graded_layers`.
 
 use numpy::{IntoPyArray, PyArray2};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::arrays::{count, real_array};
+use super::arrays::{Repr, count, real_array};
 use super::bodies::{PyLayer, body, substrate};
 use super::contact::method;
 use super::grid::PyGrid;
@@ -139,10 +140,10 @@ pub(super) fn influence_coefficients<'py>(
 /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
 /// >>> layers = nacre.graded_layers(steel, 10e-6, young=lambda z: 420e9 - 21e15 * z, poisson=0.3)
 /// >>> len(layers)
-/// 16
+/// 64
 /// >>> body = nacre.HalfSpace(steel, layers)
 #[pyfunction]
-#[pyo3(signature = (substrate, thickness, young, poisson, tolerance=1e-4))]
+#[pyo3(signature = (substrate, thickness, young, poisson, tolerance=1e-3))]
 pub(super) fn graded_layers(
     #[pyo3(from_py_with = substrate)] substrate: crate::Substrate,
     thickness: f64,
@@ -151,15 +152,22 @@ pub(super) fn graded_layers(
     tolerance: f64,
 ) -> PyResult<Vec<PyLayer>> {
     let mut failure = None;
-    let at = |property: &Bound<'_, PyAny>, z: f64| -> PyResult<f64> {
-        if property.is_callable() {
-            property.call1((z,))?.extract()
+    let at = |name: &str, property: &Bound<'_, PyAny>, z: f64| -> PyResult<f64> {
+        let value = if property.is_callable() {
+            property.call1((z,))?
         } else {
-            property.extract()
-        }
+            property.clone()
+        };
+        value.extract().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "{name} must be a number, or a function of the depth that returns one, got {}",
+                Repr(&value)
+            ))
+        })
     };
     let layers = crate::graded_layers(substrate, thickness, tolerance, |z| {
-        let values = at(young, z).and_then(|young| Ok((young, at(poisson, z)?)));
+        let values =
+            at("young", young, z).and_then(|young| Ok((young, at("poisson", poisson, z)?)));
         let (young, poisson) = values.unwrap_or_else(|error| {
             failure = Some(error);
             (f64::NAN, f64::NAN)

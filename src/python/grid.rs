@@ -36,10 +36,10 @@ pub(super) struct PyGrid(pub(super) Grid);
 #[pymethods]
 impl PyGrid {
     #[new]
-    #[pyo3(signature = (shape, size, center=(0.0, 0.0)))]
-    fn new(shape: [Bound<'_, PyAny>; 2], size: [f64; 2], center: (f64, f64)) -> PyResult<Self> {
+    #[pyo3(signature = (shape, size, center=[0.0, 0.0]), text_signature = "(shape, size, center=(0.0, 0.0))")]
+    fn new(shape: [Bound<'_, PyAny>; 2], size: [f64; 2], center: [f64; 2]) -> PyResult<Self> {
         let shape = [count("shape", 2, &shape[0])?, count("shape", 2, &shape[1])?];
-        Ok(Self(Grid::new(shape, size)?.centered_at(center.into())?))
+        Ok(Self(Grid::new(shape, size)?.centered_at(center)?))
     }
 
     /// The grid of a line contact: strips along y, endless along x, in plane strain.

@@ -1,10 +1,11 @@
 //! `nacre.LogarithmicProfile` and `nacre.SampledProfile`.
 
+use ndarray::Array1;
 use numpy::PyArray1;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::arrays::{hash, read_only, real_array};
+use super::arrays::{Repr, array_repr, hash, read_only, real_array};
 use crate::surface::{LogarithmicProfile, Profile, SampledProfile};
 
 /// A logarithmic axial profile of a roller, straight over its middle where `flat_length` > 0.
@@ -159,8 +160,8 @@ impl PyLogarithmicProfile {
     ///
     /// Examples
     /// --------
-    /// >>> nacre.LogarithmicProfile.iso16281(diameter=10e-3, length=30e-3).flat_length
-    /// 0.004999999999999999
+    /// >>> round(nacre.LogarithmicProfile.iso16281(diameter=10e-3, length=30e-3).flat_length, 9)
+    /// 0.005
     #[staticmethod]
     fn iso16281(diameter: f64, length: f64) -> PyResult<Self> {
         Ok(Self(LogarithmicProfile::iso16281(diameter, length)?))
@@ -243,7 +244,14 @@ impl PySampledProfile {
     #[new]
     fn new(x: &Bound<'_, PyAny>, drop: &Bound<'_, PyAny>) -> PyResult<Self> {
         let list = |name: &str, object| -> PyResult<Vec<f64>> {
-            Ok(real_array(name, object)?.into_iter().collect())
+            let array = real_array(name, object)?;
+            if array.ndim() != 1 {
+                return Err(PyValueError::new_err(format!(
+                    "{name} must have one dimension (n,), got shape {:?}",
+                    array.shape()
+                )));
+            }
+            Ok(array.into_iter().collect())
         };
         Ok(Self(SampledProfile::new(
             &list("x", x)?,
@@ -264,11 +272,8 @@ impl PySampledProfile {
     }
 
     pub(super) fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!(
-            "SampledProfile(x={}, drop={})",
-            self.x(py)?.repr()?,
-            self.drop(py)?.repr()?
-        ))
+        let line = |k: usize| array_repr(py, self.0.samples().map(|s| s[k]).collect::<Array1<_>>());
+        Ok(format!("SampledProfile(x={}, drop={})", line(0)?, line(1)?))
     }
 
     fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Line<'py>, Line<'py>)> {
@@ -289,7 +294,8 @@ pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
     match object.extract::<[Bound<'_, PyAny>; 2]>() {
         Ok([x, drop]) => Ok(PySampledProfile::new(&x, &drop)?.0.into()),
         Err(_) => Err(PyTypeError::new_err(format!(
-            "profile must be a LogarithmicProfile, a SampledProfile or a pair (x, drop), got {object}"
+            "profile must be a LogarithmicProfile, a SampledProfile or a pair (x, drop), got {}",
+            Repr(object)
         ))),
     }
 }

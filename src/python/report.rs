@@ -3,11 +3,19 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::bodies::PyHalfSpace;
 use super::contact::{method, method_words};
 use super::grid::PyGrid;
 use crate::contact::{Balance, Report, Termination, Warning};
 
 /// How a solution came about, and how good it is: computed afresh at the end.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
+/// >>> report.termination, report.residual < 1e-8, report.warnings
+/// ('converged', True, [])
 #[pyclass(name = "Report", module = "nacre", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyReport(pub(super) Report);
@@ -19,7 +27,7 @@ type State = (
     [f64; 2],
     (f64, [f64; 2]),
     Vec<(String, usize, f64)>,
-    PyGrid,
+    (PyGrid, Option<PyHalfSpace>),
     (String, usize),
     f64,
 );
@@ -92,6 +100,12 @@ impl PyReport {
         PyGrid(self.0.grid)
     }
 
+    /// The body that carries the shape; rigid where `None`.
+    #[getter]
+    fn counterbody(&self) -> Option<PyHalfSpace> {
+        self.0.counterbody.clone().map(PyHalfSpace)
+    }
+
     /// How the influence coefficients were computed.
     #[getter]
     fn method(&self) -> &'static str {
@@ -135,7 +149,7 @@ impl PyReport {
             warnings
                 .map(|(kind, axis, value)| (kind.into(), axis, value))
                 .collect(),
-            PyGrid(report.grid),
+            (PyGrid(report.grid), self.counterbody()),
             (word.into(), refinement),
             report.seconds,
         );
@@ -149,8 +163,16 @@ impl PyReport {
 /// A report from its pickled state.
 #[pyfunction(name = "_restore_report")]
 pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
-    let (termination, counts, quality, balance, warnings, grid, (word, refinement), seconds) =
-        state;
+    let (
+        termination,
+        counts,
+        quality,
+        balance,
+        warnings,
+        (grid, counterbody),
+        (word, refinement),
+        seconds,
+    ) = state;
     let unknown = |word: &str| PyValueError::new_err(format!("not a pickled report: {word:?}"));
     let termination = [
         Termination::Converged,
@@ -184,6 +206,7 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
         },
         warnings: warnings.collect::<PyResult<_>>()?,
         grid: grid.0,
+        counterbody: counterbody.map(|body| body.0),
         method: method(&word, refinement)?,
         seconds,
     }))

@@ -3,10 +3,11 @@
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::PyClass;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arrays::{hash, read_only, real_matrix};
+use super::arrays::{Repr, array_repr, hash, read_only, real_matrix};
 use super::grid::PyGrid;
 use super::profiles;
 use crate::error::{Error, Result};
@@ -60,6 +61,19 @@ impl Shape {
         })
     }
 
+    /// A text that equal shapes share: without the numbers of measured surfaces and profiles.
+    fn key(&self) -> String {
+        match self {
+            Self::HeightMap(s) => format!("HeightMap {:?} {:?}", s.heights().dim(), s.spacing()),
+            Self::Roller(s) if matches!(s.profile(), Profile::Sampled(_)) => {
+                format!("Roller {:?} {:?}", s.radius(), s.length())
+            }
+            Self::Sum(parts) => format!("({} + {})", parts[0].key(), parts[1].key()),
+            Self::Shifted(shape, by) => format!("{} {by:?}", shape.key()),
+            other => format!("{other:?}"),
+        }
+    }
+
     fn repr(&self, py: Python<'_>) -> PyResult<String> {
         Ok(match self {
             Self::Sphere(s) => format!("Sphere(radius={:?})", s.radius()),
@@ -91,10 +105,19 @@ impl Shape {
             Self::FlatPunch(s) => format!("FlatPunch(radius={:?})", s.radius()),
             Self::HeightMap(s) => {
                 let ([dx, dy], [x, y]) = (s.spacing(), s.center());
-                let heights = read_only(py, s.heights().to_owned())?.repr()?.to_string();
+                let heights = array_repr(py, s.heights().to_owned())?;
                 format!("HeightMap({heights}, spacing=({dx:?}, {dy:?}), center=({x:?}, {y:?}))")
             }
-            Self::Sum(parts) => format!("{} + {}", parts[0].repr(py)?, parts[1].repr(py)?),
+            Self::Sum(parts) => {
+                let second = parts[1].repr(py)?;
+                let nested = matches!(parts[1], Self::Sum(_));
+                let second = if nested {
+                    format!("({second})")
+                } else {
+                    second
+                };
+                format!("{} + {second}", parts[0].repr(py)?)
+            }
             Self::Shifted(shape, [x, y]) => {
                 let inner = shape.repr(py)?;
                 let inner = if matches!(**shape, Self::Sum(_)) {
@@ -130,6 +153,11 @@ impl Surface for Shape {
 ///
 /// Shapes add (``sphere + roughness``) and move (``shape.shifted(x, y)``). A gap of +inf means
 /// 'cannot touch'.
+///
+/// Examples
+/// --------
+/// >>> nacre.Sphere(5e-3) + nacre.HeightMap([[0.0, 1e-9], [1e-9, 0.0]], spacing=1e-6)
+/// Sphere(radius=0.005) + HeightMap([[0.0, 1e-09], [1e-09, 0.0]], spacing=(1e-6, 1e-6), center=(0.0, 0.0))
 #[pyclass(name = "Shape", module = "nacre", frozen, eq, subclass)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyShape(pub(super) Shape);
@@ -200,8 +228,8 @@ impl PyShape {
         self.0.repr(py)
     }
 
-    fn __hash__(&self, py: Python<'_>) -> PyResult<u64> {
-        Ok(hash(&self.0.repr(py)?))
+    fn __hash__(&self) -> u64 {
+        hash(&self.0.key())
     }
 
     /// How to make it again: a callable and its arguments.
@@ -528,30 +556,29 @@ impl PyFlatPunch {
 #[pyclass(name = "HeightMap", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyHeightMap;
 
-#[derive(FromPyObject)]
-pub(super) enum Spacing {
-    Both(f64),
-    Each([f64; 2]),
-}
-
 #[pymethods]
 impl PyHeightMap {
     #[new]
-    #[pyo3(signature = (heights, spacing, center=(0.0, 0.0)))]
+    #[pyo3(
+        signature = (heights, spacing, center=[0.0, 0.0]),
+        text_signature = "(heights, spacing, center=(0.0, 0.0))"
+    )]
     fn new(
         heights: &Bound<'_, PyAny>,
-        spacing: Spacing,
-        center: (f64, f64),
+        spacing: &Bound<'_, PyAny>,
+        center: [f64; 2],
     ) -> PyResult<PyClassInitializer<Self>> {
-        let spacing = match spacing {
-            Spacing::Both(spacing) => [spacing; 2],
-            Spacing::Each(spacing) => spacing,
-        };
+        let both = spacing.extract::<f64>().map(|spacing| [spacing; 2]);
+        let spacing = both
+            .or_else(|_| spacing.extract::<[f64; 2]>())
+            .map_err(|_| {
+                PyTypeError::new_err(format!(
+                    "spacing must be a number or a pair of numbers, got {}",
+                    Repr(spacing)
+                ))
+            })?;
         let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
-        Ok(subclass(
-            Self,
-            Shape::HeightMap(map.centered_at(center.into())?),
-        ))
+        Ok(subclass(Self, Shape::HeightMap(map.centered_at(center)?)))
     }
 
     /// The heights ``(nx, ny)`` [m].

@@ -8,10 +8,18 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
 use super::arrays::{read_only, real_matrix};
+use super::bodies::PyHalfSpace;
 use super::report::PyReport;
 use crate::contact::Solution;
 
 /// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+/// >>> solution.pressure.shape == solution.in_contact.shape == (solution.x.size, solution.y.size)
+/// True
 #[pyclass(name = "Solution", module = "nacre", frozen)]
 pub(super) struct PySolution {
     solution: Arc<Solution>,
@@ -165,8 +173,10 @@ impl PySolution {
     fn __repr__(&self) -> String {
         let s = &self.solution;
         let [nx, ny] = s.grid().shape();
+        let counterbody = s.report.counterbody.clone().map(PyHalfSpace);
+        let counterbody = counterbody.map_or_else(|| "rigid".into(), |body| body.__repr__());
         format!(
-            "<nacre.Solution on {nx} x {ny} cells: load {:.6e} N, peak pressure {:.6e} Pa, \
+            "<nacre.Solution on {nx} x {ny} cells, counterbody {counterbody}: load {:.6e} N, peak pressure {:.6e} Pa, \
              approach {:.6e} m, tilt ({:.3e}, {:.3e}), {}>",
             s.load(),
             s.peak_pressure(),

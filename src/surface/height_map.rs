@@ -26,6 +26,7 @@ use crate::grid::Grid;
 pub struct HeightMap {
     heights: Arc<Array2<f64>>,
     highest: f64,
+    spacing: [f64; 2],
     grid: Grid,
 }
 
@@ -57,6 +58,7 @@ impl HeightMap {
         Ok(Self {
             highest: heights.fold(f64::NEG_INFINITY, |a, &b| a.max(b)),
             heights: Arc::new(heights),
+            spacing,
             grid: Grid::new(shape, size)?,
         })
     }
@@ -79,7 +81,7 @@ impl HeightMap {
 
     /// Distances between samples \[m\].
     pub fn spacing(&self) -> [f64; 2] {
-        self.grid.spacing()
+        self.spacing
     }
 
     /// Its centre \[m\].

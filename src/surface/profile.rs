@@ -72,12 +72,11 @@ impl Profile {
         }
     }
 
-    /// Whether it ends with a finite drop: as a sharp edge.
+    /// Whether a contact that reaches its ends has a sharp edge there.
     pub(super) fn has_sharp_ends(&self) -> bool {
         match self {
             Self::Crowned(_) => false,
-            Self::Logarithmic(profile) => profile.end_factor < 1.0,
-            Self::Sampled(_) => true,
+            Self::Logarithmic(_) | Self::Sampled(_) => true,
         }
     }
 
@@ -116,7 +115,7 @@ impl CrownedProfile {
             });
         }
         Ok(Self {
-            flat_length,
+            flat_length: flat_length + 0.0,
             crown_radius: positive("crown_radius", crown_radius)?,
         })
     }
@@ -186,7 +185,7 @@ impl LogarithmicProfile {
         Ok(Self {
             amplitude,
             length,
-            flat_length,
+            flat_length: flat_length + 0.0,
             end_factor,
         })
     }
@@ -196,6 +195,7 @@ impl LogarithmicProfile {
     /// # Errors
     /// Unless all are finite and above 0.
     pub fn lundberg(length: f64, load: f64, contact_modulus: f64) -> Result<Self> {
+        positive("length", length)?;
         positive("load", load)?;
         positive("contact_modulus", contact_modulus)?;
         Self::new(load / (PI * length * contact_modulus), length, 0.0, 1.0)

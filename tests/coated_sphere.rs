@@ -1,0 +1,174 @@
+//! A paraboloid on a coating has the pressure, the approach and the contact radius of the Fredholm
+//! solution.
+
+use nacre::{Elastic, HalfSpace, Layer, Method, Result, Substrate};
+use serde_json::Value;
+
+#[path = "support/reference.rs"]
+mod reference;
+#[path = "support/sphere.rs"]
+mod sphere;
+
+use reference::{cases, number};
+use sphere::{Measures, measures, solve};
+
+/// Peak pressure and approach with 512² cells, side 6 a_H: discretisation of second order.
+const AT_512: f64 = 2e-4;
+
+/// The same, extrapolated from 256² and 512².
+const EXTRAPOLATED: f64 = 2e-5;
+
+/// Contact radius, by p² continued to zero, with 512² cells.
+const CONTACT_RADIUS: f64 = 1e-3;
+
+/// The same of layers on a rigid base, where the thinnest has p² bent most towards the edge.
+const RADIUS_ON_RIGID: f64 = 2e-3;
+
+/// Pressure on the axis with 256² cells: half of what the peak is off by there.
+const CENTRAL: f64 = 5e-5;
+
+/// Peak pressure by any conversion, and approach by `image`, with 256² cells and χ = 8.
+const CONVERTED: f64 = 1e-3;
+
+fn coated(case: &Value) -> Result<(HalfSpace, f64)> {
+    let nu = number(case, "poisson");
+    let substrate = Elastic::new(1.0, nu)?;
+    let coating = Elastic::new(number(case, "modulus_ratio"), nu)?;
+    let body = HalfSpace::new(substrate, [Layer::new(coating, number(case, "h"))?])?;
+    Ok((body, substrate.plane_strain_modulus()))
+}
+
+fn exact(case: &Value) -> Measures {
+    Measures {
+        peak: number(case, "peak"),
+        approach: number(case, "approach"),
+        radius: number(case, "radius"),
+    }
+}
+
+/// Errors on 512² cells, and extrapolated from 256².
+fn errors(body: &HalfSpace, modulus: f64, exact: Measures) -> Result<[Measures; 2]> {
+    let of = |n: usize| measures(&solve(body, modulus, n, Method::Exact)?, modulus);
+    let (coarse, fine) = (of(256)?, of(512)?);
+    Ok([fine.errors(exact), coarse.extrapolated(fine).errors(exact)])
+}
+
+fn check(name: &str, [fine, extrapolated]: [Measures; 2], radius: f64) {
+    println!(
+        "{name}: peak {:.1e} ({:.1e} extrapolated), approach {:.1e} ({:.1e}), radius {:.1e}",
+        fine.peak, extrapolated.peak, fine.approach, extrapolated.approach, fine.radius
+    );
+    assert!(
+        fine.peak.abs() < AT_512 && fine.approach.abs() < AT_512,
+        "{name}: {fine:?}"
+    );
+    let limit = extrapolated.peak.abs().max(extrapolated.approach.abs());
+    assert!(limit < EXTRAPOLATED, "{name}: {extrapolated:?}");
+    assert!(fine.radius.abs() < radius, "{name}: {fine:?}");
+}
+
+/// All thicknesses of one modulus ratio, `expected` of them.
+fn check_ratio(modulus_ratio: f64, expected: usize) -> Result<()> {
+    let rows = cases("sphere_coated.json");
+    let of_ratio = rows
+        .iter()
+        .filter(|case| (number(case, "modulus_ratio") - modulus_ratio).abs() < 1e-9)
+        .take(expected);
+    let mut compared = 0;
+    for case in of_ratio {
+        let (body, modulus) = coated(case)?;
+        let name = format!("E1/E2 = {modulus_ratio}, h/a_H = {}", number(case, "h"));
+        check(&name, errors(&body, modulus, exact(case))?, CONTACT_RADIUS);
+        compared += 1;
+    }
+    assert_eq!(compared, expected);
+    Ok(())
+}
+
+#[test]
+fn coating_of_a_quarter_of_the_modulus() -> Result<()> {
+    check_ratio(0.25, 5)
+}
+
+#[test]
+fn coating_of_half_the_modulus() -> Result<()> {
+    check_ratio(0.5, 5)
+}
+
+#[test]
+fn coating_of_the_same_modulus() -> Result<()> {
+    // Of whatever thickness, it is the bare body.
+    check_ratio(1.0, 1)
+}
+
+#[test]
+fn coating_of_twice_the_modulus() -> Result<()> {
+    check_ratio(2.0, 5)
+}
+
+#[test]
+fn coating_of_four_times_the_modulus() -> Result<()> {
+    check_ratio(4.0, 5)
+}
+
+#[test]
+fn layer_on_a_rigid_base() -> Result<()> {
+    for case in &cases("sphere_rigid_base.json") {
+        let layer = Elastic::new(1.0, number(case, "poisson"))?;
+        let body = HalfSpace::new(Substrate::Rigid, [Layer::new(layer, number(case, "h"))?])?;
+        let name = format!("h/a_H = {}, nu = {}", number(case, "h"), layer.poisson());
+        let errors = errors(&body, layer.plane_strain_modulus(), exact(case))?;
+        check(&name, errors, RADIUS_ON_RIGID);
+    }
+    Ok(())
+}
+
+#[test]
+fn central_pressure_is_read_between_the_cells() -> Result<()> {
+    // On the axis, where no cell has its centre: without the half cell that the peak is off.
+    let rows = cases("sphere_coated.json");
+    for case in rows
+        .iter()
+        .filter(|case| (number(case, "h") - 0.5).abs() < 1e-9)
+    {
+        let (body, modulus) = coated(case)?;
+        let solution = solve(&body, modulus, 256, Method::Exact)?;
+        let central = solution.central_pressure() / solution.peak_pressure();
+        let found = measures(&solution, modulus)?.peak * central;
+        let error = found / number(case, "peak") - 1.0;
+        assert!(error.abs() < CENTRAL, "{error:e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn conversions_get_the_pressure_and_image_the_approach() -> Result<()> {
+    let refinement = 8;
+    let rows = cases("sphere_coated.json");
+    for case in rows
+        .iter()
+        .filter(|case| (number(case, "h") - 1.0).abs() < 1e-9)
+    {
+        let (body, modulus) = coated(case)?;
+        let mut approaches = Vec::new();
+        for method in [
+            Method::Plain { refinement },
+            Method::Difference { refinement },
+            Method::Image { refinement },
+        ] {
+            let solution = solve(&body, modulus, 256, method)?;
+            let errors = measures(&solution, modulus)?.errors(exact(case));
+            assert!(errors.peak.abs() < CONVERTED, "{method:?}: {errors:?}");
+            approaches.push(errors.approach);
+        }
+        println!(
+            "E1/E2 = {}: approach by plain {:.1e}, difference {:.1e}, image {:.1e}",
+            number(case, "modulus_ratio"),
+            approaches[0],
+            approaches[1],
+            approaches[2]
+        );
+        assert!(approaches[2].abs() < CONVERTED, "{approaches:?}");
+    }
+    Ok(())
+}

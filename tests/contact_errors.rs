@@ -1,0 +1,328 @@
+//! What cannot be solved is an error that says why: controls that contradict each other, loads that
+//! nothing can balance, plans and options that cannot be.
+
+use nacre::influence::{Method, influence_coefficients};
+use nacre::{
+    Contact, Cylinder, Elastic, Error, FlatPunch, Grid, HalfSpace, HeightMap, Motion, Options,
+    Paraboloid, Result, Setup, Surface, solve,
+};
+use ndarray::Array2;
+
+#[path = "support/messages.rs"]
+mod messages;
+
+use messages::{check, message};
+
+const NAN: f64 = f64::NAN;
+const INFINITY: f64 = f64::INFINITY;
+
+fn steel() -> Result<Elastic> {
+    Elastic::new(210e9, 0.3)
+}
+
+/// On 16 x 12 cells of 1 mm.
+fn contact() -> Result<Contact> {
+    let grid = Grid::new([16, 12], [16e-3, 12e-3])?;
+    Contact::plan(&steel()?.into(), grid, Setup::default())
+}
+
+fn solved(shape: &dyn Surface, motion: &Motion) -> Result<()> {
+    contact()?
+        .solve(shape, motion, &Options::default())
+        .map(drop)
+}
+
+#[test]
+fn controls() -> Result<()> {
+    let shape = Paraboloid::new(1.0, 1.0)?;
+    let load = Motion::load(10.0);
+    let approach = Motion::approach(1e-6);
+    let cases = [
+        (
+            Motion::default(),
+            "exactly one of load and approach must be given",
+        ),
+        (
+            Motion {
+                approach: Some(1e-6),
+                ..load
+            },
+            "exactly one of load and approach must be given",
+        ),
+        (Motion::load(0.0), "load must be finite and above 0, got 0"),
+        (
+            Motion::load(-5.0),
+            "load must be finite and above 0, got -5",
+        ),
+        (
+            Motion::load(NAN),
+            "load must be finite and above 0, got NaN",
+        ),
+        (Motion::approach(NAN), "approach must be finite, got NaN"),
+        (
+            Motion {
+                tilt: [Some(NAN), None],
+                ..load
+            },
+            "tilt must be finite, got NaN",
+        ),
+        (
+            Motion {
+                moment: [None, Some(INFINITY)],
+                ..load
+            },
+            "moment must be finite, got inf",
+        ),
+        (
+            Motion {
+                eccentricity: [Some(NAN), None],
+                ..load
+            },
+            "eccentricity must be finite, got NaN",
+        ),
+        (
+            Motion {
+                eccentricity: [Some(0.0), None],
+                ..approach
+            },
+            "eccentricity needs load: under a given approach, give moment",
+        ),
+        (
+            Motion {
+                eccentricity: [Some(0.0), None],
+                tilt: [Some(0.0), None],
+                ..load
+            },
+            "along x at most one of eccentricity, moment and tilt can be a number",
+        ),
+        (
+            Motion {
+                moment: [None, Some(0.0)],
+                tilt: [None, Some(0.0)],
+                ..load
+            },
+            "along y at most one of eccentricity, moment and tilt can be a number",
+        ),
+        (
+            Motion {
+                eccentricity: [Some(0.0); 2],
+                moment: [None, Some(0.0)],
+                ..load
+            },
+            "along y at most one of eccentricity, moment and tilt can be a number",
+        ),
+    ];
+    check(cases.map(|(motion, text)| (solved(&shape, &motion), text)));
+    Ok(())
+}
+
+#[test]
+fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
+    // A punch of 4 mm on cells of 1 mm: centres up to 3.5 mm.
+    let punch = FlatPunch::new(4e-3)?;
+    for x in [3.5e-3, -5e-3] {
+        let motion = Motion {
+            eccentricity: [Some(x), None],
+            ..Motion::load(10.0)
+        };
+        let text = message(solved(&punch, &motion));
+        let begins = format!(
+            "the load point ({x:.6e}, 0.000000e0) must lie strictly inside the convex hull of the \
+             cells that can touch, x [-0.0035"
+        );
+        assert!(text.starts_with(&begins), "{text}");
+    }
+    // Inside the rectangle around them, but not inside the hull.
+    let corner = [Some(3e-3), Some(3e-3)];
+    let motion = Motion {
+        eccentricity: corner,
+        ..Motion::load(10.0)
+    };
+    assert!(matches!(
+        solved(&punch, &motion),
+        Err(Error::LoadPoint { .. })
+    ));
+    let motion = Motion {
+        eccentricity: [Some(2e-3), Some(2e-3)],
+        ..Motion::load(10.0)
+    };
+    assert_eq!(message(solved(&punch, &motion)), "no error");
+
+    let beside = Motion {
+        moment: [Some(1.0), None],
+        ..Motion::approach(1e-6)
+    };
+    check([(
+        solved(&punch.shifted(-4e-3, 0.0)?, &beside),
+        "moment must be one that a pressure on the cells that can touch can have",
+    )]);
+    check([(
+        solved(&punch.shifted(1.0, 0.0)?, &Motion::load(1.0)),
+        "no cell of the grid can touch: the gap is infinite",
+    )]);
+    Ok(())
+}
+
+#[test]
+fn plans_and_options() -> Result<()> {
+    let body: HalfSpace = steel()?.into();
+    let grid = Grid::new([16, 12], [1.0, 1.0])?;
+    let plan = |setup: Setup| Contact::plan(&body, grid, setup);
+    check([
+        (
+            plan(Setup {
+                threads: Some(0),
+                ..Setup::default()
+            }),
+            "threads must be at least 1, got 0",
+        ),
+        (
+            plan(Setup {
+                method: Method::Image { refinement: 0 },
+                ..Setup::default()
+            }),
+            "refinement must be at least 1, got 0",
+        ),
+        (
+            Contact::plan(
+                &body,
+                Grid::line(64, 1.0)?,
+                Setup {
+                    method: Method::Image { refinement: 4 },
+                    ..Setup::default()
+                },
+            ),
+            "method must be \"exact\" on the grid of a line contact",
+        ),
+    ]);
+    let refined = Method::Plain {
+        refinement: usize::MAX / 8,
+    };
+    let text = message(influence_coefficients(&body, &grid, refined));
+    assert!(
+        text.starts_with("refinement must be small enough"),
+        "{text}"
+    );
+
+    let shape = Paraboloid::new(1.0, 1.0)?;
+    let with = |options: Options| contact()?.solve(&shape, &Motion::load(1.0), &options);
+    let start = |initial| {
+        with(Options {
+            initial: Some(initial),
+            ..Options::default()
+        })
+    };
+    let mut broken = Array2::zeros([16, 12]);
+    broken[[7, 8]] = NAN;
+    let tolerance = |tolerance| {
+        with(Options {
+            tolerance,
+            ..Options::default()
+        })
+    };
+    check([
+        (
+            tolerance(0.0),
+            "tolerance must be above 0 and below 1, got 0",
+        ),
+        (
+            tolerance(1.0),
+            "tolerance must be above 0 and below 1, got 1",
+        ),
+        (
+            tolerance(NAN),
+            "tolerance must be above 0 and below 1, got NaN",
+        ),
+        (
+            start(Array2::zeros([12, 16])),
+            "initial: expected shape [16, 12], got [12, 16]",
+        ),
+        (start(broken), "initial is not finite at [7, 8]"),
+    ]);
+    Ok(())
+}
+
+#[test]
+fn cells_too_coarse_for_a_height_map() -> Result<()> {
+    // Cells of 1 mm, and a sample every 0.1 mm.
+    let fine = HeightMap::new(Array2::zeros([160, 120]), [1e-4, 1e-4])?;
+    check([(
+        solved(&fine, &Motion::load(1.0)),
+        "grid spacing must be at most twice the spacing of the height map, got 0.001",
+    )]);
+    Ok(())
+}
+
+#[test]
+fn a_shape_of_the_wrong_size_or_without_a_gap() -> Result<()> {
+    #[derive(Debug)]
+    struct Broken(f64, usize);
+    impl Surface for Broken {
+        fn gap(&self, _: f64, _: f64) -> f64 {
+            self.0
+        }
+        fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+            Ok(Array2::from_elem([self.1, grid.shape()[1]], self.0))
+        }
+    }
+    check([
+        (
+            solved(&Broken(NAN, 16), &Motion::load(1.0)),
+            "shape is not finite at [0, 0]",
+        ),
+        (
+            solved(&Broken(-INFINITY, 16), &Motion::load(1.0)),
+            "shape is not finite at [0, 0]",
+        ),
+        (
+            solved(&Broken(0.0, 15), &Motion::load(1.0)),
+            "shape: expected shape [16, 12], got [15, 12]",
+        ),
+    ]);
+    Ok(())
+}
+
+#[test]
+fn grids_that_are_not_to_be_found() -> Result<()> {
+    let body: HalfSpace = steel()?.into();
+    check([(
+        solve(&Cylinder::new(1.0)?, &body, &Motion::load(1.0)),
+        "grid must be given for a shape without end: its contact is as long as the grid",
+    )]);
+    // A plane is in contact all over, however large the grid.
+    #[derive(Debug)]
+    struct Plane;
+    impl Surface for Plane {
+        fn gap(&self, _: f64, _: f64) -> f64 {
+            0.0
+        }
+    }
+    let text = message(solve(&Plane, &body, &Motion::load(1.0)));
+    assert!(
+        text.starts_with("no grid found: after 10 enlargements, to ["),
+        "{text}"
+    );
+    assert!(
+        text.ends_with("the contact still touches the edge; give a grid"),
+        "{text}"
+    );
+    Ok(())
+}
+
+#[test]
+fn an_iteration_that_did_not_converge_says_how_far_it_came() -> Result<()> {
+    let options = Options {
+        max_iterations: Some(1),
+        tolerance: 1e-10,
+        ..Options::default()
+    };
+    let shape = Paraboloid::new(1.0, 1.0)?;
+    let solution = contact()?.solve(&shape, &Motion::load(1e4), &options)?;
+    assert!(!solution.report.converged());
+    let text = message(solution.require_converged(1e-10));
+    assert!(text.starts_with("residual "), "{text}");
+    let ends =
+        "above the tolerance 1e-10 after 1 iterations; raise max_iterations or the tolerance";
+    assert!(text.ends_with(ends), "{text}");
+    Ok(())
+}

@@ -1,0 +1,160 @@
+//! Contacts of a few cells carry force and moments as statics says, down to vanishing loads.
+
+use approx::assert_relative_eq;
+use nacre::influence::{Method, influence_coefficients};
+use nacre::{
+    Algorithm, Contact, Elastic, Grid, HalfSpace, HeightMap, Motion, Options, Paraboloid, Result,
+    Setup, Solution, Surface,
+};
+use ndarray::Array2;
+
+#[path = "support/random.rs"]
+mod random;
+
+use random::uniform;
+
+/// Forces that three equations determine.
+const STATICS: f64 = 1e-9;
+
+/// Balance of force and moments, over W and W × half side.
+const BALANCE: f64 = 1e-12;
+
+/// Far more than any of these needs.
+const ITERATIONS: usize = 1000;
+
+const ALGORITHMS: [Algorithm; 2] = [Algorithm::Cascade, Algorithm::PolonskyKeer];
+
+/// Unit cells, unit modulus.
+fn contact() -> Result<Contact> {
+    let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
+    Contact::plan(&body, Grid::new([16, 16], [16.0; 2])?, Setup::default())
+}
+
+/// A balanced solution. The default algorithm must find it; the reference may give up, and then
+/// says so.
+fn solve(
+    contact: &Contact,
+    shape: &dyn Surface,
+    motion: &Motion,
+    algorithm: Algorithm,
+) -> Result<Option<Solution>> {
+    let options = Options {
+        algorithm,
+        max_iterations: Some(ITERATIONS),
+        ..Options::default()
+    };
+    let solution = contact.solve(shape, motion, &options)?;
+    let report = &solution.report;
+    if algorithm == Algorithm::PolonskyKeer && !report.converged() {
+        return Ok(None);
+    }
+    assert!(report.converged(), "{motion:?}: {report:?}");
+    let balance = report.balance;
+    let worst = balance.force.max(balance.moment[0]).max(balance.moment[1]);
+    assert!(worst < BALANCE, "{algorithm:?}, {motion:?}: {balance:?}");
+    Ok(Some(solution))
+}
+
+#[test]
+fn one_cell_carries_the_load() -> Result<()> {
+    let contact = contact()?;
+    let loaded = influence_coefficients(
+        &Elastic::new(1.0, 0.3)?.into(),
+        contact.grid(),
+        Method::Exact,
+    )?[[0, 0]];
+    let mut heights = Array2::zeros([16, 16]);
+    heights[[5, 9]] = 1.0;
+    let nail = HeightMap::new(heights, [1.0, 1.0])?;
+    for algorithm in ALGORITHMS {
+        for load in [1e-12, 1e-6, 1e-3] {
+            let Some(solution) = solve(&contact, &nail, &Motion::load(load), algorithm)? else {
+                continue;
+            };
+            assert_relative_eq!(solution.pressure[[5, 9]], load, max_relative = STATICS);
+            assert_relative_eq!(solution.approach, load * loaded, max_relative = STATICS);
+        }
+    }
+    Ok(())
+}
+
+/// Three long legs and a short one.
+const LEGS: [(usize, usize, f64); 4] = [(2, 3, 1.0), (13, 4, 0.98), (6, 12, 0.99), (12, 12, 0.9)];
+
+/// Forces of the three long legs under a unit load at (x, y): its barycentric coordinates.
+fn leg_forces(x: f64, y: f64, grid: &Grid) -> [f64; 3] {
+    let (gx, gy) = (grid.x(), grid.y());
+    let at = |k: usize| (gx[LEGS[k].0], gy[LEGS[k].1]);
+    let [(ax, ay), (bx, by), (cx, cy)] = [at(0), at(1), at(2)];
+    let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+    let b = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area;
+    let c = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area;
+    [1.0 - b - c, b, c]
+}
+
+#[test]
+fn table_stands_on_its_three_long_legs() -> Result<()> {
+    let contact = contact()?;
+    let mut heights = Array2::zeros([16, 16]);
+    for (i, j, height) in LEGS {
+        heights[[i, j]] = height;
+    }
+    let table = HeightMap::new(heights, [1.0, 1.0])?;
+    for algorithm in ALGORITHMS {
+        for load in [1e-7, 1e-5, 1e-3] {
+            for [x, y] in [[0.0, 0.0], [-1.0, -2.0], [2.0, -1.0]] {
+                let what = format!("{algorithm:?}, load {load:e} at {x}, {y}");
+                let motion = Motion {
+                    eccentricity: [Some(x), Some(y)],
+                    ..Motion::load(load)
+                };
+                let Some(solution) = solve(&contact, &table, &motion, algorithm)? else {
+                    continue;
+                };
+                for (k, force) in leg_forces(x, y, contact.grid()).into_iter().enumerate() {
+                    let (i, j, height) = LEGS[k];
+                    let error = solution.pressure[[i, j]] / (load * force) - 1.0;
+                    assert!(error.abs() < STATICS, "{what}: leg {k}: {error:e}");
+                    // Its foot is pressed in by what the motion brings it down.
+                    let (gx, gy) = (contact.grid().x()[i], contact.grid().y()[j]);
+                    let [sx, sy] = solution.tilt;
+                    let down = solution.approach + sx * gx + sy * gy - (1.0 - height);
+                    let gap = solution.displacement[[i, j]] - down;
+                    assert!(
+                        gap.abs() < 1e-7 * solution.displacement[[i, j]] + 1e-15,
+                        "{what}"
+                    );
+                }
+                assert_eq!(
+                    solution.in_contact().iter().filter(|c| **c).count(),
+                    3,
+                    "{what}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
+    let grid = Grid::new([45, 64], [4.5e-4, 4.8e-4])?;
+    let body: HalfSpace = Elastic::new(210e9, 0.3)?.into();
+    let contact = Contact::plan(&body, grid, Setup::default())?;
+    for seed in 0..8 {
+        let rough = HeightMap::new(uniform(grid.shape(), seed) * 3e-7, grid.spacing())?;
+        let shape = Paraboloid::new(5e-3, 7.5e-3)?.plus(rough);
+        let place = uniform([1, 2], seed + 100);
+        let e = [0, 1].map(|k| 0.6 * (place[[0, k]] - 0.5) * grid.size()[k]);
+        for load in [1e-3, 1e-2, 1e-1, 1.0] {
+            let motion = Motion {
+                eccentricity: e.map(Some),
+                ..Motion::load(load)
+            };
+            for algorithm in ALGORITHMS {
+                solve(&contact, &shape, &motion, algorithm)?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,231 @@
+//! Contacts of a bare body equal the closed forms of Hertz and Boussinesq, and converge to them
+//! with the grid.
+
+use std::f64::consts::PI;
+
+use approx::assert_relative_eq;
+use nacre::{
+    Contact, Elastic, FlatPunch, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Setup,
+    Solution, hertz,
+};
+
+/// Contact radius a = side/6 on 256² cells, 43 cells: the peak is read half a cell diagonal off the
+/// axis, (dx/a)²/4 = 1.4e-4.
+const PEAK: f64 = 2e-4;
+
+/// The same for the approach, which sees the discretisation alone.
+const APPROACH: f64 = 1e-4;
+
+/// The rim of a flat punch is a singularity on staircase cells, dx/a = 1/64.
+const FLAT_PUNCH: f64 = 5e-3;
+
+const RADIUS: f64 = 5e-3;
+const CONTACT_RADIUS: f64 = 1e-4;
+
+fn steel() -> Result<Elastic> {
+    Elastic::new(210e9, 0.3)
+}
+
+fn modulus() -> Result<f64> {
+    Ok(steel()?.plane_strain_modulus())
+}
+
+/// The load at which the contact radius is [`CONTACT_RADIUS`].
+fn load() -> Result<f64> {
+    Ok(4.0 * modulus()? * CONTACT_RADIUS.powi(3) / (3.0 * RADIUS))
+}
+
+fn plan(shape: [usize; 2], sides: [f64; 2]) -> Result<Contact> {
+    let grid = Grid::new(shape, sides.map(|side| side * CONTACT_RADIUS))?;
+    Contact::plan(&steel()?.into(), grid, Setup::default())
+}
+
+fn paraboloid(shape: [usize; 2], sides: [f64; 2], motion: &Motion) -> Result<Solution> {
+    let paraboloid = Paraboloid::new(RADIUS, RADIUS)?;
+    let options = Options::default();
+    let solution = plan(shape, sides)?.solve(&paraboloid, motion, &options)?;
+    solution.require_converged(options.tolerance)
+}
+
+/// Relative errors of peak pressure, approach, and half the larger extent.
+fn errors(solution: &Solution) -> Result<[f64; 3]> {
+    let exact = hertz::Point::new(RADIUS, modulus()?, load()?)?;
+    let [x, y] = solution
+        .contact_extent()
+        .map(|[low, high]| 0.5 * (high - low));
+    Ok([
+        solution.peak_pressure() / exact.peak_pressure - 1.0,
+        solution.approach / exact.approach - 1.0,
+        x.max(y) / exact.radius - 1.0,
+    ])
+}
+
+#[test]
+fn paraboloid_equals_hertz() -> Result<()> {
+    let solution = paraboloid([256, 256], [6.0, 6.0], &Motion::load(load()?))?;
+    let [peak, approach, radius] = errors(&solution)?;
+    println!("256²: peak {peak:.1e}, approach {approach:.1e}, contact radius {radius:.1e}");
+    assert!(peak.abs() < PEAK && approach.abs() < APPROACH);
+    // By a straight line through p², a tenth of a cell.
+    assert!(radius.abs() < 2e-3, "{radius:e}");
+    Ok(())
+}
+
+#[test]
+fn pressure_equals_hertz_everywhere() -> Result<()> {
+    let solution = paraboloid([201, 150], [6.3, 5.7], &Motion::load(load()?))?;
+    let exact = hertz::Point::new(RADIUS, modulus()?, load()?)?;
+    let (x, y) = (solution.grid().x(), solution.grid().y());
+    for ((i, j), p) in solution.pressure.indexed_iter() {
+        let r = x[i].hypot(y[j]);
+        // Away from the rim, where the cells are staircase.
+        let beyond = (r / exact.radius - 1.0).abs();
+        let tolerance = if beyond > 0.1 { 5e-3 } else { 0.25 };
+        let error = (p - exact.pressure(r)) / exact.peak_pressure;
+        assert!(
+            error.abs() < tolerance,
+            "r/a = {}: {error}",
+            r / exact.radius
+        );
+    }
+    // The displacement outside, Johnson (1985), eq. (3.42a).
+    let (a, r) = (exact.radius, x[0].hypot(y[0]));
+    let inside = (2.0 * a * a - r * r) * (a / r).asin() + r * a * (1.0 - a * a / (r * r)).sqrt();
+    let displacement = exact.peak_pressure / (2.0 * modulus()? * a) * inside;
+    assert_relative_eq!(
+        solution.displacement[[0, 0]],
+        displacement,
+        max_relative = 1e-4
+    );
+    Ok(())
+}
+
+#[test]
+fn approach_converges_with_the_grid() -> Result<()> {
+    // The rim on staircase cells makes the error uneven; over a factor of eight in the cell it
+    // falls by the power 1.5 at least.
+    let error = |n: usize| -> Result<f64> {
+        let [_, approach, _] = errors(&paraboloid([n; 2], [3.0; 2], &Motion::load(load()?))?)?;
+        println!("{n}²: approach {approach:.2e}");
+        Ok(approach.abs())
+    };
+    let errors = [error(32)?, error(64)?, error(128)?, error(256)?];
+    let order = (errors[0] / errors[3]).log2() / 3.0;
+    println!("order of convergence: {order:.2}");
+    assert!(order > 1.5 && errors[3] < 2e-5, "{order}: {errors:?}");
+    Ok(())
+}
+
+#[test]
+fn load_gives_approach_gives_load() -> Result<()> {
+    let options = Options {
+        tolerance: 1e-12,
+        ..Options::default()
+    };
+    let contact = plan([96, 80], [3.0, 2.8])?;
+    let shape = Paraboloid::new(RADIUS, RADIUS)?;
+    let loaded = contact.solve(&shape, &Motion::load(load()?), &options)?;
+    let pressed = contact.solve(&shape, &Motion::approach(loaded.approach), &options)?;
+    assert!(loaded.report.converged() && pressed.report.converged());
+    assert_relative_eq!(pressed.load(), load()?, max_relative = 1e-9);
+    let again = contact.solve(&shape, &Motion::load(pressed.load()), &options)?;
+    assert_relative_eq!(again.approach, loaded.approach, max_relative = 1e-9);
+    Ok(())
+}
+
+#[test]
+fn load_grows_as_the_approach_to_three_halves() -> Result<()> {
+    // Under a prescribed approach nothing fixes the scale but the coefficients themselves.
+    let contact = plan([160, 160], [4.0, 4.0])?;
+    let shape = Paraboloid::new(RADIUS, RADIUS)?;
+    for factor in [0.5, 1.0, 2.0] {
+        let approach = factor * CONTACT_RADIUS.powi(2) / RADIUS;
+        let solution = contact.solve(&shape, &Motion::approach(approach), &Options::default())?;
+        let expected = load()? * f64::powf(factor, 1.5);
+        assert_relative_eq!(solution.load(), expected, max_relative = 2e-3);
+    }
+    Ok(())
+}
+
+#[test]
+fn eccentric_flat_punch_tilts_as_boussinesq_found() -> Result<()> {
+    let a = 1e-3;
+    let contact = Contact::plan(
+        &steel()?.into(),
+        Grid::new([256, 256], [4.0 * a; 2])?,
+        Setup::default(),
+    )?;
+    let punch = FlatPunch::new(a)?;
+    for eccentricity in [[Some(0.25 * a), None], [Some(0.0), Some(-0.25 * a)]] {
+        let motion = Motion {
+            eccentricity,
+            ..Motion::load(1e3)
+        };
+        let solution = contact.solve(&punch, &motion, &Options::default())?;
+        assert!(solution.report.converged());
+        let moment = eccentricity.map(|e| 1e3 * e.unwrap_or(0.0));
+        for (tilt, moment) in solution.tilt.into_iter().zip(moment) {
+            let (approach, exact) = hertz::flat_punch(a, modulus()?, 1e3, moment)?;
+            let relative = solution.approach / approach - 1.0;
+            assert!(relative.abs() < FLAT_PUNCH, "approach {relative:e}");
+            // 3M/(4E*a³), or nothing.
+            let scale = 0.75 * 0.25 * a * 1e3 / (modulus()? * a.powi(3));
+            let error = (tilt - exact) / scale;
+            println!("flat punch: approach {relative:.1e}, tilt {error:.1e}");
+            assert!(error.abs() < FLAT_PUNCH, "tilt {error:e}");
+        }
+        // W/2πa² (1 + 3 e x/a²) in the middle.
+        let central = 1e3 / (2.0 * PI * a * a);
+        assert_relative_eq!(
+            solution.central_pressure(),
+            central,
+            max_relative = FLAT_PUNCH
+        );
+    }
+    Ok(())
+}
+
+/// Complete elliptic integrals K and E of the parameter m = e², by the arithmetic-geometric mean.
+/// Abramowitz & Stegun (1964), §17.6.
+fn elliptic(m: f64) -> (f64, f64) {
+    let (mut a, mut b, mut power, mut sum) = (1.0, (1.0 - m).sqrt(), 0.5, 0.5 * m);
+    for _ in 0..8 {
+        let c = 0.5 * (a - b);
+        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
+        power *= 2.0;
+        sum += power * c * c;
+    }
+    let k = PI / (2.0 * a);
+    (k, k * (1.0 - sum))
+}
+
+#[test]
+fn elliptic_contact_equals_hertz() -> Result<()> {
+    // Johnson (1985), eqs (4.26), (4.28), for half-axes a = 3 along x and b = 1 along y, p0 = E*/20.
+    let (a, b) = (3.0, 1.0);
+    let body: HalfSpace = steel()?.into();
+    let (modulus, peak) = (modulus()?, 0.05 * modulus()?);
+    let m = 1.0 - b * b / (a * a);
+    let (k, e) = elliptic(m);
+    let common = peak / modulus * b / (m * a * a);
+    let along = common * (k - e);
+    let across = common * (a * a / (b * b) * e - k);
+    let shape = Paraboloid::new(0.5 / along, 0.5 / across)?;
+    let load = 2.0 / 3.0 * PI * a * b * peak;
+
+    let contact = Contact::plan(&body, Grid::new([161, 128], [8.0, 3.0])?, Setup::default())?;
+    let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
+    assert!(solution.report.converged());
+    let approach = solution.approach / (peak * b / modulus * k) - 1.0;
+    let highest = solution.peak_pressure() / peak - 1.0;
+    println!("elliptic: peak {highest:.1e}, approach {approach:.1e}");
+    assert!(
+        highest.abs() < 1e-3 && approach.abs() < 2e-4,
+        "{highest:e} {approach:e}"
+    );
+    let [x, y] = solution.contact_extent();
+    for (found, exact) in [(x[0], -a), (x[1], a), (y[0], -b), (y[1], b)] {
+        assert_relative_eq!(found, exact, max_relative = 5e-3);
+    }
+    Ok(())
+}

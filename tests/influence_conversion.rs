@@ -1,0 +1,173 @@
+//! The conversions by inverse FFT err as they are known to: `image` least, and on long thin domains
+//! only `image` is of use.
+
+use nacre::influence::{Method, influence_coefficients};
+use nacre::{Elastic, Grid, HalfSpace, Layer, Result};
+use ndarray::Array2;
+
+#[path = "support/reference.rs"]
+mod reference;
+
+use reference::{cases, list, number};
+
+/// The reference errors at the loaded cell have this many digits in common with ours, relative,
+/// and absolute where they are themselves near the accuracy of the reference coefficients.
+const SAME_ERROR: (f64, f64) = (1e-3, 1e-10);
+
+/// The largest error sits at the far corner, and the grid ends one offset before the reference.
+const SAME_LARGEST: std::ops::Range<f64> = 0.85..1.001;
+
+fn coated(modulus_ratio: f64, thickness: f64) -> Result<HalfSpace> {
+    let coating = Layer::new(Elastic::new(modulus_ratio, 0.3)?, thickness)?;
+    HalfSpace::new(Elastic::new(1.0, 0.3)?, [coating])
+}
+
+/// 2N = 128 offsets of square cells of side 1.
+fn square() -> Result<Grid> {
+    Grid::new([64, 64], [64.0, 64.0])
+}
+
+/// Relative errors against the exact coefficients.
+fn errors(body: &HalfSpace, grid: &Grid, method: Method) -> Result<Array2<f64>> {
+    let exact = influence_coefficients(body, grid, Method::Exact)?;
+    Ok(influence_coefficients(body, grid, method)? / exact - 1.0)
+}
+
+fn largest(errors: &Array2<f64>) -> f64 {
+    errors.fold(0.0, |largest, error| largest.max(error.abs()))
+}
+
+#[test]
+fn difference_and_image_err_as_the_reference_program_found() -> Result<()> {
+    let mut compared = 0;
+    for case in cases("influence_conversion.json") {
+        let body = coated(number(&case, "modulus_ratio"), number(&case, "h_over_dx"))?;
+        for row in list(&case, "rows") {
+            let refinement = number(row, "refinement") as usize;
+            let method = match row["method"].as_str() {
+                Some("difference") => Method::Difference { refinement },
+                _ => Method::Image { refinement },
+            };
+            let errors = errors(&body, &square()?, method)?;
+            let (found, expected) = (errors[[0, 0]], number(row, "loaded_cell"));
+            let tolerance = SAME_ERROR.0 * expected.abs() + SAME_ERROR.1;
+            assert!(
+                (found - expected).abs() < tolerance,
+                "{method:?}: {found:e} {expected:e}"
+            );
+            let ratio = largest(&errors) / number(row, "largest");
+            assert!(SAME_LARGEST.contains(&ratio), "{method:?}: {ratio}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 32);
+    Ok(())
+}
+
+#[test]
+fn errors_stay_below_what_the_documentation_states() -> Result<()> {
+    // E1/E2 = 4, h = 8 dx: at the loaded cell, and at any offset.
+    let body = coated(4.0, 8.0)?;
+    for (refinement, difference, image) in [
+        (1, [3.2e-3, 0.175], [4.5e-4, 3.6e-2]),
+        (2, [1.3e-3, 5.5e-2], [8.5e-5, 8.1e-3]),
+        (4, [5.9e-4, 4.3e-2], [1.3e-5, 1.2e-3]),
+        (8, [2.9e-4, 2.45e-2], [1.72e-6, 1.54e-4]),
+    ] {
+        for (method, bounds) in [
+            (Method::Difference { refinement }, difference),
+            (Method::Image { refinement }, image),
+        ] {
+            let errors = errors(&body, &square()?, method)?;
+            let found = [errors[[0, 0]].abs(), largest(&errors)];
+            println!(
+                "{method:?}: {:.1e} at the loaded cell, {:.1e} at most",
+                found[0], found[1]
+            );
+            assert!(
+                found[0] < bounds[0] && found[1] < bounds[1],
+                "{method:?}: {found:?}"
+            );
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn plain_is_right_at_the_loaded_cell_and_rings_next_to_it() -> Result<()> {
+    let errors = errors(
+        &coated(4.0, 8.0)?,
+        &square()?,
+        Method::Plain { refinement: 4 },
+    )?;
+    let (loaded, ringing) = (errors[[0, 0]].abs(), errors[[1, 0]]);
+    println!("plain: {loaded:.1e} at the loaded cell, {ringing:.1e} next to it");
+    assert!(loaded < 1e-3, "{loaded:e}");
+    assert!(
+        ringing.abs() > 0.02 && largest(&errors) < 0.08,
+        "{ringing:e}"
+    );
+    // It alternates about a slow drift.
+    for i in 1..8 {
+        let steps = [0, 1].map(|k| errors[[i + k, 0]] - errors[[i + k - 1, 0]]);
+        assert!(steps[0] * steps[1] < 0.0, "offset {i}: {steps:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn refinement_moves_the_periodic_images_away() -> Result<()> {
+    // A cell mean is left of a 1/α singularity by `difference`: the error at the loaded cell falls
+    // as 1/χ. `image` leaves a regular remainder: 1/χ³.
+    let body = coated(4.0, 8.0)?;
+    let loaded = |method| -> Result<f64> { Ok(errors(&body, &square()?, method)?[[0, 0]].abs()) };
+    for refinement in [2, 4] {
+        let doubled = 2 * refinement;
+        let difference = loaded(Method::Difference { refinement })?
+            / loaded(Method::Difference {
+                refinement: doubled,
+            })?;
+        let image = loaded(Method::Image { refinement })?
+            / loaded(Method::Image {
+                refinement: doubled,
+            })?;
+        assert!((2.0..2.4).contains(&difference), "{difference}");
+        assert!((6.0..9.0).contains(&image), "{image}");
+    }
+    Ok(())
+}
+
+#[test]
+fn only_image_serves_a_long_thin_domain() -> Result<()> {
+    // The paper's roller: 26.8 x 0.16 mm, coating of 0.04 mm, E1/E2 = 4; lengths in mm.
+    let grid = Grid::new([1024, 128], [26.8, 0.16])?;
+    let body = coated(4.0, 0.04)?;
+    let difference = errors(&body, &grid, Method::Difference { refinement: 4 })?;
+    let image = errors(&body, &grid, Method::Image { refinement: 4 })?;
+    println!(
+        "long domain: difference {:.1e} at the loaded cell, {:.1} at most; image {:.1e}, {:.1e}",
+        difference[[0, 0]],
+        largest(&difference),
+        image[[0, 0]],
+        largest(&image)
+    );
+    // 3 % and a factor of 15; 2.6e-3.
+    assert!((0.03..0.04).contains(&difference[[0, 0]].abs()));
+    assert!((14.0..16.0).contains(&largest(&difference)));
+    assert!(image[[0, 0]].abs() < 1e-4 && largest(&image) < 3e-3);
+    Ok(())
+}
+
+#[test]
+fn conversions_of_a_bare_body_are_its_closed_form() -> Result<()> {
+    // Nothing is left to transform but rounding.
+    let body = Elastic::new(1.0, 0.3)?.into();
+    for method in [
+        Method::Difference { refinement: 2 },
+        Method::Image { refinement: 2 },
+    ] {
+        let found = largest(&errors(&body, &square()?, method)?);
+        assert!(found < 1e-12, "{method:?}: {found:e}");
+    }
+    Ok(())
+}

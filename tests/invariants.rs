@@ -1,0 +1,399 @@
+//! What holds for any contact: balance, complementarity, scaling, and that a solution does not
+//! depend on how it was asked for.
+
+use approx::assert_relative_eq;
+use nacre::influence::{Method, influence_coefficients};
+use nacre::{
+    Algorithm, Contact, Elastic, Grid, HalfSpace, HeightMap, Layer, Motion, Options, Paraboloid,
+    Result, Setup, Solution, Surface,
+};
+use ndarray::Array2;
+use proptest::prelude::*;
+
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/seeded.rs"]
+mod seeded;
+
+use random::uniform;
+use seeded::seeded;
+
+/// Balance of force and moments, over W and W × half side.
+const BALANCE: f64 = 1e-12;
+
+/// A layer that is not there: the radial tables of its rest, which is zero.
+const NO_LAYER: f64 = 1e-10;
+
+/// Pressure over its peak, between two ways to the same contact, both at [`TIGHT`].
+const SAME_PRESSURE: f64 = 1e-8;
+
+/// Motion, load and moments between them, relative.
+const SAME_MOTION: f64 = 1e-9;
+
+/// Tolerance of the iterations, so that it is not what is seen.
+const TIGHT: f64 = 1e-12;
+
+const RADIUS: f64 = 5e-3;
+
+/// Two layers on steel.
+fn stack() -> Result<HalfSpace> {
+    let steel = Elastic::new(210e9, 0.3)?;
+    let layers = [
+        Layer::new(Elastic::new(420e9, 0.22)?, 10e-6)?,
+        Layer::new(Elastic::new(70e9, 0.35)?, 30e-6)?,
+    ];
+    HalfSpace::new(steel, layers)
+}
+
+/// Oblong cells, odd and even numbers of them, the origin off the centre.
+fn grid() -> Result<Grid> {
+    Grid::new([45, 64], [4.5e-4, 4.8e-4])?.centered_at([2e-5, -3e-5])
+}
+
+fn tight() -> Options {
+    Options {
+        tolerance: TIGHT,
+        ..Options::default()
+    }
+}
+
+fn plan(body: &HalfSpace) -> Result<Contact> {
+    Contact::plan(body, grid()?, Setup::default())
+}
+
+fn paraboloid() -> Result<Paraboloid> {
+    Paraboloid::new(RADIUS, 1.5 * RADIUS)
+}
+
+/// max |a − b| over the peak of b.
+fn difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
+    let largest = |a: &Array2<f64>| a.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    largest(&(a - b)) / largest(b)
+}
+
+fn assert_same(a: &Solution, b: &Solution, what: &str) {
+    assert!(a.report.converged() && b.report.converged(), "{what}");
+    let pressure = difference(&a.pressure, &b.pressure);
+    assert!(pressure < SAME_PRESSURE, "{what}: pressure {pressure:e}");
+    assert_relative_eq!(a.load(), b.load(), max_relative = SAME_MOTION);
+    assert_relative_eq!(a.approach, b.approach, max_relative = SAME_MOTION);
+    let lever = grid().map_or(1.0, |grid| grid.size()[0]);
+    for k in 0..2 {
+        let tilt = (a.tilt[k] - b.tilt[k]) * lever / b.approach;
+        let moment = (a.moment()[k] - b.moment()[k]) / (b.load() * lever);
+        assert!(tilt.abs() < SAME_MOTION, "{what}: tilt {tilt:e}");
+        assert!(moment.abs() < SAME_MOTION, "{what}: moment {moment:e}");
+    }
+}
+
+#[test]
+fn layer_of_the_substrates_material_is_no_layer() -> Result<()> {
+    let steel = Elastic::new(210e9, 0.3)?;
+    let motion = Motion {
+        eccentricity: [Some(1e-5), Some(-2e-5)],
+        ..Motion::load(30.0)
+    };
+    let bare = plan(&steel.into())?.solve(&paraboloid()?, &motion, &tight())?;
+    for thickness in [1e-8, 1e-5, 1e-3] {
+        let same = HalfSpace::new(steel, [Layer::new(steel, thickness)?])?;
+        let coated = plan(&same)?.solve(&paraboloid()?, &motion, &tight())?;
+        let pressure = difference(&coated.pressure, &bare.pressure);
+        assert!(pressure < NO_LAYER, "{thickness}: {pressure:e}");
+        assert_relative_eq!(coated.approach, bare.approach, max_relative = NO_LAYER);
+        assert_relative_eq!(coated.tilt[0], bare.tilt[0], max_relative = NO_LAYER);
+        assert_relative_eq!(coated.tilt[1], bare.tilt[1], max_relative = NO_LAYER);
+    }
+    Ok(())
+}
+
+#[test]
+fn eccentric_paraboloid_is_a_shifted_one() -> Result<()> {
+    // x²/2R − s x = (x − sR)²/2R − s²R/2, on any body; on the grid if the shift is a whole number
+    // of half cells from where its cells are symmetric.
+    let side = [4.5e-4, 4.8e-4];
+    let contact = Contact::plan(&stack()?, Grid::new([45, 64], side)?, Setup::default())?;
+    let shape = paraboloid()?;
+    let radii = [shape.radius_x(), shape.radius_y()];
+    for half_cells in [[3.0, 0.0], [-4.0, 5.0]] {
+        let e = [0, 1].map(|k| half_cells[k] * 0.5 * contact.grid().spacing()[k]);
+        let motion = Motion {
+            eccentricity: e.map(Some),
+            ..Motion::load(30.0)
+        };
+        let eccentric = contact.solve(&shape, &motion, &tight())?;
+        let shifted = contact.solve(&shape.shifted(e[0], e[1])?, &Motion::load(30.0), &tight())?;
+        assert!(eccentric.report.converged() && shifted.report.converged());
+        let pressure = difference(&eccentric.pressure, &shifted.pressure);
+        println!("eccentric against shifted: pressure {pressure:.1e}");
+        assert!(pressure < SAME_PRESSURE, "{pressure:e}");
+        let mut lift = 0.0;
+        for k in 0..2 {
+            let largest = side[k] / radii[k];
+            let error = (eccentric.tilt[k] - e[k] / radii[k]) / largest;
+            assert!(error.abs() < SAME_MOTION, "{error:e}");
+            lift += e[k] * e[k] / (2.0 * radii[k]);
+        }
+        assert_relative_eq!(
+            eccentric.approach,
+            shifted.approach - lift,
+            max_relative = SAME_MOTION
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn every_mixture_of_freedoms_finds_the_same_contact() -> Result<()> {
+    let contact = plan(&stack()?)?;
+    let shape = paraboloid()?;
+    let eccentricity = [1.5e-5, -2.5e-5];
+    let motion = Motion {
+        eccentricity: eccentricity.map(Some),
+        ..Motion::load(30.0)
+    };
+    let known = contact.solve(&shape, &motion, &tight())?;
+    let moment = known.moment();
+    let mut mixtures = 0;
+    for loaded in [true, false] {
+        for x in 0..3 {
+            for y in 0..3 {
+                let mut motion = if loaded {
+                    Motion::load(known.load())
+                } else {
+                    Motion::approach(known.approach)
+                };
+                for (k, control) in [x, y].into_iter().enumerate() {
+                    match control {
+                        0 => motion.tilt[k] = Some(known.tilt[k]),
+                        1 => motion.moment[k] = Some(moment[k]),
+                        _ => motion.eccentricity[k] = Some(eccentricity[k]),
+                    }
+                }
+                if !loaded && (x == 2 || y == 2) {
+                    continue; // An eccentricity needs a load.
+                }
+                for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+                    let options = Options {
+                        algorithm,
+                        ..tight()
+                    };
+                    let found = contact.solve(&shape, &motion, &options)?;
+                    assert_same(&found, &known, &format!("{algorithm:?} {motion:?}"));
+                }
+                mixtures += 1;
+            }
+        }
+    }
+    assert_eq!(mixtures, 13);
+    Ok(())
+}
+
+#[test]
+fn locked_tilt_is_zero_and_carries_a_moment() -> Result<()> {
+    let contact = plan(&stack()?)?;
+    let shape = paraboloid()?.shifted(3e-5, -4e-5)?;
+    let solution = contact.solve(&shape, &Motion::load(30.0), &tight())?;
+    assert!(
+        solution.tilt.iter().all(|s| s.abs() <= 0.0),
+        "{:?}",
+        solution.tilt
+    );
+    let [ex, ey] = solution.eccentricity();
+    // The discrete contact is symmetric only to a fraction of a cell.
+    assert_relative_eq!(ex, 3e-5, max_relative = 5e-3);
+    assert_relative_eq!(ey, -4e-5, max_relative = 5e-3);
+    Ok(())
+}
+
+#[test]
+fn approach_at_which_nothing_touches_is_an_answer() -> Result<()> {
+    let contact = plan(&stack()?)?;
+    let shape = paraboloid()?;
+    for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+        for approach in [-1e-6, 0.0] {
+            let options = Options {
+                algorithm,
+                ..Options::default()
+            };
+            let solution = contact.solve(&shape, &Motion::approach(approach), &options)?;
+            assert!(
+                solution.report.converged(),
+                "{algorithm:?}: {:?}",
+                solution.report
+            );
+            assert!(solution.pressure.iter().all(|p| p.abs() <= 0.0));
+            assert!(solution.load().abs() <= 0.0 && solution.report.residual.abs() <= 0.0);
+            assert_eq!(solution.contact_extent(), [[0.0; 2]; 2]);
+            let gap = shape.gaps(contact.grid())? - approach;
+            assert!(difference(&solution.gap, &gap) < 1e-15);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn stiffer_bodies_under_larger_loads_touch_alike() -> Result<()> {
+    // Linear elasticity: E → kE and W → kW leave contact and approach, and p → kp.
+    let scaled = |factor: f64| -> Result<Solution> {
+        let steel = Elastic::new(factor * 210e9, 0.3)?;
+        let coating = Layer::new(Elastic::new(factor * 420e9, 0.2)?, 2e-5)?;
+        let contact = plan(&HalfSpace::new(steel, [coating])?)?;
+        contact.solve(&paraboloid()?, &Motion::load(factor * 30.0), &tight())
+    };
+    let (one, three) = (scaled(1.0)?, scaled(3.0)?);
+    assert!(difference(&three.pressure, &(&one.pressure * 3.0)) < SAME_PRESSURE);
+    assert_relative_eq!(three.approach, one.approach, max_relative = SAME_MOTION);
+    assert_eq!(three.in_contact(), one.in_contact());
+    Ok(())
+}
+
+#[test]
+fn any_consistent_units_give_the_same_contact() -> Result<()> {
+    // m, N, Pa; then mm, N, MPa.
+    let solve = |length: f64, pressure: f64| -> Result<Solution> {
+        let steel = Elastic::new(210e9 * pressure, 0.3)?;
+        let coating = Layer::new(Elastic::new(800e9 * pressure, 0.1)?, 1e-5 * length)?;
+        let body = HalfSpace::new(steel, [coating])?;
+        let grid = grid()?;
+        let center = grid.center().map(|x| x * length);
+        let grid = Grid::new(grid.shape(), grid.size().map(|l| l * length))?.centered_at(center)?;
+        let shape = Paraboloid::new(RADIUS * length, RADIUS * length)?;
+        let motion = Motion {
+            eccentricity: [Some(1e-5 * length), None],
+            ..Motion::load(30.0)
+        };
+        Contact::plan(&body, grid, Setup::default())?.solve(&shape, &motion, &tight())
+    };
+    let (si, mm) = (solve(1.0, 1.0)?, solve(1e3, 1e-6)?);
+    assert!(difference(&(&mm.pressure * 1e6), &si.pressure) < SAME_PRESSURE);
+    assert_relative_eq!(mm.approach, si.approach * 1e3, max_relative = SAME_MOTION);
+    assert_relative_eq!(mm.tilt[0], si.tilt[0], max_relative = SAME_MOTION);
+    assert_relative_eq!(
+        mm.moment()[0],
+        si.moment()[0] * 1e3,
+        max_relative = SAME_MOTION
+    );
+    Ok(())
+}
+
+#[test]
+fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
+    let contact = plan(&stack()?)?;
+    let motion = Motion {
+        eccentricity: [Some(1e-5), Some(0.0)],
+        ..Motion::load(30.0)
+    };
+    let known = contact.solve(&paraboloid()?, &motion, &tight())?;
+    let starts = [
+        None,
+        Some(known.pressure.clone()),
+        Some(uniform(contact.grid().shape(), 3) * 1e9),
+        Some(Array2::zeros(contact.grid().shape())),
+    ];
+    for initial in starts {
+        for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+            let options = Options {
+                algorithm,
+                initial: initial.clone(),
+                ..tight()
+            };
+            let found = contact.solve(&paraboloid()?, &motion, &options)?;
+            assert_same(&found, &known, &format!("{algorithm:?}"));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {
+    let grid = Grid::new([150, 128], [4.5e-4, 4.8e-4])?;
+    let bits = |threads: usize| -> Result<Vec<u64>> {
+        let setup = Setup {
+            threads: Some(threads),
+            ..Setup::default()
+        };
+        let contact = Contact::plan(&stack()?, grid, setup)?;
+        let solution = contact.solve(&paraboloid()?, &Motion::load(60.0), &Options::default())?;
+        let values = solution
+            .pressure
+            .iter()
+            .chain(&solution.gap)
+            .chain([&solution.approach]);
+        Ok(values.map(|x| x.to_bits()).collect())
+    };
+    let one = bits(1)?;
+    for threads in [2, 4] {
+        assert!(bits(threads)? == one, "{threads} threads");
+    }
+    Ok(())
+}
+
+#[test]
+fn displacement_is_the_convolution_of_the_pressure() -> Result<()> {
+    // By the double sum over the coefficients, at a few cells.
+    let contact = plan(&stack()?)?;
+    let solution = contact.solve(&paraboloid()?, &Motion::load(30.0), &Options::default())?;
+    let c = influence_coefficients(&stack()?, contact.grid(), Method::Exact)?;
+    for (i, j) in [(0_usize, 0_usize), (22, 31), (44, 10)] {
+        let pressed = solution.pressure.indexed_iter();
+        let sum: f64 = pressed
+            .map(|((k, l), p)| c[[i.abs_diff(k), j.abs_diff(l)]] * p)
+            .sum();
+        assert_relative_eq!(solution.displacement[[i, j]], sum, max_relative = 1e-11);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(seeded(24))]
+
+    #[test]
+    fn rough_contacts_are_complementary_and_balanced(
+        seed in any::<u64>(),
+        log_load in 0.0..2.5,
+        ex in -0.3..0.3,
+        ey in -0.3..0.3,
+        free in any::<[bool; 2]>(),
+        old in any::<bool>(),
+    ) {
+        // A rough paraboloid, with heights of the size of its approach.
+        let grid = grid()?;
+        let rough = HeightMap::new(uniform(grid.shape(), seed) * 3e-7, grid.spacing())?
+            .centered_at(grid.center())?;
+        let shape = paraboloid()?.plus(rough);
+        let load = 10.0_f64.powf(log_load);
+        let [lx, ly] = grid.size();
+        let e = [grid.center()[0] + ex * lx, grid.center()[1] + ey * ly];
+        let eccentricity = [0, 1].map(|k| free[k].then_some(e[k]));
+        let motion = Motion { eccentricity, ..Motion::load(load) };
+        let algorithm = if old { Algorithm::PolonskyKeer } else { Algorithm::Cascade };
+        let options = Options { algorithm, ..Options::default() };
+        let solution = plan(&stack()?)?.solve(&shape, &motion, &options)?;
+
+        let report = &solution.report;
+        prop_assert!(report.converged(), "{:?}", report);
+        prop_assert!(solution.pressure.iter().all(|p| *p >= 0.0 && p.is_finite()));
+        prop_assert!((solution.load() / load - 1.0).abs() < BALANCE);
+        for k in (0..2).filter(|&k| free[k]) {
+            let off = (solution.moment()[k] - load * e[k]) / (load * 0.5 * grid.size()[k]);
+            prop_assert!(off.abs() < BALANCE, "moment {}: {:e}", k, off);
+        }
+
+        // The report says what the fields say.
+        let gap = shape.gaps(&grid)? + &solution.displacement;
+        let (x, y) = (grid.x(), grid.y());
+        let (mut mismatch, mut work, mut overlap, mut deepest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
+        for ((i, j), p) in solution.pressure.indexed_iter() {
+            let rigid = solution.approach + solution.tilt[0] * x[i] + solution.tilt[1] * y[j];
+            let (g, u) = (gap[[i, j]] - rigid, solution.displacement[[i, j]]);
+            prop_assert!((g - solution.gap[[i, j]]).abs() < 1e-12 * u.abs().max(g.abs()));
+            mismatch += p * g.abs();
+            work += p * u;
+            overlap = overlap.max(-g);
+            deepest = deepest.max(u);
+        }
+        prop_assert!(mismatch <= 1.01 * options.tolerance * work);
+        prop_assert!(overlap <= 1.01 * options.tolerance * deepest);
+        prop_assert!(report.residual <= options.tolerance && report.overlap <= options.tolerance);
+    }
+}

@@ -1,0 +1,114 @@
+"""Every public name has a NumPy-style docstring, whose examples are true."""
+
+import doctest
+import inspect
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+
+FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+
+
+def public_objects() -> dict[str, Any]:
+    """Return classes and functions, methods and attributes, by their full names."""
+    found: dict[str, Any] = {}
+    for name in nacre.__all__:
+        thing = getattr(nacre, name)
+        if name.startswith("__"):
+            continue
+        found[name] = thing
+        if isinstance(thing, type) and not issubclass(thing, BaseException):
+            members = [member for member in vars(thing) if not member.startswith("_")]
+            found |= {f"{name}.{member}": getattr(thing, member) for member in members}
+    return found
+
+
+def parameters(thing: Any) -> list[inspect.Parameter]:
+    """Return what a caller gives; nothing where nothing can be called."""
+    try:
+        signature = inspect.signature(thing)
+    except (TypeError, ValueError):
+        return []
+    return [p for name, p in signature.parameters.items() if name != "self"]
+
+
+def sections(docstring: str) -> dict[str, str]:
+    """Return the text below each underlined heading."""
+    parts = re.split(r"^(\w[\w ]*)\n-{3,}\n", inspect.cleandoc(docstring), flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+def documented(section: str) -> list[str]:
+    """Return the names in `a, b : type` lines."""
+    lines = re.findall(r"^(\w+(?:, \w+)*) : \S", section, flags=re.MULTILINE)
+    return [name for line in lines for name in line.split(", ")]
+
+
+OBJECTS = public_objects()
+CALLED = {name: thing for name, thing in OBJECTS.items() if callable(thing) and parameters(thing)}
+CLASSES = {
+    name: thing
+    for name, thing in OBJECTS.items()
+    if isinstance(thing, type) and not issubclass(thing, BaseException)
+}
+
+called = pytest.mark.parametrize("name", CALLED)
+
+
+@pytest.mark.parametrize("name", OBJECTS)
+def test_it_says_what_it_is_in_one_line(name: str) -> None:
+    docstring = OBJECTS[name].__doc__
+    assert docstring
+    first, _, rest = inspect.cleandoc(docstring).partition("\n")
+    assert first.endswith((".", ":"))
+    assert rest == "" or rest.startswith("\n")
+
+
+@called
+def test_each_parameter_is_documented(name: str) -> None:
+    section = sections(OBJECTS[name].__doc__).get("Parameters", "")
+    assert documented(section) == [p.name for p in parameters(OBJECTS[name])]
+
+
+@called
+def test_each_default_can_be_read(name: str) -> None:
+    hidden = [p.name for p in parameters(OBJECTS[name]) if p.default is ...]
+    assert hidden == []
+
+
+@called
+def test_its_errors_are_documented(name: str) -> None:
+    assert re.search(r"^(Value|Type)Error$", sections(OBJECTS[name].__doc__)["Raises"], re.M)
+
+
+@called
+def test_what_a_function_returns_is_documented(name: str) -> None:
+    if not isinstance(OBJECTS[name], type):
+        assert sections(OBJECTS[name].__doc__)["Returns"].strip()
+
+
+@pytest.mark.parametrize("name", CALLED | CLASSES)
+def test_it_has_an_example(name: str) -> None:
+    assert ">>> " in sections(OBJECTS[name].__doc__).get("Examples", "")
+
+
+def with_examples() -> list[str]:
+    everything = {"nacre": nacre} | OBJECTS
+    return [name for name, thing in everything.items() if ">>> " in (thing.__doc__ or "")]
+
+
+@pytest.mark.parametrize("name", with_examples())
+def test_its_examples_are_true(name: str) -> None:
+    docstring = nacre.__doc__ if name == "nacre" else OBJECTS[name].__doc__
+    assert docstring
+    examples = doctest.DocTestParser().get_doctest(
+        docstring, {"nacre": nacre, "np": np}, name, None, 0
+    )
+    said: list[str] = []
+    result = doctest.DocTestRunner(optionflags=FLAGS).run(examples, out=said.append)
+    assert result.attempted > 0
+    assert result.failed == 0, "".join(said)

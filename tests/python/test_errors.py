@@ -1,0 +1,246 @@
+"""Bad input is refused by a message that names the argument, what it must be and what it was."""
+
+import re
+import subprocess
+import sys
+from functools import partial
+
+import numpy as np
+import pytest
+
+import nacre
+
+NAN, INF = float("nan"), float("inf")
+STEEL = nacre.Elastic(young=210e9, poisson=0.3)
+SPHERE = nacre.Sphere(5e-3)
+PROFILE = nacre.LogarithmicProfile(1e-6, length=1.0)
+PUNCH = nacre.FlatPunch(1e-4)
+GRID = nacre.Grid(shape=(16, 20), size=(4e-4, 4e-4))
+CONTACT = nacre.Contact(STEEL, GRID)
+HEIGHTS = np.zeros((4, 5))
+NAN_AT_1_2 = HEIGHTS.copy()
+NAN_AT_1_2[1, 2] = NAN
+TOO_LARGE = (2**20, 2**20)
+
+VALUE_ERRORS = {
+    # materials and bodies
+    "Elastic(-1.0, 0.3)": r"young must be .*above 0, got -1",
+    "Elastic(0.0, 0.3)": r"young must be .*above 0, got 0",
+    "Elastic(NAN, 0.3)": r"young must be .*got NaN",
+    "Elastic(INF, 0.3)": r"young must be finite.*got inf",
+    "Elastic(1.0, 0.51)": r"poisson must be .*at most 0\.5, got 0\.51",
+    "Elastic(1.0, -1.0)": r"poisson must be above -1.*got -1",
+    "Elastic(1.0, NAN)": r"poisson must be .*got NaN",
+    "Layer(STEEL, 0.0)": r"thickness must be .*above 0, got 0",
+    "Layer(STEEL, -1e-6)": r"thickness must be .*above 0, got -(0\.000001|1e-6)",
+    "Layer(STEEL, INF)": r"thickness must be finite.*got inf",
+    "Layer(STEEL, 1.0, 'glued')": r"interface must be .*bonded.*frictionless.*glued",
+    "HalfSpace(RIGID)": r"layers must .*at least one.*rigid",
+    # shapes
+    "Sphere(0.0)": r"radius must be .*above 0, got 0",
+    "Sphere(INF)": r"radius must be finite.*got inf",
+    "Paraboloid(1.0, -2.0)": r"radius_y must be .*above 0, got -2",
+    "Paraboloid(NAN, 1.0)": r"radius_x must be .*got NaN",
+    "Cylinder(-1.0)": r"radius must be .*above 0, got -1",
+    "FlatPunch(0.0)": r"radius must be .*above 0, got 0",
+    "Roller(0.0, 1.0, 1.0)": r"radius must be .*above 0, got 0",
+    "Roller(1.0, -1.0, 1.0)": r"flat_length must be .*at least 0, got -1",
+    "Roller(1.0, 1.0, 0.0)": r"crown_radius must be .*above 0, got 0",
+    "Roller(1.0, 1.0, 1.0, length=0.5)": r"length must be at least flat_length.*got 0\.5",
+    "Roller(1.0, 1.0, 1.0, length=NAN)": r"length must be .*got NaN",
+    "Roller(1.0)": r"flat_length.*crown_radius.*profile",
+    "Roller(1.0, 1.0)": r"flat_length.*crown_radius.*profile",
+    "Roller(1.0, 1.0, 1.0, profile=PROFILE)": r"flat_length.*crown_radius.*profile",
+    "LogarithmicProfile(0.0, 1.0)": r"amplitude must be .*above 0, got 0",
+    "LogarithmicProfile(1.0, INF)": r"length must be finite.*got inf",
+    "LogarithmicProfile(1.0, 1.0, 1.0)": r"flat_length must be .*below.*length, got 1",
+    "LogarithmicProfile(1.0, 1.0, 0.0, 1.5)": r"end_factor must be .*at most 1, got 1\.5",
+    "LogarithmicProfile.lundberg(0.0, 1.0, 1.0)": r"length must be .*above 0, got 0",
+    "LogarithmicProfile.iso16281(-1.0, 1.0)": r"diameter must be .*above 0, got -1",
+    "SampledProfile([0.0, 1.0], [0.0])": r"drop.*\b2\b.*\b1\b",
+    "SampledProfile([0.0], [0.0])": r"at least two",
+    "SampledProfile([0.0, 0.0], [0.0, 1.0])": r"positions must be increasing, got 0",
+    "SampledProfile([0.0, NAN], [0.0, 1.0])": r"not finite at .*1",
+    "SampledProfile(HEIGHTS, HEIGHTS)": r"x must have one dimension.*\[4, 5\]",
+    "SPHERE.shifted(NAN, 0.0)": r"x must be finite, got NaN",
+    "SPHERE.shifted(0.0, INF)": r"y must be finite, got inf",
+    # height maps
+    "HeightMap(NAN_AT_1_2, 1.0)": r"heights is not finite at \[1, 2\]",
+    "HeightMap(np.where(np.isnan(NAN_AT_1_2), INF, 0.0), 1.0)": r"heights is not finite at",
+    "HeightMap([1.0, 2.0], 1.0)": r"heights must have two dimensions.*\[2\]",
+    "HeightMap(np.zeros((2, 2, 2)), 1.0)": r"heights must have two dimensions.*\[2, 2, 2\]",
+    "HeightMap([[1.0, 2.0]], 1.0)": r"heights.*\[1, 2\]",
+    "HeightMap(np.zeros((0, 0)), 1.0)": r"heights.*\[0, 0\]",
+    "HeightMap(HEIGHTS, 0.0)": r"spacing must be .*above 0, got 0",
+    "HeightMap(HEIGHTS, (1.0, -1.0))": r"spacing must be .*above 0, got -1",
+    "HeightMap(HEIGHTS, 1.0, center=(NAN, 0.0))": r"center must be finite, got NaN",
+    "HeightMap(HEIGHTS, 1e-9).gaps(GRID)": r"grid spacing must be at most twice.*got (0\.0|2\.5e-)",
+    # grids
+    "Grid((0, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got 0",
+    "Grid((1, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got 1",
+    "Grid((-4, 4), (1.0, 1.0))": r"shape must be .*at least 2.*got -4",
+    "Grid((4, 4, 4), (1.0, 1.0))": r"(?s)length 2.*3.*shape",
+    "Grid((2**62, 2**62), (1.0, 1.0))": r"shape must be .*got 2126764793",
+    "Grid((2**70, 4), (1.0, 1.0))": r"shape must be .*(count|at most).*got 11805916207174113",
+    "Grid((4, 4), (0.0, 1.0))": r"size must be .*above 0, got 0",
+    "Grid((4, 4), (1.0, INF))": r"size must be finite.*got inf",
+    "Grid((4, 4), (1.0, 1.0, 1.0))": r"(?s)length 2.*3.*size",
+    "Grid((4, 4), (1.0, 1.0), center=(0.0, NAN))": r"center must be finite, got NaN",
+    "Grid.line(1, 1.0)": r"cells must be .*at least 2, got 1",
+    "Grid.line(4, -1.0)": r"width must be .*above 0, got -1",
+    # plans
+    "Contact(STEEL, GRID, method='magic')": r"method must be .*exact.*plain.*magic",
+    "Contact(STEEL, GRID, refinement=0)": r"refinement must be .*at least 1, got 0",
+    "Contact(STEEL, GRID, threads=0)": r"threads must be .*at least 1, got 0",
+    "Contact(STEEL, GRID, threads=-2)": r"threads must be .*at least 1, got -2",
+    "influence_coefficients(STEEL, GRID, 'magic')": r"method must be .*exact.*plain.*magic",
+    "influence_coefficients(STEEL, GRID, 'plain', 0)": r"refinement must be .*at least 1, got 0",
+    # frequency response
+    "frequency_response(STEEL, 0.0)": r"wavenumber must be .*above 0, got 0",
+    "frequency_response(STEEL, [1.0, -2.0])": r"wavenumber must be .*above 0, got -2",
+    "frequency_response(STEEL, NAN)": r"wavenumber must be .*got NaN",
+    "frequency_response(STEEL, INF)": r"wavenumber must be finite.*got inf",
+    # graded coatings
+    "graded_layers(STEEL, 0.0, 1e9, 0.3)": r"thickness must be .*above 0, got 0",
+    "graded_layers(STEEL, 1.0, -1e9, 0.3)": r"young must be .*got -1000000000",
+    "graded_layers(STEEL, 1.0, 1e9, lambda z: z)": r"poisson must be .*0\.5, got 0\.",
+    "graded_layers(STEEL, 1.0, 1e9, 0.3, 2.0)": r"tolerance must be .*below 1, got 2",
+    # controls
+    "press()": r"exactly one of load and approach",
+    "press(load=1.0, approach=1e-6)": r"exactly one of load and approach",
+    "press(load=0.0)": r"load must be .*above 0, got 0",
+    "press(load=-1.0)": r"load must be .*above 0, got -1",
+    "press(load=NAN)": r"load must be .*got NaN",
+    "press(load=INF)": r"load must be finite.*got inf",
+    "press(approach=NAN)": r"approach must be finite, got NaN",
+    "press(load=1.0, eccentricity=(NAN, None))": r"eccentricity must be finite, got NaN",
+    "press(load=1.0, moment=(None, INF))": r"moment must be finite, got inf",
+    "press(load=1.0, tilt=(-INF, None))": r"tilt must be finite, got -inf",
+    "press(approach=1e-6, eccentricity=(0.0, None))": r"eccentricity needs load",
+    "press(approach=1e-6, eccentricity=(None, 0.0))": r"eccentricity needs load",
+    "press(load=1.0, eccentricity=(0.0, None), tilt=(0.0, None))": r"along x at most one of",
+    "press(load=1.0, eccentricity=(None, 0.0), moment=(None, 0.0))": r"along y at most one of",
+    "press(load=1.0, moment=(0.0, None), tilt=(0.0, 0.0))": r"along x at most one of",
+    # the load point, on a grid whose cell centres end at 1.875e-4
+    "press(load=1.0, eccentricity=(1.9e-4, None))": r"load point \(1\.9.*must lie .*inside",
+    "press(load=1.0, eccentricity=(None, -1.0))": r"load point \(0.*-1\.0.*must lie .*inside",
+    "press(load=2.0, moment=(1.0, None))": r"load point \(5\.0*e-1.*must lie .*inside",
+    "CONTACT.solve(PUNCH, load=1.0, eccentricity=(1.2e-4, 0.0))": r"load point \(1\.2.*inside",
+    "CONTACT.solve(SPHERE.shifted(1.0, 0.0), load=1.0)": r"no cell .*can touch",
+    # options
+    "press(load=1.0, tolerance=0.0)": r"tolerance must be above 0.*got 0",
+    "press(load=1.0, tolerance=1.0)": r"tolerance must be .*below 1, got 1",
+    "press(load=1.0, tolerance=NAN)": r"tolerance must be .*got NaN",
+    "press(load=1.0, max_iterations=-1)": r"max_iterations must be .*at least 0, got -1",
+    "press(load=1.0, algorithm='magic')": r"algorithm must be .*magic",
+    "press(load=1.0, initial=np.zeros((3, 4)))": r"initial.*shape \[16, 20\].*\[3, 4\]",
+    "press(load=1.0, initial=np.zeros(20))": r"initial must have two dimensions.*\[20\]",
+    "press(load=1.0, initial=np.full((16, 20), NAN))": r"initial is not finite at \[0, 0\]",
+    "press(load=1.0, initial=np.full((16, 20), -3.0))": r"initial must be .*at least 0.*-3",
+    "solve(Cylinder(5e-3), STEEL, load=1.0)": r"grid must be given",
+}
+
+TYPE_ERRORS = {
+    "Elastic('hard', 0.3)": r"(?s)number.*young",
+    "Elastic(1j, 0.3)": r"(?s)number.*young",
+    "Elastic(1.0, None)": r"(?s)number.*poisson",
+    "Layer('steel', 1.0)": r"(?s)Elastic.*material",
+    "Layer(STEEL, 'thin')": r"(?s)number.*thickness",
+    "Layer(STEEL, 1.0, 3)": r"(?s)str.*interface",
+    "HalfSpace('steel')": r"substrate must be an Elastic or .*RIGID, got .*steel",
+    "HalfSpace(None)": r"substrate must be an Elastic or .*RIGID, got None",
+    "HalfSpace(STEEL, [STEEL])": r"(?s)Layer.*layers",
+    "HalfSpace(STEEL, Layer(STEEL, 1.0))": r"(?s)Sequence.*layers",
+    "Sphere('round')": r"(?s)number.*radius",
+    "Sphere([1.0, 2.0])": r"(?s)number.*radius",
+    "SPHERE + Elastic(1.0, 0.3)": r"unsupported operand",
+    "SPHERE.shifted('left', 0.0)": r"(?s)number.*x",
+    "SPHERE.gaps('grid')": r"(?s)Grid.*grid",
+    "Roller(1.0, profile=3)": r"profile must be .*LogarithmicProfile.*got 3",
+    "Roller(1.0, profile=('a', 'b'))": r"x must be a real array.*<U1",
+    "HeightMap(HEIGHTS, 'fine')": r"spacing must be .*number.*fine",
+    "HeightMap(HEIGHTS, (1.0, 1.0, 1.0))": r"spacing must be .*1\.0, 1\.0, 1\.0",
+    "HeightMap(HEIGHTS, 1.0, center=0.0)": r"(?s)(float|tuple|pair).*center",
+    "Grid(4, (1.0, 1.0))": r"(?s)int.*shape",
+    "Grid((4.0, 4.0), (1.0, 1.0))": r"shape must be an integer, got 4\.0",
+    "Grid('ab', (1.0, 1.0))": r"shape must be an integer, got .*a",
+    "Grid((4, 4), 1.0)": r"(?s)float.*size",
+    "Grid.line(2.5, 1.0)": r"cells must be an integer, got 2\.5",
+    "Contact('steel', GRID)": r"body.*must be a HalfSpace or an Elastic, got .*steel",
+    "Contact(STEEL, (16, 20))": r"(?s)Grid.*grid",
+    "Contact(STEEL, GRID, 'steel')": r"counterbody.*must be a HalfSpace.*steel",
+    "Contact(STEEL, GRID, method=3)": r"(?s)str.*method",
+    "Contact(STEEL, GRID, refinement=1.5)": r"refinement must be an integer, got 1\.5",
+    "Contact(STEEL, GRID, threads='all')": r"threads must be an integer, got .*all",
+    "frequency_response('steel', 1.0)": r"body.*must be a HalfSpace.*steel",
+    "graded_layers('steel', 1.0, 1e9, 0.3)": r"substrate must be .*steel",
+    "graded_layers(STEEL, 1.0, 'hard', 0.3)": r"young must be .*hard",
+    "graded_layers(STEEL, 1.0, lambda z: 'hard', 0.3)": r"young must be .*hard",
+    "CONTACT.solve('sphere', load=1.0)": r"shape must be a nacre\.Shape, got .*sphere",
+    "solve(SPHERE, 'steel', load=1.0)": r"body.*must be a HalfSpace.*steel",
+    "solve(SPHERE, STEEL, grid=(16, 20), load=1.0)": r"(?s)Grid.*grid",
+    "press(load='1')": r"load must be a real number, got '1'",
+    "press(load=1j)": r"load must be a real number, got 1j",
+    "press(approach=[1.0])": r"approach must be a real number, got \[1\.0\]",
+    "press(load=1.0, eccentricity=1e-5)": r"eccentricity must be a pair.*got 1e-05",
+    "press(load=1.0, eccentricity=(1e-5,))": r"eccentricity must be a pair.*got \(1e-05,\)",
+    "press(load=1.0, moment=(1.0, 'b'))": r"moment must be a pair.*'b'",
+    "press(load=1.0, tilt=(0.0, 0.0, 0.0))": r"tilt must be a pair.*\(0\.0, 0\.0, 0\.0\)",
+    "press(load=1.0, tolerance='tight')": r"(?s)number.*tolerance",
+    "press(load=1.0, max_iterations=2.5)": r"max_iterations must be an integer, got 2\.5",
+    "press(load=1.0, algorithm=1)": r"(?s)str.*algorithm",
+    "press(load=1.0, progress=3)": r"progress must be callable, got 3",
+    "press(load=1.0, check='no')": r"(?s)bool.*check",
+    "press(load=1.0, weight=1.0)": r"weight",
+    "press(1.0)": r"positional",
+}
+
+
+NAMES = globals() | vars(nacre) | {"press": partial(CONTACT.solve, SPHERE)}
+
+
+@pytest.mark.parametrize(("call", "message"), VALUE_ERRORS.items(), ids=VALUE_ERRORS)
+def test_bad_values_are_refused(call: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        eval(call, NAMES)
+
+
+@pytest.mark.parametrize(("call", "message"), TYPE_ERRORS.items(), ids=TYPE_ERRORS)
+def test_bad_types_are_refused(call: str, message: str) -> None:
+    # The match searches notes, too: where pyo3 finds the type wrong, they name the argument.
+    with pytest.raises(TypeError, match=message):
+        eval(call, NAMES)
+
+
+def test_missing_samples_are_refused() -> None:
+    missing = np.ma.masked_array(HEIGHTS, mask=np.isnan(NAN_AT_1_2))
+    with pytest.raises((TypeError, ValueError), match=r"heights.*mask"):
+        nacre.HeightMap(missing, spacing=1.0)
+
+
+# Shapes of which one field alone does not fit: no plan can be asked of such a grid.
+@pytest.mark.parametrize("shape", [TOO_LARGE, (2**50, 2)])
+def test_a_grid_too_large_for_memory_is_refused(shape: tuple[int, int]) -> None:
+    script = f"""
+import nacre
+try:
+    nacre.Grid(shape={shape}, size=(1.0, 1.0)).x
+except MemoryError as error:
+    print(error)
+"""
+    # In a process of its own: where memory is not checked, the allocator ends the process.
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert run.returncode == 0, run.stderr[:500]
+    assert re.search(r"\d+.* cells needs about \d+ MiB, and \d+ MiB are available", run.stdout)
+
+
+@pytest.mark.parametrize("name", ["Shape", "Solution", "Report"])
+def test_results_cannot_be_made_by_hand(name: str) -> None:
+    with pytest.raises(TypeError, match=name):
+        getattr(nacre, name)()
+
+
+def test_bad_input_is_not_a_convergence_error() -> None:
+    assert not issubclass(nacre.ConvergenceError, ValueError)
+    assert issubclass(nacre.ConvergenceError, RuntimeError)
+    assert issubclass(nacre.NacreWarning, UserWarning)

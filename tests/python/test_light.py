@@ -1,0 +1,39 @@
+"""nacre needs NumPy alone, to be imported and to solve."""
+
+import subprocess
+import sys
+from importlib.metadata import version
+
+import nacre
+
+SCRIPT = """
+import sys
+before = set(sys.modules)
+import nacre
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).pressure
+print(*sorted(set(sys.modules) - before))
+"""
+
+
+def imported() -> list[str]:
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", SCRIPT], capture_output=True, text=True, check=True
+    )
+    return run.stdout.split()
+
+
+def test_nothing_but_numpy_is_imported() -> None:
+    packages = {name.partition(".")[0] for name in imported()}
+    assert packages >= {"nacre", "numpy"}
+    # Compiled modules of NumPy register helpers without a package.
+    others = packages - sys.stdlib_module_names - {"nacre", "numpy", "cython_runtime"}
+    assert {name for name in others if not name.startswith("_")} == set()
+
+
+def test_the_parts_that_plot_and_talk_wait_until_they_are_used() -> None:
+    assert {"nacre.paper", "nacre.cli", "nacre.plot"} & set(imported()) == set()
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert nacre.__version__ == version("nacre")

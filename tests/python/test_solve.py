@@ -1,0 +1,497 @@
+"""`solve` meets what is asked, tells how it went, and leaves Python alive while it works."""
+
+import math
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+import nacre
+
+STEEL = nacre.Elastic(young=210e9, poisson=0.3)
+DLC = nacre.Elastic(young=420e9, poisson=0.3)
+COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=40e-6)])
+PARABOLOID = nacre.Paraboloid(5e-3, 5e-3)
+SPHERE = nacre.Sphere(5e-3)
+GRID = nacre.Grid(shape=(64, 60), size=(4e-4, 4e-4))
+CONTACT = nacre.Contact(COATED, GRID)
+LOAD = 10.0
+
+BALANCE = 1e-12  # force and moments are restored after each step
+CONVERGED = 1e-6  # of the peak pressure, for solutions of tolerance 1e-8
+SIMILAR = 1e-9  # of the peak, where only rounding differs
+
+SCRIPT = """
+import nacre
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+sphere = nacre.Sphere(5e-3)
+"""
+
+
+def largest_difference(a: nacre.Solution, b: nacre.Solution) -> float:
+    return float(np.abs(a.pressure - b.pressure).max() / b.peak_pressure)
+
+
+# Controls.
+
+CONTROLS: dict[str, dict[str, Any]] = {
+    "load": {"load": LOAD},
+    "load, eccentricity x": {"load": LOAD, "eccentricity": (2e-5, None)},
+    "load, eccentricity y": {"load": LOAD, "eccentricity": (None, -1e-5)},
+    "load, eccentricity": {"load": LOAD, "eccentricity": (2e-5, -1e-5)},
+    "load, free under a centred force": {"load": LOAD, "eccentricity": (0.0, 0.0)},
+    "load, moment x": {"load": LOAD, "moment": (2e-4, None)},
+    "load, moment": {"load": LOAD, "moment": (2e-4, -1e-4)},
+    "load, tilt": {"load": LOAD, "tilt": (2e-3, -1e-3)},
+    "load, eccentricity x, moment y": {
+        "load": LOAD,
+        "eccentricity": (2e-5, None),
+        "moment": (None, -1e-4),
+    },
+    "load, tilt x, eccentricity y": {
+        "load": LOAD,
+        "tilt": (2e-3, None),
+        "eccentricity": (None, -1e-5),
+    },
+    "approach": {"approach": 5e-7},
+    "approach, tilt": {"approach": 5e-7, "tilt": (2e-3, -1e-3)},
+    "approach, moment x": {"approach": 5e-7, "moment": (1e-4, None)},
+    "approach, moment": {"approach": 5e-7, "moment": (1e-4, -5e-5)},
+    "approach, moment x, tilt y": {"approach": 5e-7, "moment": (1e-4, None), "tilt": (None, 1e-3)},
+}
+
+
+@pytest.mark.parametrize("controls", CONTROLS.values(), ids=CONTROLS.keys())
+def test_what_is_asked_is_met(controls: dict[str, Any]) -> None:
+    solution = CONTACT.solve(PARABOLOID, **controls)
+    assert solution.report.converged
+    half = [0.5 * side for side in GRID.size]
+    if "load" in controls:
+        assert solution.load == pytest.approx(controls["load"], rel=BALANCE)
+    else:
+        assert solution.approach == controls["approach"]
+    for axis in (0, 1):
+        eccentricity = controls.get("eccentricity", (None, None))[axis]
+        moment = controls.get("moment", (None, None))[axis]
+        tilt = controls.get("tilt", (None, None))[axis]
+        if eccentricity is not None:
+            assert solution.eccentricity[axis] == pytest.approx(
+                eccentricity, abs=BALANCE * half[axis]
+            )
+        elif moment is not None:
+            assert solution.moment[axis] == pytest.approx(
+                moment, abs=BALANCE * solution.load * half[axis]
+            )
+        else:
+            assert solution.tilt[axis] == (0.0 if tilt is None else tilt)
+
+
+@pytest.mark.parametrize("controls", CONTROLS.values(), ids=CONTROLS.keys())
+@pytest.mark.parametrize("algorithm", ["cascade", "polonsky-keer"])
+def test_the_motion_found_gives_the_same_pressure_when_prescribed(
+    controls: dict[str, Any], algorithm: Literal["cascade", "polonsky-keer"]
+) -> None:
+    solution = CONTACT.solve(PARABOLOID, **controls)
+    again = CONTACT.solve(
+        PARABOLOID, approach=solution.approach, tilt=solution.tilt, algorithm=algorithm
+    )
+    assert largest_difference(again, solution) < CONVERGED
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_positive_eccentricity_gives_a_positive_tilt(axis: int) -> None:
+    eccentricity = (2e-5, 0.0) if axis == 0 else (0.0, 2e-5)
+    tilt = CONTACT.solve(PARABOLOID, load=LOAD, eccentricity=eccentricity).tilt
+    assert tilt[axis] == pytest.approx(2e-5 / 5e-3, rel=1e-3)  # e/R, and the grid's error
+    assert abs(tilt[1 - axis]) < SIMILAR
+
+
+def test_an_approach_that_touches_nothing_is_an_answer() -> None:
+    for solution in (
+        CONTACT.solve(SPHERE, approach=-1e-6),
+        nacre.solve(SPHERE, COATED, approach=-1e-6),
+    ):
+        assert solution.report.termination == "converged"
+        assert solution.load == solution.peak_pressure == solution.contact_area == 0.0
+        assert solution.approach == -1e-6
+        assert not solution.pressure.any()
+
+
+@pytest.mark.parametrize("field", ["gap", "displacement", "pressure"])
+def test_no_field_holds_nan_and_only_gaps_are_infinite(field: str) -> None:
+    solution = CONTACT.solve(nacre.FlatPunch(1e-4), load=LOAD)
+    array = getattr(solution, field)
+    cannot_touch = np.hypot(*np.meshgrid(solution.x, solution.y, indexing="ij")) > 1e-4
+    np.testing.assert_array_equal(~np.isfinite(array), cannot_touch & (field == "gap"))
+    assert not solution.in_contact[cannot_touch].any()
+
+
+@pytest.mark.parametrize(
+    ("young", "load"), [(210e9, 1e300), (210e9, 1e-300), (1e-300, 1.0), (1e300, 1.0)]
+)
+def test_no_number_is_so_large_that_nan_is_returned(young: float, load: float) -> None:
+    contact = nacre.Contact(nacre.Elastic(young, 0.3), GRID)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)
+        try:
+            solution = contact.solve(SPHERE, load=load)
+        except (ValueError, nacre.ConvergenceError):
+            return
+    assert np.isfinite(solution.pressure).all()
+    assert np.isfinite(solution.gap).all()
+    assert math.isfinite(solution.approach)
+    assert solution.load == pytest.approx(load, rel=BALANCE)
+
+
+# Bodies.
+
+
+def test_a_material_is_a_half_space() -> None:
+    of_material = nacre.solve(SPHERE, STEEL, load=LOAD, grid=GRID)
+    of_body = nacre.solve(SPHERE, nacre.HalfSpace(STEEL), load=LOAD, grid=GRID)
+    np.testing.assert_array_equal(of_material.pressure, of_body.pressure)
+
+
+def test_two_equal_bodies_are_one_of_half_the_modulus() -> None:
+    both = nacre.solve(SPHERE, STEEL, STEEL, load=LOAD, grid=GRID)
+    one = nacre.solve(SPHERE, nacre.Elastic(105e9, 0.3), load=LOAD, grid=GRID)
+    assert largest_difference(both, one) < SIMILAR
+
+
+def test_bodies_can_be_exchanged() -> None:
+    one = nacre.solve(SPHERE, COATED, counterbody=STEEL, load=LOAD, grid=GRID)
+    other = nacre.solve(SPHERE, STEEL, counterbody=COATED, load=LOAD, grid=GRID)
+    rigid = nacre.solve(SPHERE, COATED, load=LOAD, grid=GRID)
+    assert largest_difference(one, other) < SIMILAR
+    assert one.approach > 1.5 * rigid.approach
+
+
+# The grid that is chosen.
+
+WITHOUT_GRID: dict[str, tuple[nacre.Shape, float]] = {
+    "sphere": (SPHERE, 10.0),
+    "sphere elsewhere": (SPHERE.shifted(1e-3, -2e-3), 10.0),
+    "paraboloid": (PARABOLOID, 1.0),
+    "elliptic": (nacre.Paraboloid(50e-3, 5e-3), 10.0),
+    "roller": (nacre.Roller(5e-3, flat_length=1e-3, crown_radius=1.0), 20.0),
+}
+
+
+@pytest.mark.parametrize(("shape", "load"), WITHOUT_GRID.values(), ids=WITHOUT_GRID.keys())
+def test_a_grid_is_chosen(shape: nacre.Shape, load: float) -> None:
+    solution = nacre.solve(shape, COATED, load=load, tolerance=1e-5)
+    assert solution.load == pytest.approx(load, rel=BALANCE)
+    grid, extent = solution.report.grid, solution.contact_extent
+    widths = [high - low for low, high in extent]
+    cells = [width / spacing for width, spacing in zip(widths, grid.spacing, strict=True)]
+    assert min(cells) >= 64
+    for axis in (0, 1):
+        low = grid.center[axis] - 0.5 * grid.size[axis]
+        high = grid.center[axis] + 0.5 * grid.size[axis]
+        for margin in (extent[axis][0] - low, high - extent[axis][1]):
+            assert 0.2 < margin / widths[axis] < 0.35
+
+
+def test_a_punch_has_a_grid_that_holds_it() -> None:
+    solution = nacre.solve(nacre.FlatPunch(1e-3), COATED, load=LOAD)
+    assert solution.contact_area == pytest.approx(math.pi * 1e-6, rel=0.02)  # cells on the rim
+    assert not solution.in_contact[[0, -1], :].any()
+    assert not solution.in_contact[:, [0, -1]].any()
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_a_height_map_is_solved_on_its_own_grid(moved: bool) -> None:
+    heights = 1e-9 * np.random.default_rng(1).standard_normal((30, 40))
+    rough = nacre.HeightMap(heights, spacing=(1e-6, 2e-6), center=(1e-5, 0.0))
+    shape = rough + SPHERE.shifted(1e-5, 0.0)
+    if moved:
+        shape = shape.shifted(0.0, 3e-5)
+    grid = nacre.solve(shape, STEEL, load=0.05).report.grid
+    assert grid.shape == (30, 40)
+    assert grid.spacing == pytest.approx((1e-6, 2e-6))
+    assert grid.center == pytest.approx((1e-5, 3e-5 if moved else 0.0))
+
+
+def test_a_shape_without_end_needs_a_grid() -> None:
+    cylinder = nacre.Cylinder(5e-3)
+    with pytest.raises(ValueError, match="grid must be given"):
+        nacre.solve(cylinder, STEEL, load=LOAD)
+    with pytest.warns(nacre.NacreWarning, match="edge of the grid"):
+        nacre.solve(cylinder, STEEL, load=LOAD, grid=GRID)
+
+
+# Where it starts, and how it ends.
+
+
+def test_a_solution_is_taken_to_start_from() -> None:
+    first = CONTACT.solve(SPHERE, load=LOAD)
+    again = CONTACT.solve(SPHERE, load=LOAD, initial=first)
+    from_array = CONTACT.solve(SPHERE, load=LOAD, initial=first.pressure)
+    assert again.report.iterations < first.report.iterations / 2
+    np.testing.assert_array_equal(from_array.pressure, again.pressure)
+    assert largest_difference(again, first) < CONVERGED
+
+
+def test_an_unfinished_solution_is_carried_by_its_error() -> None:
+    with pytest.raises(nacre.ConvergenceError, match="after 2 iterations") as caught:
+        CONTACT.solve(SPHERE, load=LOAD, max_iterations=2)
+    unfinished = caught.value.solution
+    assert type(unfinished) is nacre.Solution
+    assert unfinished.report.termination == "iteration limit"
+    assert not unfinished.report.converged
+    assert unfinished.report.iterations == 2
+    assert unfinished.report.residual > 1e-8
+    assert unfinished.load == pytest.approx(LOAD, rel=BALANCE)
+
+
+def test_an_unfinished_solution_is_returned_unchecked() -> None:
+    unfinished = CONTACT.solve(SPHERE, load=LOAD, max_iterations=2, check=False)
+    assert unfinished.report.termination == "iteration limit"
+    with pytest.raises(nacre.ConvergenceError) as caught:
+        CONTACT.solve(SPHERE, load=LOAD, max_iterations=2)
+    np.testing.assert_array_equal(caught.value.solution.pressure, unfinished.pressure)
+
+
+def test_a_report_tells_what_was_done() -> None:
+    solution = nacre.solve(SPHERE, COATED, load=LOAD, grid=GRID, method="image", tolerance=1e-6)
+    report = solution.report
+    assert (report.converged, report.termination) == (True, "converged")
+    assert report.iterations > 0
+    assert report.convolutions > 0
+    assert report.residual <= 1e-6
+    assert report.overlap <= 1e-6
+    assert max(report.balance) < BALANCE
+    assert len(report.warnings) == 0
+    assert (report.grid, report.method) == (GRID, "image")
+    assert report.seconds > 0.0
+    touching = np.isfinite(solution.gap)
+    work = (solution.pressure * solution.displacement)[touching].sum()
+    residual = (solution.pressure * np.abs(solution.gap))[touching].sum() / work
+    assert report.residual == pytest.approx(residual, rel=1e-6)
+
+
+# Progress.
+
+
+def test_progress_is_told_of_each_iteration() -> None:
+    told: list[nacre.Report] = []
+    solution = CONTACT.solve(SPHERE, load=LOAD, progress=told.append)
+    assert all(type(report) is nacre.Report for report in told)
+    assert len(told) > 2
+    assert told[-1].residual < told[0].residual
+    seconds = [report.seconds for report in told]
+    assert seconds == sorted(seconds)
+    assert largest_difference(solution, CONTACT.solve(SPHERE, load=LOAD)) == 0.0
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("mine"), KeyboardInterrupt(), SystemExit(3)])
+@pytest.mark.parametrize("grid", [GRID, None], ids=["grid", "no grid"])
+def test_an_exception_of_progress_is_raised_as_it_is(
+    error: BaseException, grid: nacre.Grid | None
+) -> None:
+    calls = 0
+
+    def progress(report: nacre.Report) -> None:
+        nonlocal calls
+        calls += 1
+        raise error
+
+    with pytest.raises(type(error)) as caught:
+        nacre.solve(SPHERE, COATED, load=LOAD, grid=grid, progress=progress)
+    assert caught.value is error
+    assert calls == 1
+
+
+@pytest.mark.parametrize("no", [False, np.False_], ids=["bool", "numpy.bool"])
+def test_progress_that_returns_false_stops(no: object) -> None:
+    calls = 0
+
+    def progress(report: nacre.Report) -> object:
+        nonlocal calls
+        calls += 1
+        return no if calls == 3 else None
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # unfinished, it may be anything
+        solution = CONTACT.solve(SPHERE, load=LOAD, progress=progress)
+    assert calls == 3
+    assert solution.report.termination == "stopped"
+    assert not solution.report.converged
+    assert solution.load == pytest.approx(LOAD, rel=BALANCE)
+
+
+@pytest.mark.parametrize("answer", [None, True, np.True_, 1, "text"])
+def test_progress_that_returns_anything_else_goes_on(answer: object) -> None:
+    assert CONTACT.solve(SPHERE, load=LOAD, progress=lambda report: answer).report.converged
+
+
+def test_stopping_the_search_for_a_grid_stops_all() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # unfinished, it may be anything
+        solution = nacre.solve(SPHERE, COATED, load=LOAD, progress=lambda report: False)
+    assert solution.report.termination == "stopped"
+
+
+# Warnings.
+
+WARNINGS: dict[str, tuple[Callable[[], nacre.Solution], str]] = {
+    "grid edge": (lambda: CONTACT.solve(SPHERE, load=1e3), r"edge of the grid"),
+    "sharp end of a roller": (
+        lambda: nacre.solve(
+            nacre.Roller(5e-3, flat_length=1e-3, crown_radius=1.0, length=1.1e-3),
+            STEEL,
+            load=50.0,
+            grid=nacre.Grid(shape=(64, 64), size=(1.3e-3, 3e-4)),
+        ),
+        r"reaches the end .* along x",
+    ),
+    "sharp end of a height map": (
+        lambda: nacre.solve(nacre.HeightMap(np.zeros((20, 20)), 1e-5), STEEL, load=LOAD),
+        r"reaches the end .* along y",
+    ),
+    "coarse": (lambda: CONTACT.solve(SPHERE, load=0.05), r"only \d cells wide along y"),
+    "large contact": (
+        lambda: nacre.solve(nacre.Sphere(1e-4), STEEL, load=50.0),
+        r"not small against the radius .* 0\.[2-9]",
+    ),
+}
+
+
+@pytest.mark.parametrize(("call", "message"), WARNINGS.values(), ids=WARNINGS.keys())
+def test_each_warning_is_issued_and_reported(
+    call: Callable[[], nacre.Solution], message: str
+) -> None:
+    with warnings.catch_warnings(record=True) as issued:
+        warnings.simplefilter("always")
+        solution = call()
+    messages = [str(warning.message) for warning in issued]
+    assert any(re.search(message, text) for text in messages), messages
+    assert messages == list(solution.report.warnings)
+    assert {warning.category for warning in issued} == {nacre.NacreWarning}
+    # They point at the call, which is above.
+    assert {warning.filename for warning in issued} == {__file__}
+    here = test_each_warning_is_issued_and_reported.__code__.co_firstlineno
+    assert all(warning.lineno < here for warning in issued)
+    assert solution.report.converged
+
+
+def test_a_warning_can_be_made_an_error() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", nacre.NacreWarning)
+        with pytest.raises(nacre.NacreWarning, match="edge of the grid"):
+            CONTACT.solve(SPHERE, load=1e3)
+
+
+# Threads, processes, signals.
+
+
+# Enough cells, and enough of them in contact, for the work to be shared among threads.
+FINE_GRID = nacre.Grid(shape=(200, 190), size=(4e-4, 4e-4))
+HEAVY = 50.0
+
+
+def test_solves_on_one_plan_at_once_give_the_same_bits() -> None:
+    contact = nacre.Contact(COATED, FINE_GRID, threads=2)
+    loads = [HEAVY, 0.9 * HEAVY, 0.8 * HEAVY, 0.7 * HEAVY]
+
+    def pressure(load: float) -> bytes:
+        return contact.solve(SPHERE, load=load).pressure.tobytes()
+
+    with ThreadPoolExecutor(max_workers=3) as pool:
+        at_once = list(pool.map(pressure, loads))
+    assert at_once == [pressure(load) for load in loads]
+
+
+def test_the_number_of_threads_changes_no_bit() -> None:
+    one, three = (nacre.Contact(COATED, FINE_GRID, threads=threads) for threads in (1, 3))
+    assert (one.threads, three.threads) == (1, 3)
+    np.testing.assert_array_equal(
+        one.solve(SPHERE, load=HEAVY).pressure, three.solve(SPHERE, load=HEAVY).pressure
+    )
+
+
+def test_other_threads_run_during_a_solve() -> None:
+    contact = nacre.Contact(COATED, FINE_GRID, threads=1)
+    started = threading.Event()
+
+    def work() -> None:
+        started.set()
+        # Goes on to the limit: no gap is that small.
+        contact.solve(
+            SPHERE,
+            load=LOAD,
+            tolerance=1e-300,
+            max_iterations=100,
+            algorithm="polonsky-keer",
+            check=False,
+        )
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    started.wait()
+    ticks = 0
+    while worker.is_alive():
+        time.sleep(1e-3)
+        ticks += 1
+    assert ticks > 10  # were the interpreter held, this thread would wake once or twice
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a signal to a process")
+@pytest.mark.parametrize("algorithm", ["cascade", "polonsky-keer"])
+def test_ctrl_c_stops_a_solve(algorithm: str) -> None:
+    # White noise, pressed almost flat: many seconds of iterations on many cells.
+    script = f"""{SCRIPT}
+import numpy as np
+noise = np.random.default_rng(1).standard_normal((1024, 1024))
+shape = nacre.HeightMap(1e-7 * noise, spacing=4e-7)
+contact = nacre.Contact(steel, nacre.Grid(shape=(1024, 1024), size=(1024 * 4e-7, 1024 * 4e-7)))
+print("solving", flush=True)
+try:
+    contact.solve(shape, load=1e4, tolerance=1e-13, algorithm="{algorithm}")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "solving\n"
+            time.sleep(0.3)
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=30)
+            waited = time.monotonic() - start
+        finally:
+            process.kill()
+    assert output == "interrupted\n"
+    assert waited < 2.0
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_plan_solves_in_a_forked_child() -> None:
+    script = f"""{SCRIPT}
+import os, signal, warnings
+warnings.simplefilter("ignore", DeprecationWarning)  # that there are threads is the point
+contact = nacre.Contact(steel, nacre.Grid(shape=(200, 190), size=(4e-4, 4e-4)), threads=2)
+pressure = contact.solve(sphere, load=50.0).pressure
+child = os.fork()
+if child == 0:
+    signal.alarm(20)
+    same = (contact.solve(sphere, load=50.0).pressure == pressure).all()
+    os._exit(0 if same else 1)
+_, status = os.waitpid(child, 0)
+assert os.waitstatus_to_exitcode(status) == 0, status
+assert (contact.solve(sphere, load=50.0).pressure == pressure).all()
+"""
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=60)

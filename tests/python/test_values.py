@@ -1,0 +1,199 @@
+"""Public values pickle, copy and compare, and print as the call that makes them."""
+
+import copy
+import itertools
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+
+STEEL = nacre.Elastic(young=210e9, poisson=0.3)
+DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
+COATED = nacre.HalfSpace(STEEL, layers=[nacre.Layer(DLC, thickness=1e-5 / 3)])
+FLOATING = nacre.HalfSpace(
+    nacre.RIGID, layers=[nacre.Layer(DLC, 1e-6, "frictionless"), nacre.Layer(STEEL, 1e-3)]
+)
+GRID = nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4))
+SPHERE = nacre.Sphere(5e-3)
+THIRDS = np.arange(12).reshape(3, 4) / 3e6  # no finite number of decimals gives them
+LOGARITHMIC = nacre.LogarithmicProfile(1e-5 / 3, 20e-3, flat_length=5e-3, end_factor=0.9)
+SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1e-6 / 7])
+SOLUTION = nacre.solve(SPHERE, COATED, load=10.0, grid=GRID)
+
+MADE_BY_A_CALL: dict[str, Any] = {
+    "elastic": STEEL,
+    "layer": nacre.Layer(DLC, thickness=1e-5 / 3),
+    "frictionless layer": nacre.Layer(DLC, thickness=1e-5 / 3, interface="frictionless"),
+    "rigid": nacre.RIGID,
+    "half-space": nacre.HalfSpace(STEEL),
+    "coated": COATED,
+    "two layers on a rigid base": FLOATING,
+    "grid": GRID,
+    "grid off the origin": nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4), center=(-1e-3 / 7, 0.1)),
+    "line grid": nacre.Grid.line(cells=48, width=1e-3 / 3, center=1e-4 / 7),
+    "sphere": SPHERE,
+    "paraboloid": nacre.Paraboloid(5e-3, 1.0),
+    "cylinder": nacre.Cylinder(5e-3),
+    "roller": nacre.Roller(5e-3, 19.13e-3, 7.5),
+    "cut roller": nacre.Roller(5e-3, 19.13e-3, 7.5, length=26e-3),
+    "logarithmic profile": LOGARITHMIC,
+    "sampled profile": SAMPLED,
+    "logarithmic roller": nacre.Roller(5e-3, profile=LOGARITHMIC),
+    "sampled roller": nacre.Roller(5e-3, profile=SAMPLED, length=18e-3),
+    "punch": nacre.FlatPunch(1e-3),
+    "height map": nacre.HeightMap(THIRDS, spacing=0.1, center=(1e-6, -2e-6)),
+    "oblong height map": nacre.HeightMap(THIRDS, spacing=(1e-6, 2e-6)),
+    "shifted": SPHERE.shifted(1e-3 / 3, -2e-3),
+    "sum": SPHERE + nacre.FlatPunch(1e-3),
+    "sum on the left": (SPHERE + nacre.FlatPunch(1e-3)) + nacre.Cylinder(5e-3),
+    "sum on the right": SPHERE + (nacre.FlatPunch(1e-3) + nacre.Cylinder(5e-3)),
+    "shifted sum": (SPHERE + nacre.FlatPunch(1e-3)).shifted(1e-3, 0.0),
+    "sum of shifted": SPHERE.shifted(1e-3, 0.0) + nacre.FlatPunch(1e-3).shifted(0.0, 1e-3),
+    "contact": nacre.Contact(STEEL, GRID),
+    "contact with everything": nacre.Contact(
+        COATED, GRID, FLOATING, method="image", refinement=2, threads=1
+    ),
+}
+VALUES = MADE_BY_A_CALL | {"solution": SOLUTION, "report": SOLUTION.report}
+
+every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys())
+
+
+def public_classes() -> set[type]:
+    public = (getattr(nacre, name) for name in nacre.__all__)
+    return {c for c in public if isinstance(c, type) and not issubclass(c, BaseException)}
+
+
+def attributes(value: object) -> dict[str, Any]:
+    names = [name for name in dir(value) if not name.startswith("_")]
+    return {name: getattr(value, name) for name in names if not callable(getattr(value, name))}
+
+
+def test_every_public_class_has_a_value_here() -> None:
+    assert public_classes() - {type(value) for value in VALUES.values()} == set()
+
+
+@every_value
+@pytest.mark.parametrize("protocol", [2, 3, 4, 5])
+def test_pickle_gives_an_equal_value(value: object, protocol: int) -> None:
+    back = pickle.loads(pickle.dumps(value, protocol))
+    assert type(back) is type(value)
+    assert back == value
+    assert repr(back) == repr(value)
+
+
+@every_value
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_copy_gives_an_equal_value(value: object, copied: Any) -> None:
+    assert type(copied(value)) is type(value)
+    assert copied(value) == value
+
+
+@pytest.mark.parametrize("value", MADE_BY_A_CALL.values(), ids=MADE_BY_A_CALL.keys())
+def test_repr_is_the_call_that_makes_it(value: object) -> None:
+    back = eval(repr(value), {"array": np.array} | vars(nacre))
+    assert back == value
+
+
+@every_value
+def test_pickle_keeps_every_attribute(value: object) -> None:
+    back = attributes(pickle.loads(pickle.dumps(value)))
+    for name, attribute in attributes(value).items():
+        np.testing.assert_equal(back[name], attribute, err_msg=name)
+
+
+def test_different_values_differ() -> None:
+    for a, b in itertools.permutations(VALUES.values(), 2):
+        assert a != b
+        assert not a == b
+
+
+@every_value
+def test_values_differ_from_other_things(value: object) -> None:
+    assert value != repr(value)
+    assert value != 1.0
+    assert value != None  # noqa: E711
+
+
+@every_value
+def test_equal_values_have_equal_hashes_or_none(value: object) -> None:
+    try:
+        found = hash(value)
+    except TypeError:
+        return
+    assert hash(pickle.loads(pickle.dumps(value))) == found
+    with np.printoptions(precision=2):
+        assert hash(value) == found
+
+
+SIGNED_ZEROS: list[tuple[Any, Any]] = [
+    (nacre.Elastic(1.0, 0.0), nacre.Elastic(1.0, -0.0)),
+    (nacre.Grid((2, 2), (1.0, 1.0)), nacre.Grid((2, 2), (1.0, 1.0), (-0.0, 0.0))),
+    (nacre.Grid.line(2, 1.0), nacre.Grid.line(2, 1.0, -0.0)),
+    (nacre.Roller(1.0, 0.0, 1.0), nacre.Roller(1.0, -0.0, 1.0)),
+    (nacre.LogarithmicProfile(1.0, 1.0, 0.0), nacre.LogarithmicProfile(1.0, 1.0, -0.0)),
+    (SPHERE.shifted(0.0, 1.0), SPHERE.shifted(-0.0, 1.0)),
+    (nacre.HeightMap(np.zeros((2, 2)), 1.0), nacre.HeightMap(-np.zeros((2, 2)), 1.0)),
+    (
+        nacre.HeightMap(np.zeros((2, 2)), 1.0, center=(0.0, 0.0)),
+        nacre.HeightMap(np.zeros((2, 2)), 1.0, center=(0.0, -0.0)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("zero", "minus"), SIGNED_ZEROS, ids=range(len(SIGNED_ZEROS)))
+def test_the_sign_of_zero_does_not_tell_values_apart(zero: object, minus: object) -> None:
+    assert zero == minus
+    assert hash(zero) == hash(minus)
+
+
+@every_value
+def test_attributes_cannot_be_set(value: object) -> None:
+    for name, attribute in attributes(value).items():
+        with pytest.raises(AttributeError):
+            setattr(value, name, attribute)
+
+
+def test_rigid_is_one_object() -> None:
+    assert copy.deepcopy(nacre.RIGID) is nacre.RIGID
+    assert pickle.loads(pickle.dumps(nacre.RIGID)) is nacre.RIGID
+    assert FLOATING.substrate is nacre.RIGID
+
+
+def test_numbers_are_kept_to_the_bit() -> None:
+    heights = nacre.HeightMap(THIRDS, spacing=(0.1, 0.7), center=(1e-6, -2e-6))
+    assert heights.spacing == (0.1, 0.7)
+    assert heights.center == (1e-6, -2e-6)
+    np.testing.assert_array_equal(heights.heights, THIRDS)
+    assert (DLC.young, DLC.poisson) == (1e11 / 3, 0.25)
+    assert GRID.size == (4e-4, 4.1e-4)
+
+
+def test_a_pickled_plan_solves_alike() -> None:
+    contact = nacre.Contact(COATED, GRID)
+    back = pickle.loads(pickle.dumps(contact))
+    np.testing.assert_array_equal(
+        back.solve(SPHERE, load=10.0).pressure, contact.solve(SPHERE, load=10.0).pressure
+    )
+
+
+def test_a_convergence_error_pickles_with_its_solution() -> None:
+    with pytest.raises(nacre.ConvergenceError) as caught:
+        nacre.solve(SPHERE, COATED, load=10.0, grid=GRID, max_iterations=3)
+    back = pickle.loads(pickle.dumps(caught.value))
+    assert str(back) == str(caught.value)
+    assert back.solution == caught.value.solution
+
+
+def test_a_solution_prints_what_was_solved() -> None:
+    rigid = repr(SOLUTION)
+    elastic = repr(nacre.solve(SPHERE, COATED, STEEL, load=10.0, grid=GRID))
+    for text in (rigid, elastic):
+        assert "48" in text
+        assert "converged" in text
+        assert "counterbody" in text
+    assert "rigid" in rigid.lower()
+    assert "rigid" not in elastic.lower()

@@ -1,0 +1,143 @@
+//! The paper's roller has the known pressure, ends and tilt, centred and under an eccentric force.
+
+use approx::assert_relative_eq;
+use nacre::{Contact, Elastic, Grid, Motion, Options, Result, Roller, Setup, Solution};
+
+/// Of the known values, which have three digits.
+const KNOWN: f64 = 5e-3;
+
+/// Two cells along x, and half of the last digit of the known ends.
+const ENDS: f64 = 2.0 * LENGTH / 1024.0 + 0.05e-3;
+
+/// Symmetry of the pressure, over its peak, and of the tilt.
+const SYMMETRIC: f64 = 1e-9;
+
+/// Of the grid \[m\].
+const LENGTH: f64 = 28.8e-3;
+
+const LOAD: f64 = 1e3;
+const HALF_FLAT: f64 = 9.565e-3;
+
+/// Rigid, on steel, free to tilt both ways under a force at x = `eccentricity`.
+fn solve(eccentricity: f64, shape: [usize; 2]) -> Result<Solution> {
+    let steel = Elastic::new(210e9, 0.3)?;
+    let roller = Roller::new(5e-3, 2.0 * HALF_FLAT, 7.5)?;
+    let grid = Grid::new(shape, [LENGTH, 0.16e-3])?;
+    let motion = Motion {
+        eccentricity: [Some(eccentricity), Some(0.0)],
+        ..Motion::load(LOAD)
+    };
+    let options = Options::default();
+    let contact = Contact::plan(&steel.into(), grid, Setup::default())?;
+    contact
+        .solve(&roller, &motion, &options)?
+        .require_converged(options.tolerance)
+}
+
+/// Half-width at the section nearest to x = 0: p² falls linearly with y² in a line contact.
+fn central_half_width(solution: &Solution) -> f64 {
+    let section = solution.pressure.row(solution.grid().shape()[0] / 2);
+    let half = solution.peak_pressure() / 2.0;
+    let points = solution.grid().y().into_iter().zip(section);
+    let inner: Vec<(f64, f64)> = points
+        .filter(|(_, p)| **p > half)
+        .map(|(y, p)| (y * y, p * p))
+        .collect();
+    let n = inner.len() as f64;
+    let mean = |f: fn(&(f64, f64)) -> f64| inner.iter().map(f).sum::<f64>() / n;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let slope = (mean(|p| p.0 * p.1) - x * y) / (mean(|p| p.0 * p.0) - x * x);
+    (x - y / slope).sqrt()
+}
+
+/// max |a − b| over the peak, where b is `other` of the cell.
+fn asymmetry(solution: &Solution, other: impl Fn(usize, usize) -> f64) -> f64 {
+    let difference = solution
+        .pressure
+        .indexed_iter()
+        .map(|((i, j), p)| (p - other(i, j)).abs());
+    difference.fold(0.0, f64::max) / solution.peak_pressure()
+}
+
+#[test]
+fn centred_roller_has_the_known_pressure_and_ends() -> Result<()> {
+    let solution = solve(0.0, [1024, 128])?;
+    let [x, y] = solution.peak_position();
+    let [ends, _] = solution.contact_extent();
+    let width = central_half_width(&solution);
+    println!(
+        "centred: central {:.2} MPa, peak {:.2} MPa at |x| = {:.2} mm, half-width {:.5} mm, \
+         approach {:.4} um, ends {:.3} and {:.3} mm",
+        solution.central_pressure() / 1e6,
+        solution.peak_pressure() / 1e6,
+        x.abs() * 1e3,
+        width * 1e3,
+        solution.approach * 1e6,
+        ends[0] * 1e3,
+        ends[1] * 1e3,
+    );
+    assert_relative_eq!(solution.central_pressure(), 774e6, max_relative = KNOWN);
+    assert_relative_eq!(solution.peak_pressure(), 822e6, max_relative = KNOWN);
+    assert_relative_eq!(x.abs(), 9.8e-3, epsilon = ENDS);
+    assert!(y.abs() < solution.grid().spacing()[1]);
+    assert_relative_eq!(width, 0.0335e-3, max_relative = KNOWN);
+    assert_relative_eq!(solution.approach, 0.878e-6, max_relative = KNOWN);
+    for (end, known) in ends.into_iter().zip([-12.7e-3, 12.7e-3]) {
+        assert_relative_eq!(end, known, epsilon = ENDS);
+    }
+    Ok(())
+}
+
+#[test]
+fn centred_roller_is_symmetric_and_does_not_tilt() -> Result<()> {
+    let solution = solve(0.0, [1024, 128])?;
+    let [nx, ny] = solution.grid().shape();
+    let along = asymmetry(&solution, |i, j| solution.pressure[[nx - 1 - i, j]]);
+    let across = asymmetry(&solution, |i, j| solution.pressure[[i, ny - 1 - j]]);
+    let tilt = solution
+        .tilt
+        .map(|s| (s * HALF_FLAT / solution.approach).abs());
+    println!("asymmetry {along:.1e} along, {across:.1e} across; tilt L/δ {tilt:?}");
+    assert!(
+        along < SYMMETRIC && across < SYMMETRIC,
+        "{along:e} {across:e}"
+    );
+    assert!(tilt[0] < SYMMETRIC && tilt[1] < SYMMETRIC, "{tilt:?}");
+    Ok(())
+}
+
+#[test]
+fn eccentric_force_gives_the_known_peak_tilt_and_ends() -> Result<()> {
+    let solution = solve(0.3 * HALF_FLAT, [1024, 128])?;
+    let [ends, _] = solution.contact_extent();
+    println!(
+        "e/L = 0.3: peak {:.2} MPa at x = {:.2} mm, tilt {:.4e}, ends {:.3} and {:.3} mm",
+        solution.peak_pressure() / 1e6,
+        solution.peak_position()[0] * 1e3,
+        solution.tilt[0],
+        ends[0] * 1e3,
+        ends[1] * 1e3,
+    );
+    assert_relative_eq!(solution.peak_pressure(), 985e6, max_relative = KNOWN);
+    assert_relative_eq!(solution.tilt[0], 3.40e-5, max_relative = KNOWN);
+    for (end, known) in ends.into_iter().zip([-11.6e-3, 13.5e-3]) {
+        assert_relative_eq!(end, known, epsilon = ENDS);
+    }
+    let balance = solution.report.balance;
+    assert!(
+        balance.force < 1e-12 && balance.moment[0] < 1e-12,
+        "{balance:?}"
+    );
+
+    let mirrored = solve(-0.3 * HALF_FLAT, [1024, 128])?;
+    let last = mirrored.grid().shape()[0] - 1;
+    let difference = asymmetry(&solution, |i, j| mirrored.pressure[[last - i, j]]);
+    println!("mirrored force: pressure differs by {difference:.1e}");
+    assert!(difference < SYMMETRIC, "{difference:e}");
+    assert_relative_eq!(
+        solution.tilt[0],
+        -mirrored.tilt[0],
+        max_relative = SYMMETRIC
+    );
+    Ok(())
+}

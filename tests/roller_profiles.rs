@@ -1,0 +1,395 @@
+//! Axial profiles are those of Lundberg, Johns & Gohar and ISO/TS 16281; rollers with them load
+//! their length as they were made to, wherever the cells of the grid fall.
+
+use std::f64::consts::PI;
+
+use approx::assert_relative_eq;
+use nacre::surface::Profile;
+use nacre::{
+    Contact, Elastic, Error, Grid, HalfSpace, Layer, LogarithmicProfile, Motion, Options, Result,
+    Roller, SampledProfile, Setup, Solution, Surface, Warning, hertz,
+};
+
+/// Closed forms written in two ways.
+const ROUNDING: f64 = 1e-12;
+
+/// A mean over a cell against Gauss's rule in pieces, next to a logarithmic end.
+const QUADRATURE: f64 = 1e-6;
+
+/// Peak pressure of a logarithmic roller on 256 cells along it, against 512.
+const AXIAL: f64 = 5e-3;
+
+/// Peak pressure and force on the last 5 % at each end, for any place of the cells.
+const MOVED: f64 = 1e-3;
+const END: f64 = 1e-2;
+
+/// Below this, what changes with the cells along the roller is how evenly they cut its ends.
+const CONVERGED: f64 = 5e-6;
+
+/// Line load of Lundberg's profile over the middle 80 % of the length: his profile is that of a
+/// strip whose width is small against the length, b/L = 1/150.
+const UNIFORM: f64 = 0.03;
+
+const RADIUS: f64 = 5e-3;
+const LENGTH: f64 = 20e-3;
+
+fn steel() -> Result<Elastic> {
+    Elastic::new(210e9, 0.3)
+}
+
+/// Load at which an endless roller has the peak pressure `peak`: p0² = W'E*/πR.
+fn load(peak: f64) -> Result<f64> {
+    Ok(LENGTH * PI * RADIUS * peak * peak / steel()?.plane_strain_modulus())
+}
+
+fn iso() -> Result<LogarithmicProfile> {
+    LogarithmicProfile::iso16281(2.0 * RADIUS, LENGTH)
+}
+
+fn press(body: &HalfSpace, grid: Grid, roller: &Roller, load: f64) -> Result<Solution> {
+    let options = Options::default();
+    let contact = Contact::plan(body, grid, Setup::default())?;
+    let solution = contact.solve(roller, &Motion::load(load), &options)?;
+    solution.require_converged(options.tolerance)
+}
+
+fn drop(profile: impl Into<Profile>, x: f64) -> f64 {
+    profile.into().drop(x)
+}
+
+#[test]
+fn iso_profile_has_the_values_of_the_standard() -> Result<()> {
+    // L ≤ 2.5 D: 0.00035 D ln 1/[1 − (2x/L)²]; D = 10, L = 20: 3.5e-3 ln 4/3 and 3.5e-3 ln 100/19.
+    let short = LogarithmicProfile::iso16281(10.0, 20.0)?;
+    assert_relative_eq!(drop(short, 0.0), 0.0);
+    assert_relative_eq!(drop(short, 5.0), 1.006_887_25e-3, max_relative = 1e-7);
+    assert_relative_eq!(drop(short, -9.0), 5.812_559e-3, max_relative = 1e-6);
+    // L > 2.5 D: straight over L − 2.5 D = 15, then 0.0005 D ln 1/[1 − ((2|x| − 15)/25)²].
+    let long = LogarithmicProfile::iso16281(10.0, 40.0)?;
+    assert_relative_eq!(drop(long, 7.5), 0.0);
+    assert_relative_eq!(
+        drop(long, 13.75),
+        5e-3 * (4.0_f64 / 3.0).ln(),
+        max_relative = ROUNDING
+    );
+    assert_relative_eq!(drop(long, -13.75), drop(long, 13.75));
+    // The limit between the two belongs to the first.
+    let limit = LogarithmicProfile::iso16281(10.0, 25.0)?;
+    assert_relative_eq!(limit.amplitude(), 3.5e-3);
+    assert_relative_eq!(limit.flat_length(), 0.0);
+    assert!(drop(short, 10.000_001).is_infinite() && drop(short, 10.0).is_infinite());
+    Ok(())
+}
+
+#[test]
+fn lundberg_makes_the_load_uniform() -> Result<()> {
+    let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
+    let profile = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
+    let line_load = load / LENGTH;
+    assert_relative_eq!(
+        profile.amplitude(),
+        line_load / (PI * modulus),
+        max_relative = ROUNDING
+    );
+    let b = hertz::Line::new(RADIUS, modulus, line_load)?.half_width;
+    let roller = Roller::with_profile(RADIUS, profile)?;
+    let grid = Grid::new([256, 48], [LENGTH, 3.0 * b])?;
+    let solution = press(&steel()?.into(), grid, &roller, load)?;
+    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+    for (x, w) in solution.grid().x().iter().zip(&solution.line_load()) {
+        if x.abs() < 0.4 * LENGTH {
+            (low, high) = (low.min(w / line_load), high.max(w / line_load));
+        }
+    }
+    println!(
+        "Lundberg: b/L {:.4}, line load over its mean {low:.4} to {high:.4}",
+        b / LENGTH
+    );
+    assert!(low > 1.0 - UNIFORM && high < 1.0 + UNIFORM, "{low} {high}");
+    // A cylinder cut off without a profile is at its lowest in the middle, and peaks at its ends.
+    let straight = SampledProfile::new(&[-0.5 * LENGTH, 0.5 * LENGTH], &[0.0, 0.0])?;
+    let straight = Roller::with_profile(RADIUS, straight)?;
+    let sharp = press(&steel()?.into(), grid, &straight, load)?;
+    println!(
+        "peak {:.3e}, straight {:.3e}",
+        solution.peak_pressure(),
+        sharp.peak_pressure()
+    );
+    assert!(sharp.peak_pressure() > 1.5 * solution.peak_pressure());
+    Ok(())
+}
+
+#[test]
+fn johns_gohar_ends_with_a_finite_drop() -> Result<()> {
+    // A ln 1/(0.3033 b/a) at the ends, a = L/2.
+    let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
+    let profile = LogarithmicProfile::johns_gohar(LENGTH, load, modulus, RADIUS)?;
+    let b = hertz::Line::new(RADIUS, modulus, load / LENGTH)?.half_width;
+    let end = load / (PI * LENGTH * modulus) * (0.5 * LENGTH / (0.3033 * b)).ln();
+    assert_relative_eq!(drop(profile, 0.5 * LENGTH), end, max_relative = 1e-9);
+    // It is Lundberg's away from them.
+    let lundberg = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
+    let x = 0.25 * LENGTH;
+    assert_relative_eq!(
+        drop(profile, x),
+        drop(lundberg, x),
+        max_relative = 2.0 * (1.0 - profile.end_factor())
+    );
+    Ok(())
+}
+
+#[test]
+fn a_fine_sampling_is_the_profile() -> Result<()> {
+    let profile = LogarithmicProfile::new(2e-6, LENGTH, 0.3 * LENGTH, 0.999)?;
+    let samples = 4001;
+    let x: Vec<f64> = (0..samples)
+        .map(|k| LENGTH * (f64::from(k) / f64::from(samples - 1) - 0.5))
+        .collect();
+    let drops: Vec<f64> = x.iter().map(|x| drop(profile, *x)).collect();
+    let sampled = SampledProfile::new(&x, &drops)?;
+    for k in 0..1000 {
+        // Between samples: linear, A f u″ dx²/8 and at the ends more.
+        let x = 0.499 * LENGTH * (f64::from(k) / 500.0 - 1.0);
+        let error = (drop(sampled.clone(), x) - drop(profile, x)).abs() / profile.amplitude();
+        assert!(error < 2e-3, "x/L = {}: {error:e}", x / LENGTH);
+    }
+    // What is measured need not be symmetric, nor about the origin.
+    let lopsided = SampledProfile::new(&[-1.0, 0.0, 2.0], &[0.5, 0.0, 0.25])?;
+    assert_relative_eq!(drop(lopsided.clone(), 1.0), 0.125);
+    assert_relative_eq!(drop(lopsided.clone(), -0.5), 0.25);
+    assert!(drop(lopsided, 2.1).is_infinite());
+
+    let body = steel()?.into();
+    let grid = Grid::new([100, 32], [1.02 * LENGTH, 0.25e-3])?;
+    let smooth = press(
+        &body,
+        grid,
+        &Roller::with_profile(RADIUS, profile)?,
+        load(1.5e9)?,
+    )?;
+    let rough = press(
+        &body,
+        grid,
+        &Roller::with_profile(RADIUS, sampled)?,
+        load(1.5e9)?,
+    )?;
+    assert_relative_eq!(
+        smooth.peak_pressure(),
+        rough.peak_pressure(),
+        max_relative = 1e-3
+    );
+    assert_relative_eq!(smooth.approach, rough.approach, max_relative = 1e-3);
+    Ok(())
+}
+
+/// Mean of the profile from a to b, by a midpoint rule on a mesh that is fine towards both ends.
+fn mean(profile: &Profile, a: f64, b: f64) -> f64 {
+    // x = a + (b − a) t² (3 − 2t): the logarithm's end is dampened by the weight 6t(1 − t).
+    let steps = 4000;
+    let sum: f64 = (0..steps)
+        .map(|k| {
+            let t = (f64::from(k) + 0.5) / f64::from(steps);
+            6.0 * t * (1.0 - t) * profile.drop(a + (b - a) * t * t * (3.0 - 2.0 * t))
+        })
+        .sum();
+    sum / f64::from(steps)
+}
+
+#[test]
+fn cells_take_the_mean_of_the_profile() -> Result<()> {
+    let bumps = SampledProfile::new(
+        &[-0.5, -0.31, 0.02, 0.04, 0.5].map(|x| x * LENGTH),
+        &[4e-6, 1e-6, 0.0, 3e-7, 5e-6],
+    )?;
+    let profiles: [Profile; 4] = [
+        iso()?.into(),
+        LogarithmicProfile::iso16281(0.5 * RADIUS, LENGTH)?.into(),
+        LogarithmicProfile::new(1e-6, LENGTH, 0.0, 0.99)?.into(),
+        bumps.into(),
+    ];
+    for profile in profiles {
+        let roller = Roller::with_profile(RADIUS, profile.clone())?;
+        // A row of cells on the axis; the outer ones reach beyond the ends.
+        let grid = Grid::new([37, 3], [1.07 * LENGTH, 1e-4])?;
+        let gaps = roller.gaps(&grid)?;
+        let half = 0.5 * grid.spacing()[0];
+        for (x, gap) in grid.x().iter().zip(gaps.column(1)) {
+            let [a, b] = [x - half, x + half].map(|x| x.clamp(-0.5 * LENGTH, 0.5 * LENGTH));
+            if b - a < half {
+                assert!(gap.is_infinite(), "{x}");
+                continue;
+            }
+            let error = (gap - mean(&profile, a, b)) / 1e-6;
+            assert!(error.abs() < QUADRATURE * 10.0, "{x}: {error:e}");
+        }
+    }
+    Ok(())
+}
+
+/// Force on x > 0.45 L, of the end of a roller, counting parts of cells.
+fn end_force(solution: &Solution) -> f64 {
+    let (x, line_load) = (solution.grid().x(), solution.line_load());
+    let cell = solution.grid().spacing()[0];
+    let beyond = |x: f64| (x + 0.5 * cell - 0.45 * LENGTH).clamp(0.0, cell);
+    x.iter().zip(&line_load).map(|(x, w)| w * beyond(*x)).sum()
+}
+
+#[test]
+fn ends_do_not_depend_on_where_cells_fall() -> Result<()> {
+    // Contacts to 96 % of the length, and to its very end; cells of L/200, moved by parts of one.
+    let body = steel()?.into();
+    let cell = LENGTH / 200.0;
+    let lundberg =
+        LogarithmicProfile::lundberg(LENGTH, load(1.5e9)?, steel()?.plane_strain_modulus())?;
+    for (name, profile, factor) in [("ISO", iso()?, 4.0), ("Lundberg", lundberg, 0.5)] {
+        let roller = Roller::with_profile(RADIUS, profile)?;
+        let solve = |shift: f64| -> Result<Solution> {
+            let grid = Grid::new([206, 32], [206.0 * cell, 0.3e-3])?;
+            let grid = grid.centered_at([shift * cell, 0.0])?;
+            press(&body, grid, &roller, factor * load(1.5e9)?)
+        };
+        let still = solve(0.0)?;
+        for shift in [0.125, 0.25, 0.375, 0.49] {
+            let moved = solve(shift)?;
+            let peak = moved.peak_pressure() / still.peak_pressure() - 1.0;
+            let end = end_force(&moved) / end_force(&still) - 1.0;
+            let [there, here] = [&moved, &still].map(|s| s.contact_extent()[0][1]);
+            let edge = (there - here) / cell;
+            println!(
+                "{name} moved by {shift} cells: peak {peak:.1e}, end {end:.1e}, edge {edge:.2} cells"
+            );
+            assert!(peak.abs() < MOVED && end.abs() < END && edge.abs() < 1.0);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_finite_drop_under_load_is_reported_as_a_sharp_end() -> Result<()> {
+    let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
+    let profile = LogarithmicProfile::johns_gohar(LENGTH, load, modulus, RADIUS)?;
+    let grid = Grid::new([128, 32], [1.02 * LENGTH, 0.25e-3])?;
+    let roller = Roller::with_profile(RADIUS, profile)?;
+    let solution = press(&steel()?.into(), grid, &roller, load)?;
+    assert!(
+        solution
+            .report
+            .warnings
+            .contains(&Warning::SharpEnd { axis: 0 })
+    );
+    Ok(())
+}
+
+#[test]
+fn the_peak_converges_along_the_roller() -> Result<()> {
+    // Central, off-centre with a free tilt, and where the contact nearly reaches the ends.
+    let coating = Elastic::new(420e9, 0.3)?;
+    let body = HalfSpace::new(steel()?, [Layer::new(coating, 2e-6)?])?;
+    let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
+    let b = hertz::Line::new(RADIUS, modulus, load / LENGTH)?.half_width;
+    let lundberg = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
+    let eccentric = |load: f64| Motion {
+        eccentricity: [Some(0.1 * LENGTH), None],
+        ..Motion::load(load)
+    };
+    for (name, profile, motion) in [
+        ("ISO", iso()?, Motion::load(load)),
+        ("ISO, off-centre", iso()?, eccentric(load)),
+        ("ISO, 4x", iso()?, Motion::load(4.0 * load)),
+        (
+            "Lundberg, half its load",
+            lundberg,
+            Motion::load(0.5 * load),
+        ),
+    ] {
+        let roller = Roller::with_profile(RADIUS, profile)?;
+        let options = Options {
+            tolerance: 1e-10,
+            ..Options::default()
+        };
+        let peak = |cells: usize| -> Result<f64> {
+            let contact = Contact::plan(
+                &body,
+                Grid::new([cells, 64], [LENGTH, 5.0 * b])?,
+                Setup::default(),
+            )?;
+            let solution = contact.solve(&roller, &motion, &options)?;
+            Ok(solution
+                .require_converged(options.tolerance)?
+                .peak_pressure())
+        };
+        let peaks = [peak(64)?, peak(128)?, peak(256)?, peak(512)?];
+        let errors = [0, 1, 2].map(|k| (peaks[k] / peaks[3] - 1.0).abs());
+        println!(
+            "{name}: peak {:.1} MPa, against 512 cells {errors:?}",
+            peaks[3] / 1e6
+        );
+        for pair in errors.windows(2) {
+            assert!(pair[1] < pair[0].max(CONVERGED), "{name}: {errors:?}");
+        }
+        assert!(errors[2] < AXIAL, "{name}: {errors:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn errors_name_what_is_wrong() {
+    fn name<T>(result: Result<T>) -> Option<&'static str> {
+        match result {
+            Err(
+                Error::Parameter { name, .. }
+                | Error::Shape { name, .. }
+                | Error::NonFinite { name, .. },
+            ) => Some(name),
+            _ => None,
+        }
+    }
+    let log = LogarithmicProfile::new;
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(name(log(bad, 1.0, 0.0, 1.0)), Some("amplitude"));
+        assert_eq!(name(log(1e-6, bad, 0.0, 1.0)), Some("length"));
+        assert_eq!(
+            name(LogarithmicProfile::lundberg(1.0, bad, 1e9)),
+            Some("load")
+        );
+        assert_eq!(
+            name(LogarithmicProfile::lundberg(1.0, 1e3, bad)),
+            Some("contact_modulus")
+        );
+        assert_eq!(
+            name(LogarithmicProfile::johns_gohar(1.0, 1e3, 1e9, bad)),
+            Some("radius")
+        );
+        assert_eq!(
+            name(LogarithmicProfile::iso16281(bad, 1.0)),
+            Some("diameter")
+        );
+        assert_eq!(name(LogarithmicProfile::iso16281(1.0, bad)), Some("length"));
+    }
+    for bad in [-0.1, 1.0, 2.0, f64::NAN] {
+        assert_eq!(name(log(1e-6, 1.0, bad, 1.0)), Some("flat_length"));
+    }
+    for bad in [0.0, -0.5, 1.001, f64::NAN] {
+        assert_eq!(name(log(1e-6, 1.0, 0.0, bad)), Some("end_factor"));
+    }
+    // Wider than long: b = √(4W'R/πE*) = 3.6 over a length of 1.
+    assert_eq!(
+        name(LogarithmicProfile::johns_gohar(1.0, 1.0, 1.0, 10.0)),
+        Some("end_factor")
+    );
+    let sampled = SampledProfile::new;
+    assert!(name(sampled(&[0.0, 1.0], &[0.0])).is_some_and(|name| name.starts_with("profile")));
+    assert!(name(sampled(&[0.0], &[0.0])).is_some_and(|name| name.starts_with("profile")));
+    assert_eq!(
+        name(sampled(&[0.0, 1.0], &[0.0, f64::NAN])),
+        Some("profile")
+    );
+    assert_eq!(
+        name(sampled(&[0.0, 0.0], &[0.0, 1.0])),
+        Some("profile positions")
+    );
+    assert_eq!(
+        name(sampled(&[1.0, 0.0], &[0.0, 1.0])),
+        Some("profile positions")
+    );
+}

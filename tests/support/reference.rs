@@ -1,0 +1,25 @@
+//! Reference data under `tests/data`; each file describes itself.
+
+use std::fs;
+
+use serde_json::Value;
+
+/// The cases of a file.
+pub(crate) fn cases(name: &str) -> Vec<Value> {
+    let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let file: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"));
+    list(&file, "cases").clone()
+}
+
+/// The list `value[key]`.
+pub(crate) fn list<'a>(value: &'a Value, key: &str) -> &'a Vec<Value> {
+    let found = value[key].as_array();
+    found.unwrap_or_else(|| panic!("no list {key:?} in {value}"))
+}
+
+/// The number `value[key]`.
+pub(crate) fn number(value: &Value, key: &str) -> f64 {
+    let found = value[key].as_f64();
+    found.unwrap_or_else(|| panic!("no number {key:?} in {value}"))
+}

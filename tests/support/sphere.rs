@@ -1,0 +1,71 @@
+//! A paraboloid on a coating, in the scales of the Hertz contact that a reference gives.
+
+use nacre::{
+    Contact, Grid, HalfSpace, Method, Motion, Options, Paraboloid, Result, Setup, Solution, hertz,
+};
+
+/// Peak pressure, approach and contact radius, each over its scale.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measures {
+    pub(crate) peak: f64,
+    pub(crate) approach: f64,
+    pub(crate) radius: f64,
+}
+
+impl Measures {
+    /// Relative errors of these against `exact`.
+    pub(crate) fn errors(self, exact: Self) -> Self {
+        Self {
+            peak: self.peak / exact.peak - 1.0,
+            approach: self.approach / exact.approach - 1.0,
+            radius: self.radius / exact.radius - 1.0,
+        }
+    }
+
+    /// Taken from cells of half the size: what is left when the error falls by four.
+    pub(crate) fn extrapolated(self, finer: Self) -> Self {
+        let limit = |coarse: f64, fine: f64| (4.0 * fine - coarse) / 3.0;
+        Self {
+            peak: limit(self.peak, finer.peak),
+            approach: limit(self.approach, finer.approach),
+            radius: limit(self.radius, finer.radius),
+        }
+    }
+}
+
+/// A solved contact on n² cells over a side of 6, in units where the Hertz contact of the reference
+/// material (`modulus` E*) has a radius of 1.
+pub(crate) fn solve(body: &HalfSpace, modulus: f64, n: usize, method: Method) -> Result<Solution> {
+    let setup = Setup {
+        method,
+        ..Setup::default()
+    };
+    let contact = Contact::plan(body, Grid::new([n; 2], [6.0; 2])?, setup)?;
+    let options = Options::default();
+    let solution = contact.solve(
+        &Paraboloid::new(RADIUS, RADIUS)?,
+        &Motion::load(load(modulus)),
+        &options,
+    )?;
+    solution.require_converged(options.tolerance)
+}
+
+/// Of the paraboloid, far above the contact radius.
+const RADIUS: f64 = 100.0;
+
+fn load(modulus: f64) -> f64 {
+    4.0 * modulus / (3.0 * RADIUS)
+}
+
+/// Over the scales of the reference material.
+pub(crate) fn measures(solution: &Solution, modulus: f64) -> Result<Measures> {
+    let scale = hertz::Point::new(RADIUS, modulus, load(modulus))?;
+    let [x, y] = solution
+        .contact_extent()
+        .map(|[low, high]| 0.5 * (high - low));
+    Ok(Measures {
+        peak: solution.peak_pressure() / scale.peak_pressure,
+        approach: solution.approach / scale.approach,
+        radius: 0.5 * (x + y) / scale.radius,
+    })
+}
