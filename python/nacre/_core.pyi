@@ -217,7 +217,9 @@ class FlatPunch(Shape):
 
 @final
 class HeightMap(Shape):
-    def __new__(cls, heights: _Matrix, spacing: float | _Pair, center: _Pair = (0.0, 0.0)) -> Self: ...
+    def __new__(
+        cls, heights: _Matrix, spacing: float | _Pair, center: _Pair = (0.0, 0.0)
+    ) -> Self: ...
     @property
     def heights(self) -> _Field: ...
     @property
