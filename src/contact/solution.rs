@@ -273,8 +273,8 @@ impl Solution {
     /// Ends of the contact along x and along y \[m\], within a fraction of a cell.
     ///
     /// p² falls to zero steeply and smoothly at an edge where the surfaces part: on each line of
-    /// cells a parabola through p² of the third to the ninth cell is continued to its zero. At a
-    /// sharp edge, where p grows, on lines of fewer than 18 cells, and where there is no such zero
+    /// cells a parabola through p² of the third to the seventh cell is continued to its zero. At a
+    /// sharp edge, where p grows, on lines of fewer than 14 cells, and where there is no such zero
     /// within a cell, the contact ends with its outermost cell. Both ends are 0 where there is no
     /// contact.
     pub fn contact_extent(&self) -> [[f64; 2]; 2] {
@@ -308,23 +308,23 @@ fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
     const OUTER_CELL: f64 = 0.5;
     // The outer two cells carry the discretisation of the edge.
     const FIRST: usize = 2;
-    const POINTS: usize = 7;
+    const POINTS: usize = 5;
     if width < 2 * (FIRST + POINTS) {
         return OUTER_CELL;
     }
-    // Least squares on evenly spaced points, in orthogonal polynomials of t = −3 … 3:
-    // p² = mean + slope t + bend (t² − 4).
+    // Least squares on evenly spaced points, in orthogonal polynomials of t = −2 … 2:
+    // p² = mean + slope t + bend (t² − 2).
     let half = (POINTS / 2) as f64;
     let (mut mean, mut slope, mut bend) = (0.0, 0.0, 0.0);
     for k in 0..POINTS {
         let t = k as f64 - half;
         let s = square(FIRST + k);
-        mean += s / 7.0;
-        slope += t * s / 28.0;
-        bend += (t * t - 4.0) * s / 84.0;
+        mean += s / 5.0;
+        slope += t * s / 10.0;
+        bend += (t * t - 2.0) * s / 14.0;
     }
     // The outer zero of it: t = −2c/(slope + √…), which holds for bend = 0 too.
-    let constant = mean - 4.0 * bend;
+    let constant = mean - 2.0 * bend;
     let discriminant = slope * slope - 4.0 * bend * constant;
     if slope <= 0.0 || discriminant < 0.0 {
         return OUTER_CELL;
