@@ -12,15 +12,17 @@ use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::{Method, coefficients_on};
 use crate::memory::check_memory;
-use crate::surface::{Extent, Surface};
+use crate::surface::Surface;
 use crate::threads::Threads;
 
 mod automatic;
 mod cascade;
 mod freedoms;
+mod hull;
 mod polonsky_keer;
 mod preconditioned;
 mod problem;
+mod review;
 mod solution;
 
 pub use automatic::{choose_grid, solve};
@@ -233,8 +235,8 @@ impl Contact {
             tilt,
             report,
         };
-        solution.report.balance = balance(&solution, motion);
-        solution.report.warnings = warnings(&solution, shape);
+        solution.report.balance = review::balance(&solution, motion);
+        solution.report.warnings = review::warnings(&solution, shape);
         solution.report.seconds = start.elapsed().as_secs_f64();
         Ok(solution)
     }
@@ -435,87 +437,4 @@ fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f64>> {
         });
     }
     Ok(gaps)
-}
-
-fn balance(solution: &Solution, motion: &Motion) -> Balance {
-    let force = solution.load();
-    let scale = motion.load.unwrap_or(force);
-    let over = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
-    let half = solution.grid().size().map(|length| 0.5 * length);
-    let moments = solution.moment();
-    let moment = [0, 1].map(|k| {
-        let asked =
-            motion.moment[k].or_else(|| Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0)));
-        asked.map_or(0.0, |m| over((moments[k] - m).abs(), scale * half[k]))
-    });
-    Balance {
-        force: motion.load.map_or(0.0, |w| over((force - w).abs(), w)),
-        moment,
-    }
-}
-
-fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
-    let grid = solution.grid();
-    let [nx, ny] = grid.shape();
-    let [dx, dy] = grid.spacing();
-    let (x, y) = (grid.x(), grid.y());
-    let mut warnings = Vec::new();
-
-    let goes_on = |i: usize, j: usize| {
-        let beyond = |at: usize, n: usize, d: f64| match at {
-            _ if n == 1 => 0.0,
-            0 => -d,
-            _ if at == n - 1 => d,
-            _ => 0.0,
-        };
-        shape
-            .gap(x[i] + beyond(i, nx, dx), y[j] + beyond(j, ny, dy))
-            .is_finite()
-    };
-    let across = !grid.is_line();
-    let on_edge = |i: usize, j: usize| j == 0 || j == ny - 1 || (across && (i == 0 || i == nx - 1));
-    let mut rim = solution
-        .pressure
-        .indexed_iter()
-        .filter(|((i, j), _)| on_edge(*i, *j));
-    if rim.any(|((i, j), p)| *p > 0.0 && goes_on(i, j)) {
-        warnings.push(Warning::GridEdge);
-    }
-
-    let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
-    for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
-        for (lane, at) in solution
-            .pressure
-            .axis_iter(ndarray::Axis(axis))
-            .zip(coordinates)
-        {
-            if lane.iter().any(|&p| p > 0.0) {
-                cells[axis] += 1;
-                ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
-            }
-        }
-    }
-    if cells[0] == 0 {
-        return warnings;
-    }
-    for axis in if grid.is_line() { 1..2 } else { 0..2 } {
-        let spacing = grid.spacing()[axis];
-        if let Extent::CutOff([low, high]) = shape.extent()[axis]
-            && (ends[axis][0] - spacing < low || ends[axis][1] + spacing > high)
-        {
-            warnings.push(Warning::SharpEnd { axis });
-        }
-        if cells[axis] < solution::FEW_CELLS {
-            warnings.push(Warning::Coarse {
-                axis,
-                cells: cells[axis],
-            });
-        }
-        let half_width = 0.5 * (ends[axis][1] - ends[axis][0] + spacing);
-        let ratio = half_width / shape.radii()[axis];
-        if ratio > solution::LARGE_CONTACT {
-            warnings.push(Warning::LargeContact { axis, ratio });
-        }
-    }
-    warnings
 }

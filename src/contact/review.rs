@@ -1,0 +1,90 @@
+//! A finished solution, looked at: balance and warnings.
+
+use super::freedoms::Motion;
+use super::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Solution, Warning};
+use crate::surface::{Extent, Surface};
+
+/// Mismatch of force and moments against what was asked.
+pub(super) fn balance(solution: &Solution, motion: &Motion) -> Balance {
+    let force = solution.load();
+    let scale = motion.load.unwrap_or(force);
+    let over = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
+    let half = solution.grid().size().map(|length| 0.5 * length);
+    let moments = solution.moment();
+    let moment = [0, 1].map(|k| {
+        let asked =
+            motion.moment[k].or_else(|| Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0)));
+        asked.map_or(0.0, |m| over((moments[k] - m).abs(), scale * half[k]))
+    });
+    Balance {
+        force: motion.load.map_or(0.0, |w| over((force - w).abs(), w)),
+        moment,
+    }
+}
+
+/// What the user of a solution should know.
+pub(super) fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
+    let grid = solution.grid();
+    let [nx, ny] = grid.shape();
+    let [dx, dy] = grid.spacing();
+    let (x, y) = (grid.x(), grid.y());
+    let mut warnings = Vec::new();
+
+    let goes_on = |i: usize, j: usize| {
+        let beyond = |at: usize, n: usize, d: f64| match at {
+            _ if n == 1 => 0.0,
+            0 => -d,
+            _ if at == n - 1 => d,
+            _ => 0.0,
+        };
+        shape
+            .gap(x[i] + beyond(i, nx, dx), y[j] + beyond(j, ny, dy))
+            .is_finite()
+    };
+    let across = !grid.is_line();
+    let on_edge = |i: usize, j: usize| j == 0 || j == ny - 1 || (across && (i == 0 || i == nx - 1));
+    let mut rim = solution
+        .pressure
+        .indexed_iter()
+        .filter(|((i, j), _)| on_edge(*i, *j));
+    if rim.any(|((i, j), p)| *p > 0.0 && goes_on(i, j)) {
+        warnings.push(Warning::GridEdge);
+    }
+
+    let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
+    for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
+        for (lane, at) in solution
+            .pressure
+            .axis_iter(ndarray::Axis(axis))
+            .zip(coordinates)
+        {
+            if lane.iter().any(|&p| p > 0.0) {
+                cells[axis] += 1;
+                ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
+            }
+        }
+    }
+    if cells[0] == 0 {
+        return warnings;
+    }
+    for axis in if grid.is_line() { 1..2 } else { 0..2 } {
+        let spacing = grid.spacing()[axis];
+        if let Extent::CutOff([low, high]) = shape.extent()[axis]
+            && (ends[axis][0] - spacing < low || ends[axis][1] + spacing > high)
+        {
+            warnings.push(Warning::SharpEnd { axis });
+        }
+        if cells[axis] < FEW_CELLS {
+            warnings.push(Warning::Coarse {
+                axis,
+                cells: cells[axis],
+            });
+        }
+        let half_width = 0.5 * (ends[axis][1] - ends[axis][0] + spacing);
+        let ratio = half_width / shape.radii()[axis];
+        if ratio > LARGE_CONTACT {
+            warnings.push(Warning::LargeContact { axis, ratio });
+        }
+    }
+    warnings
+}
