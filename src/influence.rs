@@ -36,7 +36,7 @@ pub enum Method {
     /// and any shape of cell. Relative error below 1e-9.
     #[default]
     Exact,
-    /// The response alone, sampled: a point load cut off at the Nyquist frequency. 6e-4 and 5e-2;
+    /// The response alone, sampled: a point load cut off at the Nyquist frequency. 7e-4 and 6e-2;
     /// goes wrong on long thin domains.
     Plain {
         /// Refinement χ of the spectral mesh.

@@ -175,8 +175,8 @@ impl CellInfluence {
     }
 }
 
-/// Error of the quadratures over the cell, relative (measured: at most 8e-13, see
-/// `tests/influence_exact.rs`).
+/// Error of the quadratures over the cell, relative; `tests/influence_exact.rs` shows that the
+/// estimate which it is part of bounds the true error.
 const QUADRATURE: f64 = 1e-12;
 
 /// The kernel is analytic in a sector only, not in the half-plane as 1/r is: to the rules it is
