@@ -99,6 +99,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
 /// ```
 #[derive(Debug)]
 pub struct Contact {
+    body: HalfSpace,
     grid: Grid,
     setup: Setup,
     convolution: Convolution,
@@ -125,11 +126,22 @@ impl Contact {
         let convolution = Convolution::plan_on(&coefficients, threads)?;
         let levels = Levels::new(coefficients, &convolution);
         Ok(Self {
+            body: body.clone(),
             grid,
             setup,
             convolution,
             levels,
         })
+    }
+
+    /// The body that shapes are pressed into.
+    pub fn body(&self) -> &HalfSpace {
+        &self.body
+    }
+
+    /// What was planned beside body and grid.
+    pub fn setup(&self) -> &Setup {
+        &self.setup
     }
 
     /// The grid.
@@ -179,7 +191,7 @@ impl Contact {
             gap,
         };
         let initial = self.given_pressure(&problem, options.initial.as_deref())?;
-        let mut report = Report::new(self.grid, &self.setup);
+        let mut report = self.report(motion, limits.tolerance);
         let unit = self.convolution.work();
         let mut watch = |iterations: usize, work: f64, quality: Quality| {
             report.iterations = iterations;
@@ -239,6 +251,26 @@ impl Contact {
         solution.report.warnings = review::warnings(&solution, shape);
         solution.report.seconds = start.elapsed().as_secs_f64();
         Ok(solution)
+    }
+
+    /// Of an iteration that has not begun.
+    fn report(&self, motion: &Motion, tolerance: f64) -> Report {
+        Report {
+            termination: Termination::IterationLimit,
+            iterations: 0,
+            convolutions: 0.0,
+            residual: 0.0,
+            overlap: 0.0,
+            balance: Balance::default(),
+            warnings: Vec::new(),
+            grid: self.grid,
+            body: self.body.clone(),
+            counterbody: self.setup.counterbody.clone(),
+            method: self.setup.method,
+            motion: *motion,
+            tolerance,
+            seconds: 0.0,
+        }
     }
 
     /// The pressure to start from that the caller gave, balanced.

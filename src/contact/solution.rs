@@ -4,7 +4,7 @@ use std::fmt;
 
 use ndarray::{Array1, Array2};
 
-use super::Setup;
+use super::freedoms::Motion;
 use super::problem::Termination;
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
@@ -104,32 +104,21 @@ pub struct Report {
     pub warnings: Vec<Warning>,
     /// The grid.
     pub grid: Grid,
+    /// The body that the shape was pressed into.
+    pub body: HalfSpace,
     /// The body that carries the shape; rigid where `None`.
     pub counterbody: Option<HalfSpace>,
     /// How the influence coefficients were computed.
     pub method: Method,
+    /// What was asked: load or approach, and of the tilts.
+    pub motion: Motion,
+    /// The tolerance that was asked.
+    pub tolerance: f64,
     /// Seconds the solve took, planning excluded.
     pub seconds: f64,
 }
 
 impl Report {
-    /// Of an iteration that has not begun.
-    pub(super) fn new(grid: Grid, setup: &Setup) -> Self {
-        Self {
-            termination: Termination::IterationLimit,
-            iterations: 0,
-            convolutions: 0.0,
-            residual: 0.0,
-            overlap: 0.0,
-            balance: Balance::default(),
-            warnings: Vec::new(),
-            grid,
-            counterbody: setup.counterbody.clone(),
-            method: setup.method,
-            seconds: 0.0,
-        }
-    }
-
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged

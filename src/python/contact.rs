@@ -256,8 +256,6 @@ fn finish(py: Python<'_>, solution: Solution, tolerance: f64, check: bool) -> Py
 #[pyclass(name = "Contact", module = "nacre", frozen)]
 pub(super) struct PyContact {
     contact: Arc<Contact>,
-    body: HalfSpace,
-    setup: Setup,
 }
 
 fn setup(
@@ -293,25 +291,23 @@ impl PyContact {
         threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let setup = setup(counterbody, method, refinement, threads)?;
-        let contact = py.detach(|| Contact::plan(&body, grid.0, setup.clone()))?;
+        let contact = py.detach(|| Contact::plan(&body, grid.0, setup))?;
         py.check_signals()?;
         Ok(Self {
             contact: Arc::new(contact),
-            body,
-            setup,
         })
     }
 
     /// The body that the shape is pressed into.
     #[getter]
     fn body(&self) -> PyHalfSpace {
-        PyHalfSpace(self.body.clone())
+        PyHalfSpace(self.contact.body().clone())
     }
 
     /// The body that carries the shape; rigid where `None`.
     #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
-        self.setup.counterbody.clone().map(PyHalfSpace)
+        self.contact.setup().counterbody.clone().map(PyHalfSpace)
     }
 
     /// The cells.
@@ -323,7 +319,7 @@ impl PyContact {
     /// How influence coefficients are computed.
     #[getter]
     fn method(&self) -> &'static str {
-        method_words(self.setup.method).0
+        method_words(self.contact.setup().method).0
     }
 
     /// Threads of the plan.
@@ -429,25 +425,27 @@ impl PyContact {
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        (self.grid().0, &self.body, &self.setup) == (other.grid().0, &other.body, &other.setup)
+        let (a, b) = (&self.contact, &other.contact);
+        (a.grid(), a.body(), a.setup()) == (b.grid(), b.body(), b.setup())
     }
 
     fn __repr__(&self) -> String {
-        let (method, refinement) = method_words(self.setup.method);
+        let (method, refinement) = method_words(self.contact.setup().method);
         let none = || "None".to_owned();
         format!(
             "Contact({}, {}, counterbody={}, method='{method}', refinement={refinement}, threads={})",
             self.body().__repr__(),
             self.grid().__repr__(),
             self.counterbody().map_or_else(none, |body| body.__repr__()),
-            self.setup
+            self.contact
+                .setup()
                 .threads
                 .map_or_else(none, |threads| threads.to_string()),
         )
     }
 
     fn __getnewargs_ex__(&self, py: Python<'_>) -> PyResult<(NewArguments, NewKeywords)> {
-        let (method, refinement) = method_words(self.setup.method);
+        let (method, refinement) = method_words(self.contact.setup().method);
         let keywords = [
             ("method", method.into_pyobject(py)?.into_any().unbind()),
             (
@@ -456,7 +454,12 @@ impl PyContact {
             ),
             (
                 "threads",
-                self.setup.threads.into_pyobject(py)?.into_any().unbind(),
+                self.contact
+                    .setup()
+                    .threads
+                    .into_pyobject(py)?
+                    .into_any()
+                    .unbind(),
             ),
         ];
         Ok((

@@ -2,11 +2,12 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::bodies::PyHalfSpace;
 use super::contact::{method, method_words};
 use super::grid::PyGrid;
-use crate::contact::{Balance, Report, Termination, Warning};
+use crate::contact::{Balance, Motion, Report, Termination, Warning};
 
 /// How a solution came about, and how good it is: computed afresh at the end.
 ///
@@ -20,16 +21,21 @@ use crate::contact::{Balance, Report, Termination, Warning};
 #[derive(Clone, PartialEq)]
 pub(super) struct PyReport(pub(super) Report);
 
-/// Termination, iterations and convolutions, quality, balance, warnings, grid, method, refinement, seconds.
+/// Load, approach, eccentricity, moment and tilt.
+type MotionState = (Option<f64>, Option<f64>, [[Option<f64>; 2]; 3]);
+
+/// Termination, iterations and convolutions, quality, balance, warnings, grid and bodies, method and
+/// refinement, motion, tolerance and seconds.
 type State = (
     String,
     (usize, f64),
     [f64; 2],
     (f64, [f64; 2]),
     Vec<(String, usize, f64)>,
-    (PyGrid, Option<PyHalfSpace>),
+    (PyGrid, PyHalfSpace, Option<PyHalfSpace>),
     (String, usize),
-    f64,
+    MotionState,
+    (f64, f64),
 );
 
 fn termination_word(termination: Termination) -> &'static str {
@@ -100,6 +106,12 @@ impl PyReport {
         PyGrid(self.0.grid)
     }
 
+    /// The body that the shape was pressed into.
+    #[getter]
+    fn body(&self) -> PyHalfSpace {
+        PyHalfSpace(self.0.body.clone())
+    }
+
     /// The body that carries the shape; rigid where `None`.
     #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
@@ -110,6 +122,40 @@ impl PyReport {
     #[getter]
     fn method(&self) -> &'static str {
         method_words(self.0.method).0
+    }
+
+    /// Refinement of the spectral mesh of the conversions; 4 with exact coefficients, which have none.
+    #[getter]
+    fn refinement(&self) -> usize {
+        method_words(self.0.method).1
+    }
+
+    /// What was asked, as keywords of `Contact.solve`: load or approach, and of the tilts.
+    #[getter]
+    fn motion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let motion = &self.0.motion;
+        let keywords = PyDict::new(py);
+        for (name, value) in [("load", motion.load), ("approach", motion.approach)] {
+            if let Some(value) = value {
+                keywords.set_item(name, value)?;
+            }
+        }
+        for (name, pair) in [
+            ("eccentricity", motion.eccentricity),
+            ("moment", motion.moment),
+            ("tilt", motion.tilt),
+        ] {
+            if pair != [None; 2] {
+                keywords.set_item(name, (pair[0], pair[1]))?;
+            }
+        }
+        Ok(keywords)
+    }
+
+    /// The tolerance that was asked.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.0.tolerance
     }
 
     /// Seconds the solve took, planning excluded.
@@ -149,9 +195,18 @@ impl PyReport {
             warnings
                 .map(|(kind, axis, value)| (kind.into(), axis, value))
                 .collect(),
-            (PyGrid(report.grid), self.counterbody()),
+            (PyGrid(report.grid), self.body(), self.counterbody()),
             (word.into(), refinement),
-            report.seconds,
+            (
+                report.motion.load,
+                report.motion.approach,
+                [
+                    report.motion.eccentricity,
+                    report.motion.moment,
+                    report.motion.tilt,
+                ],
+            ),
+            (report.tolerance, report.seconds),
         );
         Ok((
             py.import("nacre._core")?.getattr("_restore_report")?,
@@ -169,9 +224,10 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
         quality,
         balance,
         warnings,
-        (grid, counterbody),
+        (grid, body, counterbody),
         (word, refinement),
-        seconds,
+        (load, approach, [eccentricity, moment, tilt]),
+        (tolerance, seconds),
     ) = state;
     let unknown = |word: &str| PyValueError::new_err(format!("not a pickled report: {word:?}"));
     let termination = [
@@ -206,8 +262,17 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
         },
         warnings: warnings.collect::<PyResult<_>>()?,
         grid: grid.0,
+        body: body.0,
         counterbody: counterbody.map(|body| body.0),
         method: method(&word, refinement)?,
+        motion: Motion {
+            load,
+            approach,
+            eccentricity,
+            moment,
+            tilt,
+        },
+        tolerance,
         seconds,
     }))
 }

@@ -280,6 +280,22 @@ def test_a_report_tells_what_was_done() -> None:
     assert report.residual == pytest.approx(residual, rel=1e-6)
 
 
+def test_a_report_holds_what_repeats_the_run() -> None:
+    contact = nacre.Contact(COATED, GRID, STEEL, method="image", refinement=2)
+    asked: dict[str, Any] = {"load": LOAD, "eccentricity": (1e-5, None), "tilt": (None, 1e-4)}
+    first = contact.solve(SPHERE, tolerance=1e-7, **asked)
+    report = first.report
+    assert report.motion == asked
+    again = nacre.Contact(
+        report.body,
+        report.grid,
+        report.counterbody,
+        method=report.method,
+        refinement=report.refinement,
+    ).solve(SPHERE, tolerance=report.tolerance, **report.motion)
+    np.testing.assert_array_equal(again.pressure, first.pressure)
+
+
 # Progress.
 
 
