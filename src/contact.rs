@@ -16,6 +16,7 @@ use crate::surface::Surface;
 use crate::threads::Threads;
 
 mod automatic;
+mod batch;
 mod cascade;
 mod freedoms;
 mod hull;
@@ -24,8 +25,10 @@ mod preconditioned;
 mod problem;
 mod review;
 mod solution;
+mod stiffness;
 
 pub use automatic::{choose_grid, solve};
+pub use batch::Case;
 pub use freedoms::Motion;
 pub use problem::Termination;
 pub use solution::{Balance, Report, Solution, Warning};
@@ -112,12 +115,7 @@ impl Contact {
     /// # Errors
     /// A method that does not suit, no threads, too little memory.
     pub fn plan(body: &HalfSpace, grid: Grid, setup: Setup) -> Result<Self> {
-        // A plan, its coefficients, and the arrays of one solve.
-        let [nx, ny] = grid.shape();
-        check_memory(
-            grid.shape(),
-            Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 24,
-        )?;
+        check_memory(grid.shape(), memory(&grid))?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let mut coefficients = coefficients_on(body, &grid, setup.method, &threads)?;
         if let Some(counterbody) = &setup.counterbody {
@@ -132,6 +130,17 @@ impl Contact {
             convolution,
             levels,
         })
+    }
+
+    /// The same plan on other threads; it shares all that is large.
+    fn on_threads(&self, threads: &Arc<Threads>) -> Self {
+        Self {
+            body: self.body.clone(),
+            grid: self.grid,
+            setup: self.setup.clone(),
+            convolution: self.convolution.on_threads(threads),
+            levels: self.levels.on_threads(threads),
+        }
     }
 
     /// The body that shapes are pressed into.
@@ -311,6 +320,12 @@ impl Contact {
         // One that cannot carry the load is no help.
         Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))
     }
+}
+
+/// Bytes that a plan, its coefficients, and the arrays of one solve take.
+fn memory(grid: &Grid) -> u64 {
+    let [nx, ny] = grid.shape();
+    Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 24
 }
 
 /// A balanced pressure on all cells that can touch.

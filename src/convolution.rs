@@ -30,7 +30,7 @@ pub struct Convolution {
     shape: [usize; 2],
     self_influence: f64,
     transform: PaddedTransform,
-    spectrum: EvenSpectrum,
+    spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
 }
 
@@ -69,9 +69,19 @@ impl Convolution {
             shape,
             self_influence: coefficients[[0, 0]],
             transform,
-            spectrum,
+            spectrum: Arc::new(spectrum),
             threads,
         })
+    }
+
+    /// The same convolution on other threads; it shares the spectrum.
+    pub(crate) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
+        Self {
+            transform: self.transform.on_threads(threads),
+            spectrum: Arc::clone(&self.spectrum),
+            threads: Arc::clone(threads),
+            ..*self
+        }
     }
 
     /// Convolution with part of the coefficients of this one, for a part of its grid.
@@ -104,7 +114,7 @@ impl Convolution {
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
-            spectrum: map(&transform, spectrum),
+            spectrum: Arc::new(map(&transform, spectrum)),
             transform,
             threads: Arc::clone(&self.threads),
         }

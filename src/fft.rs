@@ -38,6 +38,7 @@ pub(crate) fn fast_length(n: usize) -> usize {
 }
 
 /// Transforms of (nx, ny) data, padded with zeros to (mx, my).
+#[derive(Clone)]
 pub(crate) struct PaddedTransform {
     shape: [usize; 2],
     padded: [usize; 2],
@@ -56,7 +57,7 @@ impl fmt::Debug for PaddedTransform {
 
 /// The transform of a kernel that is even along x and along y: real and even, so that a quarter of
 /// it is enough. Scaled by 1/(mx my), and stored by blocks of columns.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct EvenSpectrum(Vec<f64>);
 
 /// Memory for one convolution at a time.
@@ -75,6 +76,16 @@ struct TaskScratch {
     fft: Vec<Complex64>,
 }
 
+/// Into how many tasks a transform of `shape` is divided.
+fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
+    match threads.count() {
+        1 => 1,
+        _ if shape[0] * shape[1] < WORTH_THREADS => 1,
+        // More than threads, so that one thread that is held up does not hold up the others.
+        count => 4 * count,
+    }
+}
+
 impl PaddedTransform {
     /// Padded so that the convolution has no periodic images: lengths ≥ 2n − 1.
     pub(crate) fn plan(shape: [usize; 2], threads: &Threads) -> Self {
@@ -89,20 +100,22 @@ impl PaddedTransform {
     fn on(shape: [usize; 2], padded: [usize; 2], threads: &Threads) -> Self {
         let mut real = RealFftPlanner::new();
         let mut complex = FftPlanner::new();
-        // More tasks than threads, so that one thread that is held up does not hold up the others.
-        let tasks = match threads.count() {
-            1 => 1,
-            _ if shape[0] * shape[1] < WORTH_THREADS => 1,
-            count => 4 * count,
-        };
         Self {
             shape,
             padded,
-            tasks,
+            tasks: tasks(shape, threads),
             row_forward: real.plan_fft_forward(padded[1]),
             row_inverse: real.plan_fft_inverse(padded[1]),
             column_forward: complex.plan_fft_forward(padded[0]),
             column_inverse: complex.plan_fft_inverse(padded[0]),
+        }
+    }
+
+    /// The same transform on other threads.
+    pub(crate) fn on_threads(&self, threads: &Threads) -> Self {
+        Self {
+            tasks: tasks(self.shape, threads),
+            ..self.clone()
         }
     }
 

@@ -75,7 +75,9 @@ pub mod contact;
 mod python;
 
 pub use body::{HalfSpace, Interface, Layer, Substrate};
-pub use contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solution, Warning, solve};
+pub use contact::{
+    Algorithm, Case, Contact, Motion, Options, Report, Setup, Solution, Warning, solve,
+};
 pub use convolution::Convolution;
 pub use error::{Error, Result};
 pub use graded::graded_layers;

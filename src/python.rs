@@ -7,7 +7,9 @@ use pyo3::prelude::*;
 use crate::error::Error;
 
 mod arrays;
+mod batch;
 mod bodies;
+mod call;
 mod contact;
 mod functions;
 mod grid;

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, final, overload
 
 import numpy as np
@@ -266,6 +266,16 @@ class Contact:
         progress: Callable[[Report], object] | None = None,
         check: bool = True,
     ) -> Solution: ...
+    def solve_many(
+        self,
+        cases: Iterable[Mapping[str, Any]],
+        *,
+        tolerance: float = 1e-8,
+        max_iterations: int | None = None,
+        algorithm: _Algorithm = "cascade",
+        progress: Callable[[int, int], object] | None = None,
+        check: bool = True,
+    ) -> list[Solution]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getnewargs_ex__(
         self,
@@ -345,6 +355,7 @@ class Solution:
     def central_pressure(self) -> float: ...
     @property
     def line_load(self) -> _Field: ...
+    def stiffness(self) -> _Field: ...
     @property
     def report(self) -> Report: ...
     def __eq__(self, other: object, /) -> bool: ...

@@ -6,6 +6,7 @@
 //! displacement is computed on the whole grid: where something overlaps there, the window opens.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
@@ -13,6 +14,7 @@ use super::freedoms::Freedoms;
 use super::preconditioned::Preconditioned;
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
+use crate::threads::Threads;
 
 /// A direction with fewer cells is not halved.
 const COARSEST: usize = 32;
@@ -63,7 +65,7 @@ fn halved(shape: [usize; 2]) -> [bool; 2] {
 #[derive(Debug)]
 pub(super) struct Levels {
     /// From the finest on.
-    coefficients: Vec<Array2<f64>>,
+    coefficients: Arc<Vec<Array2<f64>>>,
     /// Of the coarser ones.
     convolutions: Vec<Convolution>,
 }
@@ -77,13 +79,22 @@ impl Levels {
             let halved = halved([fine.nrows(), fine.ncols()]);
             if halved == [false; 2] {
                 return Self {
-                    coefficients,
+                    coefficients: Arc::new(coefficients),
                     convolutions,
                 };
             }
             let coarse = coarse_coefficients(fine, halved);
             convolutions.push(convolution.part(&coarse));
             coefficients.push(coarse);
+        }
+    }
+
+    /// The same levels on other threads; they share all that is large.
+    pub(super) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
+        let convolutions = self.convolutions.iter();
+        Self {
+            coefficients: Arc::clone(&self.coefficients),
+            convolutions: convolutions.map(|c| c.on_threads(threads)).collect(),
         }
     }
 }
@@ -116,7 +127,7 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
 }
 
 /// Cells i0..i1, j0..j1 of a grid.
-type Window = [Range<usize>; 2];
+pub(super) type Window = [Range<usize>; 2];
 
 /// A pressure that is zero outside a window.
 #[derive(Debug, Clone)]
@@ -143,7 +154,7 @@ fn hull(a: &Window, b: &Window) -> Window {
 }
 
 /// Rows and columns of an array.
-fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> {
+pub(super) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> {
     let mut view = array.view();
     view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
     view.slice_axis_inplace(Axis(1), Slice::from(y.clone()));
@@ -151,7 +162,7 @@ fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> 
 }
 
 /// The smallest window that holds all cells of which `member` holds; none without any.
-fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
+pub(super) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
     let mut found: Option<Window> = None;
     for i in window[0].clone() {
         let row = window[1].clone();

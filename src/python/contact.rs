@@ -1,23 +1,17 @@
 //! `nacre.Contact` and `nacre.solve`.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::arrays::{Repr, count, number, pair, real_matrix};
+use super::arrays::count;
+use super::batch;
 use super::bodies::{PyHalfSpace, body};
+use super::call::{Call, options};
 use super::grid::PyGrid;
-use super::report::PyReport;
-use super::shapes::{PyShape, Shape};
 use super::solution::PySolution;
-use super::{ConvergenceError, NacreWarning};
 use crate::body::HalfSpace;
-use crate::contact::{
-    Algorithm, Contact, Motion, Options, Report, Setup, Solution, Termination, choose_grid,
-};
+use crate::contact::{Contact, Setup, choose_grid};
 use crate::error::Error;
 use crate::influence::Method;
 
@@ -50,177 +44,6 @@ pub(super) fn method_words(method: Method) -> (&'static str, usize) {
 }
 
 const REFINEMENT: usize = 4;
-
-fn algorithm(word: &str) -> PyResult<Algorithm> {
-    match word {
-        "cascade" => Ok(Algorithm::Cascade),
-        "polonsky-keer" => Ok(Algorithm::PolonskyKeer),
-        other => Err(Error::Choice {
-            name: "algorithm",
-            requirement: "\"cascade\" or \"polonsky-keer\"",
-            value: other.into(),
-        }
-        .into()),
-    }
-}
-
-/// Keyword arguments that `solve` and `Contact.solve` share.
-struct Call<'py> {
-    shape: Shape,
-    motion: Motion,
-    options: Options,
-    progress: Option<Bound<'py, PyAny>>,
-    check: bool,
-}
-
-impl<'py> Call<'py> {
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one for each keyword of Python's signature"
-    )]
-    fn new(
-        shape: &Bound<'py, PyAny>,
-        load: Option<&Bound<'py, PyAny>>,
-        approach: Option<&Bound<'py, PyAny>>,
-        eccentricity: Option<&Bound<'py, PyAny>>,
-        moment: Option<&Bound<'py, PyAny>>,
-        tilt: Option<&Bound<'py, PyAny>>,
-        tolerance: f64,
-        max_iterations: Option<&Bound<'py, PyAny>>,
-        algorithm: &str,
-        initial: Option<&Bound<'py, PyAny>>,
-        progress: Option<&Bound<'py, PyAny>>,
-        check: bool,
-    ) -> PyResult<Self> {
-        let shape = shape.cast::<PyShape>().map_err(|_| {
-            PyTypeError::new_err(format!("shape must be a nacre.Shape, got {}", Repr(shape)))
-        })?;
-        if let Some(progress) = progress.filter(|p| !p.is_callable()) {
-            return Err(PyTypeError::new_err(format!(
-                "progress must be callable, got {}",
-                Repr(progress)
-            )));
-        }
-        let initial = match initial {
-            Some(initial) => Some(match initial.cast::<PySolution>() {
-                Ok(solution) => solution.get().pressure_field().clone(),
-                Err(_) => real_matrix("initial", initial)?,
-            }),
-            None => None,
-        };
-        Ok(Self {
-            shape: shape.get().0.clone(),
-            motion: Motion {
-                load: number("load", load)?,
-                approach: number("approach", approach)?,
-                eccentricity: pair("eccentricity", eccentricity)?,
-                moment: pair("moment", moment)?,
-                tilt: pair("tilt", tilt)?,
-            },
-            options: Options {
-                tolerance,
-                max_iterations: max_iterations
-                    .map(|value| count("max_iterations", 0, value))
-                    .transpose()?,
-                algorithm: self::algorithm(algorithm)?,
-                initial,
-            },
-            progress: progress.cloned(),
-            check,
-        })
-    }
-
-    /// Runs `work` without the interpreter; it is interrupted by Ctrl-C, and by the callback.
-    fn run(
-        self,
-        py: Python<'py>,
-        work: impl FnOnce(
-            &Shape,
-            &Motion,
-            &Options,
-            &mut crate::contact::Progress,
-        ) -> crate::Result<Solution>
-        + Send,
-    ) -> PyResult<PySolution> {
-        let Self {
-            shape,
-            motion,
-            options,
-            progress,
-            check,
-        } = self;
-        let callback = progress.map(Bound::unbind);
-        let mut failure: Option<PyErr> = None;
-        let mut stopped = false;
-        let result = py.detach(|| {
-            let mut last = Instant::now();
-            work(&shape, &motion, &options, &mut |report: &Report| {
-                if failure.is_some() || stopped {
-                    return ControlFlow::Break(());
-                }
-                let due = last.elapsed() > SIGNALS;
-                if !due && callback.is_none() {
-                    return ControlFlow::Continue(());
-                }
-                let outcome = Python::attach(|py| {
-                    if due {
-                        last = Instant::now();
-                        py.check_signals()?;
-                    }
-                    let Some(callback) = &callback else {
-                        return Ok(true);
-                    };
-                    let answer = callback.bind(py).call1((PyReport(report.clone()),))?;
-                    Ok(answer.is_none() || answer.is_truthy()?)
-                });
-                match outcome {
-                    Ok(true) => return ControlFlow::Continue(()),
-                    Ok(false) => stopped = true,
-                    Err(error) => failure = Some(error),
-                }
-                ControlFlow::Break(())
-            })
-        });
-        if let Some(error) = failure {
-            return Err(error);
-        }
-        py.check_signals()?;
-        finish(py, result?, options.tolerance, check)
-    }
-}
-
-/// How often Ctrl-C is looked for.
-const SIGNALS: Duration = Duration::from_millis(50);
-
-/// Issues the warnings, and raises where the tolerance was not met.
-fn finish(py: Python<'_>, solution: Solution, tolerance: f64, check: bool) -> PyResult<PySolution> {
-    let category = py.get_type::<NacreWarning>();
-    for warning in &solution.report.warnings {
-        let message = std::ffi::CString::new(warning.to_string())?;
-        PyErr::warn(py, &category, &message, 1)?;
-    }
-    if check && solution.report.termination == Termination::IterationLimit {
-        let Report {
-            iterations,
-            residual,
-            overlap,
-            ..
-        } = solution.report;
-        let message = Error::NotConverged {
-            iterations,
-            residual,
-            overlap,
-            tolerance,
-        }
-        .to_string();
-        let error = ConvergenceError::new_err(message);
-        error
-            .value(py)
-            .setattr("solution", Bound::new(py, PySolution::from(solution))?)?;
-        return Err(error);
-    }
-    Ok(solution.into())
-}
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
@@ -422,6 +245,70 @@ impl PyContact {
         call.run(py, move |shape, motion, options, progress| {
             contact.solve_watched(shape, motion, options, progress)
         })
+    }
+
+    /// Solves many load cases side by side, each on a thread of its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// cases : iterable of mapping
+    ///     Of each case, `shape` and the keywords of `solve` that say how it is pressed: `load`,
+    ///     `approach`, `eccentricity`, `moment`, `tilt`.
+    /// tolerance : float, optional
+    ///     Largest residual and overlap of a converged solution.
+    /// max_iterations : int, optional
+    ///     Iterations of one case after which to give up; 10 000 by default.
+    /// algorithm : {"cascade", "polonsky-keer"}, optional
+    ///     As in `solve`.
+    /// progress : callable, optional
+    ///     Called with the number of finished cases and of all, as each finishes.
+    /// check : bool, optional
+    ///     Whether to raise where the tolerance was not met.
+    ///
+    /// Returns
+    /// -------
+    /// list of Solution
+    ///     In the order of the cases; each is that of `solve` to the bit.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     If a case is not a mapping of keywords of `solve`.
+    /// ValueError
+    ///     If a case is out of range. A note of the error says which case it is.
+    /// ConvergenceError
+    ///     If the tolerance was not met in a case.
+    ///
+    /// Notes
+    /// -----
+    /// Every exception that ends it, `KeyboardInterrupt` included, carries what was finished as
+    /// `solutions`: a list in the order of the cases, with `None` for those that were not.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
+    /// >>> cases = [{"shape": nacre.Sphere(5e-3), "load": load} for load in (5.0, 10.0)]
+    /// >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
+    /// [5.0, 10.0]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keywords of the public signature"
+    )]
+    #[pyo3(signature = (cases, *, tolerance=1e-8, max_iterations=None, algorithm="cascade", progress=None,
+        check=true))]
+    fn solve_many(
+        &self,
+        py: Python<'_>,
+        cases: &Bound<'_, PyAny>,
+        tolerance: f64,
+        max_iterations: Option<&Bound<'_, PyAny>>,
+        algorithm: &str,
+        progress: Option<&Bound<'_, PyAny>>,
+        check: bool,
+    ) -> PyResult<Vec<Py<PySolution>>> {
+        let options = options(tolerance, max_iterations, algorithm, None)?;
+        batch::solve_many(py, &self.contact, cases, &options, progress, check)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -1,5 +1,6 @@
 //! `nacre.Solution`.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use ndarray::Array2;
@@ -158,6 +159,52 @@ impl PySolution {
     #[getter]
     fn line_load<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         read_only(py, self.solution.line_load())
+    }
+
+    /// The exact tangent stiffness ``(3, 3)`` of ``(sum p dA, sum p x dA, sum p y dA)``.
+    ///
+    /// Its columns are the derivatives with respect to the approach [m] and the slopes ``s_x``,
+    /// ``s_y``, of the discrete contact; symmetric. The second row is the couple about y in which
+    /// force at positive x is positive. All zero where nothing touches.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     In N/m, N and N m.
+    ///
+    /// Raises
+    /// ------
+    /// MemoryError
+    ///     If the influence coefficients do not fit.
+    ///
+    /// Examples
+    /// --------
+    /// Of a sphere on a half-space, dW/dδ = 2 E* a:
+    ///
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> radius = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus) ** (1 / 3)
+    /// >>> stiffness = float(solution.stiffness()[0, 0])
+    /// >>> round(stiffness / (2 * steel.plane_strain_modulus * radius), 2)
+    /// 1.0
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut failure = None;
+        let stiffness = py.detach(|| {
+            self.solution.stiffness_watched(&mut || {
+                failure = Python::attach(|py| py.check_signals()).err();
+                match failure {
+                    Some(_) => ControlFlow::Break(()),
+                    None => ControlFlow::Continue(()),
+                }
+            })
+        })?;
+        if let Some(error) = failure {
+            return Err(error);
+        }
+        Ok(PyArray2::from_owned_array(
+            py,
+            Array2::from(stiffness.unwrap_or_default().to_vec()),
+        ))
     }
 
     /// How the solution came about, and how good it is.

@@ -1,0 +1,141 @@
+//! Many load cases on one plan.
+
+use std::ops::ControlFlow;
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyMapping};
+
+use super::arrays::Repr;
+use super::call::{finish, motion, progress_callable, shape};
+use super::shapes::Shape;
+use super::solution::PySolution;
+use crate::contact::{Case, Contact, Motion, Options};
+
+const KEYS: [&str; 6] = [
+    "shape",
+    "load",
+    "approach",
+    "eccentricity",
+    "moment",
+    "tilt",
+];
+
+/// Shape and motion of a case.
+fn case(case: &Bound<'_, PyAny>) -> PyResult<(Shape, Motion)> {
+    let mapping = case.cast::<PyMapping>().map_err(|_| {
+        let got = Repr(case);
+        PyTypeError::new_err(format!(
+            "a case must be a mapping of keywords of `solve`, got {got}"
+        ))
+    })?;
+    let keywords = PyDict::new(case.py());
+    for item in mapping.items()?.iter() {
+        let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
+        if !key
+            .extract::<String>()
+            .is_ok_and(|key| KEYS.contains(&key.as_str()))
+        {
+            return Err(PyTypeError::new_err(format!(
+                "a case's keys must be among {}, got {}",
+                KEYS.join(", "),
+                Repr(&key)
+            )));
+        }
+        keywords.set_item(key, value)?;
+    }
+    let get = |key: &str| -> PyResult<Option<Bound<'_, PyAny>>> {
+        Ok(keywords.get_item(key)?.filter(|value| !value.is_none()))
+    };
+    let pressed = get("shape")?.ok_or_else(|| PyTypeError::new_err("a case must have a shape"))?;
+    let [load, approach, eccentricity, moment, tilt] = [
+        get("load")?,
+        get("approach")?,
+        get("eccentricity")?,
+        get("moment")?,
+        get("tilt")?,
+    ];
+    let motion = motion(
+        load.as_ref(),
+        approach.as_ref(),
+        eccentricity.as_ref(),
+        moment.as_ref(),
+        tilt.as_ref(),
+    )?;
+    Ok((shape(&pressed)?, motion))
+}
+
+/// `error`, saying which case it is of.
+fn of_case(py: Python<'_>, error: PyErr, number: usize) -> PyErr {
+    let noted = error
+        .value(py)
+        .call_method1("add_note", (format!("in case {number}"),));
+    noted.err().unwrap_or(error)
+}
+
+/// Solves `cases` on `contact`; whatever interrupts it carries the finished ones as `solutions`.
+pub(super) fn solve_many(
+    py: Python<'_>,
+    contact: &Contact,
+    cases: &Bound<'_, PyAny>,
+    options: &Options,
+    progress: Option<&Bound<'_, PyAny>>,
+    check: bool,
+) -> PyResult<Vec<Py<PySolution>>> {
+    let progress = progress_callable(progress)?;
+    let mut parsed = Vec::new();
+    for (number, item) in cases.try_iter()?.enumerate() {
+        parsed.push(case(&item?).map_err(|error| of_case(py, error, number))?);
+    }
+    let total = parsed.len();
+    let (mut failure, mut told) = (None, 0);
+    let solved = py.detach(|| {
+        let cases: Vec<Case> = parsed
+            .iter()
+            .map(|(shape, motion)| Case {
+                shape,
+                motion: *motion,
+            })
+            .collect();
+        contact.solve_many(&cases, options, &mut |done| {
+            if failure.is_some() {
+                return ControlFlow::Break(());
+            }
+            let answer = Python::attach(|py| {
+                py.check_signals()?;
+                match progress.as_ref().filter(|_| done > told) {
+                    Some(progress) => progress.call1(py, (done, total)).map(drop),
+                    None => Ok(()),
+                }
+            });
+            told = done;
+            failure = answer.err();
+            if failure.is_some() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        })
+    })?;
+    let mut solutions: Vec<Option<Py<PySolution>>> = Vec::with_capacity(total);
+    for (number, solved) in solved.into_iter().enumerate() {
+        let outcome = solved.map(|solved| finish(py, solved?, options.tolerance, check));
+        let solution = match outcome {
+            None => None,
+            Some(Ok(solution)) => Some(Py::new(py, solution)?),
+            Some(Err(error)) => {
+                let unfinished = error.value(py).getattr_opt("solution")?;
+                failure.get_or_insert_with(|| of_case(py, error, number));
+                unfinished.and_then(|solution| solution.extract().ok())
+            }
+        };
+        solutions.push(solution);
+    }
+    if let Some(error) = failure {
+        error
+            .value(py)
+            .setattr("solutions", PyList::new(py, solutions)?)?;
+        return Err(error);
+    }
+    Ok(solutions.into_iter().flatten().collect())
+}

@@ -1,0 +1,103 @@
+//! Many cases side by side give what each gives alone, in the order given; what is stopped keeps
+//! what is finished.
+
+use std::ops::ControlFlow;
+
+use nacre::{
+    Case, Contact, Elastic, Error, Grid, HalfSpace, Layer, Motion, Options, Result, Setup, Sphere,
+    Surface,
+};
+
+fn contact(threads: usize) -> Result<Contact> {
+    let (coat, base) = (Elastic::new(4.0, 0.3)?, Elastic::new(1.0, 0.25)?);
+    let body = HalfSpace::new(base, vec![Layer::new(coat, 0.1)?])?;
+    let setup = Setup {
+        threads: Some(threads),
+        ..Setup::default()
+    };
+    Contact::plan(&body, Grid::new([96, 112], [2.4, 2.8])?, setup)
+}
+
+#[test]
+fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
+    let spheres = [Sphere::new(50.0)?, Sphere::new(80.0)?];
+    let cases: Vec<Case> = (0..12)
+        .map(|k| Case {
+            shape: &spheres[k % 2] as &dyn Surface,
+            motion: Motion {
+                eccentricity: [Some(0.01 * k as f64), None],
+                ..Motion::load(0.02 / (k + 1) as f64)
+            },
+        })
+        .collect();
+    let options = Options::default();
+    let one = contact(1)?;
+    let alone: Vec<_> = cases
+        .iter()
+        .map(|case| one.solve(case.shape, &case.motion, &options))
+        .collect::<Result<_>>()?;
+    for threads in [1, 2, 5, 32] {
+        let mut told = Vec::new();
+        let solved = contact(threads)?.solve_many(&cases, &options, &mut |done| {
+            told.push(done);
+            ControlFlow::Continue(())
+        })?;
+        assert!(told.is_sorted() && told.last() == Some(&cases.len()));
+        for (solved, alone) in solved.into_iter().zip(&alone) {
+            let solved = solved.ok_or(Error::Inconsistent("every case is finished"))??;
+            assert_eq!(solved.pressure, alone.pressure);
+            assert_eq!(solved.gap, alone.gap);
+            assert_eq!(solved.approach.to_bits(), alone.approach.to_bits());
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_bad_case_is_its_own_result() -> Result<()> {
+    let sphere = Sphere::new(50.0)?;
+    let cases = [0.02, -1.0, 0.01].map(|load| Case {
+        shape: &sphere,
+        motion: Motion::load(load),
+    });
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let solved = contact(2)?.solve_many(&cases, &Options::default(), go_on)?;
+    assert!(matches!(solved[0], Some(Ok(_))) && matches!(solved[2], Some(Ok(_))));
+    assert!(matches!(
+        solved[1],
+        Some(Err(Error::Parameter { name: "load", .. }))
+    ));
+    Ok(())
+}
+
+#[test]
+fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
+    let sphere = Sphere::new(50.0)?;
+    let cases = [0.02; 40].map(|load| Case {
+        shape: &sphere,
+        motion: Motion::load(load),
+    });
+    let mut last = 0;
+    let solved = contact(2)?.solve_many(&cases, &Options::default(), &mut |done| {
+        last = done;
+        if done < 5 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    })?;
+    let finished: Vec<_> = solved.into_iter().flatten().collect();
+    assert!((5..40).contains(&finished.len()) && finished.len() == last);
+    for solution in finished {
+        assert!(solution?.report.converged());
+    }
+    Ok(())
+}
+
+#[test]
+fn no_cases_give_no_solutions() -> Result<()> {
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let solved = contact(2)?.solve_many(&[], &Options::default(), go_on)?;
+    assert!(solved.is_empty());
+    Ok(())
+}

@@ -1,0 +1,96 @@
+"""Many load cases on one plan: order, errors that say which case, and what an interrupt keeps."""
+
+import signal
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+
+STEEL = nacre.Elastic(young=210e9, poisson=0.3)
+SPHERE = nacre.Sphere(5e-3)
+CONTACT = nacre.Contact(STEEL, nacre.Grid(shape=(64, 48), size=(3e-4, 3e-4)), threads=2)
+CASES = [{"shape": SPHERE, "load": load} for load in (10.0, 3.0, 5.0, 2.5, 8.0, 4.0)]
+
+
+def test_solutions_are_in_order_and_those_of_solve() -> None:
+    told: list[tuple[int, int]] = []
+    solutions = CONTACT.solve_many(CASES, progress=lambda done, total: told.append((done, total)))
+    assert told[-1] == (len(CASES), len(CASES))
+    for case, solution in zip(CASES, solutions, strict=True):
+        alone = CONTACT.solve(**case)  # type: ignore[arg-type]
+        np.testing.assert_array_equal(solution.pressure, alone.pressure)
+        assert solution.approach == alone.approach
+
+
+def test_cases_take_every_freedom_and_any_iterable() -> None:
+    motions: list[dict[str, Any]] = [
+        {"approach": 1e-6, "tilt": (1e-4, None)},
+        {"load": 5.0, "eccentricity": (1e-5, None), "moment": (None, 1e-5)},
+    ]
+    solutions = CONTACT.solve_many({"shape": SPHERE, **motion} for motion in motions)
+    assert [solution.report.motion for solution in solutions] == motions
+
+
+@pytest.mark.parametrize(
+    ("case", "error", "message"),
+    [
+        ({"shape": SPHERE, "load": -1.0}, ValueError, "load must be"),
+        ({"shape": SPHERE, "laod": 1.0}, TypeError, "keys must be among shape, load"),
+        ({"load": 1.0}, TypeError, "a case must have a shape"),
+        ({"shape": 5.0, "load": 1.0}, TypeError, "shape must be a nacre.Shape"),
+        (7, TypeError, "a case must be a mapping"),
+    ],
+)
+def test_an_error_says_which_case_it_is_of(case: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message) as raised:
+        CONTACT.solve_many([*CASES, case])
+    assert raised.value.__notes__ == [f"in case {len(CASES)}"]
+
+
+def test_a_bad_case_does_not_lose_the_others() -> None:
+    with pytest.raises(ValueError, match="load must be") as raised:
+        CONTACT.solve_many([*CASES, {"shape": SPHERE, "load": -1.0}, CASES[0]])
+    solutions = raised.value.solutions  # type: ignore[attr-defined]
+    assert [solution is None for solution in solutions] == [False] * len(CASES) + [True, False]
+    np.testing.assert_array_equal(solutions[-1].pressure, solutions[0].pressure)
+
+
+def test_a_case_that_misses_its_tolerance_raises_with_all_solutions() -> None:
+    with pytest.raises(nacre.ConvergenceError) as raised:
+        CONTACT.solve_many(CASES, max_iterations=1, algorithm="polonsky-keer")
+    solutions = raised.value.solutions  # type: ignore[attr-defined]
+    assert all(not solution.report.converged for solution in solutions)
+    unchecked = CONTACT.solve_many(CASES, max_iterations=1, algorithm="polonsky-keer", check=False)
+    for solution, same in zip(unchecked, solutions, strict=True):
+        np.testing.assert_array_equal(solution.pressure, same.pressure)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError])
+def test_what_interrupts_it_carries_what_was_finished(error: type[BaseException]) -> None:
+    def interrupt(done: int, total: int) -> None:
+        if done == 3:
+            if error is KeyboardInterrupt:
+                signal.raise_signal(signal.SIGINT)
+            else:
+                raise error
+
+    with pytest.raises(error) as raised:
+        CONTACT.solve_many(CASES * 20, progress=interrupt)
+    solutions = raised.value.solutions  # type: ignore[attr-defined]
+    finished = [solution for solution in solutions if solution is not None]
+    assert 3 <= len(finished) < len(solutions) == len(CASES) * 20
+    assert all(solution.report.converged for solution in finished)
+
+
+def test_stiffness_is_symmetric_and_that_of_hertz() -> None:
+    solution = CONTACT.solve(SPHERE, load=10.0)
+    stiffness = solution.stiffness()
+    assert stiffness.shape == (3, 3)
+    # Entries over the geometric mean of their diagonals.
+    scale = np.sqrt(np.outer(stiffness.diagonal(), stiffness.diagonal()))
+    np.testing.assert_allclose(stiffness / scale, stiffness.T / scale, atol=1e-10)
+    # dW/dδ = 3/2 W/δ exactly in Hertz' theory (W ~ δ^(3/2)); on cells within the jitter of the
+    # contact's edge.
+    assert stiffness[0, 0] == pytest.approx(1.5 * 10.0 / solution.approach, rel=5e-3)

@@ -1,0 +1,175 @@
+//! The tangent stiffness is that of central differences, symmetric, and that of closed forms.
+
+use nacre::{
+    Contact, Elastic, FlatPunch, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result,
+    Roller, Setup, Sphere, Surface,
+};
+
+/// (Σ p dA, Σ p x dA, Σ p y dA) under a prescribed motion.
+fn loads(contact: &Contact, shape: &dyn Surface, motion: [f64; 3]) -> Result<[f64; 3]> {
+    let [approach, sx, sy] = motion;
+    let motion = Motion {
+        tilt: [Some(sx), Some(sy)],
+        ..Motion::approach(approach)
+    };
+    let options = Options {
+        tolerance: 1e-13,
+        ..Options::default()
+    };
+    let solution = contact.solve(shape, &motion, &options)?;
+    assert!(solution.report.converged());
+    let [mx, my] = solution.moment();
+    Ok([solution.load(), mx, my])
+}
+
+/// Largest difference between the stiffness of a solution and central differences, each entry over
+/// the geometric mean of its diagonals; the contact is tilted, so that no entry is zero by symmetry.
+fn error_against_differences(
+    body: &HalfSpace,
+    shape: &dyn Surface,
+    grid: Grid,
+    at: [f64; 3],
+) -> Result<f64> {
+    let contact = Contact::plan(body, grid, Setup::default())?;
+    let motion = Motion {
+        tilt: [Some(at[1]), Some(at[2])],
+        ..Motion::approach(at[0])
+    };
+    let options = Options {
+        tolerance: 1e-13,
+        ..Options::default()
+    };
+    let solution = contact.solve(shape, &motion, &options)?;
+    let stiffness = solution.stiffness()?;
+    // Steps of one and the same displacement at the rim.
+    let half = 0.5 * grid.size()[0];
+    let mut worst: f64 = 0.0;
+    for freedom in 0..3 {
+        let step = STEP * at[0] / if freedom == 0 { 1.0 } else { half };
+        let moved = |sign: f64| {
+            let mut to = at;
+            to[freedom] += sign * step;
+            loads(&contact, shape, to)
+        };
+        let (more, less) = (moved(1.0)?, moved(-1.0)?);
+        for row in 0..3 {
+            let difference = (more[row] - less[row]) / (2.0 * step);
+            let scale = (stiffness[row][row] * stiffness[freedom][freedom]).sqrt();
+            worst = worst.max((stiffness[row][freedom] - difference).abs() / scale);
+            let transposed = stiffness[freedom][row];
+            assert!((stiffness[row][freedom] - transposed).abs() <= SYMMETRY * scale);
+        }
+    }
+    Ok(worst)
+}
+
+/// Small enough that no cell joins or leaves, large against what the tolerance leaves: 1e-13/1e-6.
+const STEP: f64 = 1e-6;
+const SYMMETRY: f64 = 1e-10;
+const DIFFERENCES: f64 = 1e-6;
+
+fn coated() -> Result<HalfSpace> {
+    let coat = Elastic::new(4.0, 0.3)?;
+    let base = Elastic::new(1.0, 0.25)?;
+    HalfSpace::new(base, vec![Layer::new(coat, 0.1)?])
+}
+
+#[test]
+fn stiffness_is_that_of_central_differences() -> Result<()> {
+    let bare: HalfSpace = Elastic::new(1.0, 0.3)?.into();
+    let grid = Grid::new([60, 45], [2.4, 2.0])?;
+    let shapes: [(&dyn Surface, [f64; 3]); 3] = [
+        (&Sphere::new(50.0)?, [0.01, 1e-3, -2e-3]),
+        (&Paraboloid::new(60.0, 25.0)?, [0.01, -1e-3, 3e-3]),
+        (&FlatPunch::new(0.7)?, [0.01, 1e-3, 2e-3]),
+    ];
+    for body in [bare, coated()?] {
+        for (shape, at) in shapes {
+            let error = error_against_differences(&body, shape, grid, at)?;
+            assert!(error < DIFFERENCES, "{error:e}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn stiffness_of_a_tilted_roller_is_that_of_central_differences() -> Result<()> {
+    let roller = Roller::new(5.0, 8.0, 100.0)?;
+    let grid = Grid::new([96, 48], [16.0, 1.2])?;
+    let error = error_against_differences(&coated()?, &roller, grid, [0.02, 5e-4, 0.0])?;
+    assert!(error < DIFFERENCES, "{error:e}");
+    Ok(())
+}
+
+#[test]
+fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
+    // W = 2 E* a δ; M = 4/3 E* a³ s (Johnson, Contact Mechanics, eqs 3.36 and 5.46 f.). The radius
+    // of a punch of cells is right to a fraction of a cell: π a² is their area.
+    let body = Elastic::new(1.0, 0.0)?.into();
+    let radius: f64 = 1.0;
+    let mut errors = Vec::new();
+    for cells in [64, 128] {
+        let grid = Grid::new([cells, cells], [2.2, 2.2])?;
+        let contact = Contact::plan(&body, grid, Setup::default())?;
+        let punch = FlatPunch::new(radius)?;
+        let solution = contact.solve(&punch, &Motion::load(1.0), &Options::default())?;
+        let stiffness = solution.stiffness()?;
+        let normal = stiffness[0][0] / (2.0 * radius) - 1.0;
+        let tilt = stiffness[1][1] / (4.0 / 3.0 * radius.powi(3)) - 1.0;
+        errors.push([normal, tilt]);
+        assert!((stiffness[1][1] / stiffness[2][2] - 1.0).abs() < 1e-9);
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            assert!(
+                stiffness[row][column].abs() < 1e-9,
+                "no coupling at the middle"
+            );
+        }
+    }
+    // Cells of constant pressure carry 1/√ singular edges to first order: half a cell of radius.
+    for (error, cell) in errors.iter().zip([2.2 / 64.0, 2.2 / 128.0]) {
+        assert!(error[0].abs() < 0.5 * cell / radius, "{errors:?}");
+        assert!(error[1].abs() < 1.5 * cell / radius, "{errors:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn nothing_touching_has_no_stiffness() -> Result<()> {
+    let body = Elastic::new(1.0, 0.0)?.into();
+    let grid = Grid::new([16, 16], [1.0, 1.0])?;
+    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let motion = Motion::approach(-1.0);
+    let solution = contact.solve(&Sphere::new(5.0)?, &motion, &Options::default())?;
+    let none = solution
+        .stiffness()?
+        .as_flattened()
+        .iter()
+        .all(|&s| s == 0.0);
+    assert!(none);
+    Ok(())
+}
+
+#[test]
+fn motion_found_under_load_gives_the_load_back() -> Result<()> {
+    let grid = Grid::new([60, 45], [2.4, 2.0])?;
+    let contact = Contact::plan(&coated()?, grid, Setup::default())?;
+    let sphere = Sphere::new(50.0)?;
+    let loaded = Motion {
+        eccentricity: [Some(0.2), Some(-0.1)],
+        ..Motion::load(0.02)
+    };
+    let options = Options {
+        tolerance: 1e-12,
+        ..Options::default()
+    };
+    let solution = contact.solve(&sphere, &loaded, &options)?;
+    let [sx, sy] = solution.tilt;
+    let [load, mx, my] = loads(&contact, &sphere, [solution.approach, sx, sy])?;
+    assert!((load / 0.02 - 1.0).abs() < GIVEN_BACK);
+    let half = [1.2, 1.0];
+    assert!((mx - 0.2 * 0.02).abs() < GIVEN_BACK * 0.02 * half[0]);
+    assert!((my + 0.1 * 0.02).abs() < GIVEN_BACK * 0.02 * half[1]);
+    Ok(())
+}
+
+const GIVEN_BACK: f64 = 1e-8;
