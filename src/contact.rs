@@ -18,6 +18,7 @@ use crate::threads::Threads;
 mod automatic;
 mod batch;
 mod cascade;
+mod discretisation;
 mod freedoms;
 mod hull;
 mod polonsky_keer;
@@ -29,11 +30,13 @@ mod stiffness;
 
 pub use automatic::{choose_grid, solve};
 pub use batch::Case;
+pub use discretisation::Discretisation;
 pub use freedoms::Motion;
 pub use problem::Termination;
 pub use solution::{Balance, Report, Solution, Warning};
 
 use cascade::{Cascade, Levels};
+use discretisation::{Figures, estimate};
 use freedoms::Freedoms;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
 
@@ -117,12 +120,16 @@ impl Contact {
     pub fn plan(body: &HalfSpace, grid: Grid, setup: Setup) -> Result<Self> {
         check_memory(grid.shape(), memory(&grid))?;
         let threads = Arc::new(Threads::new(setup.threads)?);
-        let mut coefficients = coefficients_on(body, &grid, setup.method, &threads)?;
-        if let Some(counterbody) = &setup.counterbody {
-            coefficients += &coefficients_on(counterbody, &grid, setup.method, &threads)?;
-        }
-        let convolution = Convolution::plan_on(&coefficients, threads)?;
-        let levels = Levels::new(coefficients, &convolution);
+        let both = |grid: &Grid| -> Result<Array2<f64>> {
+            let mut coefficients = coefficients_on(body, grid, setup.method, &threads)?;
+            if let Some(counterbody) = &setup.counterbody {
+                coefficients += &coefficients_on(counterbody, grid, setup.method, &threads)?;
+            }
+            Ok(coefficients)
+        };
+        let coefficients = both(&grid)?;
+        let convolution = Convolution::plan_on(&coefficients, Arc::clone(&threads))?;
+        let levels = Levels::plan(grid, coefficients, &convolution, both)?;
         Ok(Self {
             body: body.clone(),
             grid,
@@ -212,17 +219,24 @@ impl Contact {
         };
         let mut fields = Fields::new(self.grid.shape(), &self.convolution);
         let cascade = match options.algorithm {
-            Algorithm::Cascade => {
-                Cascade::new(&problem, &self.levels, initial.as_ref(), limits, &mut watch)
-            }
+            Algorithm::Cascade => Cascade::new(
+                &problem,
+                shape,
+                &self.levels,
+                initial.as_ref(),
+                limits,
+                &mut watch,
+            ),
             Algorithm::PolonskyKeer => Err(()),
         };
+        let mut figures = Vec::new();
         let solved = match cascade {
             Ok((mut cascade, Some(stopped))) => {
                 cascade.paste(&mut fields.pressure);
                 stopped
             }
-            Ok((cascade, None)) => {
+            Ok((mut cascade, None)) => {
+                figures = std::mem::take(&mut cascade.figures);
                 solve_in_window(&problem, cascade, &mut fields, limits, &mut watch)
             }
             Err(()) => {
@@ -256,6 +270,10 @@ impl Contact {
             tilt,
             report,
         };
+        if solution.report.converged() {
+            figures.push(Figures::of(&solution));
+            solution.report.discretisation = estimate(&figures);
+        }
         solution.report.balance = review::balance(&solution, motion);
         solution.report.warnings = review::warnings(&solution, shape);
         solution.report.seconds = start.elapsed().as_secs_f64();
@@ -271,6 +289,7 @@ impl Contact {
             residual: 0.0,
             overlap: 0.0,
             balance: Balance::default(),
+            discretisation: None,
             warnings: Vec::new(),
             grid: self.grid,
             body: self.body.clone(),
@@ -355,7 +374,8 @@ fn solve_in_window(
     limits: Limits,
     watch: &mut Watch,
 ) -> Outcome {
-    let mut iterations = 0;
+    const RETRIES: usize = 2;
+    let (mut iterations, mut retries) = (0, 0);
     loop {
         let left = Limits {
             max_iterations: limits.max_iterations - iterations,
@@ -380,7 +400,12 @@ fn solve_in_window(
             };
         }
         let converged = outcome.termination == Termination::Converged;
-        if !(converged && cascade.open(&fields.gap)) {
+        if converged && cascade.open(&fields.gap) {
+            continue;
+        }
+        // What it took for the displacement may have drifted, by rounding.
+        retries += 1;
+        if !converged || retries > RETRIES {
             // It broke down, by rounding: the reference goes on from there.
             let left = Limits {
                 max_iterations: limits.max_iterations - iterations,

@@ -88,36 +88,32 @@ impl Convolution {
     pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan(shape, &self.threads);
-        self.with(coefficients, transform, |_, spectrum| spectrum)
+        let spectrum = transform.even_spectrum(coefficients, &self.threads);
+        Self {
+            shape,
+            self_influence: coefficients[[0, 0]],
+            transform,
+            spectrum: Arc::new(spectrum),
+            threads: Arc::clone(&self.threads),
+        }
     }
 
-    /// An approximate inverse of the convolution with `coefficients`: the inverse of their periodic
-    /// convolution on a mesh that is not padded, at a third of the cost. Symmetric and positive
-    /// definite.
-    pub(crate) fn approximate_inverse(&self, coefficients: &ArrayRef2<f64>) -> Self {
+    /// The periodic convolution with `coefficients`, on a mesh that is not padded, at a fifth of the
+    /// cost; and its inverse, symmetric and positive definite.
+    pub(crate) fn periodic(&self, coefficients: &ArrayRef2<f64>) -> [Self; 2] {
         // Exact coefficients have a positive transform, of which the smallest is above this.
         const FLOOR: f64 = 1e-6;
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan_periodic(shape, &self.threads);
-        self.with(coefficients, transform, |transform, spectrum| {
-            transform.inverse_spectrum(&spectrum, FLOOR)
-        })
-    }
-
-    fn with(
-        &self,
-        coefficients: &ArrayRef2<f64>,
-        transform: PaddedTransform,
-        map: impl Fn(&PaddedTransform, EvenSpectrum) -> EvenSpectrum,
-    ) -> Self {
         let spectrum = transform.even_spectrum(coefficients, &self.threads);
-        Self {
-            shape: [coefficients.nrows(), coefficients.ncols()],
+        let inverse = transform.inverse_spectrum(&spectrum, FLOOR);
+        [spectrum, inverse].map(|spectrum| Self {
+            shape,
             self_influence: coefficients[[0, 0]],
-            spectrum: Arc::new(map(&transform, spectrum)),
-            transform,
+            transform: transform.clone(),
+            spectrum: Arc::new(spectrum),
             threads: Arc::clone(&self.threads),
-        }
+        })
     }
 
     /// Points of the padded mesh, times their logarithm: what an application costs.

@@ -10,17 +10,24 @@ use std::sync::Arc;
 
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
+use super::discretisation::Figures;
 use super::freedoms::Freedoms;
-use super::preconditioned::Preconditioned;
+use super::preconditioned::{Approximation, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::surface::Surface;
 use crate::threads::Threads;
 
 /// A direction with fewer cells is not halved.
 const COARSEST: usize = 32;
 
-/// Tolerance of all grids but the last: somewhat below their discretisation error.
-const COARSE_TOLERANCE: f64 = 1e-4;
+/// Tolerance of the last but one of the grids, with which the finest is compared.
+const COARSE_TOLERANCE: f64 = 1e-5;
+
+/// Tolerance of the grids before: somewhat below their discretisation error.
+const COARSER_TOLERANCE: f64 = 1e-4;
 
 /// Cells around the contact in a window.
 const MARGIN: usize = 6;
@@ -28,65 +35,65 @@ const MARGIN: usize = 6;
 /// A window that covers more of the grid than this is not worth its planning.
 const WORTH_WINDOW: f64 = 0.6;
 
-/// Coefficients of a grid of cells twice as long in the directions of `halved`, from those of this
-/// grid: pressure uniform over the coarse cells, displacement averaged over them.
-///
-/// ```text
-/// C'[I] = C[2I] + (C[2I−1] + C[2I+1])/2       along each direction
-/// ```
-fn coarse_coefficients(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
-    let half = |n: usize, halved: bool| if halved { n.div_ceil(2) } else { n };
-    let (nx, ny) = fine.dim();
-    let taps = |i: usize, n: usize, halved: bool| -> [(usize, f64); 3] {
-        if halved {
-            [
-                ((2 * i).min(n - 1), 1.0),
-                ((2 * i + 1).min(n - 1), 0.5),
-                ((2 * i).abs_diff(1).min(n - 1), 0.5),
-            ]
-        } else {
-            [(i, 1.0), (i, 0.0), (i, 0.0)]
-        }
-    };
-    Array2::from_shape_fn((half(nx, halved[0]), half(ny, halved[1])), |(i, j)| {
-        let (x, y) = (taps(i, nx, halved[0]), taps(j, ny, halved[1]));
-        x.iter()
-            .map(|(i, a)| y.iter().map(|(j, b)| a * b * fine[[*i, *j]]).sum::<f64>())
-            .sum()
-    })
-}
-
 /// Which directions of a grid are halved for the next coarser one; none at the coarsest.
 fn halved(shape: [usize; 2]) -> [bool; 2] {
     shape.map(|n| n >= 2 * COARSEST)
 }
 
-/// Influence coefficients of a grid and of all coarser ones.
+/// The grid of cells twice as long in the directions of `halved`, which starts where `fine` does.
+fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
+    let (shape, spacing, center) = (fine.shape(), fine.spacing(), fine.center());
+    let cells = [0, 1].map(|k| {
+        if halved[k] {
+            shape[k].div_ceil(2)
+        } else {
+            shape[k]
+        }
+    });
+    let longer = halved.map(|halved| if halved { 2.0 } else { 1.0 });
+    let sides = [0, 1].map(|k| longer[k] * spacing[k] * cells[k] as f64);
+    let grown = [0, 1].map(|k| 0.5 * (sides[k] - fine.size()[k]));
+    let grid = if fine.is_line() {
+        Grid::line(cells[1], sides[1])?
+    } else {
+        Grid::new(cells, sides)?
+    };
+    grid.centered_at([0, 1].map(|k| center[k] + grown[k]))
+}
+
+/// A grid and all coarser ones, each with its own influence coefficients.
 #[derive(Debug)]
 pub(super) struct Levels {
     /// From the finest on.
     coefficients: Arc<Vec<Array2<f64>>>,
     /// Of the coarser ones.
     convolutions: Vec<Convolution>,
+    grids: Vec<Grid>,
 }
 
 impl Levels {
-    pub(super) fn new(finest: Array2<f64>, convolution: &Convolution) -> Self {
-        let mut coefficients = vec![finest];
+    /// Plans the coarser grids of `finest`, which has the coefficients `of` gives and `convolution`.
+    pub(super) fn plan(
+        finest: Grid,
+        coefficients: Array2<f64>,
+        convolution: &Convolution,
+        of: impl Fn(&Grid) -> Result<Array2<f64>>,
+    ) -> Result<Self> {
+        let (mut coefficients, mut grids) = (vec![coefficients], vec![finest]);
         let mut convolutions = Vec::new();
-        loop {
-            let fine = &coefficients[coefficients.len() - 1];
-            let halved = halved([fine.nrows(), fine.ncols()]);
-            if halved == [false; 2] {
-                return Self {
-                    coefficients: Arc::new(coefficients),
-                    convolutions,
-                };
-            }
-            let coarse = coarse_coefficients(fine, halved);
+        let mut fine = finest;
+        while halved(fine.shape()) != [false; 2] {
+            fine = coarse_grid(&fine, halved(fine.shape()))?;
+            let coarse = of(&fine)?;
             convolutions.push(convolution.part(&coarse));
             coefficients.push(coarse);
+            grids.push(fine);
         }
+        Ok(Self {
+            coefficients: Arc::new(coefficients),
+            convolutions,
+            grids,
+        })
     }
 
     /// The same levels on other threads; they share all that is large.
@@ -95,6 +102,7 @@ impl Levels {
         Self {
             coefficients: Arc::clone(&self.coefficients),
             convolutions: convolutions.map(|c| c.on_threads(threads)).collect(),
+            grids: self.grids.clone(),
         }
     }
 }
@@ -247,6 +255,11 @@ impl Patch {
             let x = taps(0, i);
             for j in window[1].clone() {
                 let y = taps(1, j);
+                if self.at(x[0].0, y[0].0) <= 0.0 {
+                    // Interpolation would widen the contact by half a cell on every side.
+                    values.push(0.0);
+                    continue;
+                }
                 values.push(
                     x[0].1 * (y[0].1 * self.at(x[0].0, y[0].0) + y[1].1 * self.at(x[0].0, y[1].0))
                         + x[1].1
@@ -269,6 +282,15 @@ struct Level<'a> {
 impl Level<'_> {
     fn shape(&self) -> [usize; 2] {
         [self.gap.nrows(), self.gap.ncols()]
+    }
+
+    /// What a solution of this grid gives.
+    fn figures(&self, patch: &Patch, lambda: [f64; 3]) -> Figures {
+        Figures {
+            peak_pressure: patch.values.iter().fold(0.0, |a, &p| a.max(p)),
+            approach: self.freedoms.motion(lambda).0,
+            load: patch.values.iter().sum::<f64>() * self.freedoms.cell_area,
+        }
     }
 
     /// Makes a pressure one that cells can carry and that is balanced. False where that cannot be.
@@ -299,14 +321,15 @@ impl Level<'_> {
             let whole = *window == shape.map(|n| 0..n);
             let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
             let part = (!whole).then(|| self.convolution.part(&corner));
-            let inverse = self.convolution.approximate_inverse(&corner);
+            let [periodic, inverse] = self.convolution.periodic(&corner);
+            let approximation = Approximation { inverse, periodic };
             let freedoms = self.freedoms.part(window.clone());
             let problem = Problem {
                 convolution: part.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
                 gap: block(&self.gap, window).iter().copied().collect(),
             };
-            let mut solver = Preconditioned::new(&problem, &inverse);
+            let mut solver = Preconditioned::new(&problem, &approximation);
             let before = *work;
             let left = Limits {
                 max_iterations: limits.max_iterations - done,
@@ -343,6 +366,8 @@ impl Level<'_> {
 pub(super) struct Cascade<'a> {
     finest: Level<'a>,
     patch: Patch,
+    /// Of the coarser grids, from the coarsest on.
+    pub(super) figures: Vec<Figures>,
     pub(super) work: f64,
 }
 
@@ -354,11 +379,12 @@ impl<'a> Cascade<'a> {
     /// coarse cells may not carry the moments that fine ones can.
     pub(super) fn new(
         problem: &Problem<'a>,
+        shape: &dyn Surface,
         planned: &'a Levels,
         given: Option<&Array2<f64>>,
         limits: Limits,
         watch: &mut Watch,
-    ) -> Result<(Self, Option<Outcome>), ()> {
+    ) -> std::result::Result<(Self, Option<Outcome>), ()> {
         let finest = &planned.coefficients[0];
         let mut levels = vec![Level {
             coefficients: finest,
@@ -367,6 +393,7 @@ impl<'a> Cascade<'a> {
             gap: super::array([finest.nrows(), finest.ncols()], problem.gap.clone()),
         }];
         let mut work = 0.0;
+        let mut figures = Vec::new();
         let mut stopped = None;
         if let Some(given) = given {
             let mut patch = Patch::whole(given);
@@ -377,17 +404,22 @@ impl<'a> Cascade<'a> {
                 Self {
                     finest: levels.swap_remove(0),
                     patch,
+                    figures,
                     work,
                 },
                 stopped,
             ));
         }
-        for (coefficients, convolution) in
-            planned.coefficients[1..].iter().zip(&planned.convolutions)
-        {
+        let coarser = planned.coefficients.iter().zip(&planned.grids).skip(1);
+        for ((coefficients, grid), convolution) in coarser.zip(&planned.convolutions) {
             let fine = &levels[levels.len() - 1];
             let halved = halved(fine.shape());
-            let (freedoms, gap) = (fine.freedoms.coarse(halved), coarse_gap(&fine.gap, halved));
+            let freedoms = fine.freedoms.coarse(halved);
+            // A measured surface has no values for cells that are much larger than its own.
+            let gap = match shape.gaps(grid) {
+                Ok(heights) => super::array(grid.shape(), freedoms.prescribed_gap(&heights)),
+                Err(_) => coarse_gap(&fine.gap, halved),
+            };
             levels.push(Level {
                 coefficients,
                 convolution,
@@ -395,13 +427,26 @@ impl<'a> Cascade<'a> {
                 gap,
             });
         }
-        let coarse_limits = Limits {
-            tolerance: COARSE_TOLERANCE.max(limits.tolerance),
+        let limits_at = |depth: usize| Limits {
+            tolerance: if depth == 1 {
+                COARSE_TOLERANCE
+            } else {
+                COARSER_TOLERANCE
+            }
+            .max(limits.tolerance),
             ..limits
         };
         let mut coarse: Option<Patch> = None;
         for (depth, level) in levels.iter().enumerate().rev() {
             let shape = level.shape();
+            if !halved(shape)
+                .iter()
+                .zip(shape)
+                .all(|(halved, n)| *halved || n == 1)
+            {
+                // Grids are compared where all their directions were halved.
+                figures.clear();
+            }
             let mut patch = match &coarse {
                 Some(coarse) => coarse.interpolated(shape, halved(shape)),
                 None => {
@@ -410,7 +455,7 @@ impl<'a> Cascade<'a> {
                 }
             };
             if !level.balance(&mut patch) {
-                coarse = None;
+                (coarse, figures) = (None, Vec::new());
                 continue;
             }
             if depth == 0 {
@@ -418,16 +463,18 @@ impl<'a> Cascade<'a> {
                     Self {
                         finest: levels.swap_remove(0),
                         patch,
+                        figures,
                         work,
                     },
                     stopped,
                 ));
             }
             if stopped.is_none() {
-                let outcome = level.solve(&mut patch, coarse_limits, &mut work, watch);
+                let outcome = level.solve(&mut patch, limits_at(depth), &mut work, watch);
                 if outcome.termination == Termination::Stopped {
                     stopped = Some(outcome);
                 }
+                figures.push(level.figures(&patch, outcome.lambda));
             }
             coarse = Some(patch);
         }

@@ -65,6 +65,7 @@ pub(super) struct Freedoms {
     scale: [f64; 2],
     pub(super) columns: [Vec<f64>; 2],
     coordinates: [Vec<f64>; 2],
+    pub(super) cell_area: f64,
 }
 
 /// Mismatch of force and scaled moments, over the force, that rounding leaves in large sums.
@@ -135,6 +136,7 @@ impl Freedoms {
             scale,
             columns,
             coordinates,
+            cell_area: area,
         })
     }
 
@@ -263,6 +265,7 @@ impl Freedoms {
             columns: coarse(&self.columns),
             coordinates: coarse(&self.coordinates),
             target: self.target.map(|sum| sum / cells),
+            cell_area: self.cell_area * cells,
             ..self.clone()
         }
     }

@@ -36,12 +36,13 @@ pub(super) fn solve(
     for iterations in 0.. {
         problem.apply(p, u, workspace);
         work += problem.convolution.work();
-        problem.gap_into(p, u, g);
+        let lambda = problem.gap_into(p, u, g);
         let quality = problem.quality(p, u, g);
         let end = |termination| Outcome {
             termination,
             iterations,
             work,
+            lambda,
         };
         if quality.meets(limits.tolerance) {
             return end(Termination::Converged);

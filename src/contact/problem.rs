@@ -110,6 +110,8 @@ pub(super) struct Outcome {
     pub(super) iterations: usize,
     /// In the unit of [`Convolution::work`].
     pub(super) work: f64,
+    /// Multipliers of the loaded freedoms.
+    pub(super) lambda: [f64; 3],
 }
 
 /// Is told an iteration's number, the work done and the quality; true asks to stop.

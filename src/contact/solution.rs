@@ -4,6 +4,7 @@ use std::fmt;
 
 use ndarray::{Array1, Array2};
 
+use super::discretisation::Discretisation;
 use super::freedoms::Motion;
 use super::problem::Termination;
 use crate::body::HalfSpace;
@@ -100,6 +101,9 @@ pub struct Report {
     pub overlap: f64,
     /// Mismatch of force and moments.
     pub balance: Balance,
+    /// What the size of the cells leaves, estimated from coarser grids. None where none was solved:
+    /// on small grids, from a given pressure, by another algorithm, before the end.
+    pub discretisation: Option<Discretisation>,
     /// What the user should know.
     pub warnings: Vec<Warning>,
     /// The grid.

@@ -106,13 +106,14 @@ impl Tangent {
         }
         let corner = block(&coefficients, &shape.map(|n| 0..n)).to_owned();
         let convolution = Convolution::plan_on(&corner, threads)?;
+        let [_, inverse] = convolution.periodic(&corner);
         let contact = block(&solution.pressure, &window);
         let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
         let coordinates = [part(0), part(1)];
         let middle = |line: &Vec<f64>| 0.5 * (line[0] + line[line.len() - 1]);
         let half = |axis: usize| 0.5 * shape[axis] as f64 * grid.spacing()[axis];
         Ok(Self {
-            inverse: convolution.approximate_inverse(&corner),
+            inverse,
             convolution,
             contact: contact.iter().map(|&p| p > 0.0).collect(),
             origin: [middle(&coordinates[0]), middle(&coordinates[1])],

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use super::bodies::PyHalfSpace;
 use super::contact::{method, method_words};
 use super::grid::PyGrid;
-use crate::contact::{Balance, Motion, Report, Termination, Warning};
+use crate::contact::{Balance, Discretisation, Motion, Report, Termination, Warning};
 
 /// How a solution came about, and how good it is: computed afresh at the end.
 ///
@@ -24,13 +24,13 @@ pub(super) struct PyReport(pub(super) Report);
 /// Load, approach, eccentricity, moment and tilt.
 type MotionState = (Option<f64>, Option<f64>, [[Option<f64>; 2]; 3]);
 
-/// Termination, iterations and convolutions, quality, balance, warnings, grid and bodies, method and
+/// Termination, iterations and convolutions, quality, balance and discretisation, warnings, grid and bodies, method and
 /// refinement, motion, tolerance and seconds.
 type State = (
     String,
     (usize, f64),
     [f64; 2],
-    (f64, [f64; 2]),
+    (f64, [f64; 2], Option<[f64; 3]>),
     Vec<(String, usize, f64)>,
     (PyGrid, PyHalfSpace, Option<PyHalfSpace>),
     (String, usize),
@@ -92,6 +92,23 @@ impl PyReport {
             moment: [x, y],
         } = self.0.balance;
         (force, x, y)
+    }
+
+    /// Estimated errors that the size of the cells leaves, from coarser grids.
+    ///
+    /// Of ``peak_pressure`` [Pa], ``approach`` [m] and ``load`` [N]; what is prescribed has none.
+    /// `None` where no coarser grid was solved: on small grids, from a given pressure, by
+    /// another algorithm, or without convergence.
+    #[getter]
+    fn discretisation<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(errors) = self.0.discretisation else {
+            return Ok(None);
+        };
+        let named = PyDict::new(py);
+        named.set_item("peak_pressure", errors.peak_pressure)?;
+        named.set_item("approach", errors.approach)?;
+        named.set_item("load", errors.load)?;
+        Ok(Some(named))
     }
 
     /// What the user should know; each was also issued as a `nacre.NacreWarning`.
@@ -191,7 +208,13 @@ impl PyReport {
             self.termination().into(),
             (report.iterations, report.convolutions),
             [report.residual, report.overlap],
-            (report.balance.force, report.balance.moment),
+            (
+                report.balance.force,
+                report.balance.moment,
+                report
+                    .discretisation
+                    .map(|d| [d.peak_pressure, d.approach, d.load]),
+            ),
             warnings
                 .map(|(kind, axis, value)| (kind.into(), axis, value))
                 .collect(),
@@ -260,6 +283,13 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
             force: balance.0,
             moment: balance.1,
         },
+        discretisation: balance
+            .2
+            .map(|[peak_pressure, approach, load]| Discretisation {
+                peak_pressure,
+                approach,
+                load,
+            }),
         warnings: warnings.collect::<PyResult<_>>()?,
         grid: grid.0,
         body: body.0,
