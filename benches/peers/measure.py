@@ -60,6 +60,8 @@ class Bench:
     limit: float
     """Seconds after which a measurement is given up, or not begun where it is expected."""
     rows: list[Row] = field(default_factory=list)
+    load: float = field(default_factory=lambda: os.getloadavg()[0])
+    """Processes that kept the machine busy before it began."""
     scales: dict[tuple[str, str], float] = field(default_factory=dict)
     """Residual over the program's own tolerance, by program and problem."""
 
@@ -160,6 +162,17 @@ class Bench:
             return None
         result: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
         return result
+
+    def batch(self, cells: int, cases: int) -> None:
+        """Time many coated spheres, one after the other on one thread and side by side on all."""
+        for threads in (1, os.cpu_count() or 1):
+            row = Row("batch", cells, "nacre", threads)
+            self.rows.append(row)
+            request = {"task": "batch", "cells": cells, "threads": threads, "cases": cases}
+            if (found := self.work(request, row)) is not None:
+                keep(row, found, TOLERANCE)
+                row.note = f"{cases} cases, {cases / found['seconds']:.0f} solves a second"
+            show(row)
 
     def find(self, problem: str, cells: int, program: str, threads: int) -> Row | None:
         """Return the first measurement of that, without a note of its own circumstances."""

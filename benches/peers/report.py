@@ -17,6 +17,7 @@ TITLES = {
     "hertz": "Hertz: a sphere on a square of side 2, contact radius 1/3",
     "rough": "Rough: self-affine, Hurst 0.8, rms slope 1, mean pressure 0.04 E*",
     "coated": "Hertz on a layer of four times the modulus, as thick as the contact radius",
+    "batch": "Coated spheres, load by load; on several threads by `Contact.solve_many`",
     "roller": "The paper's roller, E1/E2 = 4, e/L = 0.3 (cells along it; an eighth across)",
 }
 CONVOLUTION = "One zero-padded convolution"
@@ -45,8 +46,8 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         "# nacre beside other solvers",
         "",
         "Written by `make peers`, all in one run; [`benches/README.md`](../benches/README.md) says",
-        f"what is measured and how. {datetime.now(UTC):%d %B %Y}, {machine()}: {versions}.",
-        f"All figures: [`{data}`]({data}).",
+        f"what is measured and how. {datetime.now(UTC):%d %B %Y}, {machine()}, load average before",
+        f"the run {bench.load:.2f}: {versions}. All figures: [`{data}`]({data}).",
         "",
         f"![Time over cells]({image})",
         "",
@@ -162,35 +163,27 @@ def plot(bench: Bench, file: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import FixedLocator, NullLocator
 
     figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True, layout="constrained")
     sizes = sorted({row.cells for row in bench.rows if row.problem in SHOWN and row.cells <= 2048})
     for ax, (problem, title) in zip(axes, SHOWN.items(), strict=True):
         for program, colour in COLOURS.items():
-            for threads, style, marker in ((1, "-", "o"), (2, "--", "s")):
+            for threads, style in ((1, "o-"), (2, "s--")):
                 rows = [bench.find(problem, size, program, threads) for size in sizes]
                 points = [(row.cells, row.seconds) for row in rows if row is not None]
-                if points:
-                    ax.loglog(*zip(*points, strict=True), style, marker=marker, ms=4, color=colour)
-                    if threads == 1:
-                        x, y = points[-1]
-                        offset = (6, 0)
-                        ax.annotate(
-                            program,
-                            (x, y),
-                            offset,
-                            textcoords="offset points",
-                            color=colour,
-                            va="center",
-                        )
+                # One point with two threads shows that the program runs on one.
+                if len(points) >= threads:
+                    label = f"{program}, {threads} thread{'s' if threads > 1 else ''}"
+                    x, y = zip(*points, strict=True)
+                    ax.loglog(x, y, style, ms=4, color=colour, label=label)
         ax.set(title=title, xlabel="cells along a side")
-        ax.set_xticks(sizes, [str(size) for size in sizes])
-        ax.minorticks_off()
-        ax.set_xlim(sizes[0] / 1.2, sizes[-1] * 2.6)
+        ax.xaxis.set_major_locator(FixedLocator(sizes))
+        ax.xaxis.set_minor_locator(NullLocator())
+        ax.set_xticklabels([f"{size}²" for size in sizes])
         ax.grid(alpha=0.25)
     axes[0].set_ylabel("solve to a residual of 1e-8 [s]")
-    axes[0].plot([], [], "k-", label="one thread")
-    axes[0].plot([], [], "k--", label="two threads")
-    axes[0].legend(frameon=False, loc="upper left")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside right center", frameon=False, fontsize="small")
     figure.savefig(file, dpi=150)
     plt.close(figure)

@@ -1,7 +1,8 @@
 """One measurement, in a process of its own: ``python -m peers.worker JSON`` prints JSON.
 
-A request holds `task`, "solve" or "convolution", `cells` and `threads`; to solve also `problem`,
-`program`, `tolerance`, the file of `gaps`, and `seconds` for repetitions.
+A request holds `task`, "solve", "batch" or "convolution", `cells` and `threads`; to solve also
+`problem`, `program`, `tolerance`, the file of `gaps`, and `seconds` for repetitions; for a batch
+its `cases`.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import gc
 import json
 import sys
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +85,25 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
     return result
 
 
+def batch(request: dict[str, Any]) -> dict[str, Any]:
+    """Solve coated spheres under loads of half to one and a half that of `problems`.
+
+    With one thread it is one `solve` after the other, and no solution is kept.
+    """
+    problem = Problem("coated", request["cells"])
+    shape, threads = problem.shape(), request["threads"]
+    loads = problem.load * np.linspace(0.5, 1.5, request["cases"])
+    contact = nacre.Contact(problem.body, problem.grid, threads=threads)
+    contact.solve(shape, load=problem.load)
+    start = time.perf_counter()
+    if threads == 1:
+        worst = max(contact.solve(shape, load=load).report.residual for load in loads)
+    else:
+        solutions = contact.solve_many([{"shape": shape, "load": load} for load in loads])
+        worst = max(solution.report.residual for solution in solutions)
+    return {"seconds": time.perf_counter() - start, "residual": worst}
+
+
 def convolution(request: dict[str, Any]) -> dict[str, Any]:
     """Time SciPy's convolution of random pressures; the first is not counted."""
     problem = Problem("hertz", request["cells"])
@@ -100,7 +121,9 @@ def convolution(request: dict[str, Any]) -> dict[str, Any]:
 def main() -> None:
     """Answer the request."""
     request = json.loads(sys.argv[1])
-    result = {"solve": solve, "convolution": convolution}[request["task"]](request)
+    # A rough surface touches up to the edge of its map.
+    warnings.simplefilter("ignore", nacre.NacreWarning)
+    result = {"solve": solve, "batch": batch, "convolution": convolution}[request["task"]](request)
     print(json.dumps(result))
 
 
