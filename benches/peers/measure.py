@@ -103,6 +103,7 @@ class Bench:
                 or (met and found["seconds"] < (row.seconds or np.inf))
             ):
                 keep(row, found, tolerance)
+                row.note = note or found["ended"]
             if program == "nacre" or residual == 0:
                 break
             self.scales[key] = residual / tolerance
@@ -148,6 +149,7 @@ class Bench:
     def work(self, request: dict[str, Any], row: Row) -> dict[str, Any] | None:
         """Return what a worker measured; None, and a note in the row, where it failed."""
         environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(request["threads"]))
+        environment["PYTHONPATH"] = str(Path(__file__).parents[1])
         command = [sys.executable, "-m", "peers.worker", json.dumps(request)]
         try:
             done = subprocess.run(

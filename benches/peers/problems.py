@@ -14,6 +14,7 @@ import numpy.typing as npt
 import nacre
 
 Array = npt.NDArray[np.float64]
+Waves = npt.NDArray[np.complex128]
 Name = Literal["hertz", "coated", "rough", "roller"]
 
 SIDE = 2.0
@@ -100,26 +101,32 @@ class Problem:
 def rough_heights(cells: int, seed: int = SEED) -> Array:
     """Return a self-affine surface (cells, cells) of rms slope 1 that is not periodic.
 
-    It is a quarter of a periodic surface of twice the side, whose waves have random phases and the
-    amplitudes of the spectral density
-
-        C(q) ~ q^(−2(H+1))    for 2π/LONGEST_WAVE ≤ q ≤ 2π/(SHORTEST_CELLS cells), else 0.
-
-    The rms slope is that of the quarter, of the derivatives of the waves.
+    It is a quarter of a periodic surface of twice the side; the rms slope is that of the quarter,
+    of the derivatives of the waves.
     """
     n = 2 * cells
-    spacing = SIDE / cells
-    qx = 2 * np.pi * np.fft.fftfreq(n, spacing)[:, None]
-    qy = 2 * np.pi * np.fft.rfftfreq(n, spacing)[None, :]
+    waves, qx, qy = rough_waves(cells, seed)
+
+    def quarter(spectrum: Waves) -> Array:
+        return np.asarray(np.fft.irfft2(spectrum, s=(n, n))[:cells, :cells])
+
+    slope = np.sqrt(np.mean(quarter(1j * qx * waves) ** 2 + quarter(1j * qy * waves) ** 2))
+    return np.ascontiguousarray(quarter(waves) / slope)
+
+
+def rough_waves(cells: int, seed: int) -> tuple[Waves, Array, Array]:
+    """Return waves of a periodic surface of side 2 × SIDE, and their wavenumbers along x and y.
+
+    Their phases are random, and their amplitudes those of the spectral density
+
+        C(q) ~ q^(−2(H+1))    for 2π/LONGEST_WAVE ≤ q ≤ 2π/(SHORTEST_CELLS cells), else 0.
+    """
+    n, spacing = 2 * cells, SIDE / cells
+    qx = np.asarray(2 * np.pi * np.fft.fftfreq(n, spacing)[:, None], np.float64)
+    qy = np.asarray(2 * np.pi * np.fft.rfftfreq(n, spacing)[None, :], np.float64)
     q = np.hypot(qx, qy)
     inside = (q >= 2 * np.pi / LONGEST_WAVE) & (q <= 2 * np.pi / (SHORTEST_CELLS * spacing))
     amplitude = np.where(inside, q, 1.0) ** -(HURST + 1) * inside
     # The phases of a real white noise: their symmetry is that of a real surface.
     noise = np.fft.rfft2(np.random.default_rng(seed).standard_normal((n, n)))
-    waves = amplitude * noise / np.maximum(np.abs(noise), np.finfo(float).tiny)
-
-    def quarter(spectrum: npt.NDArray[np.complex128]) -> Array:
-        return np.asarray(np.fft.irfft2(spectrum, s=(n, n))[:cells, :cells])
-
-    slope = np.sqrt(np.mean(quarter(1j * qx * waves) ** 2 + quarter(1j * qy * waves) ** 2))
-    return np.ascontiguousarray(quarter(waves) / slope)
+    return amplitude * noise / np.maximum(np.abs(noise), np.finfo(float).tiny), qx, qy

@@ -30,6 +30,8 @@ class Answer:
     """The residual by the program's own account, where it is defined as nacre's."""
     planning: float = 0.0
     """Seconds of the solve that the program says it spent on planning."""
+    note: str = ""
+    """How it ended, by the program's own account, where not well."""
 
 
 class Program(Protocol):
@@ -94,7 +96,10 @@ class Aspher:
             backend="fft",
         )
         return Answer(
-            np.asarray(result.pressure), result.iterations, planning=result.timings["build"]
+            np.asarray(result.pressure),
+            result.iterations,
+            planning=result.timings["build"],
+            note="" if result.converged else f"ends as '{result.status}'",
         )
 
 

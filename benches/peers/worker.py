@@ -77,6 +77,7 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         "iterations": answer.iterations,
         "work": answer.work,
         "reported": answer.reported,
+        "ended": answer.note,
     }
     if problem.eccentricity is None:
         result |= vars(judge(answer.pressure, gaps, problem.body, problem.grid, problem.load))
