@@ -27,7 +27,7 @@ CONTACT_RADIUS = SIDE / 6
 HERTZ_LOAD = 4 / 3 * CONTACT_RADIUS**3 / HERTZ_RADIUS
 
 HURST = 0.8
-LONGEST_WAVE = SIDE / 4
+LONGEST_WAVE = SIDE / 2
 """The spectrum is zero below the wavenumber of it …"""
 SHORTEST_CELLS = 8
 """… and above that of a wave of so many cells; between them its density falls as q^(−2(H+1))."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -37,6 +37,9 @@ class Answer:
 class Program(Protocol):
     """One that is planned, then solves. `tolerance` is its own."""
 
+    parallel: ClassVar[bool]
+    """Whether it runs on more than one thread, as pip installs it."""
+
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         """Import and convert: not timed."""
 
@@ -49,6 +52,8 @@ class Program(Protocol):
 
 class Nacre:
     """nacre, by default."""
+
+    parallel: ClassVar[bool] = True
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         self.problem, self.threads = problem, threads
@@ -74,6 +79,8 @@ class Nacre:
 
 class Aspher:
     """ASPHER, nested grids with its exact convolution by FFT, in double precision."""
+
+    parallel: ClassVar[bool] = True
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         import aspher
@@ -106,6 +113,8 @@ class Aspher:
 class Tamaas:
     """Tamaas, Polonsky and Keer's iteration over its convolution that is not periodic."""
 
+    parallel: ClassVar[bool] = False
+
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         import tamaas
 
@@ -134,6 +143,8 @@ class Tamaas:
 
 class ContactMechanics:
     """ContactMechanics, Polonsky and Keer's iteration over its free half-space."""
+
+    parallel: ClassVar[bool] = False
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         import ContactMechanics as module

@@ -18,8 +18,6 @@ from peers.programs import PROGRAMS, release
 
 ROOT = Path(__file__).parents[2]
 SIZES = [256, 512, 1024, 2048]
-PARALLEL = 1.2
-"""Processors that a program must have used with two threads to count as parallel."""
 
 
 def options() -> argparse.Namespace:
@@ -53,11 +51,12 @@ def compare(bench: Bench, programs: list[str], sizes: list[int], soft: float) ->
     for problem in ("hertz", "rough"):
         for program in programs:
             bench.sweep(problem, program, 1, sizes, soft=soft)
+            if PROGRAMS[program].parallel:
+                bench.sweep(problem, program, 2, sizes, soft=soft)
+                continue
             first = bench.solve(Problem(problem, sizes[0]), program, 2)
-            if first.processors is not None and first.processors > PARALLEL:
-                bench.sweep(problem, program, 2, sizes[1:], soft=soft)
-            elif first.seconds is not None and program != "nacre":
-                first.note = "as installed by pip it runs on one thread: finer grids left out"
+            if first.seconds is not None:
+                first.note = "as pip installs it, it runs on one thread: finer grids left out"
 
 
 def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:

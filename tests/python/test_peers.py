@@ -68,8 +68,8 @@ def test_the_rough_surface_has_the_spectrum_it_states() -> None:
     slope, _ = np.polyfit(np.log(q[inside]), np.log(amplitude[inside]), 1)
     # The density is the square of the amplitude.
     assert 2 * slope == pytest.approx(-2 * (HURST + 1), rel=1e-10)
-    # Waves from a quarter of the side to eight cells.
-    assert q[inside].min() == pytest.approx(2 * np.pi / 0.5)
+    # Waves from half the side to eight cells.
+    assert q[inside].min() == pytest.approx(2 * np.pi / 1.0)
     assert q[inside].max() == pytest.approx(2 * np.pi / (8 * 2 / 64))
 
 
