@@ -27,6 +27,10 @@ GROWTH = 7.0
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
+class Failure(Exception):
+    """A worker that took too long, or ended with an error."""
+
+
 @dataclass
 class Row:
     """One measurement; what was not measured is None, and `note` says why."""
@@ -73,7 +77,6 @@ class Bench:
         *,
         seconds: float = 3.0,
         note: str = "",
-        tune: bool = True,
     ) -> Row:
         """Measure one solve, at the tolerance that gives the residual asked."""
         row = Row(problem.name, problem.cells, program, threads, note=note)
@@ -91,8 +94,10 @@ class Bench:
             "seconds": seconds,
         }
         for _ in range(TRIES):
-            found = self.work(request | {"tolerance": tolerance}, row)
-            if found is None:
+            try:
+                found = self.work(request | {"tolerance": tolerance})
+            except Failure as failure:
+                row.note = row.note if row.seconds else str(failure)
                 break
             residual = found["residual"]
             # Of those that meet the tolerance the fastest counts.
@@ -108,7 +113,7 @@ class Bench:
                 break
             self.scales[key] = residual / tolerance
             cheap = found["together"] < CHEAP
-            if met and not (tune and cheap and residual < LEAST):
+            if met and not (cheap and residual < LEAST):
                 break
             tolerance *= AIM / residual
         if row.residual is not None and row.residual > TOLERANCE:
@@ -146,8 +151,14 @@ class Bench:
             np.save(file, problem.gaps())
         return file
 
-    def work(self, request: dict[str, Any], row: Row) -> dict[str, Any] | None:
-        """Return what a worker measured; None, and a note in the row, where it failed."""
+    def work(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Return what a worker measured.
+
+        Raises
+        ------
+        Failure
+            Where it took too long, or ended with an error.
+        """
         environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(request["threads"]))
         environment["PYTHONPATH"] = str(Path(__file__).parents[1])
         command = [sys.executable, "-m", "peers.worker", json.dumps(request)]
@@ -155,13 +166,11 @@ class Bench:
             done = subprocess.run(
                 command, env=environment, capture_output=True, text=True, timeout=self.limit
             )
-        except subprocess.TimeoutExpired:
-            row.note = f"given up after {self.limit:g} s"
-            return None
+        except subprocess.TimeoutExpired as error:
+            raise Failure(f"given up after {self.limit:g} s") from error
         if done.returncode != 0:
             lines = done.stderr.strip().splitlines() or [f"ended with {done.returncode}"]
-            row.note = f"failed: {lines[-1][:120]}"
-            return None
+            raise Failure(f"failed: {lines[-1][:120]}")
         result: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
         return result
 
@@ -171,7 +180,11 @@ class Bench:
             row = Row("batch", cells, "nacre", threads)
             self.rows.append(row)
             request = {"task": "batch", "cells": cells, "threads": threads, "cases": cases}
-            if (found := self.work(request, row)) is not None:
+            try:
+                found = self.work(request)
+            except Failure as failure:
+                row.note = str(failure)
+            else:
                 keep(row, found, TOLERANCE)
                 row.note = f"{cases} cases, {cases / found['seconds']:.0f} solves a second"
             show(row)
@@ -191,8 +204,10 @@ class Bench:
         theirs = Row("convolution", cells, "SciPy", threads)
         request = {"task": "convolution", "cells": cells, "threads": threads}
         for _ in range(3):
-            if (found := self.work(request, theirs)) is not None:
-                theirs.seconds = min(theirs.seconds or np.inf, found["seconds"])
+            try:
+                theirs.seconds = min(theirs.seconds or np.inf, self.work(request)["seconds"])
+            except Failure as failure:
+                theirs.note = str(failure)
             if binary is None:
                 ours.note = "left out: no binary of benches/convolution.rs"
                 continue
