@@ -21,7 +21,7 @@ AIM = 5e-9
 LEAST = 2e-9
 TRIES = 6
 # Tightening and loosening are tried again only where that costs little [s].
-CHEAP = 20.0
+CHEAP = 8.0
 # Time grows so much, at the most, when the cells of a side are doubled.
 GROWTH = 7.0
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
