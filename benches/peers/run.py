@@ -64,7 +64,7 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     middle = min(1024, sizes[-1])
     bench.solve(Problem("coated", middle), "nacre", 1)
     bench.solve(Problem("roller", middle), "nacre", 1)
-    bench.batch(128, 1000 if large else 20)
+    bench.batch(128, 1000)
     with busy_machine():
         for threads in (1, 2):
             bench.solve(Problem("hertz", middle), "nacre", threads, seconds=10.0, note=BUSY)
