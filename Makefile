@@ -2,6 +2,7 @@
 # everything else goes into .venv, at the first use.
 
 PYTHON ?= python3
+OPTIONS ?=
 BASELINE ?= last
 
 TARGET := $(or $(CARGO_TARGET_DIR),target)
@@ -19,7 +20,7 @@ BUILD := $(VENV)/.build
 DEV := $(VENV)/.dev
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test check bench develop stubs docs
+.PHONY: help demo test check bench peers develop stubs docs
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -51,6 +52,10 @@ bench: ## time it, print the change since the last run, append to benches/histor
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true
 	cargo bench --bench '*' -- --save-baseline $(BASELINE)
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
+
+# In an environment of its own under target/peers; OPTIONS=--quick is a first look.
+peers: $(WHEEL) ## nacre beside other solvers: docs/peers.md; OPTIONS=--quick takes two minutes
+	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
 
 develop: $(DEV) ## build in place: Python files are used where they are, Rust after the next make develop
 	rm -f $(WHEEL)

@@ -1,0 +1,58 @@
+//! One convolution, for `benches/peers`: `convolution [CELLS THREADS]`, by default a few of both.
+//!
+//! Prints one line of JSON for each: the best of five applications to random pressures, after one
+//! that is not counted.
+
+use std::time::Instant;
+
+use nacre::influence::{Method, influence_coefficients};
+use nacre::{Convolution, Elastic, Grid, Result};
+use ndarray::Array2;
+
+const REPETITIONS: usize = 5;
+
+/// Reproducible numbers in [0, 1): Knuth's MMIX generator.
+fn random(shape: [usize; 2]) -> Array2<f64> {
+    let mut state = 1_u64;
+    Array2::from_shape_simple_fn(shape, || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    })
+}
+
+/// Seconds of the fastest application.
+fn best(cells: usize, threads: usize) -> Result<f64> {
+    let grid = Grid::new([cells, cells], [2.0, 2.0])?;
+    let body = Elastic::new(1.0, 0.0)?.into();
+    let coefficients = influence_coefficients(&body, &grid, Method::Exact)?;
+    let convolution = Convolution::plan(&coefficients, Some(threads))?;
+    let mut workspace = convolution.workspace();
+    let pressure = random([cells, cells]);
+    let mut displacement = Array2::zeros([cells, cells]);
+    let mut best = f64::INFINITY;
+    for repetition in 0..=REPETITIONS {
+        let start = Instant::now();
+        convolution.apply_into(&pressure, &mut displacement, &mut workspace)?;
+        if repetition > 0 {
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+    }
+    assert!(displacement.iter().all(|u| *u > 0.0));
+    Ok(best)
+}
+
+fn main() -> Result<()> {
+    // Cargo adds options of its own.
+    let numbers: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
+    let cases = match numbers[..] {
+        [cells, threads] => vec![(cells, threads)],
+        _ => vec![(512, 1), (512, 2), (1024, 1), (1024, 2)],
+    };
+    for (cells, threads) in cases {
+        let seconds = best(cells, threads)?;
+        println!(r#"{{"cells": {cells}, "threads": {threads}, "seconds": {seconds:e}}}"#);
+    }
+    Ok(())
+}

@@ -1,0 +1,132 @@
+"""The figures that have a bar, from what was measured."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from peers.measure import BUSY, Bench, Row
+from peers.problems import TOLERANCE
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure: what, the most that is allowed, what one would like, what was measured."""
+
+    what: str
+    bar: float
+    stretch: float | None
+    measured: float | None
+    unit: str = ""
+    least: bool = False
+    """Whether the bar is the least that is allowed."""
+
+    @property
+    def met(self) -> str:
+        """The verdict."""
+        if self.measured is None:
+            return "not measured"
+        sign = -1 if self.least else 1
+        if self.stretch is not None and sign * self.measured <= sign * self.stretch:
+            return "met, and the stretch"
+        return "met" if sign * self.measured <= sign * self.bar else "missed"
+
+
+def ratio(ours: Row | None, theirs: Row | None, field: str = "seconds") -> float | None:
+    """Return one figure of a row over that of another, where both were measured."""
+    if ours is None or theirs is None:
+        return None
+    a, b = getattr(ours, field), getattr(theirs, field)
+    return None if a is None or b is None else float(a / b)
+
+
+def value(row: Row | None, field: str) -> float | None:
+    """Return a figure of a row, where it was measured."""
+    found = getattr(row, field) if row is not None else None
+    return None if found is None else float(found)
+
+
+def all_figures(bench: Bench) -> list[Figure]:
+    """Return every figure."""
+    return [*convolution(bench), *hertz(bench), *rough(bench), *others(bench)]
+
+
+def convolution(bench: Bench) -> Iterator[Figure]:
+    """Return those of one convolution over SciPy's."""
+    for cells in (1024, 2048):
+        for threads, bar, stretch in ((1, 0.9, 0.7), (2, 0.75, 0.6)):
+            ours = bench.find("convolution", cells, "nacre", threads)
+            theirs = bench.find("convolution", cells, "SciPy", threads)
+            what = f"one convolution, {cells}², over SciPy's; threads: {threads}"
+            yield Figure(what, bar, stretch, ratio(ours, theirs))
+
+
+def against(
+    bench: Bench, problem: str, bars: Iterable[tuple[str, float, float | None]]
+) -> Iterator[Figure]:
+    """Time over the time of others, at 1024² on one thread.
+
+    Where one of them misses the tolerance there is nothing to compare.
+    """
+    ours = bench.find(problem, 1024, "nacre", 1)
+    for program, bar, stretch in bars:
+        theirs = bench.find(problem, 1024, program, 1)
+        what = f"{problem} 1024², 1 thread: time over {program}"
+        same = all(row and row.residual and row.residual <= TOLERANCE for row in (ours, theirs))
+        yield Figure(what, bar, stretch, ratio(ours, theirs) if same else None)
+
+
+def hertz(bench: Bench) -> Iterator[Figure]:
+    """Return those of the sphere."""
+    one = bench.find("hertz", 1024, "nacre", 1)
+    yield Figure("hertz 1024², 1 thread: work in convolutions", 12, 8, value(one, "work"))
+    bars = (
+        ("ASPHER", 1 / 5, 1 / 8),
+        ("Tamaas", 1 / 50, 1 / 80),
+        ("ContactMechanics", 1 / 90, 1 / 140),
+    )
+    yield from against(bench, "hertz", bars)
+    fine = value(bench.find("hertz", 2048, "nacre", 1), "iterations")
+    coarse = value(bench.find("hertz", 256, "nacre", 1), "iterations")
+    more = None if fine is None or coarse is None else fine - coarse
+    yield Figure("hertz: fine-grid iterations, 2048² less 256²", 3, 1, more)
+    yield Figure("hertz 1024², 1 thread: time outside transforms", 0.20, 0.10, outside(bench))
+    large = bench.find("hertz", 4096, "nacre", 2)
+    extra = value(large, "bytes_per_cell")
+    yield Figure("hertz 4096² solves: extra memory", 200, 120, extra, "bytes a cell")
+    two = bench.find("hertz", 1024, "nacre", 2)
+    yield Figure("hertz 1024²: two threads over one, machine idle", 0.6, None, ratio(two, one))
+    busy = {row.threads: row for row in bench.rows if row.note == BUSY and row.cells == 1024}
+    measured = ratio(busy.get(2), busy.get(1))
+    yield Figure("hertz 1024²: two threads over one, machine busy", 1.1, None, measured)
+
+
+def outside(bench: Bench) -> float | None:
+    """Return the share of the solve that is not convolutions, taking these by work and time."""
+    solve = bench.find("hertz", 1024, "nacre", 1)
+    one = bench.find("convolution", 1024, "nacre", 1)
+    if solve is None or one is None or not (solve.seconds and solve.work and one.seconds):
+        return None
+    return 1 - solve.work * one.seconds / solve.seconds
+
+
+def rough(bench: Bench) -> Iterator[Figure]:
+    """Return those of the rough surface."""
+    yield from against(bench, "rough", (("ASPHER", 1 / 3, 1 / 6), ("Tamaas", 1 / 50, None)))
+
+
+def others(bench: Bench) -> Iterator[Figure]:
+    """Return those of what nacre alone solves."""
+    roller = bench.find("roller", 1024, "nacre", 1)
+    work = value(roller, "work")
+    yield Figure("the paper's roller, 1024×128, E1/E2 = 4, e/L = 0.3: work", 30, 20, work)
+    bare, coated = (bench.find(name, 1024, "nacre", 1) for name in ("hertz", "coated"))
+    measured = ratio(coated, bare, "together")
+    yield Figure("coated over bare, 1024², 1 thread, with planning", 1.4, 1.2, measured)
+    cores = os.cpu_count() or 1
+    alone, many = (bench.find("batch", 128, "nacre", threads) for threads in (1, cores))
+    gain = ratio(alone, many)
+    what = "1000 coated spheres at 128²: speed over cores × one alone"
+    measured = None if gain is None else gain / cores
+    yield Figure(what, 0.9, None, measured, least=True)

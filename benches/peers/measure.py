@@ -1,0 +1,255 @@
+"""Starts workers, each in a process of its own, and keeps what they measured."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from peers.problems import TOLERANCE, Name, Problem
+
+# Residuals aimed at, so that a program does hardly more than was asked, and hardly ever less.
+AIM = 5e-9
+LEAST = 2e-9
+TRIES = 6
+# Tightening and loosening are tried again only where that costs little [s].
+CHEAP = 8.0
+# Time grows so much, at the most, when the cells of a side are doubled.
+GROWTH = 7.0
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class Failure(Exception):
+    """A worker that took too long, or ended with an error."""
+
+
+@dataclass
+class Row:
+    """One measurement; what was not measured is None, and `note` says why."""
+
+    problem: str
+    cells: int
+    program: str
+    threads: int
+    seconds: float | None = None
+    planning: float | None = None
+    together: float | None = None
+    residual: float | None = None
+    overlap: float | None = None
+    balance: float | None = None
+    contact: float | None = None
+    tolerance: float | None = None
+    iterations: int | None = None
+    work: float | None = None
+    reported: float | None = None
+    bytes_per_cell: float | None = None
+    processors: float | None = None
+    note: str = ""
+
+
+@dataclass
+class Bench:
+    """Everything measured in one run."""
+
+    folder: Path
+    """For the arrays that every program reads."""
+    limit: float
+    """Seconds after which a measurement is given up, or not begun where it is expected."""
+    rows: list[Row] = field(default_factory=list)
+    load: float = field(default_factory=lambda: os.getloadavg()[0])
+    """Processes that kept the machine busy before it began."""
+    scales: dict[tuple[str, str], float] = field(default_factory=dict)
+    """Residual over the program's own tolerance, by program and problem."""
+
+    def solve(
+        self,
+        problem: Problem,
+        program: str,
+        threads: int,
+        *,
+        seconds: float = 3.0,
+        note: str = "",
+    ) -> Row:
+        """Measure one solve, at the tolerance that gives the residual asked."""
+        row = Row(problem.name, problem.cells, program, threads, note=note)
+        self.rows.append(row)
+        key = (program, problem.name)
+        scale = self.scales.get(key, AIM / TOLERANCE)
+        tolerance = TOLERANCE if program == "nacre" else AIM / scale
+        request = {
+            "task": "solve",
+            "problem": problem.name,
+            "cells": problem.cells,
+            "program": program,
+            "threads": threads,
+            "gaps": str(self.gaps(problem)),
+            "seconds": seconds,
+        }
+        for _ in range(TRIES):
+            try:
+                found = self.work(request | {"tolerance": tolerance})
+            except Failure as failure:
+                row.note = row.note if row.seconds else str(failure)
+                break
+            residual = found["residual"]
+            # Of those that meet the tolerance the fastest counts.
+            met = residual <= TOLERANCE
+            if (
+                row.residual is None
+                or row.residual > TOLERANCE
+                or (met and found["seconds"] < (row.seconds or np.inf))
+            ):
+                keep(row, found, tolerance)
+                row.note = note or found["ended"]
+            if program == "nacre" or residual == 0:
+                break
+            self.scales[key] = residual / tolerance
+            cheap = found["together"] < CHEAP
+            if met and not (cheap and residual < LEAST):
+                break
+            tolerance *= AIM / residual
+        if row.residual is not None and row.residual > TOLERANCE:
+            row.note = f"residual {row.residual:.1e} is the best it reached"
+        show(row)
+        return row
+
+    def sweep(
+        self, name: Name, program: str, threads: int, sizes: list[int], *, soft: float
+    ) -> None:
+        """Measure one program on finer and finer grids, while the time expected is allowed.
+
+        Up to 1024 cells that is the limit; above, the softer `soft`.
+        """
+        last: Row | None = None
+        for cells in sizes:
+            allowed = self.limit if cells <= 1024 else soft
+            if last is not None:
+                doublings = np.log2(cells / last.cells)
+                expected = (last.together or np.inf) * GROWTH**doublings
+                if last.seconds is None or expected > allowed:
+                    row = Row(name, cells, program, threads)
+                    row.note = f"left out: expected to take {expected:.0f} s, allowed {allowed:g} s"
+                    if last.seconds is None:
+                        row.note = "left out: a coarser grid failed"
+                    self.rows.append(row)
+                    show(row)
+                    continue
+            last = self.solve(Problem(name, cells), program, threads)
+
+    def gaps(self, problem: Problem) -> Path:
+        """Return the file of the undeformed gap, which every program reads."""
+        file = self.folder / f"{problem.name}_{problem.cells}.npy"
+        if not file.exists():
+            np.save(file, problem.gaps())
+        return file
+
+    def work(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Return what a worker measured.
+
+        Raises
+        ------
+        Failure
+            Where it took too long, or ended with an error.
+        """
+        environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(request["threads"]))
+        environment["PYTHONPATH"] = str(Path(__file__).parents[1])
+        command = [sys.executable, "-m", "peers.worker", json.dumps(request)]
+        try:
+            done = subprocess.run(
+                command, env=environment, capture_output=True, text=True, timeout=self.limit
+            )
+        except subprocess.TimeoutExpired as error:
+            raise Failure(f"given up after {self.limit:g} s") from error
+        if done.returncode != 0:
+            lines = done.stderr.strip().splitlines() or [f"ended with {done.returncode}"]
+            raise Failure(f"failed: {lines[-1][:120]}")
+        result: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+        return result
+
+    def batch(self, cells: int, cases: int) -> None:
+        """Time many coated spheres, one after the other on one thread and side by side on all."""
+        for threads in (1, os.cpu_count() or 1):
+            row = Row("batch", cells, "nacre", threads)
+            self.rows.append(row)
+            request = {"task": "batch", "cells": cells, "threads": threads, "cases": cases}
+            try:
+                found = self.work(request)
+            except Failure as failure:
+                row.note = str(failure)
+            else:
+                keep(row, found, TOLERANCE)
+                row.note = f"{cases} cases, {cases / found['seconds']:.0f} solves a second"
+            show(row)
+
+    def find(self, problem: str, cells: int, program: str, threads: int) -> Row | None:
+        """Return the first measurement of that, without a note of its own circumstances."""
+        for row in self.rows:
+            if (row.problem, row.cells, row.program) == (problem, cells, program) and (
+                row.threads == threads and row.seconds is not None and row.note != BUSY
+            ):
+                return row
+        return None
+
+    def convolutions(self, binary: Path | None, cells: int, threads: int) -> None:
+        """Time one convolution, SciPy's and nacre's in turn; of each the best of 3 × 5."""
+        ours = Row("convolution", cells, "nacre", threads)
+        theirs = Row("convolution", cells, "SciPy", threads)
+        request = {"task": "convolution", "cells": cells, "threads": threads}
+        for _ in range(3):
+            try:
+                theirs.seconds = min(theirs.seconds or np.inf, self.work(request)["seconds"])
+            except Failure as failure:
+                theirs.note = str(failure)
+            if binary is None:
+                ours.note = "left out: no binary of benches/convolution.rs"
+                continue
+            command = [str(binary), str(cells), str(threads)]
+            done = subprocess.run(command, capture_output=True, text=True, check=True)
+            ours.seconds = min(ours.seconds or np.inf, json.loads(done.stdout)["seconds"])
+        for row in (theirs, ours):
+            self.rows.append(row)
+            show(row)
+
+
+BUSY = "beside one spinning process for each core"
+
+
+@contextmanager
+def busy_machine() -> Iterator[None]:
+    """Keep every core busy with a process that spins."""
+    command = [sys.executable, "-c", "while True: pass"]
+    spinners = [subprocess.Popen(command) for _ in range(os.cpu_count() or 1)]
+    try:
+        yield
+    finally:
+        for spinner in spinners:
+            spinner.kill()
+            spinner.wait()
+
+
+def keep(row: Row, found: dict[str, Any], tolerance: float) -> None:
+    """Write what a worker measured into its row."""
+    names = {f.name for f in fields(Row)}
+    for name, value in found.items():
+        if name in names:
+            setattr(row, name, value)
+    row.tolerance = tolerance
+
+
+def show(row: Row) -> None:
+    """Print a row as it is finished."""
+    title = f"{row.problem:12} {row.cells:5} {row.program:17} {row.threads} thr"
+    if row.seconds is None:
+        print(f"{title}  {row.note}", flush=True)
+        return
+    extra = "" if row.residual is None else f"  residual {row.residual:.1e}"
+    planning = "" if row.planning is None else f"  planning {row.planning:8.4f} s"
+    print(f"{title}  {row.seconds:9.4f} s{planning}{extra}  {row.note}", flush=True)

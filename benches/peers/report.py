@@ -1,0 +1,192 @@
+"""What was measured, as CSV, as Markdown and as a plot."""
+
+from __future__ import annotations
+
+import csv
+import os
+import platform
+from dataclasses import asdict, fields
+from datetime import UTC, datetime
+from pathlib import Path
+
+from peers.figures import Figure, all_figures
+from peers.measure import BUSY, Bench, Row
+from peers.programs import PROGRAMS, release
+
+TITLES = {
+    "hertz": "Hertz: a sphere on a square of side 2, contact radius 1/3",
+    "rough": "Rough: self-affine, Hurst 0.8, rms slope 1, mean pressure 0.04 E*",
+    "coated": "Hertz on a layer of four times the modulus, as thick as the contact radius",
+    "batch": "Coated spheres, load by load; on several threads by `Contact.solve_many`",
+    "roller": "The paper's roller, E1/E2 = 4, e/L = 0.3 (cells along it; an eighth across)",
+}
+CONVOLUTION = "One zero-padded convolution"
+
+
+def write(bench: Bench, text: Path, image: Path, csv_file: Path) -> None:
+    """Write all three."""
+    for file in (text, image, csv_file):
+        file.parent.mkdir(parents=True, exist_ok=True)
+    with csv_file.open("w", newline="", encoding="utf-8") as opened:
+        writer = csv.DictWriter(opened, [f.name for f in fields(Row)], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(asdict(row) for row in bench.rows)
+    link = Path(os.path.relpath(image, text.parent)).as_posix()
+    data = Path(os.path.relpath(csv_file, text.parent)).as_posix()
+    text.write_text(markdown(bench, link, data), encoding="utf-8")
+    plot(bench, image)
+
+
+def markdown(bench: Bench, image: str, data: str) -> str:
+    """Return the page."""
+    names = [n for n in (*PROGRAMS, "SciPy") if any(row.program == n for row in bench.rows)]
+    present = {row.program for row in bench.rows if row.seconds is not None}
+    versions = ", ".join(f"{name} {release(name)}" for name in names if name in present)
+    lines = [
+        "# nacre beside other solvers",
+        "",
+        "Written by `make peers`, all in one run; [`benches/README.md`](../benches/README.md) says",
+        f"what is measured and how. {datetime.now(UTC):%d %B %Y}, {machine()}, load average before",
+        f"the run {bench.load:.2f}: {versions}. All figures: [`{data}`]({data}).",
+        "",
+        f"![Time over cells]({image})",
+        "",
+        "## Figures that have a bar",
+        "",
+        *table(
+            ("figure", "measured", "bar", "stretch", ""),
+            [
+                (f.what, number(f.measured, f), number(f.bar, f), number(f.stretch, f), f.met)
+                for f in all_figures(bench)
+            ],
+        ),
+        "",
+        "The time outside transforms is what the counted work, at the time of one whole",
+        "convolution, leaves of the solve: convolutions of small grids run faster than that.",
+    ]
+    for problem, title in TITLES.items():
+        rows = [row for row in bench.rows if row.problem == problem]
+        rows.sort(
+            key=lambda row: (names.index(row.program), row.note == BUSY, row.threads, row.cells)
+        )
+        if rows:
+            lines += ["", f"## {title}", "", *table(HEADER, [cells(row) for row in rows])]
+    rows = [row for row in bench.rows if row.problem == "convolution"]
+    if rows:
+        lines += ["", f"## {CONVOLUTION}", "", *convolutions(rows)]
+    return "\n".join(lines) + "\n"
+
+
+HEADER = (
+    "cells",
+    "program",
+    "threads",
+    "solve [s]",
+    "planning [s]",
+    "residual",
+    "iterations",
+    "convolutions",
+    "bytes a cell",
+    "",
+)
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """Return the cells of a row of the table."""
+
+    def form(found: float | None, how: str) -> str:
+        return "–" if found is None else format(found, how)
+
+    return (
+        f"{row.cells}²" if row.problem != "roller" else f"{row.cells} × {row.cells // 8}",
+        row.program,
+        str(row.threads),
+        form(row.seconds, ".3g"),
+        form(row.planning, ".2g"),
+        form(row.residual, ".1e"),
+        form(row.iterations, "d"),
+        form(row.work, ".1f"),
+        form(row.bytes_per_cell, ".0f"),
+        row.note,
+    )
+
+
+def convolutions(rows: list[Row]) -> list[str]:
+    """Return the table of one convolution, nacre's beside SciPy's."""
+    lines = []
+    for theirs in (row for row in rows if row.program == "SciPy"):
+        same = (theirs.cells, theirs.threads)
+        ours = next(r for r in rows if r.program == "nacre" and (r.cells, r.threads) == same)
+        times = [None if r.seconds is None else 1e3 * r.seconds for r in (ours, theirs)]
+        shown = ["–" if time is None else f"{time:.3g}" for time in times]
+        share = "–" if None in times else f"{(ours.seconds or 0) / (theirs.seconds or 1):.2f}"
+        lines.append((f"{theirs.cells}²", str(theirs.threads), *shown, share))
+    return table(("cells", "threads", "nacre [ms]", "SciPy [ms]", "nacre over SciPy"), lines)
+
+
+def number(found: float | None, figure: Figure) -> str:
+    """Return a number of a figure; small ratios as one over something."""
+    if found is None:
+        return "–"
+    text = f"{found:.3g}"
+    if "time over" in figure.what and 0 < found < 1:
+        text = f"1/{1 / found:.3g}"
+    return f"{text} {figure.unit}".strip()
+
+
+def table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[str]:
+    """Return a table in Markdown."""
+    lines = [header, ("---",) * len(header), *rows]
+    return [f"| {' | '.join(line)} |" for line in lines]
+
+
+def machine() -> str:
+    """Return the processor."""
+    model = platform.machine()
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        lines = info.read_text(encoding="utf-8").splitlines()
+        found = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+        model = found[0] if found else model
+    return f"{model}, {os.cpu_count()} cores"
+
+
+COLOURS = {
+    "nacre": "#0b6e5f",
+    "ASPHER": "#c2571a",
+    "Tamaas": "#5b5ea6",
+    "ContactMechanics": "#8a8a8a",
+}
+SHOWN = {"hertz": "Hertz", "rough": "rough, 8 % contact"}
+
+
+def plot(bench: Bench, file: Path) -> None:
+    """Draw the time of a solve over the cells of a side: solid for one thread, dashed for two."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import FixedLocator, NullLocator
+
+    figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True, layout="constrained")
+    sizes = sorted({row.cells for row in bench.rows if row.problem in SHOWN and row.cells <= 2048})
+    for ax, (problem, title) in zip(axes, SHOWN.items(), strict=True):
+        for program, colour in COLOURS.items():
+            for threads, style in ((1, "o-"), (2, "s--")):
+                rows = [bench.find(problem, size, program, threads) for size in sizes]
+                points = [(row.cells, row.seconds) for row in rows if row is not None]
+                # One point with two threads shows that the program runs on one.
+                if len(points) >= threads:
+                    label = f"{program}, {threads} thread{'s' if threads > 1 else ''}"
+                    x, y = zip(*points, strict=True)
+                    ax.loglog(x, y, style, ms=4, color=colour, label=label)
+        ax.set(title=title, xlabel="cells along a side")
+        ax.xaxis.set_major_locator(FixedLocator(sizes))
+        ax.xaxis.set_minor_locator(NullLocator())
+        ax.set_xticklabels([f"{size}²" for size in sizes])
+        ax.grid(alpha=0.25)
+    axes[0].set_ylabel("solve to a residual of 1e-8 [s]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside right center", frameon=False, fontsize="small")
+    figure.savefig(file, dpi=150)
+    plt.close(figure)

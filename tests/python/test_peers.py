@@ -1,0 +1,133 @@
+"""What `make peers` measures is right, and it goes on without the programs it compares with."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nacre
+from peers import report
+from peers.figures import all_figures
+from peers.judge import Convolution, judge
+from peers.measure import Bench, Row
+from peers.problems import HURST, Problem, rough_heights, rough_waves
+
+# Sums of some thousand terms, and transforms, in double precision.
+ROUNDING = 1e-13
+
+
+def solve(problem: Problem) -> nacre.Solution:
+    """Return nacre's solution."""
+    return nacre.Contact(problem.body, problem.grid).solve(problem.shape(), load=problem.load)
+
+
+def test_the_convolution_of_the_judge_is_the_double_sum() -> None:
+    random = np.random.default_rng(1)
+    coefficients, pressure = random.random((5, 4)), random.random((5, 4))
+    i, j = np.indices((5, 4))
+    direct = [
+        [np.sum(coefficients[abs(i - k), abs(j - m)] * pressure) for m in range(4)]
+        for k in range(5)
+    ]
+    assert Convolution(coefficients)(pressure) == pytest.approx(np.array(direct), rel=ROUNDING)
+
+
+@pytest.mark.parametrize("name", ["hertz", "coated"])
+def test_the_judge_finds_the_residual_that_nacre_reports(name: str) -> None:
+    problem = Problem("hertz" if name == "hertz" else "coated", 48)
+    solution = solve(problem)
+    verdict = judge(solution.pressure, problem.gaps(), problem.body, problem.grid, problem.load)
+    # Both are relative to the displacement, whose rounding is all that they differ by.
+    assert verdict.residual == pytest.approx(solution.report.residual, abs=ROUNDING)
+    assert verdict.overlap == pytest.approx(solution.report.overlap, abs=ROUNDING)
+    assert verdict.balance < ROUNDING
+    assert verdict.contact == solution.in_contact.mean()
+
+
+def test_the_judge_finds_the_error_of_a_pressure_that_is_one_per_cent_too_large() -> None:
+    problem = Problem("hertz", 48)
+    solution = solve(problem)
+    wrong = 1.01 * solution.pressure
+    verdict = judge(wrong, problem.gaps(), problem.body, problem.grid, problem.load)
+    # In contact h = δ − u, so that the gap becomes a hundredth of u less its mean there.
+    u, p = solution.displacement, solution.pressure
+    excess = 0.01 * np.abs(u - u[p > 0].mean())
+    expected = np.sum(p * excess) / np.sum(p * 1.01 * u)
+    # The solution itself is exact within its tolerance.
+    assert verdict.residual == pytest.approx(expected, rel=1e-4)
+    assert verdict.balance == pytest.approx(0.01, rel=1e-9)
+
+
+def test_the_rough_surface_has_the_spectrum_it_states() -> None:
+    waves, qx, qy = rough_waves(64, seed=3)
+    q, amplitude = np.hypot(qx, qy), np.abs(waves)
+    inside = amplitude > 0
+    slope, _ = np.polyfit(np.log(q[inside]), np.log(amplitude[inside]), 1)
+    # The density is the square of the amplitude.
+    assert 2 * slope == pytest.approx(-2 * (HURST + 1), rel=1e-10)
+    # Waves from half the side to eight cells.
+    assert q[inside].min() == pytest.approx(2 * np.pi / 1.0)
+    assert q[inside].max() == pytest.approx(2 * np.pi / (8 * 2 / 64))
+
+
+def test_the_rough_surface_has_slope_one() -> None:
+    heights, spacing = rough_heights(256), 2 / 256
+
+    def derivative(axis: int) -> np.ndarray:
+        """Return that of fourth order, 1.2 % too small for the shortest wave, of inner cells."""
+        one, two = (np.roll(heights, -k, axis) - np.roll(heights, k, axis) for k in (1, 2))
+        return ((8 * one - two) / (12 * spacing))[2:-2, 2:-2]
+
+    slope = np.sqrt(np.mean(derivative(0) ** 2 + derivative(1) ** 2))
+    assert slope == pytest.approx(1, rel=0.012)
+    assert not np.allclose(heights[0], heights[-1], atol=0.1 * heights.std())
+
+
+def test_figures_are_ratios_with_a_verdict() -> None:
+    bench = Bench(Path(), limit=1.0)
+    bench.rows = [
+        Row("hertz", 1024, "nacre", 1, seconds=2.0, together=3.0, work=12.5, residual=1e-9),
+        Row("hertz", 1024, "ASPHER", 1, seconds=9.0, residual=1e-8),
+        Row("hertz", 1024, "Tamaas", 1, seconds=180.0, residual=9e-9),
+        Row("hertz", 1024, "ContactMechanics", 1, seconds=900.0, residual=1.1e-8),
+        Row("coated", 1024, "nacre", 1, seconds=2.5, together=3.3),
+    ]
+    found = {figure.what: figure for figure in all_figures(bench)}
+    work = found["hertz 1024², 1 thread: work in convolutions"]
+    assert (work.measured, work.met) == (12.5, "missed")
+    tamaas = found["hertz 1024², 1 thread: time over Tamaas"]
+    assert (report.number(tamaas.measured, tamaas), tamaas.met) == ("1/90", "met, and the stretch")
+    assert found["hertz 1024², 1 thread: time over ASPHER"].met == "missed"
+    coated = found["coated over bare, 1024², 1 thread, with planning"]
+    assert coated.measured == pytest.approx(1.1)
+    assert coated.met == "met, and the stretch"
+    # It missed the tolerance.
+    assert found["hertz 1024², 1 thread: time over ContactMechanics"].met == "not measured"
+
+
+def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, limit=60.0)
+    bench.sweep("hertz", "nacre", 1, [32, 64], soft=60.0)
+    bench.sweep("hertz", "Tamaas", 1, [32, 64], soft=60.0)
+    bench.convolutions(None, 32, 1)
+    files = [tmp_path / name for name in ("peers.md", "peers.png", "peers.csv")]
+    report.write(bench, *files)
+    with files[2].open(encoding="utf-8") as opened:
+        rows = list(csv.DictReader(opened))
+    ours = [row for row in rows if row["program"] == "nacre" and row["problem"] == "hertz"]
+    assert [row["cells"] for row in ours] == ["32", "64"]
+    assert all(0 < float(row["residual"]) <= 1e-8 for row in ours)
+    # Before the judge nobody's figure is taken from the program itself.
+    assert all(abs(float(row["residual"]) - float(row["reported"])) < ROUNDING for row in ours)
+    theirs = [row["note"] for row in rows if row["program"] == "Tamaas"]
+    assert theirs == [
+        "failed: ModuleNotFoundError: No module named 'tamaas'",
+        "left out: a coarser grid failed",
+    ]
+    assert files[1].read_bytes().startswith(b"\x89PNG")
+    text = files[0].read_text(encoding="utf-8")
+    assert "| 64² | nacre | 1 |" in text
+    assert "![Time over cells](peers.png)" in text
