@@ -198,13 +198,13 @@ impl Contact {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let limits = options.limits()?;
-        let heights = checked_gaps(shape, &self.grid)?;
-        freedoms.check_feasible(&heights)?;
-        let gap = freedoms.prescribed_gap(&heights);
+        let mut gap = checked_gaps(shape, &self.grid)?;
+        freedoms.check_feasible(&gap)?;
+        freedoms.prescribe(&mut gap);
         let problem = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,
-            gap,
+            gap: slice(&gap),
         };
         let initial = self.given_pressure(&problem, options.initial.as_deref())?;
         let mut report = self.report(motion, limits.tolerance);
@@ -221,6 +221,7 @@ impl Contact {
         let cascade = match options.algorithm {
             Algorithm::Cascade => Cascade::new(
                 &problem,
+                &gap,
                 shape,
                 &self.levels,
                 initial.as_ref(),
@@ -332,7 +333,7 @@ impl Contact {
                 value,
             });
         }
-        let cells = initial.iter().zip(&problem.gap);
+        let cells = initial.iter().zip(problem.gap);
         let mut p: Vec<f64> = cells
             .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
             .collect();
@@ -355,7 +356,7 @@ fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
         return Ok(array(shape, p));
     }
     let uniform = problem.freedoms.typical_pressure(p.len());
-    for (p, h) in p.iter_mut().zip(&problem.gap) {
+    for (p, h) in p.iter_mut().zip(problem.gap) {
         *p = if h.is_finite() { uniform } else { 0.0 };
     }
     if problem.freedoms.balance(&mut p) {
@@ -501,11 +502,16 @@ fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f64>> {
             found,
         });
     }
-    let bad = |h: f64| h.is_nan() || h == f64::NEG_INFINITY;
-    if let Some((index, _)) = gaps.indexed_iter().find(|(_, h)| bad(**h)) {
+    let gaps = if gaps.is_standard_layout() {
+        gaps
+    } else {
+        gaps.as_standard_layout().into_owned()
+    };
+    let bad = |h: &f64| h.is_nan() || *h == f64::NEG_INFINITY;
+    if let Some(cell) = slice(&gaps).iter().position(bad) {
         return Err(Error::NonFinite {
             name: "shape",
-            index: [index.0, index.1],
+            index: [cell / found[1], cell % found[1]],
         });
     }
     Ok(gaps)

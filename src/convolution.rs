@@ -3,7 +3,7 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ndarray::{Array2, ArrayRef2};
 
@@ -32,11 +32,27 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
+    idle: Idle,
 }
 
-/// Memory for one application at a time, of any convolution of the same shape.
+/// Memory of applications that ended, for those to come: to get it anew takes as long as a transform.
+type Idle = Arc<Mutex<Vec<FftWorkspace>>>;
+
+/// Memory for one application at a time. When dropped, it is kept for the next of its convolution.
 #[derive(Debug)]
-pub struct Workspace(FftWorkspace);
+pub struct Workspace {
+    memory: Option<FftWorkspace>,
+    idle: Idle,
+}
+
+impl Drop for Workspace {
+    fn drop(&mut self) {
+        if let Some(memory) = self.memory.take() {
+            let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+            idle.push(memory);
+        }
+    }
+}
 
 impl Convolution {
     /// Plans the convolution with `coefficients` (nx, ny), those of offsets ≥ 0, on `threads`
@@ -64,14 +80,24 @@ impl Convolution {
             });
         }
         let transform = PaddedTransform::plan(shape, &threads);
-        let spectrum = transform.even_spectrum(coefficients, &threads);
-        Ok(Self {
-            shape,
+        Ok(Self::with(coefficients, transform, &threads))
+    }
+
+    fn with(
+        coefficients: &ArrayRef2<f64>,
+        transform: PaddedTransform,
+        threads: &Arc<Threads>,
+    ) -> Self {
+        let mut memory = transform.workspace();
+        let spectrum = transform.even_spectrum(coefficients, &mut memory, threads);
+        Self {
+            shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
             transform,
             spectrum: Arc::new(spectrum),
-            threads,
-        })
+            threads: Arc::clone(threads),
+            idle: Arc::new(Mutex::new(vec![memory])),
+        }
     }
 
     /// The same convolution on other threads; it shares the spectrum.
@@ -80,6 +106,7 @@ impl Convolution {
             transform: self.transform.on_threads(threads),
             spectrum: Arc::clone(&self.spectrum),
             threads: Arc::clone(threads),
+            idle: Idle::default(),
             ..*self
         }
     }
@@ -87,15 +114,11 @@ impl Convolution {
     /// Convolution with part of the coefficients of this one, for a part of its grid.
     pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
-        let transform = PaddedTransform::plan(shape, &self.threads);
-        let spectrum = transform.even_spectrum(coefficients, &self.threads);
-        Self {
-            shape,
-            self_influence: coefficients[[0, 0]],
-            transform,
-            spectrum: Arc::new(spectrum),
-            threads: Arc::clone(&self.threads),
-        }
+        Self::with(
+            coefficients,
+            PaddedTransform::plan(shape, &self.threads),
+            &self.threads,
+        )
     }
 
     /// The periodic convolution with `coefficients`, on a mesh that is not padded, at a fifth of the
@@ -105,15 +128,18 @@ impl Convolution {
         const FLOOR: f64 = 1e-6;
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan_periodic(shape, &self.threads);
-        let spectrum = transform.even_spectrum(coefficients, &self.threads);
-        let inverse = transform.inverse_spectrum(&spectrum, FLOOR);
-        [spectrum, inverse].map(|spectrum| Self {
-            shape,
-            self_influence: coefficients[[0, 0]],
-            transform: transform.clone(),
-            spectrum: Arc::new(spectrum),
+        let periodic = Self::with(coefficients, transform, &self.threads);
+        let inverse = periodic
+            .transform
+            .inverse_spectrum(&periodic.spectrum, FLOOR);
+        let inverse = Self {
+            spectrum: Arc::new(inverse),
+            transform: periodic.transform.clone(),
             threads: Arc::clone(&self.threads),
-        })
+            idle: Arc::clone(&periodic.idle),
+            ..periodic
+        };
+        [periodic, inverse]
     }
 
     /// Points of the padded mesh, times their logarithm: what an application costs.
@@ -143,7 +169,12 @@ impl Convolution {
 
     /// Memory for [`Convolution::apply_into`].
     pub fn workspace(&self) -> Workspace {
-        Workspace(self.transform.workspace())
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let memory = idle.pop();
+        Workspace {
+            memory: Some(memory.unwrap_or_else(|| self.transform.workspace())),
+            idle: Arc::clone(&self.idle),
+        }
     }
 
     /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
@@ -202,8 +233,11 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        let workspace = &mut workspace.0;
+        // It is there until it is dropped.
+        let memory = workspace
+            .memory
+            .get_or_insert_with(|| self.transform.workspace());
         self.transform
-            .convolve_into(&self.spectrum, input, output, workspace, &self.threads);
+            .convolve_into(&self.spectrum, input, output, memory, &self.threads);
     }
 }

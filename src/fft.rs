@@ -171,12 +171,12 @@ impl PaddedTransform {
     pub(crate) fn even_spectrum(
         &self,
         quarter: &ArrayRef2<f64>,
+        workspace: &mut Workspace,
         threads: &Threads,
     ) -> EvenSpectrum {
         let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let mut workspace = self.workspace();
-        let Workspace { rows, tasks, .. } = &mut workspace;
+        let Workspace { rows, tasks, .. } = workspace;
         let scale = 1.0 / (mx as f64 * my as f64);
         let rows_of_a_task = nx.div_ceil(self.tasks);
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
@@ -265,7 +265,12 @@ impl PaddedTransform {
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
             for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
                 let start = (first + row) * ny;
-                scratch.real[..ny].copy_from_slice(&input[start..start + ny]);
+                let values = &input[start..start + ny];
+                if values.iter().all(|&value| value == 0.0) {
+                    half.fill(ZERO);
+                    continue;
+                }
+                scratch.real[..ny].copy_from_slice(values);
                 scratch.real[ny..].fill(0.0);
                 self.rows_to_spectrum(&mut scratch.real, half, &mut scratch.fft);
             }

@@ -79,9 +79,13 @@ pub trait Surface: fmt::Debug + Send + Sync {
     /// Where the grid does not suit the shape.
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
         let (x, y) = (grid.x(), grid.y());
-        Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
-            self.gap(x[i], y[j])
-        }))
+        let mut gaps = Array2::zeros(grid.shape());
+        for (mut row, &x) in gaps.rows_mut().into_iter().zip(&x) {
+            row.iter_mut()
+                .zip(&y)
+                .for_each(|(gap, &y)| *gap = self.gap(x, y));
+        }
+        Ok(gaps)
     }
 
     /// How far it goes along x and along y.

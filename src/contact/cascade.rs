@@ -5,6 +5,7 @@
 //! coefficients are a corner of the grid's. What happens outside is seen afterwards, when the
 //! displacement is computed on the whole grid: where something overlaps there, the window opens.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -276,7 +277,7 @@ struct Level<'a> {
     coefficients: &'a Array2<f64>,
     convolution: &'a Convolution,
     freedoms: Freedoms,
-    gap: Array2<f64>,
+    gap: Cow<'a, Array2<f64>>,
 }
 
 impl Level<'_> {
@@ -324,10 +325,11 @@ impl Level<'_> {
             let [periodic, inverse] = self.convolution.periodic(&corner);
             let approximation = Approximation { inverse, periodic };
             let freedoms = self.freedoms.part(window.clone());
+            let gap: Vec<f64> = block(&self.gap, window).iter().copied().collect();
             let problem = Problem {
                 convolution: part.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
-                gap: block(&self.gap, window).iter().copied().collect(),
+                gap: &gap,
             };
             let mut solver = Preconditioned::new(&problem, &approximation);
             let before = *work;
@@ -379,6 +381,7 @@ impl<'a> Cascade<'a> {
     /// coarse cells may not carry the moments that fine ones can.
     pub(super) fn new(
         problem: &Problem<'a>,
+        gap: &'a Array2<f64>,
         shape: &dyn Surface,
         planned: &'a Levels,
         given: Option<&Array2<f64>>,
@@ -390,7 +393,7 @@ impl<'a> Cascade<'a> {
             coefficients: finest,
             convolution: problem.convolution,
             freedoms: problem.freedoms.clone(),
-            gap: super::array([finest.nrows(), finest.ncols()], problem.gap.clone()),
+            gap: Cow::Borrowed(gap),
         }];
         let mut work = 0.0;
         let mut figures = Vec::new();
@@ -417,14 +420,17 @@ impl<'a> Cascade<'a> {
             let freedoms = fine.freedoms.coarse(halved);
             // A measured surface has no values for cells that are much larger than its own.
             let gap = match shape.gaps(grid) {
-                Ok(heights) => super::array(grid.shape(), freedoms.prescribed_gap(&heights)),
+                Ok(mut gap) => {
+                    freedoms.prescribe(&mut gap);
+                    gap
+                }
                 Err(_) => coarse_gap(&fine.gap, halved),
             };
             levels.push(Level {
                 coefficients,
                 convolution,
                 freedoms,
-                gap,
+                gap: Cow::Owned(gap),
             });
         }
         let limits_at = |depth: usize| Limits {

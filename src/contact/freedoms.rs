@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::ArrayRef2;
+use ndarray::{Array2, ArrayRef2};
 
 use super::hull::{hull_half_planes, interval, outline};
 use crate::error::{Error, Result, finite, positive};
@@ -215,16 +215,19 @@ impl Freedoms {
         }
     }
 
-    /// h − δ − s_x x − s_y y for the prescribed freedoms, in C order.
-    pub(super) fn prescribed_gap(&self, gap: &ArrayRef2<f64>) -> Vec<f64> {
+    /// Takes the prescribed freedoms from the gap: h − δ − s_x x − s_y y.
+    pub(super) fn prescribe(&self, gap: &mut Array2<f64>) {
         let [delta, sx, sy] = self.prescribed;
-        let [x, y] = &self.coordinates;
-        let mut gaps = Vec::with_capacity(gap.len());
-        for (row, x) in gap.rows().into_iter().zip(x) {
-            let shift = delta + sx * x;
-            gaps.extend(row.iter().zip(y).map(|(h, y)| h - shift - sy * y));
+        if [delta, sx, sy].iter().all(|&freedom| freedom == 0.0) {
+            return;
         }
-        gaps
+        let [x, y] = &self.coordinates;
+        for (mut row, x) in gap.rows_mut().into_iter().zip(x) {
+            let shift = delta + sx * x;
+            row.iter_mut()
+                .zip(y)
+                .for_each(|(h, y)| *h -= shift + sy * y);
+        }
     }
 
     /// (δ, s_x, s_y) of all freedoms, from the multipliers λ of the loaded ones.

@@ -219,7 +219,7 @@ impl<'a> Preconditioned<'a> {
         // One in so many.
         const MANY: usize = 10;
         let (mut joined, mut members) = (0, 0);
-        let cells = self.contact.iter_mut().zip(g).zip(&self.problem.gap);
+        let cells = self.contact.iter_mut().zip(g).zip(self.problem.gap);
         for ((inside, &g), gap) in cells {
             members += usize::from(*inside);
             if !*inside && g < 0.0 && gap.is_finite() {

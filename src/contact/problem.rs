@@ -11,7 +11,7 @@ pub(super) struct Problem<'a> {
     pub(super) convolution: &'a Convolution,
     pub(super) freedoms: &'a Freedoms,
     /// h, less the prescribed motion; +∞ where the shape cannot touch.
-    pub(super) gap: Vec<f64>,
+    pub(super) gap: &'a [f64],
 }
 
 /// How well a pressure solves the problem.
@@ -43,7 +43,7 @@ impl Problem<'_> {
 
     /// Gap g = u + h − Bλ, where λ makes it least over the contact; and λ.
     pub(super) fn gap_into(&self, p: &[f64], u: &[f64], g: &mut [f64]) -> [f64; 3] {
-        for ((g, u), h) in g.iter_mut().zip(u).zip(&self.gap) {
+        for ((g, u), h) in g.iter_mut().zip(u).zip(self.gap) {
             *g = u + h;
         }
         let lambda = self.freedoms.fit(g, |k| p[k] > 0.0);
@@ -58,7 +58,7 @@ impl Problem<'_> {
             return;
         }
         let little = 1e-3 * self.freedoms.typical_pressure(p.len());
-        for (p, h) in p.iter_mut().zip(&self.gap) {
+        for (p, h) in p.iter_mut().zip(self.gap) {
             if h.is_finite() {
                 *p += little;
             }

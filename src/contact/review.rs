@@ -43,25 +43,28 @@ pub(super) fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning>
     };
     let across = !grid.is_line();
     let on_edge = |i: usize, j: usize| j == 0 || j == ny - 1 || (across && (i == 0 || i == nx - 1));
-    let mut rim = solution
-        .pressure
-        .indexed_iter()
-        .filter(|((i, j), _)| on_edge(*i, *j));
-    if rim.any(|((i, j), p)| *p > 0.0 && goes_on(i, j)) {
+    // Lines of cells across each axis that hold some of the contact.
+    let mut held = [vec![false; nx], vec![false; ny]];
+    let mut at_edge = false;
+    for (i, row) in solution.pressure.rows().into_iter().enumerate() {
+        for (j, _) in row.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+            (held[0][i], held[1][j]) = (true, true);
+            at_edge |= on_edge(i, j) && goes_on(i, j);
+        }
+    }
+    if at_edge {
         warnings.push(Warning::GridEdge);
     }
 
     let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
     for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
-        for (lane, at) in solution
-            .pressure
-            .axis_iter(ndarray::Axis(axis))
-            .zip(coordinates)
+        for (at, _) in coordinates
+            .iter()
+            .zip(&held[axis])
+            .filter(|(_, held)| **held)
         {
-            if lane.iter().any(|&p| p > 0.0) {
-                cells[axis] += 1;
-                ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
-            }
+            cells[axis] += 1;
+            ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
         }
     }
     if cells[0] == 0 {
