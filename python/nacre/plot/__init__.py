@@ -1,0 +1,12 @@
+"""Pictures of solutions and studies, with Matplotlib, and an interactive view with PyVista.
+
+Every function draws into axes that are passed in, or into a new figure, and returns the axes. Axes
+carry SI units with a prefix. `nacre.Solution` has most of them as methods.
+"""
+
+from nacre.plot.maps import overview, pressure_map
+from nacre.plot.relief import relief, view
+from nacre.plot.sections import compare, section
+from nacre.plot.style import STYLE
+
+__all__ = ["STYLE", "compare", "overview", "pressure_map", "relief", "section", "view"]
