@@ -42,6 +42,7 @@ from nacre._core import (
     influence_coefficients,
     solve,
 )
+from nacre.files import load
 
 __all__ = [
     "RIGID",
@@ -67,5 +68,6 @@ __all__ = [
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
+    "load",
     "solve",
 ]

@@ -6,15 +6,20 @@ import base64
 import html
 import struct
 import zlib
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import RIGID, Elastic, HalfSpace, Rigid, Solution
+from nacre._core import Elastic, HalfSpace, Rigid, Solution
 from nacre.units import written
 
 WIDEST = 240
 """Pixels along the longer side of the small map."""
+NOISE = 1e-9
+MOST_LAYERS = 4
+"""Layers that get a row each."""
 
 # Matplotlib's viridis at nine places.
 VIRIDIS = (
@@ -35,25 +40,40 @@ def figures(solution: Solution) -> list[tuple[str, str]]:
     line = solution.report.grid.is_line
     force, moment = ("N/m", "N") if line else ("N", "N m")
     extent, report = solution.contact_extent, solution.report
+    # Rounding leaves moments of 1e-16 of what there could be: they are 0 to a reader.
+    arms = [NOISE * side for side in report.grid.size]
     sides = [written(high - low, "m") for low, high in extent]
     touching = solution.contact_area > 0
     nx, ny = report.grid.shape
     rows = [
         ("load", written(solution.load, force)),
-        ("acts at", _pair(solution.eccentricity, "m") if touching else "nothing touches"),
-        ("moment", _pair(solution.moment, moment)),
+        ("acts at", _pair(solution.eccentricity, "m", arms) if touching else "nothing touches"),
+        ("moment", _pair(solution.moment, moment, [solution.load * arm for arm in arms])),
         ("approach", written(solution.approach, "m")),
         ("tilt", f"({solution.tilt[0]:.4g}, {solution.tilt[1]:.4g})"),
+        ("freedoms", freedoms(report.motion)),
         ("peak pressure", written(solution.peak_pressure, "Pa")),
-        ("at", _pair(solution.peak_position, "m")),
+        ("at", _pair(solution.peak_position, "m", arms)),
         ("contact", sides[1] if line else f"{sides[0]} × {sides[1]}"),
         ("area", written(solution.contact_area, "m" if line else "m²")),
-        ("counterbody", _body(report.counterbody)),
-        ("E*", written(_modulus(solution), "Pa")),
+        *_body("body", report.body),
+        *_body("counterbody", report.counterbody),
+        *_moduli(report.body, report.counterbody),
         ("grid", f"{nx} × {ny} cells"),
         ("ended", f"{report.termination}, residual {report.residual:.0e}"),
     ]
     return rows if touching else [row for row in rows if row[0] not in ("at", "contact", "area")]
+
+
+def freedoms(motion: Mapping[str, Any]) -> str:
+    """Say which of the three freedoms are loaded, which given and which locked."""
+    said = []
+    for axis, name in enumerate("xy"):
+        asked = [key for key in ("eccentricity", "moment", "tilt") if motion.get(key, (None,) * 2)[axis] is not None]
+        kind = {"eccentricity": "free", "moment": "free", "tilt": "given"}
+        said.append(f"{name} {kind[asked[0]] if asked else 'locked'}")
+    control = "load" if "load" in motion else "approach"
+    return f"{control} given; tilt: {', '.join(said)}"
 
 
 def text(solution: Solution) -> str:
@@ -120,16 +140,37 @@ def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
 
 
-def _pair(values: tuple[float, float], unit: str) -> str:
-    return f"({written(values[0], unit)}, {written(values[1], unit)})"
+def _pair(values: tuple[float, float], unit: str, noise: Sequence[float]) -> str:
+    kept = (0.0 if abs(v) < limit else v for v, limit in zip(values, noise, strict=True))
+    return f"({', '.join(written(value, unit) for value in kept)})"
 
 
-def _body(body: HalfSpace | None) -> str:
-    """Describe a body in a few words."""
+def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
+    """Describe a body: its substrate, and a row for each layer or one for many."""
     if body is None:
-        return "rigid"
-    layers = "".join(f"{written(layer.thickness, 'm', 3)} of {_material(layer.material)} on " for layer in body.layers)
-    return layers + _material(body.substrate)
+        return [(name, "rigid")]
+    layers = [
+        (f"  layer {number}", f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}")
+        for number, layer in enumerate(body.layers, start=1)
+    ]
+    if len(layers) > MOST_LAYERS:
+        depth = written(body.interfaces[-1], "m", 3)
+        layers = [("  layers", f"{len(layers)}, together {depth}")]
+    return [(name, _material(body.substrate)), *layers]
+
+
+def _moduli(body: HalfSpace, counterbody: HalfSpace | None) -> list[tuple[str, str]]:
+    """Return the contact modulus of the substrates; where there are coatings also of the surfaces."""
+    bodies = [body] if counterbody is None else [body, counterbody]
+    bases = [one.substrate for one in bodies]
+    tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]
+    rows = [("E* (substrates)" if tops != bases else "E*", _modulus(bases))]
+    return rows + ([("E* (surfaces)", _modulus(tops))] if tops != bases else [])
+
+
+def _modulus(materials: Sequence[Elastic | Rigid]) -> str:
+    compliance = sum(1 / m.plane_strain_modulus for m in materials if isinstance(m, Elastic))
+    return written(1 / compliance, "Pa") if compliance else "rigid"
 
 
 def _material(material: Elastic | Rigid) -> str:

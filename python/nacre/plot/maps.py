@@ -51,7 +51,7 @@ def overview(
             layout = [["y", "figures"]] if line else [["map", "figures"], ["x", "y"]]
             size = (WIDTH, (0.42 if line else 0.78) * WIDTH)
             figure = plt.figure(figsize=size, layout="constrained")
-            axes = figure.subplot_mosaic(layout, width_ratios=(1.5, 1))
+            axes = figure.subplot_mosaic(layout, width_ratios=(1.25, 1))
         elif isinstance(axes, Axes):
             axes = {"map": axes}
         parts = dict(axes)
@@ -116,9 +116,10 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
                 [length.factor for length in lengths], ends, grid.shape, strict=True
             )
         ]
+        highest = scale.factor * solution.peak_pressure or 1.0
         loaded = np.where(solution.in_contact, scale.factor * solution.pressure, np.nan)
         mesh = axes.pcolormesh(
-            *corners, loaded.T, cmap=COLOURMAP, vmin=0, rasterized=True, edgecolors="none"
+            *corners, loaded.T, cmap=COLOURMAP, vmin=0, vmax=highest, rasterized=True
         )
         axes.grid(visible=False)
         colourbar = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
@@ -128,19 +129,21 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
             inside = solution.in_contact.astype(float)
             axes.contour(x, y, inside.T, levels=[0.5], colors="black", linewidths=0.7)
             at = [length.factor * e for length, e in zip(lengths, solution.eccentricity, strict=True)]
-            marker = {"marker": "+", "markersize": 7, "markeredgewidth": 1.2}
-            axes.plot(*at, color="white", linestyle="none", **marker)
+            for colour, width in (("black", 2.6), ("white", 1.2)):
+                style = {"marker": "+", "markersize": 8, "markeredgewidth": width}
+                axes.plot(*at, color=colour, linestyle="none", **style)
         axes.set(
             xlabel=f"x [{lengths[0].unit}]",
             ylabel=f"y [{lengths[1].unit}]",
             xlim=lengths[0].factor * window[0],
             ylim=lengths[1].factor * window[1],
         )
+        title = "+ resultant force" if solution.contact_area > 0 else "nothing touches"
         if widths.max() <= LONGEST * widths.min():
             axes.set_aspect("equal")
-            axes.set_title("+ resultant force")
         else:
-            axes.set_title("+ resultant force; x and y to different scales")
+            title += "; x and y to different scales"
+        axes.set_title(title)
     return axes
 
 
@@ -148,9 +151,17 @@ def _key_figures(solution: Solution, axes: Axes) -> None:
     """Write the key figures into axes of their own."""
     axes.set_axis_off()
     rows = figures(solution)
-    step = 1 / max(11, len(rows))
+    step = 1 / max(16, len(rows))
     for number, (name, value) in enumerate(rows):
         height = 1 - (number + 0.5) * step
-        place = {"transform": axes.transAxes, "va": "center", "fontsize": 8}
-        axes.text(0.0, height, name, color="0.35", **place)
-        axes.text(0.44, height, value, **place)
+        for text, offset, colour in ((name, 0, "0.35"), (value, 68, "black")):
+            axes.annotate(
+                text,
+                (0, height),
+                xycoords="axes fraction",
+                xytext=(offset, 0),
+                textcoords="offset points",
+                va="center",
+                fontsize=7.5,
+                color=colour,
+            )

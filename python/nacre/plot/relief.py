@@ -16,7 +16,7 @@ with extra("plot"):
     import matplotlib as mpl
     import matplotlib.pyplot as plt
 
-MOST = 160
+MOST = 120
 """Facets along one side of a relief."""
 
 
@@ -64,6 +64,8 @@ def relief(solution: Solution, axes: Any = None) -> Any:
         axes.set_zlim(bottom=0)
         ratio = float(np.clip(np.ptp(x) / np.ptp(y), 0.4, 2.5))
         axes.set_box_aspect((ratio, 1, 0.7 * max(1, ratio) ** 0.5), zoom=0.95)
+        axes.locator_params(axis="y", nbins=5)
+        axes.locator_params(axis="x", nbins=7)
         axes.view_init(elev=28, azim=-60)
     return axes
 
