@@ -43,6 +43,7 @@ from nacre._core import (
     solve,
 )
 from nacre.files import load
+from nacre.studies import sweep
 
 __all__ = [
     "RIGID",
@@ -70,4 +71,5 @@ __all__ = [
     "influence_coefficients",
     "load",
     "solve",
+    "sweep",
 ]
