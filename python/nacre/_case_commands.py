@@ -9,13 +9,10 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich import box
-from rich.console import Console
-from rich.table import Table
 
 import nacre
 from nacre._commands import app
-from nacre.case import Case
+from nacre.case import Case, CaseError
 from nacre.files import FIGURES
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)]
@@ -42,7 +39,7 @@ def solve(
         try:
             solution = nacre.solve(**arguments)
         except ValueError as error:
-            raise typer.BadParameter(f"{case}: {error}") from error
+            raise CaseError(f"{case}: solve: {error}") from error
     for path in save or []:
         _save(solution, path)
     print(json.dumps(_figures(solution), indent=2) if as_json else solution)
@@ -63,11 +60,11 @@ def sweep(
     if store is not None:
         study["store"] = store
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # counted below
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # failures are printed below
         try:
             dataset = nacre.sweep(described, retry=retry, **study)
         except (TypeError, ValueError) as error:
-            raise typer.BadParameter(f"{case}: {error}") from error
+            raise CaseError(f"{case}: sweep: {error}") from error
     failed = int((dataset.error != "").sum())
     if as_json:
         print(json.dumps(_plain(dataset.to_dict()), indent=2))
@@ -123,19 +120,18 @@ def _save(solution: nacre.Solution, path: Path) -> None:
 
 
 def _print_study(dataset: Any) -> None:
-    """Print parameters and the outputs that are numbers, for the first cases."""
+    """Print parameters and the outputs that are numbers, for the first cases; and what failed."""
     frame = dataset[[*(n for n in dataset.data_vars if dataset[n].dims == dataset.error.dims)]]
     rows = frame.to_dataframe().reset_index()
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    names = [name for name in rows.columns if name != "warnings" and not name.endswith("error")]
-    for name in names:
-        table.add_column(str(name), justify="right")
-    table.add_column("")
+    names = [name for name in rows.columns if name not in ("error", "warnings")]
+    lines = [[str(name) for name in names]]
     for _, row in rows.head(ROWS).iterrows():
-        values = [row[name] for name in names]
-        cells = [f"{v:.5g}" if isinstance(v, float | int) else str(v) for v in values]
-        table.add_row(*cells, row["error"])
-    console = Console(highlight=False)
-    console.print(table)
+        values = (row[name] for name in names)
+        lines.append([f"{v:.5g}" if isinstance(v, float | int) else str(v) for v in values])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        print("  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)))
     if len(rows) > ROWS:
-        console.print(f"and {len(rows) - ROWS} more cases")
+        print(f"and {len(rows) - ROWS} more cases")
+    for _, row in rows[rows["error"] != ""].iterrows():
+        print(f"failed at {', '.join(f'{n} = {row[n]}' for n in frame.coords)}: {row['error']}")

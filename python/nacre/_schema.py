@@ -170,6 +170,8 @@ class Sum(Shape):
         return first
 
 
+KINDS = "'sphere', 'cylinder', 'flat_punch', 'paraboloid', 'roller', 'height_map', 'sum'"
+
 AnyShape = Annotated[
     Round | Paraboloid | Roller | HeightMap | Sum, Field(discriminator="kind")
 ]

@@ -40,7 +40,7 @@ from nacre._extras import extra
 with extra("cli"):
     from pydantic import ValidationError
 
-    from nacre._schema import CaseTable, Range
+    from nacre._schema import KINDS, CaseTable, Range
 
 
 class CaseError(ValueError):
@@ -100,6 +100,7 @@ class Case:
         sweep = self._table.sweep
         if sweep is None:
             raise CaseError(f"{self.name}: sweep: this table is missing")
+        self.arguments()  # the case as it stands must be one
         for key in sweep.parameters:
             self._place(self.data, key)
         found: dict[str, Any] = {
@@ -140,15 +141,17 @@ def _first(error: ValidationError, data: Any) -> str:
     # A misspelt key is also a missing one: the former says more.
     first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
     key = ".".join(str(part) for part in _path(first["loc"], data))
-    others = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
     if first["type"] == "missing":
-        return f"{key}: this key is missing{others}"
+        return f"{key}: this key is missing"
     if first["type"] == "extra_forbidden":
-        return f"{key}: there is no such key{others}"
+        return f"{key}: there is no such key"
+    if first["type"].startswith("union_tag"):
+        kinds = first["ctx"].get("expected_tags", KINDS)
+        return f"{key}.kind: should be one of {kinds}, got {first['ctx'].get('tag')!r}"
     message = first["msg"].removeprefix("Value error, ").removeprefix("Input ")
     value = first["input"]
     got = "" if isinstance(value, dict) else f", got {value!r}"
-    return f"{key}: {message[:1].lower()}{message[1:]}{got}{others}"
+    return f"{key}: {message[:1].lower()}{message[1:]}{got}"
 
 
 def _path(location: tuple[int | str, ...], data: Any) -> list[int | str]:

@@ -48,7 +48,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _fail(str(error), 2)
     except nacre.ConvergenceError as error:
         return _fail("; ".join([*getattr(error, "__notes__", ()), str(error)]), 1)
-    except OSError as error:
+    except (MemoryError, OSError) as error:
         return _fail(str(error), 1)
 
 
