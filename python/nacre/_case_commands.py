@@ -15,7 +15,9 @@ from nacre._commands import app
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES
 
-CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)]
+CaseFile = Annotated[
+    Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, in SI units.")]
 ROWS = 30
 """Cases of a study that are printed."""
@@ -114,7 +116,7 @@ def _save(solution: nacre.Solution, path: Path) -> None:
         return
     from nacre.files import replacing
 
-    figure = next(iter(solution.plot().values())).figure
+    figure: Any = next(iter(solution.plot().values())).figure
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=300)
 

@@ -69,7 +69,11 @@ def freedoms(motion: Mapping[str, Any]) -> str:
     """Say which of the three freedoms are loaded, which given and which locked."""
     said = []
     for axis, name in enumerate("xy"):
-        asked = [key for key in ("eccentricity", "moment", "tilt") if motion.get(key, (None,) * 2)[axis] is not None]
+        asked = [
+            key
+            for key in ("eccentricity", "moment", "tilt")
+            if motion.get(key, (None,) * 2)[axis] is not None
+        ]
         kind = {"eccentricity": "free", "moment": "free", "tilt": "given"}
         said.append(f"{name} {kind[asked[0]] if asked else 'locked'}")
     control = "load" if "load" in motion else "approach"
@@ -160,7 +164,7 @@ def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
 
 
 def _moduli(body: HalfSpace, counterbody: HalfSpace | None) -> list[tuple[str, str]]:
-    """Return the contact modulus of the substrates; where there are coatings also of the surfaces."""
+    """Return the contact modulus of the substrates; with coatings also of the surfaces."""
     bodies = [body] if counterbody is None else [body, counterbody]
     bases = [one.substrate for one in bodies]
     tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]

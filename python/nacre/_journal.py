@@ -15,8 +15,8 @@ Record = dict[str, Any]
 class Journal:
     """Records by key, kept in a file that only grows; in memory alone where there is no path.
 
-    A record is on the disk when `add` returns. A line that a kill cut short is dropped when the file
-    is opened again. One process writes at a time: a second is refused.
+    A record is on the disk when `add` returns. A line that a kill cut short is dropped when the
+    file is opened again. One process writes at a time: a second is refused.
     """
 
     def __init__(self, path: Path | None) -> None:

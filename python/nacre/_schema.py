@@ -172,9 +172,7 @@ class Sum(Shape):
 
 KINDS = "'sphere', 'cylinder', 'flat_punch', 'paraboloid', 'roller', 'height_map', 'sum'"
 
-AnyShape = Annotated[
-    Round | Paraboloid | Roller | HeightMap | Sum, Field(discriminator="kind")
-]
+AnyShape = Annotated[Round | Paraboloid | Roller | HeightMap | Sum, Field(discriminator="kind")]
 
 
 class Freedoms(Table):

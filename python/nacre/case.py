@@ -88,7 +88,7 @@ class Case:
             raise CaseError(f"{self.name}: {error}") from error
 
     def __call__(self, **values: Any) -> dict[str, Any]:
-        """Return the arguments with other values at some keys, ``{"body.layers.0.thickness": …}``."""
+        """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
         data = copy.deepcopy(self.data)
         for key, value in values.items():
             table, last = self._place(data, key)
@@ -170,4 +170,3 @@ def _path(location: tuple[int | str, ...], data: Any) -> list[int | str]:
 
 def _is_key(part: int | str) -> bool:
     return isinstance(part, str) and part.isidentifier()
-

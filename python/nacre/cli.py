@@ -33,7 +33,8 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
-        from nacre._case_commands import app
+        import nacre._case_commands  # the rest of the commands of app
+        from nacre._commands import app
         from nacre.case import CaseError
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre[cli]'", 2)

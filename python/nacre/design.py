@@ -100,7 +100,7 @@ def load_curve(
 
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> curve = nacre.design.load_curve(nacre.Sphere(5e-3), steel, load=[1.0, 10.0])
-    >>> (curve.stiffness * curve.approach / curve.load).round(2).values
+    >>> (curve.stiffness * curve.approach / curve["load"]).round(2).values
     array([1.5, 1.5])
     """
     asked, study = _parted(options)

@@ -16,7 +16,7 @@ import numpy as np
 import nacre._core as core
 from nacre._extras import extra
 from nacre.units import UNITS
-from nacre.values import decode, encode
+from nacre.values import decode, encode, reduced
 
 if TYPE_CHECKING:
     import xarray
@@ -148,9 +148,7 @@ def load(path: Path_) -> core.Solution:
     except (KeyError, OSError, ValueError) as error:
         raise ValueError(f"{str(path)!r} must be a solution that nacre saved") from error
     report = core._restore_report(state["report"])
-    return core._restore_solution(
-        cast("Any", fields), (state["approach"], state["tilt"]), report
-    )
+    return core._restore_solution(cast("Any", fields), (state["approach"], state["tilt"]), report)
 
 
 @contextmanager
@@ -179,7 +177,7 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
 
 def _state(solution: core.Solution) -> dict[str, Any]:
     """Return what a solution is besides its fields."""
-    _, (report,) = solution.report.__reduce__()  # type: ignore[misc]
+    _, (report,) = reduced(solution.report)
     return {
         "approach": solution.approach,
         "tilt": encode(solution.tilt),

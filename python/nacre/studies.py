@@ -28,7 +28,15 @@ if TYPE_CHECKING:
 Output = str | Callable[[core.Solution], Any]
 Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 
-OUTPUTS = ("load", "approach", "tilt", "eccentricity", "peak_pressure", "peak_position", "contact_area")
+OUTPUTS = (
+    "load",
+    "approach",
+    "tilt",
+    "eccentricity",
+    "peak_pressure",
+    "peak_position",
+    "contact_area",
+)
 AXES = {"tilt", "eccentricity", "moment", "peak_position"}
 """Outputs with a value along x and one along y."""
 ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
@@ -61,8 +69,8 @@ def sweep(
         vary together. All others are combined.
     outputs : sequence or mapping, optional
         What is kept of each solution: names of its attributes, and functions of it that return a
-        number or an array, by name. By default load, approach, tilt, eccentricity, peak pressure and
-        where it is, and contact area, as far as they are no parameters.
+        number or an array, by name. By default load, approach, tilt, eccentricity, peak pressure
+        and where it is, and contact area, as far as they are no parameters.
     store : path, optional
         A file, ``.nc``, for the finished Dataset. Finished cases are kept beside it, in a
         ``.journal``, as they come.
@@ -200,7 +208,11 @@ def _points(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[st
         {name: values[name][rank[k]] for name, rank in zip(values, ranks, strict=True)}
         for k in range(count)
     ]
-    frame = grids[0].copy(data=np.arange(count).reshape(grids[0].shape)) if grids else xarray.DataArray(0)
+    frame = (
+        grids[0].copy(data=np.arange(count).reshape(grids[0].shape))
+        if grids
+        else xarray.DataArray(0)
+    )
     dataset = frame.to_dataset(name="case").assign_coords(coordinates)
     return dataset, points
 
@@ -229,7 +241,9 @@ def _key(arguments: Mapping[str, Any], outputs: Mapping[str, Output]) -> str:
 def _code(function: Any) -> Any:
     """Return what a function does, as data: its byte code, constants and what it closes over."""
     if isinstance(function, types.CodeType):
-        constants = [_code(c) if isinstance(c, types.CodeType) else repr(c) for c in function.co_consts]
+        constants = [
+            _code(c) if isinstance(c, types.CodeType) else repr(c) for c in function.co_consts
+        ]
         return [hashlib.sha256(function.co_code).hexdigest(), constants, list(function.co_names)]
     if code := getattr(function, "__code__", None):
         cells = [cell.cell_contents for cell in function.__closure__ or ()]
@@ -305,7 +319,8 @@ def _assemble(
         data = np.full((len(records), *inner), np.nan)
         for row, array in enumerate(arrays):
             if array is not None:
-                data[(row, *(slice(0, n) for n in array.shape))] = array
+                place: tuple[Any, ...] = (row, *(slice(0, n) for n in array.shape))
+                data[place] = array
         extra_dims = ("axis",) if output in AXES else tuple(f"{name}_{k}" for k in range(rank))
         if output in AXES:
             dataset = dataset.assign_coords(axis=["x", "y"])
@@ -340,8 +355,14 @@ def _bar(wanted: bool | None, total: int) -> Iterator[Callable[[], None]]:
         return
     with extra("files"):
         from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-        from rich.progress import TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
     console = Console(stderr=True)
     off = wanted is None and not (console.is_terminal or console.is_jupyter)
     parts = (

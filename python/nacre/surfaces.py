@@ -102,7 +102,9 @@ def _xyz(path: Path) -> tuple[Array, tuple[float, float], str | None]:
         steps.append(float(np.ptp(values)) / int(places[-1].max()))
     cells = [int(place.max()) + 1 for place in places]
     if cells[0] * cells[1] * FEWEST > len(points):
-        raise ValueError(f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}")
+        raise ValueError(
+            f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}"
+        )
     heights = np.full(cells, np.nan)
     heights[places[0], places[1]] = points[:, 2]
     return heights, (steps[0], steps[1]), _unit(path, _said(path))
@@ -113,7 +115,7 @@ def _measured(
 ) -> tuple[Array, tuple[float, float]]:
     """Return heights and spacing of an instrument's file, in metres, by SurfaceTopography."""
     with extra("surfaces"):
-        import SurfaceTopography  # type: ignore[import-untyped]
+        import SurfaceTopography
 
     try:
         with SurfaceTopography.open_topography(str(path)) as reader:
@@ -136,7 +138,9 @@ def _measured(
     if surface.dim != 2:
         raise ValueError(f"{str(path)!r} must hold a surface, got a line")
     heights = np.ma.filled(np.ma.masked_invalid(surface.heights()).astype(np.float64), np.nan)
-    sides = [size / cells for size, cells in zip(surface.physical_sizes, heights.shape, strict=True)]
+    sides = [
+        size / cells for size, cells in zip(surface.physical_sizes, heights.shape, strict=True)
+    ]
     metres = METRES[found]
     return heights * metres, (sides[0] * metres, sides[1] * metres)
 
@@ -157,7 +161,9 @@ def _said(path: Path) -> dict[str, str]:
 def _unit(path: Path, said: dict[str, str]) -> str | None:
     unit = said.get("unit", "").replace("μ", "µ") or None
     if unit is not None and unit not in METRES:
-        raise ValueError(f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit!r}")
+        raise ValueError(
+            f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit!r}"
+        )
     return unit
 
 
@@ -190,7 +196,8 @@ def _number(field: str) -> float:
 def _matrix(path: Path, heights: npt.NDArray[Any]) -> Array:
     if heights.ndim != 2 or heights.dtype.kind not in "biuf":
         raise ValueError(
-            f"{str(path)!r} must hold a real matrix of heights, got {heights.dtype} of shape {heights.shape}"
+            f"{str(path)!r} must hold a real matrix of heights, got {heights.dtype} of shape "
+            f"{heights.shape}"
         )
     return heights.astype(np.float64)
 
@@ -204,10 +211,11 @@ def _filled(path: Path, heights: Array) -> Array:
     measured = heights.size - count
     if measured < FEWEST * heights.size:
         raise ValueError(
-            f"{str(path)!r} must have at least half its points measured, got {measured} of {heights.size}"
+            f"{str(path)!r} must have at least half its points measured, got {measured} of "
+            f"{heights.size}"
         )
     warnings.warn(
-        f"{count} of {heights.size} heights are missing and were filled in smoothly from around them",
+        f"{count} of {heights.size} heights are missing and were filled smoothly from around them",
         core.NacreWarning,
         stacklevel=4,
     )

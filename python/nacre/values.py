@@ -1,7 +1,7 @@
 """Values of nacre as plain data, exactly: for files, and to tell one case from another.
 
-A value becomes its constructor call: ``{"Layer": {"material": {"Elastic": …}, "thickness": 4e-05, …}}``.
-Numbers keep every bit.
+A value becomes its constructor call: ``{"Sphere": {"radius": 0.005}}``. Numbers
+keep every bit.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ FIELDS: dict[type, tuple[str, ...]] = {
 def encode(value: Any, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
-    With `digest`, arrays are stood for by their shape and SHA-256, which is enough to compare. Raises
-    `TypeError` where a value is none of nacre's, nor plain.
+    With `digest`, arrays are stood for by their shape and SHA-256, which is enough to compare.
+    Raises `TypeError` where a value is none of nacre's, nor plain.
     """
 
     def of(value: Any) -> Any:
@@ -58,21 +58,35 @@ def encode(value: Any, *, digest: bool = False) -> Any:
         if isinstance(value, core.Grid):
             if value.is_line:
                 center = value.center[1]
-                return {"Grid.line": {"cells": value.shape[1], "width": value.size[1], "center": center}}
-            return {"Grid": {"shape": of(value.shape), "size": of(value.size), "center": of(value.center)}}
+                return {
+                    "Grid.line": {"cells": value.shape[1], "width": value.size[1], "center": center}
+                }
+            return {
+                "Grid": {
+                    "shape": of(value.shape),
+                    "size": of(value.size),
+                    "center": of(value.center),
+                }
+            }
         if isinstance(value, core.Solution):
             return {"Solution": of(value.pressure)}
         if type(value) in FIELDS:
             fields = {name: of(getattr(value, name)) for name in FIELDS[type(value)]}
             return {type(value).__name__: fields}
         if isinstance(value, core.Shape):
-            make, arguments = value.__reduce__()  # type: ignore[misc]
+            make, arguments = reduced(value)
             if make is operator.add:
                 return {"sum": of(arguments)}
-            return {"shifted": [of(arguments[0]), *of(make.__reduce__()[1][1:])]}
+            return {"shifted": [of(arguments[0]), *of(reduced(make)[1][1:])]}
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
     return of(value)
+
+
+def reduced(value: Any) -> tuple[Any, Any]:
+    """Return how to make a value: a callable and its arguments."""
+    make, arguments, *_ = value.__reduce__()
+    return make, arguments
 
 
 def decode(data: Any) -> Any:

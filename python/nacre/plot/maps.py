@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +23,7 @@ LONGEST = 6.0
 """Side ratio of a contact up to which a map is true to scale."""
 
 
-def overview(
-    solution: Solution, axes: Axes | Mapping[str, Axes] | None = None
-) -> dict[str, Axes]:
+def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
     """Draw map, sections and key figures.
 
     Parameters
@@ -48,7 +47,7 @@ def overview(
     line = solution.report.grid.is_line
     with mpl.rc_context(STYLE):
         if axes is None:
-            layout = [["y", "figures"]] if line else [["map", "figures"], ["x", "y"]]
+            layout: list[Any] = [["y", "figures"]] if line else [["map", "figures"], ["x", "y"]]
             size = (WIDTH, (0.42 if line else 0.78) * WIDTH)
             figure = plt.figure(figsize=size, layout="constrained")
             axes = figure.subplot_mosaic(layout, width_ratios=(1.25, 1))
@@ -95,7 +94,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     grid = solution.report.grid
     if grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a map, got a line")
-    ends = [[c - side / 2, c + side / 2] for c, side in zip(grid.center, grid.size, strict=True)]
+    ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
     window = np.array(ends)
     if solution.contact_area > 0:
         contact = np.array(solution.contact_extent)
@@ -111,8 +110,8 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
             size = (0.7 * WIDTH, 0.5 * WIDTH)
             axes = plt.figure(figsize=size, layout="constrained").add_subplot()
         corners = [
-            factor * np.linspace(*side, cells + 1)
-            for factor, side, cells in zip(
+            factor * np.linspace(low, high, cells + 1)
+            for factor, (low, high), cells in zip(
                 [length.factor for length in lengths], ends, grid.shape, strict=True
             )
         ]
@@ -122,15 +121,17 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
             *corners, loaded.T, cmap=COLOURMAP, vmin=0, vmax=highest, rasterized=True
         )
         axes.grid(visible=False)
-        colourbar = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
-        colourbar.outline.set_linewidth(0.6)  # type: ignore[operator]
+        colourbar: Any = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
+        colourbar.outline.set_linewidth(0.6)
         x, y = lengths[0].factor * solution.x, lengths[1].factor * solution.y
         if 0 < solution.contact_area:
             inside = solution.in_contact.astype(float)
             axes.contour(x, y, inside.T, levels=[0.5], colors="black", linewidths=0.7)
-            at = [length.factor * e for length, e in zip(lengths, solution.eccentricity, strict=True)]
+            at = [
+                length.factor * e for length, e in zip(lengths, solution.eccentricity, strict=True)
+            ]
             for colour, width in (("black", 2.6), ("white", 1.2)):
-                style = {"marker": "+", "markersize": 8, "markeredgewidth": width}
+                style: dict[str, Any] = {"marker": "+", "markersize": 8, "markeredgewidth": width}
                 axes.plot(*at, color=colour, linestyle="none", **style)
         axes.set(
             xlabel=f"x [{lengths[0].unit}]",

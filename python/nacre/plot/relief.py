@@ -102,10 +102,12 @@ def view(solution: Solution, *, show: bool = True) -> Any:
     surface = pyvista.StructuredGrid(*(side[..., np.newaxis] for side in (*cube, 0.6 * height)))
     name = f"pressure [{scale.unit}]"
     surface.point_data[name] = (scale.factor * pressure).ravel(order="F")
-    plotter = pyvista.Plotter(off_screen=None if show else True)
+    plotter: Any = pyvista.Plotter(off_screen=None if show else True)
     plotter.add_mesh(surface, scalars=name, cmap=COLOURMAP, smooth_shading=True)
     lengths = [Scale.of(np.abs(side).max(), "m") for side in (x, y)]
-    ends = [s.factor * end for s, side in zip(lengths, (x, y), strict=True) for end in side[[0, -1]]]
+    ends = [
+        s.factor * end for s, side in zip(lengths, (x, y), strict=True) for end in side[[0, -1]]
+    ]
     plotter.show_bounds(
         axes_ranges=[*ends, 0, scale.factor * solution.peak_pressure],
         xtitle=f"x [{lengths[0].unit}]",
@@ -119,11 +121,12 @@ def view(solution: Solution, *, show: bool = True) -> Any:
 
 
 def _unit(side: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    return (side - side.mean()) / np.ptp(side)
+    middle: npt.NDArray[np.float64] = (side - side.mean()) / np.ptp(side)
+    return middle
 
 
 def _contact(solution: Solution) -> tuple[npt.NDArray[np.float64], ...]:
-    """Return x, y and pressure of the contact with two cells around it, thinned where there are many."""
+    """Return x, y and pressure of the contact and two cells around it; not all of many."""
     if solution.report.grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a relief, got a line")
     pressure, parts = solution.pressure, []

@@ -148,9 +148,7 @@ def cut(
     position, across = (solution.x, solution.y) if along == "x" else (solution.y, solution.x)
     place = solution.peak_position[1 - axis] if at is None else float(at)
     grid = solution.report.grid
-    low, high = (
-        grid.center[1 - axis] + sign * grid.size[1 - axis] / 2 for sign in (-1, 1)
-    )
+    low, high = (grid.center[1 - axis] + sign * grid.size[1 - axis] / 2 for sign in (-1, 1))
     if not (low <= place <= high or grid.is_line):
         raise ValueError(f"at must lie on the grid, {low:g} to {high:g}, got {place:g}")
     row = int(np.argmin(np.abs(across - place)))
@@ -170,12 +168,14 @@ def _window(solution: Solution, along: str, quantity: str) -> Array:
         return ends
     contact = np.array(solution.contact_extent[axis])
     margin = 0.15 * (contact[1] - contact[0]) + grid.spacing[axis]
-    return np.clip(contact + margin * np.array([-1, 1]), *ends)
+    low, high = ends
+    return np.array([max(contact[0] - margin, low), min(contact[1] + margin, high)])
 
 
 def _shown(position: Array, values: Array, window: Array) -> Array:
     inside = (position >= window[0]) & (position <= window[1]) & np.isfinite(values)
-    return np.abs(values[inside])
+    shown: Array = np.abs(values[inside])
+    return shown
 
 
 def _finish(

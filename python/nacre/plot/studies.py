@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -14,14 +14,13 @@ with extra("plot"):
     import matplotlib as mpl
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
+    from matplotlib.ticker import LogLocator, NullFormatter
 
 if TYPE_CHECKING:
     import xarray
 
 
-def chart(
-    study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | None = None
-) -> Axes:
+def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | None = None) -> Axes:
     """Draw a quantity over the two parameters of a study, as `nacre.design.coating_chart` makes it.
 
     Parameters
@@ -118,16 +117,21 @@ def _scale(field: xarray.DataArray, quantity: str) -> Scale:
     return Scale.of(float(np.nanmax(np.abs(field.values), initial=0.0)), unit)
 
 
-def _side(axes: Axes, side: str, values: xarray.DataArray) -> Any:
+def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:
     """Label one side of the axes, and return its values in the unit of the label."""
     numbers = values.values.astype(float)
-    unit = values.attrs.get("units", "")
-    scale = Scale.of(float(np.abs(numbers).max()), unit)
-    name = str(values.name).rpartition(".")[2].replace("_", " ")
-    label = f"{name} [{scale.unit}]" if scale.unit else name
     steps = np.diff(numbers)
     wide = numbers.min() > 0 and numbers.max() >= 8 * numbers.min() and steps[-1] > 3 * steps[0]
+    typical = np.sqrt(numbers.min() * numbers.max()) if wide else np.abs(numbers).max()
+    scale = Scale.of(float(typical), values.attrs.get("units", ""))
+    name = values.attrs.get("long_name", str(values.name).rpartition(".")[2].replace("_", " "))
+    label = f"{name} [{scale.unit}]" if scale.unit else name
     axes.set(**{f"{side}label": label, f"{side}scale": "log" if wide else "linear"})
+    axis = getattr(axes, f"{side}axis")
     if wide:
-        getattr(axes, f"{side}axis").set_major_formatter("{x:g}")
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+    elif not scale.unit:
+        axes.ticklabel_format(axis=side, scilimits=(-3, 4))
     return scale.factor * numbers
