@@ -9,9 +9,12 @@ import os
 import types
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -134,8 +137,12 @@ def sweep(
                 advance()
             else:
                 tasks[key] = arguments, _said(point)
-        for key, result in _solved({key: task[0] for key, task in tasks.items()}, wanted, executor):
+
+        def keep(key: str, result: Record) -> None:
             journal.add({"key": key, "parameters": tasks[key][1], **result})
+
+        arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
+        for _ in _run(arguments_of, wanted, executor, keep):
             advance()
         dataset = _assemble(coordinates, [journal.records[key] for key in keys], wanted)
         if path is not None:
@@ -260,24 +267,48 @@ def _said(point: Mapping[str, Any]) -> dict[str, Any]:
     return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
 
 
-def _solved(
+def _run(
     tasks: Mapping[str, dict[str, Any]],
     outputs: Mapping[str, Output],
     executor: Executor | None,
-) -> Iterator[tuple[str, Record]]:
-    """Yield what came of each task, as they finish."""
+    keep: Callable[[str, Record], None],
+) -> Iterator[None]:
+    """Solve all tasks and keep what comes of each, one at a time; yield as often.
+
+    A record is kept where its future ends, so that threads do not begin another case before: a kill
+    costs what is being solved, and no more.
+    """
     pool = executor or ThreadPoolExecutor(max_workers=_cores())
-    futures: dict[Future[Record], str] = {}
+    futures: list[Future[Record]] = []
+    ended: SimpleQueue[BaseException | None] = SimpleQueue()
+    turn = Lock()
+
+    def end(key: str, future: Future[Record]) -> None:
+        try:
+            with turn:
+                keep(key, future.result())
+        except BaseException as error:  # of the executor, or of the disk: raised below
+            ended.put(error)
+        else:
+            ended.put(None)
+
     try:
         for key, arguments in tasks.items():
-            futures[pool.submit(_solve, arguments, dict(outputs), os.getpid())] = key
-        for future in as_completed(list(futures)):
-            yield futures.pop(future), future.result()
+            futures.append(pool.submit(_solve, arguments, dict(outputs), os.getpid()))
+            futures[-1].add_done_callback(partial(end, key))
+        for _ in tasks:
+            while True:
+                with suppress(Empty):
+                    failure = ended.get(timeout=0.5)  # Ctrl-C is seen in between
+                    break
+            if failure is not None:
+                raise failure
+            yield
     finally:
         for future in futures:
             future.cancel()
         if executor is None:
-            pool.shutdown(cancel_futures=True)
+            pool.shutdown()
 
 
 def _cores() -> int:

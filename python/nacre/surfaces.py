@@ -114,7 +114,8 @@ def _measured(
     path: Path, unit: str | None, channel: str | int | None
 ) -> tuple[Array, tuple[float, float]]:
     """Return heights and spacing of an instrument's file, in metres, by SurfaceTopography."""
-    with extra("surfaces"):
+    with extra("surfaces"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImportWarning)  # it says that it runs without MPI
         import SurfaceTopography
 
     try:

@@ -27,7 +27,13 @@ def solutions() -> dict[str, nacre.Solution]:
     sphere = nacre.Sphere(5e-3)
     return {
         "both coated, tilted": nacre.solve(
-            sphere, COATED, COATED, grid=GRID, load=10.0, eccentricity=(1e-6, None), tilt=(None, 1e-4)
+            sphere,
+            COATED,
+            COATED,
+            grid=GRID,
+            load=10.0,
+            eccentricity=(1e-6, None),
+            tilt=(None, 1e-4),
         ),
         "infinite gaps": nacre.solve(nacre.FlatPunch(5e-5), STEEL, grid=GRID, load=10.0),
         "nothing touches": nacre.solve(sphere, STEEL, grid=GRID, approach=-1e-6),
@@ -131,7 +137,7 @@ def test_pyvista_reads_the_vtk_file_back(
         assert read.tobytes("C") == getattr(solution, name).tobytes()
     centres = np.asarray(mesh.cell_centers().points).reshape(*GRID.shape, 3, order="F")
     # PyVista keeps the centres in single precision.
-    single = 2 * np.finfo(np.float32).eps * max(GRID.size)
+    single = 2 * float(np.finfo(np.float32).eps) * max(GRID.size)
     np.testing.assert_allclose(centres[:, 0, 0], solution.x, rtol=0, atol=single)
     np.testing.assert_allclose(centres[0, :, 1], solution.y, rtol=0, atol=single)
 

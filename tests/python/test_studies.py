@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import math
 import multiprocessing
@@ -13,6 +14,7 @@ import sys
 import time
 from collections import Counter
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -41,7 +43,30 @@ def mean_pressure(solution: nacre.Solution) -> float:
     return solution.load / solution.contact_area
 
 
-OUTPUTS = ["peak_pressure", "tilt", "contact_extent", mean_pressure, "pressure"]
+OUTPUTS: list[studies.Output] = [
+    "peak_pressure",
+    "tilt",
+    "contact_extent",
+    mean_pressure,
+    "pressure",
+]
+
+# Other processes import functions by name: from here, in a file of its own.
+MODULE = """
+import os
+from pathlib import Path
+
+def fatal(solution):
+    return os._exit(1) if solution.load > 2.5 else 0.0
+
+def mean_pressure(solution):
+    return solution.load / solution.contact_area
+
+def logged(solution):
+    with Path(__file__).with_suffix(".log").open("a") as log:
+        log.write(f"{solution.report.motion['load']}\\n")
+    return solution.peak_pressure
+"""
 
 
 def bits(dataset: xarray.Dataset) -> dict[str, bytes]:
@@ -64,25 +89,34 @@ def test_each_case_is_the_solve_it_describes() -> None:
 
 
 @pytest.mark.parametrize("kind", ["one thread", "fork", "forkserver", "spawn", "dask"])
-def test_the_executor_changes_no_bit(kind: str) -> None:
+def test_the_executor_changes_no_bit(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     if kind not in ("one thread", "dask", *multiprocessing.get_all_start_methods()):
         pytest.skip(f"no {kind} here")
-    expected = nacre.sweep(ball, PARAMETERS, outputs=OUTPUTS)
+    name = f"study_on_{kind.replace(' ', '_')}"
+    (tmp_path / f"{name}.py").write_text(MODULE)
+    monkeypatch.syspath_prepend(tmp_path)
+    outputs = ["peak_pressure", "pressure", importlib.import_module(name).mean_pressure]
+    expected = nacre.sweep(ball, PARAMETERS, outputs=outputs)
     with ExitStack() as stack:
         executor: Executor
         if kind == "dask":
             from distributed import Client, LocalCluster
 
             cluster = stack.enter_context(
-                LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+                LocalCluster(  # type: ignore[no-untyped-call]
+                    n_workers=2, threads_per_worker=1, dashboard_address=None
+                )
             )
-            executor = stack.enter_context(stack.enter_context(Client(cluster)).get_executor())
+            client = stack.enter_context(Client(cluster))  # type: ignore[no-untyped-call]
+            executor = stack.enter_context(client.get_executor())
         elif kind == "one thread":
             executor = stack.enter_context(ThreadPoolExecutor(1))
         else:
             context = multiprocessing.get_context(kind)
             executor = stack.enter_context(ProcessPoolExecutor(2, mp_context=context))
-        study = nacre.sweep(ball, PARAMETERS, outputs=OUTPUTS, executor=executor)
+        study = nacre.sweep(ball, PARAMETERS, outputs=outputs, executor=executor)
     assert study.identical(expected)
     assert bits(study) == bits(expected)
 
@@ -121,7 +155,7 @@ def test_each_solve_has_one_thread_unless_the_case_says_otherwise(
         asked.append(arguments["threads"])
         return nacre.solve(**arguments)
 
-    monkeypatch.setattr(studies.core, "solve", solve)
+    monkeypatch.setattr("nacre._core.solve", solve)
     nacre.sweep(ball, {"thickness": [1e-5], "young": YOUNG})
     assert asked == [1, 1]
     nacre.sweep(lambda load: ball(1e-5, 1e11, load) | {"threads": 2}, {"load": [5.0]})
@@ -165,7 +199,7 @@ def count_solves(monkeypatch: pytest.MonkeyPatch) -> list[None]:
         solves.append(None)
         return nacre.solve(**arguments)
 
-    monkeypatch.setattr(studies.core, "solve", solve)
+    monkeypatch.setattr("nacre._core.solve", solve)
     return solves
 
 
@@ -207,9 +241,10 @@ def test_failed_cases_are_tried_again_when_asked(
     def exhausted(**_: object) -> None:
         raise MemoryError("no room")
 
-    with monkeypatch.context() as patch, pytest.warns(nacre.NacreWarning, match="1 of 1"):
-        patch.setattr(studies.core, "solve", exhausted)
-        nacre.sweep(ball, case, store=store)
+    with monkeypatch.context() as patch:
+        patch.setattr("nacre._core.solve", exhausted)
+        with pytest.warns(nacre.NacreWarning, match="1 of 1"):
+            nacre.sweep(ball, case, store=store)
     with pytest.warns(nacre.NacreWarning, match="1 of 1"):
         assert "no room" in str(nacre.sweep(ball, case, store=store).error.item())
     assert nacre.sweep(ball, case, store=store, retry=True).error.item() == ""
@@ -235,29 +270,27 @@ def test_a_line_cut_short_is_dropped_and_a_damaged_one_is_refused(
 
 
 KILLED = """
-import sys, time
-sys.path.insert(0, {folder!r})
-import nacre, test_studies
+import sys
+import nacre, cases
 
-def slow(solution):
-    with open({log!r}, "a") as log:
-        log.write(f"{{solution.report.motion['load']}}\\n")
-    time.sleep(0.01)
-    return solution.peak_pressure
+def ball(load):
+    steel = nacre.Elastic(210e9, 0.3)
+    body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(1e11, 0.3), 1e-5)])
+    grid = nacre.Grid((24, 20), (2e-4, 2e-4))
+    return dict(shape=nacre.Sphere(5e-3), body=body, grid=grid, load=load)
 
-if __name__ == "__main__":
-    parameters = {{"thickness": [1e-5], "young": [1e11], "load": [1.0 + 0.1 * k for k in range({count})]}}
-    nacre.sweep(test_studies.ball, parameters, outputs=[slow, "approach"], store={store!r})
+parameters = {"load": [5 + 0.01 * k for k in range(int(sys.argv[1]))]}
+nacre.sweep(ball, parameters, outputs=[cases.logged, "approach"], store="study.nc")
 """
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
-    count, kills = 60, 3
-    store, log, script = tmp_path / "study.nc", tmp_path / "log", tmp_path / "script.py"
-    folder = str(Path(__file__).parent)
-    script.write_text(KILLED.format(folder=folder, log=str(log), store=str(store), count=count))
-    journal = store.with_suffix(".journal")
+    count, kills = 200, 3
+    (tmp_path / "cases.py").write_text(MODULE)
+    (tmp_path / "script.py").write_text(KILLED)
+    store, journal, log = (tmp_path / name for name in ("study.nc", "study.journal", "cases.log"))
+    command = [sys.executable, "script.py", str(count)]
 
     def finished() -> list[str]:
         # Of what a kill left: a line without its end is not finished.
@@ -267,17 +300,17 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
     rng = random.Random(7)
     kept: list[str] = []
     for kill in range(kills):
-        target = len(kept) + rng.randint(5, 12)
-        with subprocess.Popen([sys.executable, str(script)]) as process:
+        target = len(kept) + rng.randint(5, 50)
+        with subprocess.Popen(command, cwd=tmp_path) as process:
             while process.poll() is None and len(finished()) < target:
-                time.sleep(0.001)
-            time.sleep(0.02 * rng.random())
+                time.sleep(1e-4)
+            time.sleep(0.003 * rng.random())
             process.send_signal(signal.SIGKILL)
         assert process.returncode == -signal.SIGKILL, f"it ended before kill {kill}"
         assert finished()[: len(kept)] == kept  # none lost
         kept = finished()
-        assert not store.exists()  # whole or not at all
-    subprocess.run([sys.executable, str(script)], check=True)
+        assert not store.exists()
+    subprocess.run(command, cwd=tmp_path, check=True)
 
     assert len(finished()) == len(set(finished())) == count  # none twice
     assert finished()[: len(kept)] == kept
@@ -287,9 +320,10 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
     assert sum(solved.values()) - count <= kills * (os.cpu_count() or 1)
     study = xarray.load_dataset(store, engine="h5netcdf")
     assert (study.error == "").all()
-    for load in (1.0, 3.0, 6.9):
-        expected = nacre.solve(**ball(1e-5, 1e11, float(study["load"].sel(load=load, method="nearest"))))
-        assert study.slow.sel(load=load, method="nearest").item() == expected.peak_pressure
+    for load in (5.0, 5.5, 6.99):
+        one = study.sel(load=load, method="nearest")
+        expected = nacre.solve(**ball(1e-5, 1e11, one["load"].item()))
+        assert one.logged.item() == expected.peak_pressure
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the lock is another there")
@@ -310,18 +344,22 @@ def test_two_processes_do_not_write_one_study(tmp_path: Path) -> None:
     assert nacre.sweep(ball, PARAMETERS, store=store).error.size == 6
 
 
-def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(tmp_path: Path) -> None:
-    store = tmp_path / "study.nc"
-    nacre.sweep(ball, PARAMETERS | {"young": YOUNG[:1]}, store=store)
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as executor:
-        executor.submit(int).result()
-        for process in multiprocessing.active_children():
-            process.kill()
-            process.join()
-        with pytest.raises(Exception, match=r"abruptly|broken"):
-            nacre.sweep(ball, PARAMETERS, store=store, executor=executor)
+def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "study_that_breaks.py").write_text(MODULE)
+    monkeypatch.syspath_prepend(tmp_path)
+    fatal = importlib.import_module("study_that_breaks").fatal
+    parameters = {"thickness": [1e-5], "young": [1e11], "load": [1.0, 2.0, 3.0, 4.0]}
+    with (
+        ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as executor,
+        pytest.raises(BrokenProcessPool),
+    ):
+        nacre.sweep(
+            ball, parameters, outputs=[fatal], store=tmp_path / "study.nc", executor=executor
+        )
     lines = (tmp_path / "study.journal").read_text().splitlines()
-    assert len(lines) == 3
+    assert [json.loads(line)["parameters"]["load"] for line in lines] == [1.0, 2.0]
     assert not any("error" in json.loads(line) for line in lines)
 
 
