@@ -51,8 +51,9 @@ def coating_chart(
 
     Examples
     --------
+    >>> from nacre import design
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> chart = nacre.design.coating_chart(
+    >>> chart = design.coating_chart(
     ...     nacre.Sphere(5e-3), steel, thickness=[2e-6, 20e-6], young=[105e9, 420e9], load=10.0
     ... )
     >>> (chart.peak_pressure / 1e9).round(2).values
@@ -98,8 +99,9 @@ def load_curve(
     --------
     Of a sphere, where W is as δ to the 3/2, the stiffness is 3/2 W/δ:
 
+    >>> from nacre import design
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> curve = nacre.design.load_curve(nacre.Sphere(5e-3), steel, load=[1.0, 10.0])
+    >>> curve = design.load_curve(nacre.Sphere(5e-3), steel, load=[1.0, 10.0])
     >>> (curve.stiffness * curve.approach / curve["load"]).round(2).values
     array([1.5, 1.5])
     """
@@ -146,9 +148,10 @@ def tilt_curve(
 
     Examples
     --------
+    >>> from nacre import design
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
-    >>> curve = nacre.design.tilt_curve(roller, steel, [0.0, 3e-5], load=1e3, tolerance=1e-4)
+    >>> curve = design.tilt_curve(roller, steel, [0.0, 3e-5], load=1e3, tolerance=1e-4)
     >>> (1e3 * curve.eccentricity.sel(axis="x")).round(1).values
     array([0. , 2.6])
     """

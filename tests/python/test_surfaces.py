@@ -105,6 +105,7 @@ def test_filling_makes_no_new_extremes_and_xyz_may_lack_points(tmp_path: Path) -
     np.testing.assert_allclose(read[inside], np.asarray(around)[inside], atol=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
 def test_an_instruments_file_is_read_by_surfacetopography(tmp_path: Path) -> None:
     from SurfaceTopography import Topography
 

@@ -26,7 +26,6 @@ QUANTITIES = ("pressure", "gap", "displacement", "line_load")
 def section(
     solution: Solution,
     along: Direction = "x",
-    *,
     at: float | None = None,
     quantity: str = "pressure",
     axes: Axes | None = None,
@@ -106,9 +105,10 @@ def compare(
 
     Examples
     --------
+    >>> from nacre import plot
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> loads = {f"{load} N": nacre.solve(nacre.Sphere(5e-3), steel, load=load) for load in (5, 10)}
-    >>> nacre.plot.compare(loads).get_ylabel()
+    >>> plot.compare(loads).get_ylabel()
     'pressure [GPa]'
     """
     if not isinstance(solutions, Mapping):
