@@ -57,8 +57,8 @@ def coating_chart(
     ...     nacre.Sphere(5e-3), steel, thickness=[2e-6, 20e-6], young=[105e9, 420e9], load=10.0
     ... )
     >>> (chart.peak_pressure / 1e9).round(2).values
-    array([[1.6 , 1.54],
-           [1.04, 2.07]])
+    array([[1.57, 1.62],
+           [1.36, 1.82]])
     """
     asked, study = _parted(options)
 
@@ -152,8 +152,8 @@ def tilt_curve(
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
     >>> curve = design.tilt_curve(roller, steel, [0.0, 3e-5], load=1e3, tolerance=1e-4)
-    >>> (1e3 * curve.eccentricity.sel(axis="x")).round(1).values
-    array([0. , 2.6])
+    >>> round(1e3 * curve.eccentricity.sel(axis="x", tilt=3e-5).item(), 1)
+    2.5
     """
     asked, study = _parted(options)
 

@@ -426,7 +426,10 @@ where
     let first = PyTuple::new(solution.py(), [solution])?;
     let arguments = first.add(arguments.into_pyobject(solution.py())?)?;
     let arguments = arguments.cast_into::<PyTuple>()?;
-    solution.py().import(module)?.call_method1(function, arguments)
+    solution
+        .py()
+        .import(module)?
+        .call_method1(function, arguments)
 }
 
 type Field<'py> = Bound<'py, PyArray2<f64>>;

@@ -317,7 +317,7 @@ def test_a_case_can_be_called_with_other_values() -> None:
 
 
 def test_the_case_in_the_documentation_is_one(tmp_path: Path) -> None:
-    doc = nacre.case.__doc__ or ""  # type: ignore[attr-defined]
+    doc = nacre.case.__doc__ or ""
     text = "\n".join(line.removeprefix("    ") for line in doc.split("::", 1)[1].splitlines())
     case = Case.read(written(tmp_path, text))
     assert case.arguments()["load"] == 1e3

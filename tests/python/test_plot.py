@@ -8,7 +8,9 @@ from typing import Any
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
@@ -16,6 +18,7 @@ import nacre
 from nacre import design, plot
 from nacre.units import Scale, written
 
+Array = npt.NDArray[np.float64]
 STEEL = nacre.Elastic(210e9, 0.3)
 ROLLER = nacre.Roller(5e-3, 8e-3, 2.0)
 LONG = nacre.Grid((96, 24), (14e-3, 3e-4))
@@ -47,6 +50,12 @@ def line() -> nacre.Solution:
 @pytest.fixture(scope="module")
 def nothing() -> nacre.Solution:
     return nacre.solve(nacre.Sphere(5e-3), STEEL, grid=LONG, approach=-1e-6)
+
+
+def curve_of(axes: Axes) -> tuple[Array, Array]:
+    """Return what the last curve shows."""
+    data = np.asarray(axes.lines[-1].get_xydata(), dtype=np.float64)
+    return data[:, 0], data[:, 1]
 
 
 def drawn(figure: Any) -> None:
@@ -87,7 +96,7 @@ def test_the_overview_has_map_sections_and_figures(tilted: nacre.Solution) -> No
     assert axes["map"].get_ylabel() == "y [µm]"
     assert "different scales" in axes["map"].get_title(loc="left")
     (mesh,) = (c for c in axes["map"].collections if isinstance(c, QuadMesh))
-    values = np.ma.filled(np.ma.asarray(mesh.get_array()), 0.0).T
+    values: Array = np.ma.asarray(mesh.get_array()).filled(0.0).T
     np.testing.assert_allclose(values, 1e-9 * tilted.pressure, rtol=1e-12)
     said = " ".join(text.get_text() for text in axes["figures"].texts)
     assert written(tilted.peak_pressure, "Pa") in said
@@ -104,20 +113,19 @@ def test_the_map_of_a_round_contact_is_true_to_scale(ball: nacre.Solution) -> No
 
 def test_the_cross_marks_where_the_force_acts(tilted: nacre.Solution) -> None:
     axes = plot.pressure_map(tilted)
-    x, _ = axes.lines[-1].get_xydata()[0]  # type: ignore[index]
-    assert x == pytest.approx(1.0, rel=1e-6)  # mm; the balance of moments is 1e-8
+    assert curve_of(axes)[0] == pytest.approx(1.0, rel=1e-6)  # mm; the balance of moments is 1e-8
 
 
 def test_a_section_is_a_row_of_cells(tilted: nacre.Solution) -> None:
     axes = tilted.plot_section("x")
-    x, pressure = axes.lines[0].get_data()
+    x, pressure = curve_of(axes)
     j = int(np.argmax(tilted.pressure.max(axis=0)))
     np.testing.assert_allclose(x, 1e3 * tilted.x, rtol=1e-12)
     np.testing.assert_allclose(pressure, 1e-9 * tilted.pressure[:, j], rtol=1e-12)
     assert axes.get_ylabel() == "pressure [GPa]"
     axes = tilted.plot_section("y", at=2e-3, quantity="gap")
     i = int(np.argmin(np.abs(tilted.x - 2e-3)))
-    gap = axes.lines[0].get_ydata()
+    gap = curve_of(axes)[1]
     np.testing.assert_allclose(gap, 1e6 * tilted.gap[i], rtol=1e-12)
     assert axes.get_ylabel() == "gap [µm]"
     axes = tilted.plot_section("x", quantity="line_load")
@@ -214,7 +222,7 @@ def test_studies_are_drawn_with_their_units() -> None:
     curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
     axes = plot.curve(curve, "stiffness")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("load [N]", "stiffness [MN/m]")
-    x, y = axes.lines[0].get_data()
+    x, y = curve_of(axes)
     np.testing.assert_array_equal(x, curve["load"])
     np.testing.assert_allclose(y, 1e-6 * curve.stiffness, rtol=1e-12)
     with pytest.raises(ValueError, match="quantity must be over 2 parameters"):
