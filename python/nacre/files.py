@@ -154,6 +154,8 @@ def load(path: Path_) -> core.Solution:
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a file to write, which then takes the place of `path` at once; nothing on an error."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
         temporary = Path(folder) / path.name
         yield temporary

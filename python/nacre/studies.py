@@ -245,21 +245,33 @@ def _key(arguments: Mapping[str, Any], outputs: Mapping[str, Output]) -> str:
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 
-def _code(function: Any) -> Any:
-    """Return what a function does, as data: its byte code, constants and what it closes over."""
-    if isinstance(function, types.CodeType):
-        constants = [
-            _code(c) if isinstance(c, types.CodeType) else repr(c) for c in function.co_consts
-        ]
-        return [hashlib.sha256(function.co_code).hexdigest(), constants, list(function.co_names)]
-    if code := getattr(function, "__code__", None):
-        cells = [cell.cell_contents for cell in function.__closure__ or ()]
-        bound = [repr(value) for value in (function.__defaults__, function.__kwdefaults__, cells)]
-        return [_code(code), bound]
-    if parts := [getattr(function, name, None) for name in ("func", "args", "keywords")]:
-        if parts[0] is not None:
-            return [_code(parts[0]), repr(parts[1:])]
-    return [type(function).__qualname__, repr(function)]
+def _code(value: Any, seen: frozenset[int] = frozenset()) -> Any:
+    """Return what a function does, as data: its byte code, and the values and functions it uses.
+
+    Of what belongs to a library, the name stands for it.
+    """
+    if id(value) in seen:
+        return "itself"
+    seen |= {id(value)}
+    if isinstance(value, types.CodeType):
+        constants = [_code(constant, seen) for constant in value.co_consts]
+        return [hashlib.sha256(value.co_code).hexdigest(), constants, list(value.co_names)]
+    if isinstance(value, types.FunctionType):
+        used = [cell.cell_contents for cell in value.__closure__ or ()]
+        used += [value.__defaults__, value.__kwdefaults__]
+        names = (name for name in value.__code__.co_names if name in value.__globals__)
+        mine = {name: value.__globals__[name] for name in names}
+        used += [v for v in mine.values() if getattr(v, "__module__", "") == value.__module__]
+        used += [v for v in mine.values() if isinstance(v, int | float | str | np.ndarray)]
+        return [_code(value.__code__, seen), [_code(one, seen) for one in used]]
+    if isinstance(value, partial):
+        return [_code(part, seen) for part in (value.func, value.args, value.keywords)]
+    if isinstance(value, tuple | list):
+        return [_code(item, seen) for item in value]
+    try:
+        return encode(value, digest=True)
+    except TypeError:
+        return [type(value).__qualname__, getattr(value, "__qualname__", None) or repr(value)]
 
 
 def _said(point: Mapping[str, Any]) -> dict[str, Any]:

@@ -43,3 +43,10 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     blocks = re.findall(r"^```python\n(.*?)^```", readme, flags=re.MULTILINE | re.DOTALL)
     assert len(blocks) == 1
     assert run("-c", blocks[0], folder=tmp_path).strip()
+
+
+def test_the_case_file_is_solved_and_studied(tmp_path: Path) -> None:
+    case = str(ROOT / "examples" / "roller.toml")
+    printed = run("-m", "nacre.cli", "solve", case, folder=tmp_path)
+    assert re.search(r"peak pressure +1\.249 GPa", printed)  # as examples/my_roller.py finds it
+    assert "4 cases, 0 failed" in run("-m", "nacre.cli", "sweep", case, folder=tmp_path)

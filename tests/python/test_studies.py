@@ -88,6 +88,7 @@ def test_each_case_is_the_solve_it_describes() -> None:
     assert (study.error == "").all()
 
 
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")  # fork, Python 3.12
 @pytest.mark.parametrize("kind", ["one thread", "fork", "forkserver", "spawn", "dask"])
 def test_the_executor_changes_no_bit(
     kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -223,14 +224,36 @@ def test_a_changed_output_function_is_another_question(
 ) -> None:
     solves = count_solves(monkeypatch)
     case = {"thickness": [1e-5], "young": [1e11]}
-    for factor in (1.0, 2.0, 2.0):
+    long = np.ones(5000)  # its repr leaves out the middle
+    changed = long.copy()
+    changed[2500] = 2.0
+    for weights in (long, changed, changed.copy()):
 
-        def scaled(solution: nacre.Solution, factor: float = factor) -> float:
-            return factor * solution.load
+        def total(solution: nacre.Solution, weights: Any = weights) -> float:
+            return float(weights.sum()) * solution.load
 
-        study = nacre.sweep(ball, case, outputs=[scaled], store=tmp_path / "study.nc")
-        assert float(study.scaled.item()) == pytest.approx(factor * 10.0, rel=1e-9)
+        study = nacre.sweep(ball, case, outputs=[total], store=tmp_path / "study.nc")
+        assert study.total.item() == pytest.approx(weights.sum() * 10.0, rel=1e-9)
     assert len(solves) == 2
+
+
+def test_a_function_is_its_code_and_what_it_uses() -> None:
+    def made(source: str) -> Any:
+        names: dict[str, Any] = {"__name__": "user", "np": np}
+        exec(source, names)
+        return studies._code(names["f"])
+
+    first = made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
+    assert first == made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
+    for other in (
+        "LIMIT = 2.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT",
+        "LIMIT = 1.0\ndef g(s): return s.approach\ndef f(s): return g(s) > LIMIT",
+        "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) < LIMIT",
+        "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return np.sum(g(s) > LIMIT)",
+    ):
+        assert made(other) != first
+    recursive = "def f(s): return f(s) if s else 0"
+    assert made(recursive) == made(recursive)
 
 
 def test_failed_cases_are_tried_again_when_asked(
@@ -324,6 +347,26 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
         one = study.sel(load=load, method="nearest")
         expected = nacre.solve(**ball(1e-5, 1e11, one["load"].item()))
         assert one.logged.item() == expected.peak_pressure
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
+def test_ctrl_c_stops_a_study_and_keeps_what_is_finished(tmp_path: Path) -> None:
+    (tmp_path / "cases.py").write_text(MODULE)
+    (tmp_path / "script.py").write_text(KILLED)
+    journal = tmp_path / "study.journal"
+    command = [sys.executable, "script.py", "5000"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE) as process:
+        while not (journal.exists() and journal.stat().st_size):
+            assert process.poll() is None
+            time.sleep(1e-3)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert err.splitlines()[-1] == b"KeyboardInterrupt"
+    records = [json.loads(line) for line in journal.read_text().splitlines()]
+    assert 0 < len(records) < 5000
+    assert not any("error" in record for record in records)
+    # What was being solved was finished and kept: nothing that was logged is missing.
+    assert len(records) == len((tmp_path / "cases.log").read_text().splitlines())
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the lock is another there")

@@ -103,18 +103,27 @@ def view(solution: Solution, *, show: bool = True) -> Any:
     name = f"pressure [{scale.unit}]"
     surface.point_data[name] = (scale.factor * pressure).ravel(order="F")
     plotter: Any = pyvista.Plotter(off_screen=None if show else True)
-    plotter.add_mesh(surface, scalars=name, cmap=COLOURMAP, smooth_shading=True)
+    look = {"cmap": COLOURMAP, "smooth_shading": True, "show_scalar_bar": False}
+    plotter.add_mesh(surface, scalars=name, **look)
     lengths = [Scale.of(np.abs(side).max(), "m") for side in (x, y)]
     ends = [
         s.factor * end for s, side in zip(lengths, (x, y), strict=True) for end in side[[0, -1]]
     ]
     plotter.show_bounds(
         axes_ranges=[*ends, 0, scale.factor * solution.peak_pressure],
-        xtitle=f"x [{lengths[0].unit}]",
-        ytitle=f"y [{lengths[1].unit}]",
+        xtitle=f"x [{lengths[0].unit}]".replace("µ", "u"),  # VTK's letters are Latin
+        ytitle=f"y [{lengths[1].unit}]".replace("µ", "u"),
         ztitle=name,
+        location="outer",
+        grid="back",
+        ticks="outside",
+        font_size=11,
+        n_xlabels=4,
+        n_ylabels=4,
+        n_zlabels=4,
+        bold=False,
     )
-    plotter.view_isometric()
+    plotter.camera_position = [(-1.6, -2.4, 1.7), (0.0, 0.0, 0.2), (0.0, 0.0, 1.0)]
     if show:
         plotter.show()
     return plotter
