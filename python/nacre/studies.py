@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import inspect
-import json
 import os
-import types
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -21,9 +18,9 @@ import numpy as np
 
 import nacre._core as core
 from nacre._extras import extra
+from nacre._identity import key_of
 from nacre._journal import Journal, Record
 from nacre.units import UNITS
-from nacre.values import encode
 
 if TYPE_CHECKING:
     import xarray
@@ -125,7 +122,7 @@ def sweep(
         keys, tasks = [], {}
         for point in points:
             arguments, failure = _describe(case, point)
-            key = _key(arguments if failure is None else {"failed": point}, wanted)
+            key = key_of(arguments if failure is None else {"failed": point}, wanted)
             keys.append(key)
             known = journal.records.get(key)
             if known is not None and not (retry and "error" in known):
@@ -234,44 +231,6 @@ def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | 
     if unknown:
         raise TypeError(f"case must give arguments of nacre.solve, got {sorted(unknown)}")
     return {"threads": 1, **arguments}, None
-
-
-def _key(arguments: Mapping[str, Any], outputs: Mapping[str, Output]) -> str:
-    """Return what tells a case, and what is kept of it, from any other."""
-    kept = {name: o if isinstance(o, str) else _code(o) for name, o in outputs.items()}
-    # Threads change no bit of a solution.
-    asked = {name: value for name, value in arguments.items() if name != "threads"}
-    what = {"nacre": core.__version__, "solve": encode(asked, digest=True), "outputs": kept}
-    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
-
-
-def _code(value: Any, seen: frozenset[int] = frozenset()) -> Any:
-    """Return what a function does, as data: its byte code, and the values and functions it uses.
-
-    Of what belongs to a library, the name stands for it.
-    """
-    if id(value) in seen:
-        return "itself"
-    seen |= {id(value)}
-    if isinstance(value, types.CodeType):
-        constants = [_code(constant, seen) for constant in value.co_consts]
-        return [hashlib.sha256(value.co_code).hexdigest(), constants, list(value.co_names)]
-    if isinstance(value, types.FunctionType):
-        used = [cell.cell_contents for cell in value.__closure__ or ()]
-        used += [value.__defaults__, value.__kwdefaults__]
-        names = (name for name in value.__code__.co_names if name in value.__globals__)
-        mine = {name: value.__globals__[name] for name in names}
-        used += [v for v in mine.values() if getattr(v, "__module__", "") == value.__module__]
-        used += [v for v in mine.values() if isinstance(v, int | float | str | np.ndarray)]
-        return [_code(value.__code__, seen), [_code(one, seen) for one in used]]
-    if isinstance(value, partial):
-        return [_code(part, seen) for part in (value.func, value.args, value.keywords)]
-    if isinstance(value, tuple | list):
-        return [_code(item, seen) for item in value]
-    try:
-        return encode(value, digest=True)
-    except TypeError:
-        return [type(value).__qualname__, getattr(value, "__qualname__", None) or repr(value)]
 
 
 def _said(point: Mapping[str, Any]) -> dict[str, Any]:

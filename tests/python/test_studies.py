@@ -25,6 +25,7 @@ import xarray
 
 import nacre
 from nacre import design, studies
+from nacre._identity import code_of
 
 STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
@@ -241,7 +242,7 @@ def test_a_function_is_its_code_and_what_it_uses() -> None:
     def made(source: str) -> Any:
         names: dict[str, Any] = {"__name__": "user", "np": np}
         exec(source, names)
-        return studies._code(names["f"])
+        return code_of(names["f"])
 
     first = made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
     assert first == made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
