@@ -21,7 +21,7 @@ from nacre.values import decode, encode, reduced
 if TYPE_CHECKING:
     import xarray
 
-Path_ = str | os.PathLike[str]
+AnyPath = str | os.PathLike[str]
 
 FIGURES = (
     "load",
@@ -90,7 +90,7 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
     return dataset
 
 
-def save(solution: core.Solution, path: Path_) -> Path:
+def save(solution: core.Solution, path: AnyPath) -> Path:
     """Write a file of the kind that its ending says, whole or not at all."""
     path = Path(path)
     writers: dict[str, Callable[[core.Solution, Path], None]] = {
@@ -105,7 +105,7 @@ def save(solution: core.Solution, path: Path_) -> Path:
     return path
 
 
-def load(path: Path_) -> core.Solution:
+def load(path: AnyPath) -> core.Solution:
     """Solution of a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre[files]``.
 
     Parameters
