@@ -49,10 +49,10 @@ def figures(solution: Solution) -> list[tuple[str, str]]:
         ("load", written(solution.load, force)),
         ("acts at", _pair(solution.eccentricity, "m", arms) if touching else "nothing touches"),
         ("moment", _pair(solution.moment, moment, [solution.load * arm for arm in arms])),
-        ("approach", written(solution.approach, "m")),
+        ("approach", _estimated(solution, "approach", "m")),
         ("tilt", f"({solution.tilt[0]:.4g}, {solution.tilt[1]:.4g})"),
         ("freedoms", freedoms(report.motion)),
-        ("peak pressure", written(solution.peak_pressure, "Pa")),
+        ("peak pressure", _estimated(solution, "peak_pressure", "Pa")),
         ("at", _pair(solution.peak_position, "m", arms)),
         ("contact", sides[1] if line else f"{sides[0]} × {sides[1]}"),
         ("area", written(solution.contact_area, "m" if line else "m²")),
@@ -77,7 +77,7 @@ def freedoms(motion: Mapping[str, Any]) -> str:
         kind = {"eccentricity": "free", "moment": "free", "tilt": "given"}
         said.append(f"{name} {kind[asked[0]] if asked else 'locked'}")
     control = "load" if "load" in motion else "approach"
-    return f"{control} given; tilt: {', '.join(said)}"
+    return f"{control}; tilt {', '.join(said)}"
 
 
 def text(solution: Solution) -> str:
@@ -142,6 +142,15 @@ def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
     lines = b"".join(b"\0" + line.tobytes() for line in pixels)
     parts = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(lines, 9)), chunk(b"IEND", b"")
     return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+
+
+def _estimated(solution: Solution, name: str, unit: str) -> str:
+    """Return a figure with the error that the size of the cells leaves, where it is estimated."""
+    value = getattr(solution, name)
+    error = (solution.report.discretisation or {}).get(name, 0.0)
+    return written(value, unit) + (
+        f" ± {100 * abs(error / value):.1g} %" if error and value else ""
+    )
 
 
 def _pair(values: tuple[float, float], unit: str, noise: Sequence[float]) -> str:

@@ -71,7 +71,7 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
         **{name: np.ravel(getattr(solution, name)) for name in FIGURES},
         **{
             name: json.dumps(encode(getattr(report, name)))
-            for name in ("body", "counterbody", "grid", "motion")
+            for name in ("body", "counterbody", "grid", "motion", "discretisation")
         },
         "method": report.method,
         "refinement": report.refinement,

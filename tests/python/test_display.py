@@ -28,7 +28,7 @@ def test_the_table_names_bodies_modulus_freedoms_and_resultant() -> None:
     rows = table(solution)
     assert rows["load"] == "10 N"
     assert rows["acts at"] == "(1 µm, 0 m)"
-    assert rows["freedoms"] == "load given; tilt: x free, y locked"
+    assert rows["freedoms"] == "load; tilt x free, y locked"
     assert rows["body"] == "E 210 GPa, ν 0.3"
     assert rows["layer 1"] == "2 µm, E 420 GPa, ν 0.2"
     assert rows["counterbody"] == "E 210 GPa, ν 0.3"
@@ -44,7 +44,7 @@ def test_a_rigid_counterbody_and_what_is_given_are_said() -> None:
     rows = table(solution)
     assert rows["counterbody"] == "rigid"
     assert rows["E*"] == f"{210 / 0.91:.4g} GPa"
-    assert rows["freedoms"] == "approach given; tilt: x given, y locked"
+    assert rows["freedoms"] == "approach; tilt x given, y locked"
     assert rows["acts at"] == "nothing touches"
 
 
@@ -96,3 +96,14 @@ def test_warnings_are_part_of_what_is_printed() -> None:
     for said in solution.report.warnings:
         assert f"warning: {said}" in str(solution)
         assert said in solution._repr_html_()
+
+
+def test_an_estimate_of_the_error_stands_with_the_figure() -> None:
+    solution = nacre.solve(nacre.Sphere(5e-3), STEEL, load=10.0)
+    estimate = solution.report.discretisation
+    assert estimate is not None
+    percent = 100 * estimate["peak_pressure"] / solution.peak_pressure
+    assert table(solution)["peak pressure"].endswith(f"GPa ± {percent:.1g} %")
+    # What is prescribed has no error.
+    solution = nacre.solve(nacre.Sphere(5e-3), STEEL, approach=6e-7)
+    assert table(solution)["approach"] == "600 nm"
