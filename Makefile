@@ -59,7 +59,7 @@ peers: $(WHEEL) ## nacre beside other solvers: docs/peers.md; OPTIONS=--quick ta
 
 develop: $(DEV) ## build in place: Python files are used where they are, Rust after the next make develop
 	rm -f $(WHEEL)
-	$(BIN)/maturin develop --release --extras plot,cli
+	$(BIN)/maturin develop --release --extras all
 
 stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 	$(BIN)/python -m mypy.stubtest nacre._core

@@ -42,6 +42,8 @@ from nacre._core import (
     influence_coefficients,
     solve,
 )
+from nacre.files import load
+from nacre.studies import sweep
 
 __all__ = [
     "RIGID",
@@ -67,5 +69,7 @@ __all__ = [
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
+    "load",
     "solve",
+    "sweep",
 ]

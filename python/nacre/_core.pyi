@@ -1,8 +1,12 @@
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, final, overload
 
 import numpy as np
 import numpy.typing as npt
+import xarray
+from matplotlib.axes import Axes
 from typing_extensions import disjoint_base
 
 __all__ = [
@@ -220,6 +224,15 @@ class HeightMap(Shape):
     def __new__(
         cls, heights: _Matrix, spacing: float | _Pair, center: _Pair = (0.0, 0.0)
     ) -> Self: ...
+    @staticmethod
+    def read(
+        path: str | os.PathLike[str],
+        *,
+        spacing: float | _Pair | None = None,
+        unit: str | None = None,
+        detrend: Literal["none", "mean", "plane", "quadratic"] = "plane",
+        channel: str | int | None = None,
+    ) -> HeightMap: ...
     @property
     def heights(self) -> _Field: ...
     @property
@@ -360,6 +373,19 @@ class Solution:
     def stiffness(self) -> _Field: ...
     @property
     def report(self) -> Report: ...
+    def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]: ...
+    def plot_3d(self, axes: Any = None, *, interactive: bool = False) -> Any: ...
+    def plot_section(
+        self,
+        along: Literal["x", "y"] = "x",
+        *,
+        at: float | None = None,
+        quantity: Literal["pressure", "gap", "displacement", "line_load"] = "pressure",
+        axes: Axes | None = None,
+    ) -> Axes: ...
+    def to_xarray(self) -> xarray.Dataset: ...
+    def save(self, path: str | os.PathLike[str]) -> Path: ...
+    def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 def _restore_report(state: tuple[object, ...]) -> Report: ...

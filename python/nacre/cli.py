@@ -33,7 +33,9 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
+        import nacre._case_commands  # the rest of the commands of app
         from nacre._commands import app
+        from nacre.case import CaseError
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre[cli]'", 2)
 
@@ -43,11 +45,11 @@ def _run(arguments: Sequence[str] | None) -> int:
         return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _fail(error.format_message(), 2)
-    except ModuleNotFoundError as missing:
-        return _fail(str(missing), 2)
+    except (CaseError, ModuleNotFoundError) as error:
+        return _fail(str(error), 2)
     except nacre.ConvergenceError as error:
         return _fail("; ".join([*getattr(error, "__notes__", ()), str(error)]), 1)
-    except OSError as error:
+    except (MemoryError, OSError) as error:
         return _fail(str(error), 1)
 
 

@@ -5,7 +5,7 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 use super::arrays::{Repr, array_repr, hash, read_only, real_matrix};
 use super::grid::PyGrid;
@@ -579,6 +579,65 @@ impl PyHeightMap {
             })?;
         let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
         Ok(subclass(Self, Shape::HeightMap(map.centered_at(center)?)))
+    }
+
+    /// Reads a measured surface from a file.
+    ///
+    /// Instruments' files are read by SurfaceTopography, with ``nacre[surfaces]``. Missing points
+    /// are filled smoothly from around them, and counted in a `nacre.NacreWarning`.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     ``.npy``: a matrix of heights ``(nx, ny)``. ``.csv``: likewise, one line for each x;
+    ///     comments ``# unit: um`` and ``# spacing: 0.5 0.5`` may precede. ``.xyz``: points on a
+    ///     grid. Anything else that SurfaceTopography knows.
+    /// spacing : float or tuple of float, optional
+    ///     Distances between samples [m]; needed where the file does not say.
+    /// unit : str, optional
+    ///     Unit of the numbers in the file ("nm", "um", "mm", ...); the file's by default, metres
+    ///     where it names none.
+    /// detrend : {"plane", "none", "mean", "quadratic"}, optional
+    ///     What is subtracted: the plane, the mean or the paraboloid that fits best.
+    /// channel : str or int, optional
+    ///     Which of an instrument's channels to read.
+    ///
+    /// Returns
+    /// -------
+    /// HeightMap
+    ///     The surface.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the file cannot be understood, or less than half of it was measured.
+    /// OSError
+    ///     If it cannot be read.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import tempfile
+    /// >>> with tempfile.TemporaryDirectory() as folder:
+    /// ...     np.save(f"{folder}/flat.npy", np.zeros((4, 3)))
+    /// ...     nacre.HeightMap.read(f"{folder}/flat.npy", spacing=1e-6, unit="nm").heights.shape
+    /// (4, 3)
+    #[staticmethod]
+    #[pyo3(signature = (path, *, spacing=None, unit=None, detrend="plane", channel=None))]
+    fn read<'py>(
+        py: Python<'py>,
+        path: &Bound<'py, PyAny>,
+        spacing: Option<&Bound<'py, PyAny>>,
+        unit: Option<&str>,
+        detrend: &str,
+        channel: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = PyDict::new(py);
+        options.set_item("spacing", spacing)?;
+        options.set_item("unit", unit)?;
+        options.set_item("detrend", detrend)?;
+        options.set_item("channel", channel)?;
+        let surfaces = py.import("nacre.surfaces")?;
+        surfaces.call_method("read", (path,), Some(&options))
     }
 
     /// The heights ``(nx, ny)`` [m].

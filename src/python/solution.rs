@@ -7,6 +7,7 @@ use ndarray::Array2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
+use pyo3::types::PyTuple;
 
 use super::arrays::{read_only, real_matrix};
 use super::bodies::PyHalfSpace;
@@ -213,6 +214,171 @@ impl PySolution {
         PyReport(self.solution.report.clone())
     }
 
+    /// Draws map, sections and key figures; needs ``nacre[plot]``.
+    ///
+    /// Parameters
+    /// ----------
+    /// axes : matplotlib.axes.Axes or dict of them, optional
+    ///     Where to draw: by any of the names "map", "x", "y" and "figures", as
+    ///     ``subplot_mosaic`` makes them, or one for the map; a new figure by default.
+    ///
+    /// Returns
+    /// -------
+    /// dict of matplotlib.axes.Axes
+    ///     The axes, by name.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no part of that name.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> sorted(solution.plot())
+    /// ['figures', 'map', 'x', 'y']
+    #[pyo3(signature = (axes=None))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        axes: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre.plot", "overview", (axes,))
+    }
+
+    /// Draws the pressure as a relief; needs ``nacre[plot]``, or ``nacre[view]`` to turn it by hand.
+    ///
+    /// Parameters
+    /// ----------
+    /// axes : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+    ///     Where to draw; a new figure by default.
+    /// interactive : bool, optional
+    ///     Whether to open a window of PyVista's instead.
+    ///
+    /// Returns
+    /// -------
+    /// mpl_toolkits.mplot3d.axes3d.Axes3D or pyvista.Plotter
+    ///     The axes, or the plotter.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the grid is one of strips, `Grid.line`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).plot_3d().get_zlabel()
+    /// 'pressure [GPa]'
+    #[pyo3(signature = (axes=None, *, interactive=false))]
+    fn plot_3d<'py>(
+        slf: &Bound<'py, Self>,
+        axes: Option<&Bound<'py, PyAny>>,
+        interactive: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        match interactive {
+            false => call(slf, "nacre.plot", "relief", (axes,)),
+            true => call(slf, "nacre.plot", "view", ()),
+        }
+    }
+
+    /// Draws a quantity along x or y; needs ``nacre[plot]``.
+    ///
+    /// Parameters
+    /// ----------
+    /// along : {"x", "y"}, optional
+    ///     Direction of the section.
+    /// at : float, optional
+    ///     Its place in the other direction [m]; the row of the largest pressure by default.
+    /// quantity : {"pressure", "gap", "displacement", "line_load"}, optional
+    ///     What to draw.
+    /// axes : matplotlib.axes.Axes, optional
+    ///     Where to draw; a new figure by default.
+    ///
+    /// Returns
+    /// -------
+    /// matplotlib.axes.Axes
+    ///     The axes.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no such direction or quantity, or the place is off the grid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).plot_section("y").get_xlabel()
+    /// 'y [µm]'
+    #[pyo3(signature = (along="x", *, at=None, quantity="pressure", axes=None))]
+    fn plot_section<'py>(
+        slf: &Bound<'py, Self>,
+        along: &str,
+        at: Option<f64>,
+        quantity: &str,
+        axes: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre.plot", "section", (along, at, quantity, axes))
+    }
+
+    /// Fields with coordinates, units and everything that was asked; needs ``nacre[files]``.
+    ///
+    /// Returns
+    /// -------
+    /// xarray.Dataset
+    ///     Fields over x and y; key figures, bodies, motion and options as attributes.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> dataset = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).to_xarray()
+    /// >>> sorted(dataset.data_vars), dataset.pressure.units
+    /// (['displacement', 'gap', 'line_load', 'pressure'], 'Pa')
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre.files", "to_xarray", ())
+    }
+
+    /// Writes a file, whole or not at all; needs ``nacre[files]``.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     Its ending says what is written: ``.nc`` everything, as NetCDF, for `nacre.load` and
+    ///     xarray; ``.vtr`` the fields, for ParaView; ``.csv`` the sections along x and y through
+    ///     the largest pressure.
+    ///
+    /// Returns
+    /// -------
+    /// pathlib.Path
+    ///     The file.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the ending is another.
+    /// OSError
+    ///     If the file cannot be written.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import tempfile
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> with tempfile.TemporaryDirectory() as folder:
+    /// ...     nacre.load(solution.save(f"{folder}/ball.nc")) == solution
+    /// True
+    fn save<'py>(slf: &Bound<'py, Self>, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre.files", "save", (path,))
+    }
+
+    fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre._display", "text", ())
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre._display", "markup", ())
+    }
+
     fn __eq__(&self, other: &Self) -> bool {
         self.solution == other.solution
     }
@@ -244,6 +410,26 @@ impl PySolution {
         let restore = py.import("nacre._core")?.getattr("_restore_solution")?;
         Ok((restore, (fields, motion, self.report())))
     }
+}
+
+/// What a function of the Python package returns for a solution.
+fn call<'py, A>(
+    solution: &Bound<'py, PySolution>,
+    module: &str,
+    function: &str,
+    arguments: A,
+) -> PyResult<Bound<'py, PyAny>>
+where
+    A: IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>>,
+    PyErr: From<A::Error>,
+{
+    let first = PyTuple::new(solution.py(), [solution])?;
+    let arguments = first.add(arguments.into_pyobject(solution.py())?)?;
+    let arguments = arguments.cast_into::<PyTuple>()?;
+    solution
+        .py()
+        .import(module)?
+        .call_method1(function, arguments)
 }
 
 type Field<'py> = Bound<'py, PyArray2<f64>>;

@@ -3,12 +3,16 @@
 import doctest
 import inspect
 import re
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
 import nacre
+import nacre.design
+import nacre.plot.sections
+import nacre.units
 
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -112,3 +116,10 @@ def test_its_examples_are_true(name: str) -> None:
     result = doctest.DocTestRunner(optionflags=FLAGS).run(examples, out=said.append)
     assert result.attempted > 0
     assert result.failed == 0, "".join(said)
+
+
+@pytest.mark.parametrize("module", [nacre.units, nacre.design, nacre.plot.sections])
+def test_the_examples_of_a_module_are_true(module: ModuleType) -> None:
+    result = doctest.testmod(module, globs={**vars(module), "nacre": nacre}, optionflags=FLAGS)
+    assert result.attempted > 0
+    assert result.failed == 0

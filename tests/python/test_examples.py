@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import nacre
+
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
@@ -43,3 +45,13 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     blocks = re.findall(r"^```python\n(.*?)^```", readme, flags=re.MULTILINE | re.DOTALL)
     assert len(blocks) == 1
     assert run("-c", blocks[0], folder=tmp_path).strip()
+
+
+def test_the_case_file_is_solved_and_studied(tmp_path: Path) -> None:
+    case = str(ROOT / "examples" / "roller.toml")
+    steel, dlc = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.3)
+    body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, 40e-6)])
+    roller = nacre.Roller(5e-3, 19.13e-3, 7.5)
+    solution = nacre.solve(roller, body, load=1e3, eccentricity=(2.87e-3, None))
+    assert run("-m", "nacre.cli", "solve", case, folder=tmp_path) == f"{solution}\n"
+    assert "4 cases, 0 failed" in run("-m", "nacre.cli", "sweep", case, folder=tmp_path)

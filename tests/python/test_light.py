@@ -16,9 +16,9 @@ print(*sorted(set(sys.modules) - before))
 """
 
 
-def imported() -> list[str]:
+def imported(script: str = SCRIPT) -> list[str]:
     run = subprocess.run(
-        [sys.executable, "-W", "error", "-c", SCRIPT], capture_output=True, text=True, check=True
+        [sys.executable, "-W", "error", "-c", script], capture_output=True, text=True, check=True
     )
     return run.stdout.split()
 
@@ -32,7 +32,13 @@ def test_nothing_but_numpy_is_imported() -> None:
 
 
 def test_the_parts_that_plot_and_talk_wait_until_they_are_used() -> None:
-    assert {"nacre.paper", "nacre.cli", "nacre.plot"} & set(imported()) == set()
+    later = {"paper", "cli", "plot", "case", "design", "surfaces"}
+    assert {f"nacre.{name}" for name in later} & set(imported()) == set()
+
+
+def test_printing_a_solution_needs_nothing_else() -> None:
+    script = SCRIPT.replace(".pressure", "._repr_html_()")
+    assert {name.partition(".")[0] for name in imported(script)} & {"matplotlib", "xarray"} == set()
 
 
 def test_the_version_is_that_of_the_package() -> None:

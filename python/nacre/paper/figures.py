@@ -28,30 +28,7 @@ from nacre.paper.cases import (
     of_series,
 )
 from nacre.paper.evaluation import references, sphere_profile, thickness_note
-
-WIDTH = 18 / 2.54
-"""Width of a page between its margins [inch]."""
-
-STYLE: dict[Any, Any] = {
-    "font.size": 9,
-    "axes.titlesize": 9,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.linewidth": 0.6,
-    "axes.xmargin": 0.02,
-    "grid.color": "0.92",
-    "grid.linewidth": 0.6,
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-    "legend.handlelength": 2.6,
-    "lines.linewidth": 1.3,
-    "xtick.labelsize": 8,
-    "xtick.major.width": 0.6,
-    "ytick.labelsize": 8,
-    "ytick.major.width": 0.6,
-}
+from nacre.plot.style import STYLE, WIDTH
 
 # Of Okabe and Ito's palette: soft coatings cold, stiff ones warm.
 COLOURS = ("#0072B2", "#56B4E9", "#000000", "#E69F00", "#D55E00")

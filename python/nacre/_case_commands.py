@@ -1,0 +1,139 @@
+"""``nacre solve`` and ``nacre sweep``: contacts and studies in case files."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+import nacre
+from nacre._commands import app
+from nacre.case import Case, CaseError
+from nacre.files import FIGURES
+
+CaseFile = Annotated[
+    Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, in SI units.")]
+ROWS = 30
+"""Cases of a study that are printed."""
+
+
+@app.command()
+def solve(
+    case: CaseFile,
+    save: Annotated[
+        list[Path] | None,
+        typer.Option(help="File to write: .nc, .vtr, .csv, or a picture. May be repeated."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Solve the contact that a case file describes."""
+    arguments = Case.read(case).arguments()
+    for path in save or []:
+        _check_ending(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # they are printed with the solution
+        try:
+            solution = nacre.solve(**arguments)
+        except ValueError as error:
+            raise CaseError(f"{case}: solve: {error}") from error
+    for path in save or []:
+        _save(solution, path)
+    print(json.dumps(_figures(solution), indent=2) if as_json else solution)
+
+
+@app.command()
+def sweep(
+    case: CaseFile,
+    store: Annotated[
+        Path | None, typer.Option(help="NetCDF file, in place of the one in the case.")
+    ] = None,
+    retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Solve the study that a case file describes, or what is left of it after a kill."""
+    described = Case.read(case)
+    study = described.study()
+    if store is not None:
+        study["store"] = store
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # failures are printed below
+        try:
+            dataset = nacre.sweep(described, retry=retry, **study)
+        except (TypeError, ValueError) as error:
+            raise CaseError(f"{case}: sweep: {error}") from error
+    failed = int((dataset.error != "").sum())
+    if as_json:
+        print(json.dumps(_plain(dataset.to_dict()), indent=2))
+    else:
+        _print_study(dataset)
+        where = f"; all in {study['store']}" if "store" in study else ""
+        print(f"{dataset.error.size} cases, {failed} failed{where}")
+    if failed:
+        raise typer.Exit(1)
+
+
+def _figures(solution: nacre.Solution) -> dict[str, Any]:
+    """Return the key figures and how the iteration ended."""
+    report = solution.report
+    return {
+        **{name: getattr(solution, name) for name in FIGURES},
+        "termination": report.termination,
+        "iterations": report.iterations,
+        "residual": report.residual,
+        "overlap": report.overlap,
+        "warnings": report.warnings,
+        "nacre": nacre.__version__,
+    }
+
+
+def _plain(data: Any) -> Any:
+    """Return data as JSON knows it: without NaN."""
+    if isinstance(data, dict):
+        return {str(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value) for value in data]
+    if isinstance(data, float) and not np.isfinite(data):
+        return None
+    return data
+
+
+def _check_ending(path: Path) -> None:
+    endings = {".nc", ".vtr", ".csv", ".png", ".pdf", ".svg"}
+    if path.suffix not in endings:
+        message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
+        raise typer.BadParameter(message, param_hint="'--save'")
+
+
+def _save(solution: nacre.Solution, path: Path) -> None:
+    if path.suffix in (".nc", ".vtr", ".csv"):
+        solution.save(path)
+        return
+    from nacre.files import replacing
+
+    figure: Any = next(iter(solution.plot().values())).figure
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=300)
+
+
+def _print_study(dataset: Any) -> None:
+    """Print parameters and the outputs that are numbers, for the first cases; and what failed."""
+    frame = dataset[[*(n for n in dataset.data_vars if dataset[n].dims == dataset.error.dims)]]
+    rows = frame.to_dataframe().reset_index()
+    names = [name for name in rows.columns if name not in ("error", "warnings")]
+    lines = [[str(name) for name in names]]
+    for _, row in rows.head(ROWS).iterrows():
+        values = (row[name] for name in names)
+        lines.append([f"{v:.5g}" if isinstance(v, float | int) else str(v) for v in values])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        print("  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)))
+    if len(rows) > ROWS:
+        print(f"and {len(rows) - ROWS} more cases")
+    for _, row in rows[rows["error"] != ""].iterrows():
+        print(f"failed at {', '.join(f'{n} = {row[n]}' for n in frame.coords)}: {row['error']}")

@@ -1,0 +1,192 @@
+"""What a solution prints: a short table; in a notebook with a small map of the pressure."""
+
+from __future__ import annotations
+
+import base64
+import html
+import struct
+import zlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._core import Elastic, HalfSpace, Rigid, Solution
+from nacre.units import written
+
+WIDEST = 240
+"""Pixels along the longer side of the small map."""
+NOISE = 1e-9
+MOST_LAYERS = 4
+"""Layers that get a row each."""
+
+# Matplotlib's viridis at nine places.
+VIRIDIS = (
+    (68, 1, 84),
+    (71, 44, 122),
+    (59, 81, 139),
+    (44, 113, 142),
+    (33, 144, 141),
+    (39, 173, 129),
+    (92, 200, 99),
+    (170, 220, 50),
+    (253, 231, 37),
+)
+
+
+def figures(solution: Solution) -> list[tuple[str, str]]:
+    """Return names and values of the key figures, with units."""
+    line = solution.report.grid.is_line
+    force, moment = ("N/m", "N") if line else ("N", "N m")
+    extent, report = solution.contact_extent, solution.report
+    # Rounding leaves moments of 1e-16 of what there could be: they are 0 to a reader.
+    arms = [NOISE * side for side in report.grid.size]
+    sides = [written(high - low, "m") for low, high in extent]
+    touching = solution.contact_area > 0
+    nx, ny = report.grid.shape
+    rows = [
+        ("load", written(solution.load, force)),
+        ("acts at", _pair(solution.eccentricity, "m", arms) if touching else "nothing touches"),
+        ("moment", _pair(solution.moment, moment, [solution.load * arm for arm in arms])),
+        ("approach", _estimated(solution, "approach", "m")),
+        ("tilt", f"({solution.tilt[0]:.4g}, {solution.tilt[1]:.4g})"),
+        ("freedoms", freedoms(report.motion)),
+        ("peak pressure", _estimated(solution, "peak_pressure", "Pa")),
+        ("at", _pair(solution.peak_position, "m", arms)),
+        ("contact", sides[1] if line else f"{sides[0]} × {sides[1]}"),
+        ("area", written(solution.contact_area, "m" if line else "m²")),
+        *_body("body", report.body),
+        *_body("counterbody", report.counterbody),
+        *_moduli(report.body, report.counterbody),
+        ("grid", f"{nx} × {ny} cells"),
+        ("ended", f"{report.termination}, residual {report.residual:.0e}"),
+    ]
+    return rows if touching else [row for row in rows if row[0] not in ("at", "contact", "area")]
+
+
+def freedoms(motion: Mapping[str, Any]) -> str:
+    """Say which of the three freedoms are loaded, which given and which locked."""
+    said = []
+    for axis, name in enumerate("xy"):
+        asked = [
+            key
+            for key in ("eccentricity", "moment", "tilt")
+            if motion.get(key, (None,) * 2)[axis] is not None
+        ]
+        kind = {"eccentricity": "free", "moment": "free", "tilt": "given"}
+        said.append(f"{name} {kind[asked[0]] if asked else 'locked'}")
+    control = "load" if "load" in motion else "approach"
+    return f"{control}; tilt {', '.join(said)}"
+
+
+def text(solution: Solution) -> str:
+    """Return the table that ``print(solution)`` shows."""
+    rows = figures(solution)
+    width = max(len(name) for name, _ in rows)
+    lines = [f"{name:{width}}  {value}" for name, value in rows]
+    lines += [f"warning: {warning}" for warning in solution.report.warnings]
+    return "\n".join(lines)
+
+
+def markup(solution: Solution) -> str:
+    """Return the table and the small map, for a notebook."""
+    cell = "style='text-align:left; padding:1px 12px 1px 0'"
+    rows = "".join(
+        f"<tr><td {cell}>{html.escape(name)}</td><td {cell}>{html.escape(value)}</td></tr>"
+        for name, value in figures(solution)
+    )
+    notes = "".join(f"<p>warning: {html.escape(text)}</p>" for text in solution.report.warnings)
+    picture = base64.b64encode(thumbnail(solution.pressure)).decode()
+    image = (
+        f"<img alt='pressure, x to the right' style='border:1px solid #bbb; max-width:{WIDEST}px' "
+        f"src='data:image/png;base64,{picture}'>"
+    )
+    return (
+        f"<div style='display:flex; gap:16px; align-items:flex-start'><table>{rows}</table>"
+        f"{image}</div>{notes}"
+    )
+
+
+def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes:
+    """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches."""
+    parts = []
+    for axis, cells in enumerate(pressure.shape):
+        loaded = np.flatnonzero(pressure.any(axis=1 - axis))
+        low, high = (loaded[0], loaded[-1]) if loaded.size else (0, cells - 1)
+        margin = 1 + (high - low) // 10
+        parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
+    spans = [high - low + 1 for low, high in parts]
+    # Whatever its shape, it stays legible: at least a quarter as high as wide.
+    size = [max(WIDEST // 4, WIDEST * span // max(spans)) for span in spans]
+    rows, columns = (
+        np.linspace(low, high, count).round().astype(int)
+        for (low, high), count in zip(parts[::-1], size[::-1], strict=True)
+    )
+    field = pressure[np.ix_(columns, rows[::-1])].T
+    level = field / (pressure.max() or 1.0) * (len(VIRIDIS) - 1)
+    channels = [np.interp(level, range(len(VIRIDIS)), anchor) for anchor in zip(*VIRIDIS)]  # noqa: B905
+    pixels = np.where(field[..., np.newaxis] > 0, np.stack(channels, axis=-1), 255)
+    return _png(pixels.round().astype(np.uint8))
+
+
+def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
+    """Return (height, width, 3) pixels as a PNG file."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        check = zlib.crc32(kind + data)
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
+
+    height, width, _ = pixels.shape
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    lines = b"".join(b"\0" + line.tobytes() for line in pixels)
+    parts = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(lines, 9)), chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+
+
+def _estimated(solution: Solution, name: str, unit: str) -> str:
+    """Return a figure with the error that the size of the cells leaves, where it is estimated."""
+    value = getattr(solution, name)
+    error = (solution.report.discretisation or {}).get(name, 0.0)
+    return written(value, unit) + (
+        f" ± {100 * abs(error / value):.1g} %" if error and value else ""
+    )
+
+
+def _pair(values: tuple[float, float], unit: str, noise: Sequence[float]) -> str:
+    kept = (0.0 if abs(v) < limit else v for v, limit in zip(values, noise, strict=True))
+    return f"({', '.join(written(value, unit) for value in kept)})"
+
+
+def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
+    """Describe a body: its substrate, and a row for each layer or one for many."""
+    if body is None:
+        return [(name, "rigid")]
+    layers = [
+        (f"  layer {number}", f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}")
+        for number, layer in enumerate(body.layers, start=1)
+    ]
+    if len(layers) > MOST_LAYERS:
+        depth = written(body.interfaces[-1], "m", 3)
+        layers = [("  layers", f"{len(layers)}, together {depth}")]
+    return [(name, _material(body.substrate)), *layers]
+
+
+def _moduli(body: HalfSpace, counterbody: HalfSpace | None) -> list[tuple[str, str]]:
+    """Return the contact modulus of the substrates; with coatings also of the surfaces."""
+    bodies = [body] if counterbody is None else [body, counterbody]
+    bases = [one.substrate for one in bodies]
+    tops = [one.layers[0].material if one.layers else one.substrate for one in bodies]
+    rows = [("E* (substrates)" if tops != bases else "E*", _modulus(bases))]
+    return rows + ([("E* (surfaces)", _modulus(tops))] if tops != bases else [])
+
+
+def _modulus(materials: Sequence[Elastic | Rigid]) -> str:
+    compliance = sum(1 / m.plane_strain_modulus for m in materials if isinstance(m, Elastic))
+    return written(1 / compliance, "Pa") if compliance else "rigid"
+
+
+def _material(material: Elastic | Rigid) -> str:
+    if isinstance(material, Rigid):
+        return "a rigid base"
+    return f"E {written(material.young, 'Pa', 3)}, ν {material.poisson:g}"

@@ -1,0 +1,299 @@
+"""The schema of case files: one class for each table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveInt, model_validator
+
+import nacre
+
+Pair = Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
+
+
+class Table(BaseModel):
+    """A table that holds the keys named, and no others."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class Material(Table):
+    """Constants of an elastic material."""
+
+    young: FiniteFloat
+    poisson: FiniteFloat
+
+
+class Layer(Table):
+    """A layer and the interface below it."""
+
+    material: str | Material
+    thickness: FiniteFloat
+    interface: Literal["bonded", "frictionless"] = "bonded"
+
+
+class Body(Table):
+    """A half-space: its substrate, by name or "rigid", and layers from the surface down."""
+
+    substrate: str | Material
+    layers: list[Layer] = []
+
+
+class Grid(Table):
+    """Cells; or the strips of a line contact."""
+
+    shape: Annotated[list[PositiveInt], Field(min_length=2, max_length=2)] | None = None
+    size: Pair | None = None
+    center: Pair | FiniteFloat | None = None
+    cells: PositiveInt | None = None
+    width: FiniteFloat | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Grid:
+        area, line = (self.shape, self.size), (self.cells, self.width)
+        if (None in area or line != (None, None)) and (None in line or area != (None, None)):
+            raise ValueError("either shape and size or, for a line contact, cells and width")
+        return self
+
+    def make(self) -> nacre.Grid:
+        """Return the grid."""
+        center: dict[str, Any] = {} if self.center is None else {"center": self.center}
+        if self.cells is not None:
+            return nacre.Grid.line(self.cells, self.width or 0.0, **center)
+        return nacre.Grid(self.shape, self.size, **center)  # type: ignore[arg-type]
+
+
+class Profile(Table):
+    """An axial profile of a roller, by the name of its maker, with that one's arguments."""
+
+    kind: Literal["logarithmic", "lundberg", "johns_gohar", "iso16281", "sampled"]
+    amplitude: FiniteFloat | None = None
+    length: FiniteFloat | None = None
+    flat_length: FiniteFloat | None = None
+    end_factor: FiniteFloat | None = None
+    load: FiniteFloat | None = None
+    contact_modulus: FiniteFloat | None = None
+    radius: FiniteFloat | None = None
+    diameter: FiniteFloat | None = None
+    x: list[FiniteFloat] | None = None
+    drop: list[FiniteFloat] | None = None
+
+    def make(self) -> nacre.LogarithmicProfile | nacre.SampledProfile:
+        """Return the profile."""
+        given = self.model_dump(exclude={"kind"}, exclude_none=True)
+        makers: dict[str, Any] = {
+            "logarithmic": nacre.LogarithmicProfile,
+            "sampled": nacre.SampledProfile,
+        }
+        maker = makers.get(self.kind) or getattr(nacre.LogarithmicProfile, self.kind)
+        return _made(maker, given)  # type: ignore[no-any-return]
+
+
+class Shape(Table):
+    """What every shape may have: a shift."""
+
+    shift: Pair | None = None
+
+    def make(self, folder: Path) -> nacre.Shape:
+        """Return the shape."""
+        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
+        shape = self.unmoved(given, folder)
+        return shape if self.shift is None else shape.shifted(*self.shift)
+
+    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
+        """Return the shape in its own place."""
+        names = {"flat_punch": "FlatPunch"}
+        kind: str = self.kind  # type: ignore[attr-defined]
+        return _made(getattr(nacre, names.get(kind, kind.title())), given)  # type: ignore[no-any-return]
+
+
+class Round(Shape):
+    """A shape with one radius."""
+
+    kind: Literal["sphere", "cylinder", "flat_punch"]
+    radius: FiniteFloat
+
+
+class Paraboloid(Shape):
+    """An elliptic paraboloid."""
+
+    kind: Literal["paraboloid"]
+    radius_x: FiniteFloat
+    radius_y: FiniteFloat
+
+
+class Roller(Shape):
+    """A roller, crowned or of another profile."""
+
+    kind: Literal["roller"]
+    radius: FiniteFloat
+    flat_length: FiniteFloat | None = None
+    crown_radius: FiniteFloat | None = None
+    length: FiniteFloat | None = None
+    profile: Profile | None = None
+
+    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
+        """Return the shape in its own place."""
+        profile = {} if self.profile is None else {"profile": self.profile.make()}
+        return nacre.Roller(**(given | profile))
+
+
+class HeightMap(Shape):
+    """A measured surface in a file, as `HeightMap.read` takes it."""
+
+    kind: Literal["height_map"]
+    path: str
+    spacing: FiniteFloat | Pair | None = None
+    unit: str | None = None
+    detrend: Literal["none", "mean", "plane", "quadratic"] = "plane"
+
+    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
+        """Return the shape in its own place."""
+        return nacre.HeightMap.read(folder / given.pop("path"), **given)
+
+
+class Sum(Shape):
+    """A sum of shapes."""
+
+    kind: Literal["sum"]
+    parts: Annotated[list[AnyShape], Field(min_length=1)]
+
+    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
+        """Return the shape in its own place."""
+        first, *others = (part.make(folder) for part in self.parts)
+        for other in others:
+            first = first + other
+        return first
+
+
+KINDS = "'sphere', 'cylinder', 'flat_punch', 'paraboloid', 'roller', 'height_map', 'sum'"
+
+AnyShape = Annotated[Round | Paraboloid | Roller | HeightMap | Sum, Field(discriminator="kind")]
+
+
+class Freedoms(Table):
+    """A value along x, along y, or both."""
+
+    x: FiniteFloat | None = None
+    y: FiniteFloat | None = None
+
+
+class Solve(Table):
+    """What is asked, and how it is found: keywords of `nacre.solve`."""
+
+    load: FiniteFloat | None = None
+    approach: FiniteFloat | None = None
+    eccentricity: Freedoms | Pair | None = None
+    moment: Freedoms | Pair | None = None
+    tilt: Freedoms | Pair | None = None
+    method: Literal["exact", "plain", "difference", "image"] | None = None
+    refinement: PositiveInt | None = None
+    threads: PositiveInt | None = None
+    tolerance: FiniteFloat | None = None
+    max_iterations: PositiveInt | None = None
+    algorithm: Literal["cascade", "polonsky-keer"] | None = None
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keywords that were given."""
+        found = {name: value for name, value in self if value is not None}
+        for name in ("eccentricity", "moment", "tilt"):
+            value = found.get(name)
+            if isinstance(value, Freedoms):
+                found[name] = (value.x, value.y)
+            elif value is not None:
+                found[name] = tuple(value)
+        return found
+
+
+class Range(Table):
+    """Evenly spaced values, ends included."""
+
+    first: FiniteFloat
+    last: FiniteFloat
+    count: PositiveInt
+    scale: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _logarithms_exist(self) -> Range:
+        if self.scale == "log" and min(self.first, self.last) <= 0:
+            raise ValueError("first and last must be above 0 on a logarithmic scale")
+        return self
+
+    def numbers(self) -> list[float]:
+        """Return the values."""
+        make = np.geomspace if self.scale == "log" else np.linspace
+        return [float(value) for value in make(self.first, self.last, self.count)]
+
+
+class Sweep(Table):
+    """A study: values by dotted key of the case, what is kept and where."""
+
+    parameters: dict[str, Range | Annotated[list[Any], Field(min_length=1)]]
+    outputs: list[str] | None = None
+    store: str | None = None
+
+
+class CaseTable(Table):
+    """A whole case file."""
+
+    materials: dict[str, Material] = {}
+    shape: AnyShape
+    body: Body
+    counterbody: Body | None = None
+    grid: Grid | None = None
+    solve: Solve
+    sweep: Sweep | None = None
+
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
+        with _at("shape"):
+            found: dict[str, Any] = {"shape": self.shape.make(folder)}
+        for name, body in (("body", self.body), ("counterbody", self.counterbody)):
+            if body is not None:
+                found[name] = self._body(name, body)
+        if self.grid is not None:
+            with _at("grid"):
+                found["grid"] = self.grid.make()
+        return found | self.solve.keywords()
+
+    def _body(self, name: str, body: Body) -> nacre.HalfSpace:
+        with _at(f"{name}.substrate"):
+            rigid = body.substrate == "rigid" and "rigid" not in self.materials
+            substrate = nacre.RIGID if rigid else self._material(body.substrate)
+        layers = []
+        for number, layer in enumerate(body.layers):
+            with _at(f"{name}.layers.{number}"):
+                material = self._material(layer.material)
+                layers.append(nacre.Layer(material, layer.thickness, layer.interface))
+        with _at(name):
+            return nacre.HalfSpace(substrate, layers)
+
+    def _material(self, named: str | Material) -> nacre.Elastic:
+        if isinstance(named, str):
+            if named not in self.materials:
+                known = ", ".join(self.materials) or "none"
+                raise ValueError(f"must be one of the materials ({known}), got {named!r}")
+            with _at(f"materials.{named}"):
+                return nacre.Elastic(**dict(self.materials[named]))
+        return nacre.Elastic(**dict(named))
+
+
+def _made(maker: Any, given: dict[str, Any]) -> Any:
+    """Call `maker`, or say which of its arguments are not right."""
+    try:
+        return maker(**given)
+    except TypeError as error:
+        raise ValueError(str(error)) from error
+
+
+@contextmanager
+def _at(key: str) -> Iterator[None]:
+    """Put a key before the message of a `ValueError`."""
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        raise ValueError(f"{key}: {error}") from error

@@ -1,0 +1,180 @@
+"""Studies that a designer of coatings and bearings asks for, on top of `nacre.sweep`.
+
+Each returns an `xarray.Dataset`, which `nacre.plot` draws. What a solve takes besides what is
+varied, and `store`, `executor` and `progress` of `nacre.sweep`, are passed on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import nacre._core as core
+from nacre.studies import ARGUMENTS, Output, sweep
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["coating_chart", "load_curve", "tilt_curve"]
+
+
+def coating_chart(
+    shape: core.Shape,
+    substrate: core.Elastic | core.Rigid,
+    *,
+    thickness: Sequence[float],
+    young: Sequence[float],
+    poisson: float = 0.3,
+    **options: Any,
+) -> xarray.Dataset:
+    """Peak pressure and contact area over the thickness and the modulus of a single coating.
+
+    Parameters
+    ----------
+    shape
+        What is pressed in.
+    substrate
+        What is coated.
+    thickness, young
+        Thicknesses [m] and Young's moduli [Pa] of the coating: every pair is solved.
+    poisson
+        Poisson's ratio of the coating.
+    options
+        Arguments of `nacre.solve`, as `load` and `counterbody`, and of `nacre.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``peak_pressure``, ``contact_area`` and ``approach`` over ``thickness`` and ``young``.
+
+    Examples
+    --------
+    >>> from nacre import design
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> chart = design.coating_chart(
+    ...     nacre.Sphere(5e-3), steel, thickness=[2e-6, 20e-6], young=[105e9, 420e9], load=10.0
+    ... )
+    >>> (chart.peak_pressure / 1e9).round(2).values
+    array([[1.57, 1.62],
+           [1.36, 1.82]])
+    """
+    asked, study = _parted(options)
+
+    def case(thickness: float, young: float) -> dict[str, Any]:
+        coating = core.Layer(core.Elastic(young, poisson), thickness)
+        return {"shape": shape, "body": core.HalfSpace(substrate, [coating]), **asked}
+
+    outputs = ("peak_pressure", "contact_area", "approach")
+    dataset = sweep(case, {"thickness": thickness, "young": young}, outputs=outputs, **study)
+    dataset["thickness"].attrs["units"] = "m"
+    dataset["young"].attrs = {"units": "Pa", "long_name": "Young's modulus of the coating"}
+    return dataset
+
+
+def load_curve(
+    shape: core.Shape, body: core.HalfSpace | core.Elastic, load: Sequence[float], **options: Any
+) -> xarray.Dataset:
+    """Approach, normal stiffness dW/dδ, area and peak pressure over the load.
+
+    The stiffness is that of the approach alone, with the tilts held: the first element of
+    `Solution.stiffness`.
+
+    Parameters
+    ----------
+    shape, body
+        What is pressed into what.
+    load
+        Forces [N].
+    options
+        Arguments of `nacre.solve` and of `nacre.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``approach``, ``stiffness``, ``contact_area`` and ``peak_pressure`` over ``load``.
+
+    Examples
+    --------
+    Of a sphere, where W is as δ to the 3/2, the stiffness is 3/2 W/δ:
+
+    >>> from nacre import design
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> curve = design.load_curve(nacre.Sphere(5e-3), steel, load=[1.0, 10.0])
+    >>> (curve.stiffness * curve.approach / curve["load"]).round(2).values
+    array([1.5, 1.5])
+    """
+    asked, study = _parted(options)
+    outputs: dict[str, Output] = {
+        "approach": "approach",
+        "stiffness": normal_stiffness,
+        "contact_area": "contact_area",
+        "peak_pressure": "peak_pressure",
+    }
+    case = {"shape": shape, "body": body, **asked}
+    dataset = sweep(case, {"load": load}, outputs=outputs, **study)
+    dataset["load"].attrs["units"] = "N"
+    dataset["stiffness"].attrs["units"] = "N/m"
+    return dataset
+
+
+def tilt_curve(
+    shape: core.Shape,
+    body: core.HalfSpace | core.Elastic,
+    tilt: Sequence[float],
+    *,
+    load: float,
+    **options: Any,
+) -> xarray.Dataset:
+    """Moment, where the load acts and peak pressure over the tilt along x, under one load.
+
+    Parameters
+    ----------
+    shape, body
+        What is pressed into what.
+    tilt
+        Slopes along x.
+    load
+        Force [N].
+    options
+        Arguments of `nacre.solve` and of `nacre.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``moment`` and ``eccentricity``, over ``axis`` too, ``approach`` and ``peak_pressure`` over
+        ``tilt``.
+
+    Examples
+    --------
+    >>> from nacre import design
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+    >>> curve = design.tilt_curve(roller, steel, [0.0, 3e-5], load=1e3, tolerance=1e-4)
+    >>> round(1e3 * curve.eccentricity.sel(axis="x", tilt=3e-5).item(), 1)
+    2.5
+    """
+    asked, study = _parted(options)
+
+    def case(tilt: float) -> dict[str, Any]:
+        return {"shape": shape, "body": body, "load": load, "tilt": (tilt, None), **asked}
+
+    outputs = ("moment", "eccentricity", "approach", "peak_pressure")
+    return sweep(case, {"tilt": tilt}, outputs=outputs, **study)
+
+
+def normal_stiffness(solution: core.Solution) -> float:
+    """Return dW/dδ with the tilts held [N/m]."""
+    return float(np.asarray(solution.stiffness())[0, 0])
+
+
+def _parted(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the options of `nacre.solve`, and those of `nacre.sweep`."""
+    bar = options.get("progress")
+    study = {name: options[name] for name in ("store", "executor", "retry") if name in options}
+    asked = {name: value for name, value in options.items() if name not in (*study, "progress")}
+    unknown = set(asked) - ARGUMENTS
+    if unknown:
+        raise TypeError(f"{', '.join(sorted(unknown))}: no argument of nacre.solve or nacre.sweep")
+    return asked, study | {"progress": bar}

@@ -1,0 +1,225 @@
+"""Solutions in files: NetCDF to come back to, VTK for ParaView, CSV for spreadsheets."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+import nacre._core as core
+from nacre._extras import extra
+from nacre.units import UNITS
+from nacre.values import decode, encode, reduced
+
+if TYPE_CHECKING:
+    import xarray
+
+AnyPath = str | os.PathLike[str]
+
+FIGURES = (
+    "load",
+    "approach",
+    "tilt",
+    "eccentricity",
+    "moment",
+    "peak_pressure",
+    "peak_position",
+    "central_pressure",
+    "contact_area",
+    "contact_extent",
+)
+"""Key figures that files carry as attributes, in SI units."""
+
+NAMES = {
+    "pressure": "pressure",
+    "gap": "gap; infinite where the shape cannot touch",
+    "displacement": "normal displacement of both bodies together",
+    "line_load": "force per length along x",
+}
+STATE = "nacre_solution"
+
+
+def to_xarray(solution: core.Solution) -> xarray.Dataset:
+    """Return the fields with coordinates, units and everything that was asked.
+
+    Attributes hold the key figures, and bodies, motion and options as JSON: what a repetition needs
+    besides the shape, whose gap is `gap - displacement + approach + tilt_x x + tilt_y y`.
+    """
+    with extra("files"):
+        import xarray
+
+    report = solution.report
+    fields = {name: (("x", "y"), getattr(solution, name)) for name in list(NAMES)[:3]}
+    dataset = xarray.Dataset(
+        {**fields, "line_load": (("x",), solution.line_load)},
+        coords={"x": solution.x, "y": solution.y},
+    )
+    for name, words in NAMES.items():
+        dataset[name].attrs = {"units": UNITS[name], "long_name": words}
+    for name in ("x", "y"):
+        dataset[name].attrs = {"units": "m", "long_name": f"{name} of the cell centre"}
+    dataset.attrs = {
+        "title": "contact of coated bodies",
+        "source": f"nacre {core.__version__}",
+        **{name: np.ravel(getattr(solution, name)) for name in FIGURES},
+        **{
+            name: json.dumps(encode(getattr(report, name)))
+            for name in ("body", "counterbody", "grid", "motion", "discretisation")
+        },
+        "method": report.method,
+        "refinement": report.refinement,
+        "tolerance": report.tolerance,
+        "termination": report.termination,
+        "residual": report.residual,
+        "overlap": report.overlap,
+        "balance": np.array(report.balance),
+        "iterations": report.iterations,
+        "warnings": "\n".join(report.warnings),
+        STATE: json.dumps(_state(solution)),
+    }
+    for name in FIGURES:
+        if dataset.attrs[name].size == 1:
+            dataset.attrs[name] = float(dataset.attrs[name][0])
+    return dataset
+
+
+def save(solution: core.Solution, path: AnyPath) -> Path:
+    """Write a file of the kind that its ending says, whole or not at all."""
+    path = Path(path)
+    writers: dict[str, Callable[[core.Solution, Path], None]] = {
+        ".nc": _write_netcdf,
+        ".vtr": _write_vtk,
+        ".csv": _write_csv,
+    }
+    if path.suffix not in writers:
+        raise ValueError(f"path must end in {', '.join(writers)}, got {str(path)!r}")
+    with replacing(path) as temporary:
+        writers[path.suffix](solution, temporary)
+    return path
+
+
+def load(path: AnyPath) -> core.Solution:
+    """Solution of a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre[files]``.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        The file.
+
+    Returns
+    -------
+    Solution
+        What was saved.
+
+    Raises
+    ------
+    ValueError
+        If the file holds no solution of nacre's.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     nacre.load(solution.save(f"{folder}/ball.nc")) == solution
+    True
+    """
+    with extra("files"):
+        import h5netcdf  # noqa: F401
+        import xarray
+
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"{str(path)!r} is not a file")
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf") as dataset:
+            state = decode(json.loads(dataset.attrs[STATE]))
+            fields = tuple(dataset[name].to_numpy() for name in list(NAMES)[:3])
+    except (KeyError, OSError, ValueError) as error:
+        raise ValueError(f"{str(path)!r} must be a solution that nacre saved") from error
+    report = core._restore_report(state["report"])
+    return core._restore_solution(cast("Any", fields), (state["approach"], state["tilt"]), report)
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a file to write, which then takes the place of `path` at once; nothing on an error."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
+        temporary = Path(folder) / path.name
+        yield temporary
+        with temporary.open("rb+") as file:
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+
+
+def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
+    """Write any dataset as NetCDF, without changing a bit of it."""
+    with extra("files"):
+        import h5netcdf  # noqa: F401
+
+    encoding = {
+        name: {"_FillValue": None, "zlib": True, "complevel": 4, "shuffle": True}
+        for name, variable in dataset.variables.items()
+        if variable.dtype.kind == "f" and variable.ndim > 0
+    }
+    dataset.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+
+
+def _state(solution: core.Solution) -> dict[str, Any]:
+    """Return what a solution is besides its fields."""
+    _, (report,) = reduced(solution.report)
+    return {
+        "approach": solution.approach,
+        "tilt": encode(solution.tilt),
+        "report": encode(report),
+    }
+
+
+def _write_netcdf(solution: core.Solution, path: Path) -> None:
+    write_dataset(to_xarray(solution), path)
+
+
+def _write_vtk(solution: core.Solution, path: Path) -> None:
+    """Write the fields as the cells of a rectilinear grid."""
+    with extra("files"):
+        from pyevtk.hl import gridToVTK
+
+    grid = solution.report.grid
+    edges = [
+        c + side * (np.arange(cells + 1) / cells - 0.5)
+        for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
+    ]
+    fields = {name: getattr(solution, name)[..., np.newaxis] for name in list(NAMES)[:3]}
+    cells = {name: np.asfortranarray(field) for name, field in fields.items()}
+    gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
+
+
+def _write_csv(solution: core.Solution, path: Path) -> None:
+    """Write the sections along x and along y through the largest pressure."""
+    i, j = (
+        int(np.argmin(np.abs(side - place)))
+        for side, place in zip((solution.x, solution.y), solution.peak_position, strict=True)
+    )
+    names = list(NAMES)[:3]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["along", "x [m]", "y [m]", *(f"{n} [{UNITS[n]}]" for n in names)])
+        for along, rows in (
+            ("x", [(k, j) for k in range(solution.x.size)]),
+            ("y", [(i, k) for k in range(solution.y.size)]),
+        ):
+            for k, m in rows:
+                values = (getattr(solution, name)[k, m].item() for name in names)
+                writer.writerow([along, solution.x[k].item(), solution.y[m].item(), *values])

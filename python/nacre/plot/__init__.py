@@ -1,0 +1,23 @@
+"""Pictures of solutions and studies, with Matplotlib, and an interactive view with PyVista.
+
+Every function draws into axes that are passed in, or into a new figure, and returns the axes. Axes
+carry SI units with a prefix. `nacre.Solution` has most of them as methods.
+"""
+
+from nacre.plot.maps import overview, pressure_map
+from nacre.plot.relief import relief, view
+from nacre.plot.sections import compare, section
+from nacre.plot.studies import chart, curve
+from nacre.plot.style import STYLE
+
+__all__ = [
+    "STYLE",
+    "chart",
+    "compare",
+    "curve",
+    "overview",
+    "pressure_map",
+    "relief",
+    "section",
+    "view",
+]

@@ -1,0 +1,168 @@
+"""The pressure from above, and the overview of a solution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from nacre._core import Solution
+from nacre._display import figures
+from nacre._extras import extra
+from nacre.plot.sections import section
+from nacre.plot.style import COLOURMAP, STYLE, WIDTH
+from nacre.units import Scale
+
+with extra("plot"):
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
+
+LONGEST = 6.0
+"""Side ratio of a contact up to which a map is true to scale."""
+
+
+def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+    """Draw map, sections and key figures.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    axes
+        Where to draw: axes by any of the names "map", "x", "y" and "figures", as
+        ``subplot_mosaic`` makes them, or one for the map; a new figure by default.
+
+    Returns
+    -------
+    dict of matplotlib.axes.Axes
+        The axes, by name.
+
+    Raises
+    ------
+    ValueError
+        If there is no part of that name.
+    """
+    line = solution.report.grid.is_line
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            layout: list[Any] = [["y", "figures"]] if line else [["map", "figures"], ["x", "y"]]
+            size = (WIDTH, (0.42 if line else 0.78) * WIDTH)
+            figure = plt.figure(figsize=size, layout="constrained")
+            axes = figure.subplot_mosaic(layout, width_ratios=(1.25, 1))
+        elif isinstance(axes, Axes):
+            axes = {"map": axes}
+        parts = dict(axes)
+        for name, part in parts.items():
+            if name == "map":
+                pressure_map(solution, part)
+            elif name == "x":
+                section(solution, "x", axes=part)
+            elif name == "y":
+                section(solution, "y", axes=part)
+            elif name == "figures":
+                _key_figures(solution, part)
+            else:
+                raise ValueError(f"axes must be named map, x, y or figures, got {name!r}")
+    return parts
+
+
+def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
+    """Draw the pressure from above, with the outline of the contact.
+
+    A contact much longer than wide is drawn out of scale, and the picture says so. The cross marks
+    where the resultant force acts.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    axes
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If the grid is one of strips, `Grid.line`, which has no map.
+    """
+    grid = solution.report.grid
+    if grid.is_line:
+        raise ValueError("the grid of a solution must have cells along x for a map, got a line")
+    ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
+    window = np.array(ends)
+    if solution.contact_area > 0:
+        contact = np.array(solution.contact_extent)
+        margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
+        window = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
+    lengths = [Scale.of(np.abs(side).max(), "m") for side in window]
+    widths = np.diff(window).ravel()
+    if widths.max() <= LONGEST * widths.min():
+        lengths = [max(lengths, key=lambda scale: -scale.factor)] * 2
+    scale = Scale.of(solution.peak_pressure, "Pa")
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            size = (0.7 * WIDTH, 0.5 * WIDTH)
+            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        corners = [
+            factor * np.linspace(low, high, cells + 1)
+            for factor, (low, high), cells in zip(
+                [length.factor for length in lengths], ends, grid.shape, strict=True
+            )
+        ]
+        highest = scale.factor * solution.peak_pressure or 1.0
+        loaded = np.where(solution.in_contact, scale.factor * solution.pressure, np.nan)
+        mesh = axes.pcolormesh(
+            *corners, loaded.T, cmap=COLOURMAP, vmin=0, vmax=highest, rasterized=True
+        )
+        axes.grid(visible=False)
+        colourbar: Any = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
+        colourbar.outline.set_linewidth(0.6)
+        x, y = lengths[0].factor * solution.x, lengths[1].factor * solution.y
+        if 0 < solution.contact_area:
+            inside = solution.in_contact.astype(float)
+            axes.contour(x, y, inside.T, levels=[0.5], colors="black", linewidths=0.7)
+            at = [
+                length.factor * e for length, e in zip(lengths, solution.eccentricity, strict=True)
+            ]
+            for colour, width in (("black", 2.6), ("white", 1.2)):
+                style: dict[str, Any] = {"marker": "+", "markersize": 8, "markeredgewidth": width}
+                axes.plot(*at, color=colour, linestyle="none", **style)
+        axes.set(
+            xlabel=f"x [{lengths[0].unit}]",
+            ylabel=f"y [{lengths[1].unit}]",
+            xlim=lengths[0].factor * window[0],
+            ylim=lengths[1].factor * window[1],
+        )
+        title = "+ resultant force" if solution.contact_area > 0 else "nothing touches"
+        if widths.max() <= LONGEST * widths.min():
+            axes.set_aspect("equal")
+        else:
+            title += "; x and y to different scales"
+        axes.set_title(title)
+    return axes
+
+
+def _key_figures(solution: Solution, axes: Axes) -> None:
+    """Write the key figures into axes of their own."""
+    axes.set_axis_off()
+    rows = figures(solution)
+    step = 1 / max(16, len(rows))
+    for number, (name, value) in enumerate(rows):
+        height = 1 - (number + 0.5) * step
+        for text, offset, colour in ((name, 0, "0.35"), (value, 68, "black")):
+            axes.annotate(
+                text,
+                (0, height),
+                xycoords="axes fraction",
+                xytext=(offset, 0),
+                textcoords="offset points",
+                va="center",
+                fontsize=7.5,
+                color=colour,
+            )

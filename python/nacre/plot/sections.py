@@ -1,0 +1,188 @@
+"""Sections through a solution, and those of several solutions in one picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._core import Solution
+from nacre._extras import extra
+from nacre.plot.style import STYLE, WIDTH, look
+from nacre.units import UNITS, Scale, written
+
+with extra("plot"):
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+Direction = Literal["x", "y"]
+QUANTITIES = ("pressure", "gap", "displacement", "line_load")
+
+
+def section(
+    solution: Solution,
+    along: Direction = "x",
+    at: float | None = None,
+    quantity: str = "pressure",
+    axes: Axes | None = None,
+    **style: Any,
+) -> Axes:
+    """Draw a quantity along x or y.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    along
+        Direction of the section.
+    at
+        Its place in the other direction [m]; the row of the largest pressure by default. Values are
+        those of the nearest row of cells.
+    quantity
+        "pressure", "gap", "displacement" or "line_load".
+    axes
+        Where to draw; a new figure by default.
+    style
+        Passed on to `matplotlib.axes.Axes.plot`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such direction or quantity, or the place is off the grid.
+    """
+    position, values, place = cut(solution, along, at, quantity)
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            axes = plt.figure(figsize=(WIDTH, 0.5 * WIDTH), layout="constrained").add_subplot()
+        window = _window(solution, along, quantity)
+        length = Scale.of(np.abs(window).max(), "m")
+        scale = Scale.of(_shown(position, values, window).max(initial=0.0), UNITS[quantity])
+        axes.plot(length.factor * position, scale.factor * values, **(look(0) | style))
+        _finish(axes, along, window, length, scale, quantity)
+        if quantity != "line_load":
+            other = "y" if along == "x" else "x"
+            axes.set_title(f"at {other} = {written(place, 'm', 3)}")
+    return axes
+
+
+def compare(
+    solutions: Mapping[str, Solution] | Iterable[Solution],
+    along: Direction = "x",
+    *,
+    at: float | None = None,
+    quantity: str = "pressure",
+    axes: Axes | None = None,
+) -> Axes:
+    """Draw the same section of several solutions.
+
+    Parameters
+    ----------
+    solutions
+        Solutions by name; without names they are numbered.
+    along, at, quantity
+        As in `section`; where `at` is not given, each is cut through its own largest pressure.
+    axes
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If there are no solutions, or `section` would raise.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> loads = {f"{load} N": nacre.solve(nacre.Sphere(5e-3), steel, load=load) for load in (5, 10)}
+    >>> plot.compare(loads).get_ylabel()
+    'pressure [GPa]'
+    """
+    if not isinstance(solutions, Mapping):
+        solutions = {str(number): s for number, s in enumerate(solutions, start=1)}
+    if not solutions:
+        raise ValueError("solutions must hold at least one solution, got none")
+    cuts = {name: cut(s, along, at, quantity) for name, s in solutions.items()}
+    windows = np.array([_window(s, along, quantity) for s in solutions.values()])
+    window = np.array([windows[:, 0].min(), windows[:, 1].max()])
+    largest = max(_shown(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
+    length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, UNITS[quantity])
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            axes = plt.figure(figsize=(WIDTH, 0.55 * WIDTH), layout="constrained").add_subplot()
+        for number, (name, (position, values, _)) in enumerate(cuts.items()):
+            label = f"{name} (peak {written(solutions[name].peak_pressure, 'Pa', 3)})"
+            curve = (length.factor * position, scale.factor * values)
+            axes.plot(*curve, **look(number), label=label)
+        _finish(axes, along, window, length, scale, quantity)
+        axes.legend(loc="upper left", bbox_to_anchor=(0, -0.16), ncols=2)
+    return axes
+
+
+def cut(
+    solution: Solution, along: str, at: float | None, quantity: str
+) -> tuple[Array, Array, float]:
+    """Return positions, values there, and the place of the section in the other direction."""
+    if along not in ("x", "y"):
+        raise ValueError(f"along must be 'x' or 'y', got {along!r}")
+    if quantity not in QUANTITIES:
+        raise ValueError(f"quantity must be one of {', '.join(QUANTITIES)}, got {quantity!r}")
+    if quantity == "line_load":
+        if along != "x":
+            raise ValueError(f"along must be 'x' for the line load, got {along!r}")
+        return solution.x, solution.line_load, 0.0
+    axis = "xy".index(along)
+    position, across = (solution.x, solution.y) if along == "x" else (solution.y, solution.x)
+    place = solution.peak_position[1 - axis] if at is None else float(at)
+    grid = solution.report.grid
+    low, high = (grid.center[1 - axis] + sign * grid.size[1 - axis] / 2 for sign in (-1, 1))
+    if not (low <= place <= high or grid.is_line):
+        raise ValueError(f"at must lie on the grid, {low:g} to {high:g}, got {place:g}")
+    row = int(np.argmin(np.abs(across - place)))
+    field: Array = getattr(solution, quantity)
+    return position, np.take(field, row, axis=1 - axis), float(across[row])
+
+
+def _window(solution: Solution, along: str, quantity: str) -> Array:
+    """Return the ends of what is shown: the contact and a margin, the whole grid for other fields.
+
+    Without a contact, and far beyond it, there is nothing to see of the pressure.
+    """
+    axis = "xy".index(along)
+    grid = solution.report.grid
+    ends = grid.center[axis] + np.array([-0.5, 0.5]) * grid.size[axis]
+    if quantity not in ("pressure", "line_load") or solution.contact_area == 0:
+        return ends
+    contact = np.array(solution.contact_extent[axis])
+    margin = 0.15 * (contact[1] - contact[0]) + grid.spacing[axis]
+    low, high = ends
+    return np.array([max(contact[0] - margin, low), min(contact[1] + margin, high)])
+
+
+def _shown(position: Array, values: Array, window: Array) -> Array:
+    inside = (position >= window[0]) & (position <= window[1]) & np.isfinite(values)
+    shown: Array = np.abs(values[inside])
+    return shown
+
+
+def _finish(
+    axes: Axes, along: str, window: Array, length: Scale, scale: Scale, quantity: str
+) -> None:
+    name = quantity.replace("_", " ")
+    axes.set(xlabel=f"{along} [{length.unit}]", ylabel=f"{name} [{scale.unit}]")
+    axes.set_xlim(*(length.factor * window))
+    if quantity != "displacement":
+        axes.set_ylim(bottom=0)

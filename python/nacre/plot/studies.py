@@ -1,0 +1,137 @@
+"""Pictures of studies: the Datasets of `nacre.design` and `nacre.sweep`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from nacre._extras import extra
+from nacre.plot.style import COLOURMAP, STYLE, WIDTH, look
+from nacre.units import UNITS, Scale
+
+with extra("plot"):
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | None = None) -> Axes:
+    """Draw a quantity over the two parameters of a study, as `nacre.design.coating_chart` makes it.
+
+    Parameters
+    ----------
+    study
+        A Dataset over two parameters; values of either that grow by factors get a logarithmic axis.
+    quantity
+        What to draw.
+    axes
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If the quantity is not one over two parameters.
+    """
+    field = _quantity(study, quantity, 2)
+    x, y = (study[str(name)] for name in field.dims)
+    scale = _scale(field, quantity)
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            size = (0.7 * WIDTH, 0.5 * WIDTH)
+            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        sides = [_side(axes, "x", x), _side(axes, "y", y)]
+        values = scale.factor * field.values.T
+        filled = axes.contourf(*sides, values, levels=24, cmap=COLOURMAP)
+        lines = axes.contour(*sides, values, levels=8, colors="white", linewidths=0.6)
+        axes.clabel(lines, fontsize=7, fmt="%.4g")
+        name = quantity.replace("_", " ")
+        axes.figure.colorbar(filled, ax=axes, label=f"{name} [{scale.unit}]")
+        axes.grid(visible=False)
+    return axes
+
+
+def curve(
+    study: xarray.Dataset, quantity: str = "approach", axes: Axes | None = None, **style: Any
+) -> Axes:
+    """Draw a quantity over the only parameter of a study: `load_curve`, `tilt_curve`.
+
+    Parameters
+    ----------
+    study
+        A Dataset over one parameter. Of a quantity along x and y, as the moment, x is drawn.
+    quantity
+        What to draw.
+    axes
+        Where to draw; a new figure by default.
+    style
+        Passed on to `matplotlib.axes.Axes.plot`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If the quantity is not one over one parameter.
+    """
+    field = _quantity(study, quantity, 1)
+    scale = _scale(field, quantity)
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            size = (0.6 * WIDTH, 0.42 * WIDTH)
+            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        x = _side(axes, "x", study[str(field.dims[0])])
+        axes.plot(x, scale.factor * field.values, **(look(0) | {"marker": "o", "ms": 3} | style))
+        axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
+    return axes
+
+
+def _quantity(study: xarray.Dataset, quantity: str, parameters: int) -> xarray.DataArray:
+    if quantity not in study:
+        names = ", ".join(str(name) for name in study.data_vars)
+        raise ValueError(f"quantity must be one of {names}, got {quantity!r}")
+    field = study[quantity]
+    if "axis" in field.dims:
+        field = field.sel(axis="x")
+    if field.ndim != parameters:
+        raise ValueError(
+            f"quantity must be over {parameters} parameters here, {quantity} is over {field.dims}"
+        )
+    return field
+
+
+def _scale(field: xarray.DataArray, quantity: str) -> Scale:
+    unit = field.attrs.get("units", UNITS.get(quantity, ""))
+    return Scale.of(float(np.nanmax(np.abs(field.values), initial=0.0)), unit)
+
+
+def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:
+    """Label one side of the axes, and return its values in the unit of the label."""
+    numbers = values.values.astype(float)
+    steps = np.diff(numbers)
+    wide = numbers.min() > 0 and numbers.max() >= 8 * numbers.min() and steps[-1] > 3 * steps[0]
+    typical = np.sqrt(numbers.min() * numbers.max()) if wide else np.abs(numbers).max()
+    scale = Scale.of(float(typical), values.attrs.get("units", ""))
+    name = values.attrs.get("long_name", str(values.name).rpartition(".")[2].replace("_", " "))
+    label = f"{name} [{scale.unit}]" if scale.unit else name
+    axes.set(**{f"{side}label": label, f"{side}scale": "log" if wide else "linear"})
+    axis = getattr(axes, f"{side}axis")
+    if wide:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+    elif not scale.unit:
+        axes.ticklabel_format(axis=side, scilimits=(-3, 4))
+    return scale.factor * numbers

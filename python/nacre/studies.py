@@ -1,0 +1,379 @@
+"""Studies: many solves over any parameters, to one Dataset, resumable."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import nacre._core as core
+from nacre._extras import extra
+from nacre._identity import key_of
+from nacre._journal import Journal, Record
+from nacre.units import UNITS
+
+if TYPE_CHECKING:
+    import xarray
+
+Output = str | Callable[[core.Solution], Any]
+Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
+
+OUTPUTS = (
+    "load",
+    "approach",
+    "tilt",
+    "eccentricity",
+    "peak_pressure",
+    "peak_position",
+    "contact_area",
+)
+AXES = {"tilt", "eccentricity", "moment", "peak_position"}
+"""Outputs with a value along x and one along y."""
+ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
+
+
+def sweep(
+    case: Case,
+    parameters: Mapping[str, Any],
+    *,
+    outputs: Sequence[Output] | Mapping[str, Output] | None = None,
+    store: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    progress: bool | None = None,
+    retry: bool = False,
+) -> xarray.Dataset:
+    """Solves for every combination of parameters; needs ``nacre[files]``.
+
+    A case that fails is recorded, and does not stop the others. With a `store`, a study that was
+    killed goes on where it was when the same call is made again.
+
+    Parameters
+    ----------
+    case : callable or mapping
+        Takes the parameters by name, and returns the arguments of `nacre.solve` as a dictionary; it
+        runs here, the solves where `executor` says. Or the arguments themselves, of which the
+        parameters replace some.
+    parameters : mapping
+        Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
+        labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
+        vary together. All others are combined.
+    outputs : sequence or mapping, optional
+        What is kept of each solution: names of its attributes, and functions of it that return a
+        number or an array, by name. By default load, approach, tilt, eccentricity, peak pressure
+        and where it is, and contact area, as far as they are no parameters.
+    store : path, optional
+        A file, ``.nc``, for the finished Dataset. Finished cases are kept beside it, in a
+        ``.journal``, as they come.
+    executor : concurrent.futures.Executor, optional
+        Where the solves run; a thread for each core by default. Each solve has one thread, unless
+        the case says otherwise.
+    progress : bool, optional
+        Whether to show a bar; by default where there is a terminal or a notebook.
+    retry : bool, optional
+        Whether to try cases again that failed in an earlier run.
+
+    Returns
+    -------
+    xarray.Dataset
+        Outputs over the parameters; NaN where a case failed, and why in ``error``. The same bits
+        whatever the executor.
+
+    Raises
+    ------
+    ValueError
+        If parameters or outputs cannot be used, or the store has another ending.
+    TypeError
+        If the case does not describe a solve, or an argument is of the wrong kind.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> def ball(thickness, young):
+    ...     coating = nacre.Layer(nacre.Elastic(young, 0.3), thickness)
+    ...     body = nacre.HalfSpace(steel, layers=[coating])
+    ...     return dict(shape=nacre.Sphere(5e-3), body=body, load=10.0)
+    >>> study = nacre.sweep(ball, {"thickness": [5e-6, 20e-6], "young": [105e9, 420e9]})
+    >>> (study.peak_pressure / 1e9).round(2).values
+    array([[1.53, 1.65],
+           [1.36, 1.82]])
+    """
+    with extra("files"):
+        import xarray  # noqa: F401
+
+    path = None if store is None else Path(store)
+    if path is not None and path.suffix != ".nc":
+        raise ValueError(f"store must end in .nc, got {str(store)!r}")
+    wanted = _named([o for o in OUTPUTS if o not in parameters] if outputs is None else outputs)
+    if taken := set(wanted) & set(parameters):
+        raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
+    coordinates, points = _points(parameters)
+    journal = Journal(path.with_suffix(".journal") if path else None)
+    with journal, _quiet(), _bar(progress, len(points)) as advance:
+        keys, tasks = [], {}
+        for point in points:
+            arguments, failure = _describe(case, point)
+            key = key_of(arguments if failure is None else {"failed": point}, wanted)
+            keys.append(key)
+            known = journal.records.get(key)
+            if known is not None and not (retry and "error" in known):
+                advance()
+            elif failure is not None:
+                journal.add({"key": key, "parameters": _said(point), "error": failure})
+                advance()
+            elif key in tasks:
+                advance()
+            else:
+                tasks[key] = arguments, _said(point)
+
+        def keep(key: str, result: Record) -> None:
+            journal.add({"key": key, "parameters": tasks[key][1], **result})
+
+        arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
+        for _ in _run(arguments_of, wanted, executor, keep):
+            advance()
+        dataset = _assemble(coordinates, [journal.records[key] for key in keys], wanted)
+        if path is not None:
+            from nacre.files import replacing, write_dataset
+
+            with replacing(path) as temporary:
+                write_dataset(dataset, temporary)
+    failed = int((dataset.error != "").sum())
+    if failed:
+        message = f"{failed} of {len(points)} cases failed: see error in the Dataset"
+        warnings.warn(message, core.NacreWarning, stacklevel=2)
+    return dataset
+
+
+def _named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
+    """Return outputs by name, checked."""
+    if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
+        raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
+    if isinstance(outputs, Mapping):
+        items = [(str(name), output) for name, output in outputs.items()]
+    else:
+        items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
+    attributes = {name for name in dir(core.Solution) if not name.startswith("_")}
+    for name, output in items:
+        if not (callable(output) or output in attributes):
+            raise ValueError(f"outputs must be attributes of Solution or functions, got {output!r}")
+        if name in ("error", "warnings"):
+            raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
+    named = dict(items)
+    if not named or len(named) != len(items):
+        names = [name for name, _ in items]
+        raise ValueError(f"outputs must be at least one, under different names, got {names}")
+    return named
+
+
+def _points(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
+    """Return the coordinates of a study, and the parameters of each of its cases in order."""
+    import xarray
+
+    coordinates: dict[str, Any] = {}
+    values: dict[str, list[Any]] = {}
+    places: list[xarray.DataArray] = []
+    for name, given in parameters.items():
+        if isinstance(given, xarray.DataArray):
+            values[name] = [item.item() for item in given.values.ravel()]
+            dims, shape = given.dims, given.shape
+            coordinates |= {str(key): coord for key, coord in given.coords.items()}
+            coordinates[name] = (dims, given.values)
+        else:
+            if isinstance(given, str) or not isinstance(given, Iterable):
+                raise TypeError(f"{name} must be a sequence of values, got {given!r}")
+            labels: list[Any]
+            if isinstance(given, Mapping):
+                labels, values[name] = [str(label) for label in given], list(given.values())
+            else:
+                values[name] = [v.item() if isinstance(v, np.generic) else v for v in given]
+                labels = values[name]
+                kinds = {type(v) for v in labels}
+                if not (kinds <= {int, float} or kinds in ({bool}, {str})):
+                    labels = [str(v) if isinstance(v, str) else repr(v) for v in labels]
+            dims, shape = (name,), (len(labels),)
+            coordinates[name] = ((name,), np.array(labels))
+        if not values[name]:
+            raise ValueError(f"{name} must have at least one value, got none")
+        places.append(xarray.DataArray(np.arange(len(values[name])).reshape(shape), dims=dims))
+    grids = xarray.broadcast(*places)
+    ranks = [grid.values.ravel() for grid in grids]
+    count = ranks[0].size if ranks else 1
+    points = [
+        {name: values[name][rank[k]] for name, rank in zip(values, ranks, strict=True)}
+        for k in range(count)
+    ]
+    frame = (
+        grids[0].copy(data=np.arange(count).reshape(grids[0].shape))
+        if grids
+        else xarray.DataArray(0)
+    )
+    dataset = frame.to_dataset(name="case").assign_coords(coordinates)
+    return dataset, points
+
+
+def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
+    """Return the arguments of a solve, or why they could not be had."""
+    try:
+        arguments = dict({**case, **point} if isinstance(case, Mapping) else case(**point))
+    except (ValueError, ArithmeticError) as error:
+        return {}, f"{type(error).__name__}: {error}"
+    unknown = set(arguments) - ARGUMENTS
+    if unknown:
+        raise TypeError(f"case must give arguments of nacre.solve, got {sorted(unknown)}")
+    return {"threads": 1, **arguments}, None
+
+
+def _said(point: Mapping[str, Any]) -> dict[str, Any]:
+    """Return parameters as a reader of the journal wants them."""
+    return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
+
+
+def _run(
+    tasks: Mapping[str, dict[str, Any]],
+    outputs: Mapping[str, Output],
+    executor: Executor | None,
+    keep: Callable[[str, Record], None],
+) -> Iterator[None]:
+    """Solve all tasks and keep what comes of each, one at a time; yield as often.
+
+    A record is kept where its future ends, so that threads do not begin another case before: a kill
+    costs what is being solved, and no more.
+    """
+    pool = executor or ThreadPoolExecutor(max_workers=_cores())
+    futures: list[Future[Record]] = []
+    ended: SimpleQueue[BaseException | None] = SimpleQueue()
+    turn = Lock()
+
+    def end(key: str, future: Future[Record]) -> None:
+        try:
+            with turn:
+                keep(key, future.result())
+        except BaseException as error:  # of the executor, or of the disk: raised below
+            ended.put(error)
+        else:
+            ended.put(None)
+
+    try:
+        for key, arguments in tasks.items():
+            futures.append(pool.submit(_solve, arguments, dict(outputs), os.getpid()))
+            futures[-1].add_done_callback(partial(end, key))
+        for _ in tasks:
+            while True:
+                with suppress(Empty):
+                    failure = ended.get(timeout=0.5)  # Ctrl-C is seen in between
+                    break
+            if failure is not None:
+                raise failure
+            yield
+    finally:
+        for future in futures:
+            future.cancel()
+        if executor is None:
+            pool.shutdown()
+
+
+def _cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _solve(arguments: dict[str, Any], outputs: dict[str, Output], parent: int) -> Record:
+    """Solve one case, in any process: what is kept of it, or why it failed."""
+    if os.getpid() != parent:
+        warnings.filterwarnings("ignore", category=core.NacreWarning)  # they are in the record
+    try:
+        solution = core.solve(**arguments)
+        values = {
+            name: np.asarray(
+                getattr(solution, o) if isinstance(o, str) else o(solution), dtype=np.float64
+            ).tolist()
+            for name, o in outputs.items()
+        }
+        return {"values": values, "warnings": solution.report.warnings}
+    except Exception as error:  # whatever it is, the other cases go on
+        return {"error": f"{type(error).__name__}: {error}"}
+
+
+def _assemble(
+    coordinates: xarray.Dataset, records: Sequence[Record], outputs: Mapping[str, Output]
+) -> xarray.Dataset:
+    """Return the Dataset of all cases."""
+    dims, shape = coordinates["case"].dims, coordinates["case"].shape
+    dataset = coordinates.drop_vars("case")
+    for name, output in outputs.items():
+        arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
+        found = [a.shape for a in arrays if a is not None]
+        rank = max((len(s) for s in found), default=0)
+        inner = tuple(max(s[k] if k < len(s) else 1 for s in found) for k in range(rank))
+        # Arrays that are shorter than others end in NaN, like cases that failed.
+        data = np.full((len(records), *inner), np.nan)
+        for row, array in enumerate(arrays):
+            if array is not None:
+                place: tuple[Any, ...] = (row, *(slice(0, n) for n in array.shape))
+                data[place] = array
+        extra_dims = ("axis",) if output in AXES else tuple(f"{name}_{k}" for k in range(rank))
+        if output in AXES:
+            dataset = dataset.assign_coords(axis=["x", "y"])
+            if rank == 0:  # every case failed
+                data = np.full((len(records), 2), np.nan)
+                inner = (2,)
+        dataset[name] = ((*dims, *extra_dims), data.reshape(*shape, *inner))
+        if isinstance(output, str) and output in UNITS:
+            dataset[name].attrs["units"] = UNITS[output]
+    for name, texts in {
+        "error": [r.get("error", "") for r in records],
+        "warnings": ["\n".join(r.get("warnings", [])) for r in records],
+    }.items():
+        dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
+    dataset.attrs = {"title": "study of coated contacts", "source": f"nacre {core.__version__}"}
+    return dataset
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep nacre's warnings from the screen: they are in the Dataset."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=core.NacreWarning)
+        yield
+
+
+@contextmanager
+def _bar(wanted: bool | None, total: int) -> Iterator[Callable[[], None]]:
+    """Yield what moves a progress bar on by one case."""
+    if wanted is False:
+        yield lambda: None
+        return
+    with extra("files"):
+        from rich.console import Console
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+    console = Console(stderr=True)
+    off = wanted is None and not (console.is_terminal or console.is_jupyter)
+    parts = (
+        TextColumn("solving"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*parts, console=console, disable=off) as bar:
+        task = bar.add_task("", total=total)
+        yield lambda: bar.advance(task)

@@ -1,0 +1,258 @@
+"""What is saved comes back bit for bit; what cannot be written leaves nothing behind."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+import xarray
+
+import nacre
+from nacre import values
+
+STEEL = nacre.Elastic(210e9, 0.3)
+DLC = nacre.Elastic(420e9, 0.25)
+COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 4e-5, "frictionless"), nacre.Layer(STEEL, 1e-5)])
+GRID = nacre.Grid((40, 31), (3e-4, 2e-4), (1e-5, -2e-6))
+
+
+def solutions() -> dict[str, nacre.Solution]:
+    sphere = nacre.Sphere(5e-3)
+    return {
+        "both coated, tilted": nacre.solve(
+            sphere,
+            COATED,
+            COATED,
+            grid=GRID,
+            load=10.0,
+            eccentricity=(1e-6, None),
+            tilt=(None, 1e-4),
+        ),
+        "infinite gaps": nacre.solve(nacre.FlatPunch(5e-5), STEEL, grid=GRID, load=10.0),
+        "nothing touches": nacre.solve(sphere, STEEL, grid=GRID, approach=-1e-6),
+        "line": nacre.solve(
+            nacre.Cylinder(5e-3), COATED, grid=nacre.Grid.line(64, 2e-4, 1e-6), load=1e4
+        ),
+        "not converged": nacre.solve(
+            sphere, COATED, grid=GRID, load=10.0, max_iterations=2, check=False
+        ),
+        "converted": nacre.solve(
+            sphere, COATED, grid=GRID, approach=1e-7, method="image", refinement=8, tolerance=1e-5
+        ),
+    }
+
+
+@pytest.fixture(scope="module")
+def solved() -> dict[str, nacre.Solution]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # those are saved, too
+        return solutions()
+
+
+KINDS = pytest.mark.parametrize(
+    "kind",
+    [
+        "both coated, tilted",
+        "infinite gaps",
+        "nothing touches",
+        "line",
+        "not converged",
+        "converted",
+    ],
+)
+
+
+@KINDS
+def test_netcdf_comes_back_bit_for_bit(
+    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved[kind]
+    loaded = nacre.load(solution.save(tmp_path / "a.nc"))
+    assert loaded == solution  # every field and the whole report
+    for name in ("pressure", "gap", "displacement", "x", "y", "line_load"):
+        assert getattr(loaded, name).tobytes() == getattr(solution, name).tobytes()
+    assert loaded.report.seconds == solution.report.seconds
+    assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
+
+
+@KINDS
+def test_the_dataset_in_the_file_is_that_of_to_xarray(
+    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    dataset = solved[kind].to_xarray()
+    read = xarray.load_dataset(solved[kind].save(tmp_path / "a.nc"), engine="h5netcdf")
+    assert read.equals(dataset)
+    assert {n: v.attrs for n, v in read.variables.items()} == {
+        n: v.attrs for n, v in dataset.variables.items()
+    }
+
+
+def test_the_attributes_repeat_the_run(solved: dict[str, nacre.Solution]) -> None:
+    solution = solved["both coated, tilted"]
+    said = solution.to_xarray().attrs
+    body, counterbody, grid, motion = (
+        values.decode(json.loads(said[name])) for name in ("body", "counterbody", "grid", "motion")
+    )
+    again = nacre.solve(
+        nacre.Sphere(5e-3), body, counterbody, grid=grid, tolerance=said["tolerance"], **motion
+    )
+    assert again.pressure.tobytes() == solution.pressure.tobytes()
+    # The gap of the shape is in the fields too, to rounding: that of numbers of size u.
+    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
+    tilted = said["approach"] + said["tilt"][0] * x + said["tilt"][1] * y
+    gaps = solution.gap - solution.displacement + tilted
+    rounding = 8 * np.finfo(float).eps * np.abs(solution.gap).max()
+    np.testing.assert_allclose(gaps, nacre.Sphere(5e-3).gaps(grid), rtol=0, atol=rounding)
+
+
+def test_units_and_coordinates_are_there(solved: dict[str, nacre.Solution]) -> None:
+    dataset = solved["infinite gaps"].to_xarray()
+    assert {str(n): dataset[n].attrs["units"] for n in dataset.variables} == {
+        "pressure": "Pa",
+        "gap": "m",
+        "displacement": "m",
+        "line_load": "N/m",
+        "x": "m",
+        "y": "m",
+    }
+    assert float(dataset.pressure.sel(x=1e-5, y=0, method="nearest")) > 0
+
+
+@pytest.mark.parametrize("kind", ["both coated, tilted", "infinite gaps", "nothing touches"])
+def test_pyvista_reads_the_vtk_file_back(
+    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved[kind]
+    mesh = pyvista.read(solution.save(tmp_path / "a.vtr"))
+    assert isinstance(mesh, pyvista.RectilinearGrid)
+    for name in ("pressure", "gap", "displacement"):
+        read = np.asarray(mesh.cell_data[name]).reshape(GRID.shape, order="F")
+        assert read.tobytes("C") == getattr(solution, name).tobytes()
+    centres = np.asarray(mesh.cell_centers().points).reshape(*GRID.shape, 3, order="F")
+    # PyVista keeps the centres in single precision.
+    single = 2 * float(np.finfo(np.float32).eps) * max(GRID.size)
+    np.testing.assert_allclose(centres[:, 0, 0], solution.x, rtol=0, atol=single)
+    np.testing.assert_allclose(centres[0, :, 1], solution.y, rtol=0, atol=single)
+
+
+def test_csv_holds_the_sections_through_the_peak(
+    solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved["both coated, tilted"]
+    with solution.save(tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    i, j = np.unravel_index(solution.pressure.argmax(), solution.pressure.shape)
+    for along, section in (("x", solution.pressure[:, j]), ("y", solution.pressure[i])):
+        read = [float(row["pressure [Pa]"]) for row in rows if row["along"] == along]
+        assert read == section.tolist()  # repr of a float is exact
+    assert {float(row["y [m]"]) for row in rows if row["along"] == "x"} == {solution.y[j]}
+
+
+@pytest.mark.parametrize("name", ["a.txt", "a", "a.vtu"])
+def test_another_ending_is_refused(
+    name: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=r"path must end in \.nc, \.vtr, \.csv, got"):
+        solved["line"].save(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("ending", [".nc", ".vtr", ".csv"])
+def test_a_failed_write_keeps_the_old_file_and_leaves_no_other(
+    ending: str,
+    solved: dict[str, nacre.Solution],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    path = tmp_path / f"a{ending}"
+    path.write_text("old")
+
+    def fail(*_: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("os.replace", fail)
+    with pytest.raises(OSError, match="no space"):
+        solved["line"].save(path)
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+def test_what_is_no_solution_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"none\.nc"):
+        nacre.load(tmp_path / "none.nc")
+    (tmp_path / "text.nc").write_text("text")
+    xarray.Dataset({"a": 1.0}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    for name in ("text.nc", "other.nc"):
+        with pytest.raises(ValueError, match="must be a solution that nacre saved"):
+            nacre.load(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        COATED,
+        nacre.HalfSpace(nacre.RIGID, [nacre.Layer(DLC, 1e-5)]),
+        GRID,
+        nacre.Grid.line(64, 2e-4, 1e-6),
+        nacre.Paraboloid(1e-3, 2e-3),
+        nacre.Roller(5e-3, 1e-2, 7.5, 1.5e-2),
+        nacre.Roller(5e-3, profile=nacre.LogarithmicProfile(1e-6, 1e-2)),
+        nacre.Roller(5e-3, profile=([0.0, 1e-3, 2e-3], [0.0, 0.0, 1e-6])),
+        (nacre.Sphere(1.0) + nacre.HeightMap([[0.1, 0.2], [1 / 3, 0.4]], 1e-6)).shifted(1e-7, 0),
+        nacre.FlatPunch(1e-3) + (nacre.Cylinder(1.0) + nacre.Sphere(2.0)),
+    ],
+    ids=repr,
+)
+def test_every_value_survives_as_plain_data(value: object) -> None:
+    data = json.loads(json.dumps(values.encode(value)))
+    assert values.decode(data) == value
+
+
+def test_digests_tell_arrays_apart() -> None:
+    maps = [nacre.HeightMap(np.full((3, 3), h), 1e-6) for h in (0.0, np.nextafter(0, 1))]
+    first, second = (values.encode(one, digest=True) for one in maps)
+    assert first != second
+    assert first == values.encode(maps[0], digest=True)
+
+
+def test_what_is_no_value_is_refused() -> None:
+    with pytest.raises(TypeError, match="is not a value that can be kept"):
+        values.encode(object())
+
+
+@pytest.mark.parametrize(
+    ("missing", "extra", "call"),
+    [
+        ("xarray", "files", "s.to_xarray()"),
+        ("h5netcdf", "files", "s.save('a.nc')"),
+        ("pyevtk", "files", "s.save('a.vtr')"),
+        ("xarray", "files", "nacre.load('a.nc')"),
+        ("xarray", "files", "nacre.sweep({}, {})"),
+        ("matplotlib", "plot", "s.plot()"),
+        ("pyvista", "view", "s.plot_3d(interactive=True)"),
+        ("SurfaceTopography", "surfaces", "nacre.HeightMap.read(__file__)"),
+        ("pydantic", "cli", "import nacre.case"),
+    ],
+)
+def test_a_missing_extra_is_named(missing: str, extra: str, call: str, tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        f"import sys; sys.modules[{missing!r}] = None\n"
+        "import nacre\n"
+        "steel = nacre.Elastic(210e9, 0.3)\n"
+        "s = nacre.solve(nacre.Sphere(5e-3), steel, load=1.0)\n"
+        f"{call}\n"
+    )
+    command = [sys.executable, str(script)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.stderr.splitlines()[-1] == (
+        f"ModuleNotFoundError: this needs {missing}: pip install 'nacre[{extra}]'"
+    )
+    assert [path.name for path in tmp_path.iterdir()] == ["script.py"]

@@ -1,0 +1,239 @@
+"""Pictures show the numbers of the solution, in the units that their axes name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+
+import nacre
+from nacre import design, plot
+from nacre.units import Scale, written
+
+Array = npt.NDArray[np.float64]
+STEEL = nacre.Elastic(210e9, 0.3)
+ROLLER = nacre.Roller(5e-3, 8e-3, 2.0)
+LONG = nacre.Grid((96, 24), (14e-3, 3e-4))
+
+
+@pytest.fixture(autouse=True)
+def _figures() -> Iterator[None]:
+    """Draw without a screen, and close what was drawn."""
+    with mpl.rc_context({"backend": "agg"}):
+        yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def tilted() -> nacre.Solution:
+    return nacre.solve(ROLLER, STEEL, grid=LONG, load=1e3, eccentricity=(1e-3, None))
+
+
+@pytest.fixture(scope="module")
+def ball() -> nacre.Solution:
+    return nacre.solve(nacre.Sphere(5e-3), STEEL, load=100.0)
+
+
+@pytest.fixture(scope="module")
+def line() -> nacre.Solution:
+    return nacre.solve(nacre.Cylinder(5e-3), STEEL, grid=nacre.Grid.line(64, 4e-4), load=5e4)
+
+
+@pytest.fixture(scope="module")
+def nothing() -> nacre.Solution:
+    return nacre.solve(nacre.Sphere(5e-3), STEEL, grid=LONG, approach=-1e-6)
+
+
+def curve_of(axes: Axes) -> tuple[Array, Array]:
+    """Return what the last curve shows."""
+    data = np.asarray(axes.lines[-1].get_xydata(), dtype=np.float64)
+    return data[:, 0], data[:, 1]
+
+
+def drawn(figure: Any) -> None:
+    """Draw for real: what is off the page or cannot be laid out would warn or raise here."""
+    assert isinstance(figure, Figure)
+    figure.canvas.draw()
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.46806e9, "Pa", "1.468 GPa"),
+        (999.99, "Pa", "1000 Pa"),
+        (1000.0, "Pa", "1 kPa"),
+        (-2.5e-6, "m", "-2.5 µm"),
+        (3e4, "m", "3e+04 m"),
+        (1.243e-6, "m²", "1.243 mm²"),
+        (3.53e-8, "m²", "3.53e+04 µm²"),
+        (0.0, "N", "0 N"),
+        (0.5, "", "0.5"),
+        (1e-20, "m", "1e-08 pm"),
+    ],
+)
+def test_numbers_have_sensible_prefixes(value: float, unit: str, text: str) -> None:
+    assert written(value, unit) == text
+
+
+def test_a_scale_turns_si_into_the_unit_it_names() -> None:
+    assert Scale.of(2e-3, "m") == Scale(1e3, "mm")
+    assert Scale.of(2e-6, "m²") == Scale(1e6, "mm²")
+    assert Scale.of(5e9, "Pa") == Scale(1e-9, "GPa")
+
+
+def test_the_overview_has_map_sections_and_figures(tilted: nacre.Solution) -> None:
+    axes = tilted.plot()
+    assert sorted(axes) == ["figures", "map", "x", "y"]
+    assert axes["map"].get_xlabel() == "x [mm]"
+    assert axes["map"].get_ylabel() == "y [µm]"
+    assert "different scales" in axes["map"].get_title(loc="left")
+    (mesh,) = (c for c in axes["map"].collections if isinstance(c, QuadMesh))
+    values: Array = np.ma.asarray(mesh.get_array()).filled(0.0).T
+    np.testing.assert_allclose(values, 1e-9 * tilted.pressure, rtol=1e-12)
+    said = " ".join(text.get_text() for text in axes["figures"].texts)
+    assert written(tilted.peak_pressure, "Pa") in said
+    drawn(axes["map"].figure)
+
+
+def test_the_map_of_a_round_contact_is_true_to_scale(ball: nacre.Solution) -> None:
+    axes = plot.pressure_map(ball)
+    assert axes.get_aspect() == 1.0
+    assert axes.get_xlabel() == "x [µm]"
+    half = 0.5 * (ball.contact_extent[0][1] - ball.contact_extent[0][0])
+    assert 1e6 * half < axes.get_xlim()[1] < 1.5e6 * half
+
+
+def test_the_cross_marks_where_the_force_acts(tilted: nacre.Solution) -> None:
+    axes = plot.pressure_map(tilted)
+    assert curve_of(axes)[0] == pytest.approx(1.0, rel=1e-6)  # mm; the balance of moments is 1e-8
+
+
+def test_a_section_is_a_row_of_cells(tilted: nacre.Solution) -> None:
+    axes = tilted.plot_section("x")
+    x, pressure = curve_of(axes)
+    j = int(np.argmax(tilted.pressure.max(axis=0)))
+    np.testing.assert_allclose(x, 1e3 * tilted.x, rtol=1e-12)
+    np.testing.assert_allclose(pressure, 1e-9 * tilted.pressure[:, j], rtol=1e-12)
+    assert axes.get_ylabel() == "pressure [GPa]"
+    axes = tilted.plot_section("y", at=2e-3, quantity="gap")
+    i = int(np.argmin(np.abs(tilted.x - 2e-3)))
+    gap = curve_of(axes)[1]
+    np.testing.assert_allclose(gap, 1e6 * tilted.gap[i], rtol=1e-12)
+    assert axes.get_ylabel() == "gap [µm]"
+    axes = tilted.plot_section("x", quantity="line_load")
+    assert axes.get_ylabel() == "line load [kN/m]"
+    drawn(axes.figure)
+
+
+def test_axes_are_taken_and_returned(tilted: nacre.Solution, ball: nacre.Solution) -> None:
+    figure, (left, right) = plt.subplots(1, 2)
+    assert tilted.plot_section(axes=left) is left
+    assert plot.compare({"a": ball, "b": tilted}, axes=right) is right
+    assert ball.plot(left) == {"map": left}
+    mosaic = plt.figure().subplot_mosaic([["y", "map"]])
+    assert ball.plot(mosaic) == mosaic
+    solid = plt.figure().add_subplot(projection="3d")
+    assert ball.plot_3d(solid) is solid
+    assert plt.get_fignums() == [1, 2, 3]
+    drawn(figure)
+
+
+def test_a_comparison_names_each_curve_and_its_peak(ball: nacre.Solution) -> None:
+    other = nacre.solve(nacre.Sphere(5e-3), STEEL, load=200.0)
+    axes = plot.compare({"100 N": ball, "200 N": other}, "y")
+    legend = axes.get_legend()
+    assert legend is not None
+    labels = [text.get_text() for text in legend.get_texts()]
+    peaks = [written(s.peak_pressure, "Pa", 3) for s in (ball, other)]
+    assert labels == [f"100 N (peak {peaks[0]})", f"200 N (peak {peaks[1]})"]
+    looks = {(line.get_color(), line.get_linestyle()) for line in axes.lines}
+    assert len(looks) == 2  # by colour and by dashes
+    assert len(plot.compare([ball, other]).lines) == 2
+    drawn(axes.figure)
+
+
+def test_the_relief_shows_the_peak(tilted: nacre.Solution) -> None:
+    axes = tilted.plot_3d()
+    assert axes.get_zlabel() == "pressure [GPa]"
+    assert axes.get_zlim()[1] >= 0.99e-9 * tilted.peak_pressure
+    drawn(axes.figure)
+
+
+def test_the_interactive_view_holds_the_pressure(tilted: nacre.Solution) -> None:
+    plotter = plot.view(tilted, show=False)
+    drawn_pressure = plotter.meshes[0].point_data["pressure [GPa]"]
+    assert drawn_pressure.max() == 1e-9 * tilted.peak_pressure
+    plotter.close()
+
+
+def test_a_line_contact_has_one_section(line: nacre.Solution) -> None:
+    axes = line.plot()
+    assert sorted(axes) == ["figures", "y"]
+    drawn(axes["y"].figure)
+    for refused in (plot.pressure_map, plot.relief):
+        with pytest.raises(ValueError, match="must have cells along x"):
+            refused(line)
+
+
+def test_without_contact_there_is_a_picture_that_says_so(nothing: nacre.Solution) -> None:
+    axes = nothing.plot()
+    assert "nothing touches" in axes["map"].get_title(loc="left")
+    drawn(axes["map"].figure)
+    drawn(nothing.plot_3d().figure)
+
+
+def test_bad_arguments_are_named(tilted: nacre.Solution) -> None:
+    with pytest.raises(ValueError, match="along must be 'x' or 'y', got 'z'"):
+        plot.section(tilted, "z")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"quantity must be one of .*, got 'force'"):
+        plot.section(tilted, quantity="force")
+    with pytest.raises(ValueError, match="along must be 'x' for the line load"):
+        plot.section(tilted, "y", quantity="line_load")
+    with pytest.raises(ValueError, match=r"at must lie on the grid, -0\.00015 to 0\.00015, got 1"):
+        plot.section(tilted, at=1.0)
+    with pytest.raises(ValueError, match="axes must be named map, x, y or figures, got 'z'"):
+        tilted.plot({"z": plt.figure().add_subplot()})
+    with pytest.raises(ValueError, match="at least one solution"):
+        plot.compare([])
+
+
+def test_studies_are_drawn_with_their_units() -> None:
+    chart = design.coating_chart(
+        nacre.Sphere(5e-3),
+        STEEL,
+        thickness=[1e-6, 1e-5, 1e-4],
+        young=[1e11, 2e11],
+        load=10.0,
+        tolerance=1e-4,
+    )
+    axes = plot.chart(chart)
+    assert axes.get_xlabel() == "thickness [µm]"
+    assert axes.get_xscale() == "log"
+    assert axes.get_ylabel() == "Young's modulus of the coating [GPa]"
+    drawn(axes.figure)
+    curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
+    axes = plot.curve(curve, "stiffness")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("load [N]", "stiffness [MN/m]")
+    x, y = curve_of(axes)
+    np.testing.assert_array_equal(x, curve["load"])
+    np.testing.assert_allclose(y, 1e-6 * curve.stiffness, rtol=1e-12)
+    with pytest.raises(ValueError, match="quantity must be over 2 parameters"):
+        plot.chart(curve, "approach")
+    with pytest.raises(ValueError, match=r"quantity must be one of .*, got 'force'"):
+        plot.curve(curve, "force")
+
+
+def test_colours_differ_in_lightness_for_those_who_see_no_hue() -> None:
+    # The first three, which most pictures need: by luminance, as a grey copy shows them.
+    weights = np.array([0.2126, 0.7152, 0.0722])
+    colours = [np.array(mpl.colors.to_rgb(c)) for c in plot.style.COLOURS[:3]]
+    greys = sorted(float(weights @ c**2.2) for c in colours)
+    assert min(np.diff(greys)) > 0.05

@@ -1,0 +1,484 @@
+"""A study gives the same Dataset wherever it runs, and survives kills and failures."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+import multiprocessing
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+import nacre
+from nacre import design, studies
+from nacre._identity import code_of
+
+STEEL = nacre.Elastic(210e9, 0.3)
+GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
+
+
+def ball(thickness: float, young: float, load: float = 10.0) -> dict[str, Any]:
+    body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(young, 0.3), thickness)])
+    return {"shape": nacre.Sphere(5e-3), "body": body, "grid": GRID, "load": load}
+
+
+THICKNESS, YOUNG = [5e-6, 2e-5, 4e-5], [105e9, 420e9]
+PARAMETERS = {"thickness": THICKNESS, "young": YOUNG}
+
+
+def mean_pressure(solution: nacre.Solution) -> float:
+    return solution.load / solution.contact_area
+
+
+OUTPUTS: list[studies.Output] = [
+    "peak_pressure",
+    "tilt",
+    "contact_extent",
+    mean_pressure,
+    "pressure",
+]
+
+# Other processes import functions by name: from here, in a file of its own.
+MODULE = """
+import os
+from pathlib import Path
+
+def fatal(solution):
+    return os._exit(1) if solution.load > 2.5 else 0.0
+
+def mean_pressure(solution):
+    return solution.load / solution.contact_area
+
+def logged(solution):
+    with Path(__file__).with_suffix(".log").open("a") as log:
+        log.write(f"{solution.report.motion['load']}\\n")
+    return solution.peak_pressure
+"""
+
+
+def bits(dataset: xarray.Dataset) -> dict[str, bytes]:
+    return {str(name): dataset[name].values.tobytes() for name in dataset.variables}
+
+
+def test_each_case_is_the_solve_it_describes() -> None:
+    study = nacre.sweep(ball, PARAMETERS, outputs=OUTPUTS)
+    assert dict(study.peak_pressure.sizes) == {"thickness": 3, "young": 2}
+    for thickness in THICKNESS:
+        for young in YOUNG:
+            one = study.sel(thickness=thickness, young=young)
+            solution = nacre.solve(**ball(thickness, young))
+            assert float(one.peak_pressure) == solution.peak_pressure
+            assert tuple(one.tilt.values) == solution.tilt
+            assert one.contact_extent.values.tolist() == [list(e) for e in solution.contact_extent]
+            assert float(one.mean_pressure) == mean_pressure(solution)
+            assert one.pressure.values.tobytes() == solution.pressure.tobytes()
+    assert (study.error == "").all()
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")  # fork, Python 3.12
+@pytest.mark.parametrize("kind", ["one thread", "fork", "forkserver", "spawn", "dask"])
+def test_the_executor_changes_no_bit(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if kind not in ("one thread", "dask", *multiprocessing.get_all_start_methods()):
+        pytest.skip(f"no {kind} here")
+    name = f"study_on_{kind.replace(' ', '_')}"
+    (tmp_path / f"{name}.py").write_text(MODULE)
+    monkeypatch.syspath_prepend(tmp_path)
+    outputs = ["peak_pressure", "pressure", importlib.import_module(name).mean_pressure]
+    expected = nacre.sweep(ball, PARAMETERS, outputs=outputs)
+    with ExitStack() as stack:
+        executor: Executor
+        if kind == "dask":
+            from distributed import Client, LocalCluster
+
+            cluster = stack.enter_context(
+                LocalCluster(  # type: ignore[no-untyped-call]
+                    n_workers=2, threads_per_worker=1, dashboard_address=None
+                )
+            )
+            client = stack.enter_context(Client(cluster))  # type: ignore[no-untyped-call]
+            executor = stack.enter_context(client.get_executor())
+        elif kind == "one thread":
+            executor = stack.enter_context(ThreadPoolExecutor(1))
+        else:
+            context = multiprocessing.get_context(kind)
+            executor = stack.enter_context(ProcessPoolExecutor(2, mp_context=context))
+        study = nacre.sweep(ball, PARAMETERS, outputs=outputs, executor=executor)
+    assert study.identical(expected)
+    assert bits(study) == bits(expected)
+
+
+def test_parameters_that_share_a_dimension_vary_together() -> None:
+    pairs = {
+        "thickness": xarray.DataArray(THICKNESS, dims="coating", coords={"coating": list("abc")}),
+        "young": xarray.DataArray([1e11, 2e11, 3e11], dims="coating"),
+        "load": [5, 10],
+    }
+    study = nacre.sweep(ball, pairs)
+    assert dict(study.approach.sizes) == {"coating": 3, "load": 2}
+    one = study.sel(coating="b", load=10)
+    assert (float(one.thickness), float(one.young)) == (THICKNESS[1], 2e11)
+    assert float(one.peak_pressure) == nacre.solve(**ball(THICKNESS[1], 2e11, 10)).peak_pressure
+
+
+def test_shapes_and_pairs_are_parameters_with_labels() -> None:
+    shapes = {"small": nacre.Sphere(1e-3), "large": nacre.Sphere(5e-3)}
+    tilts = [(None, None), (1e-4, None)]
+    case = {"body": STEEL, "load": 5.0, "grid": GRID}
+    study = nacre.sweep(case, {"shape": shapes, "tilt": tilts}, outputs=["peak_pressure"])
+    assert study["shape"].values.tolist() == ["small", "large"]
+    assert study["tilt"].values.tolist() == ["(None, None)", "(0.0001, None)"]
+    expected = nacre.solve(shapes["large"], STEEL, load=5.0, grid=GRID, tilt=(1e-4, None))
+    found = study.peak_pressure.sel(shape="large", tilt="(0.0001, None)")
+    assert float(found) == expected.peak_pressure
+
+
+def test_each_solve_has_one_thread_unless_the_case_says_otherwise(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = []
+
+    def solve(**arguments: Any) -> nacre.Solution:
+        asked.append(arguments["threads"])
+        return nacre.solve(**arguments)
+
+    monkeypatch.setattr("nacre._core.solve", solve)
+    nacre.sweep(ball, {"thickness": [1e-5], "young": YOUNG})
+    assert asked == [1, 1]
+    nacre.sweep(lambda load: ball(1e-5, 1e11, load) | {"threads": 2}, {"load": [5.0]})
+    assert asked == [1, 1, 2]
+
+
+def test_a_failure_is_recorded_and_stops_nothing(tmp_path: Path) -> None:
+    def fails(solution: nacre.Solution) -> float:
+        return math.sqrt(solution.approach - limit)
+
+    limit = 0.0
+    parameters = {"thickness": [1e-5, -1.0], "young": [1e11], "load": [5.0, 0.0, 10.0]}
+    store = tmp_path / "study.nc"
+    with pytest.warns(nacre.NacreWarning, match="4 of 6 cases failed"):
+        study = nacre.sweep(ball, parameters, store=store)
+    errors = study.error.sel(young=1e11)
+    assert "thickness must be finite and above 0" in str(errors.sel(thickness=-1.0, load=5).item())
+    assert "load must be finite and above 0" in str(errors.sel(thickness=1e-5, load=0).item())
+    assert (np.isnan(study.peak_pressure) == (study.error != "")).all()
+    one = study.peak_pressure.sel(thickness=1e-5, load=10).item()
+    assert one == nacre.solve(**ball(1e-5, 1e11, 10)).peak_pressure
+    assert xarray.load_dataset(store, engine="h5netcdf").identical(study)
+
+    limit = 1.0
+    with pytest.warns(nacre.NacreWarning, match="1 of 1 cases failed"):
+        study = nacre.sweep(ball, {"thickness": [1e-5], "young": [1e11]}, outputs=[fails, "tilt"])
+    assert "math domain error" in str(study.error.item())
+    assert np.isnan(study.fails).all()
+    assert study.tilt.sizes["axis"] == 2
+
+
+def test_warnings_of_a_case_are_in_the_dataset() -> None:
+    study = nacre.sweep(ball, {"thickness": [1e-5], "young": [1e11], "load": [5.0, 3e2]})
+    assert ["edge of the grid" in text for text in study.warnings.values.ravel()] == [False, True]
+
+
+def count_solves(monkeypatch: pytest.MonkeyPatch) -> list[None]:
+    solves: list[None] = []
+
+    def solve(**arguments: Any) -> nacre.Solution:
+        solves.append(None)
+        return nacre.solve(**arguments)
+
+    monkeypatch.setattr("nacre._core.solve", solve)
+    return solves
+
+
+def test_what_is_finished_is_not_repeated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    solves = count_solves(monkeypatch)
+    store = tmp_path / "study.nc"
+    first = nacre.sweep(ball, PARAMETERS, store=store)
+    assert len(solves) == 6
+    assert nacre.sweep(ball, PARAMETERS, store=store).identical(first)
+    assert len(solves) == 6
+    nacre.sweep(ball, PARAMETERS | {"young": [*YOUNG, 1e12]}, store=store)
+    assert len(solves) == 9  # only those that are new
+    nacre.sweep(ball, PARAMETERS, store=store, outputs=["contact_area"])
+    assert len(solves) == 15  # another question
+    nacre.sweep(ball, {"thickness": [1e-6, 1e-6], "young": [1e11]})
+    assert len(solves) == 16  # the same case twice in one study
+
+
+def test_a_changed_output_function_is_another_question(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solves = count_solves(monkeypatch)
+    case = {"thickness": [1e-5], "young": [1e11]}
+    long = np.ones(5000)  # its repr leaves out the middle
+    changed = long.copy()
+    changed[2500] = 2.0
+    for weights in (long, changed, changed.copy()):
+
+        def total(solution: nacre.Solution, weights: Any = weights) -> float:
+            return float(weights.sum()) * solution.load
+
+        study = nacre.sweep(ball, case, outputs=[total], store=tmp_path / "study.nc")
+        assert study.total.item() == pytest.approx(weights.sum() * 10.0, rel=1e-9)
+    assert len(solves) == 2
+
+
+def test_a_function_is_its_code_and_what_it_uses() -> None:
+    def made(source: str) -> Any:
+        names: dict[str, Any] = {"__name__": "user", "np": np}
+        exec(source, names)
+        return code_of(names["f"])
+
+    first = made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
+    assert first == made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
+    for other in (
+        "LIMIT = 2.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT",
+        "LIMIT = 1.0\ndef g(s): return s.approach\ndef f(s): return g(s) > LIMIT",
+        "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) < LIMIT",
+        "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return np.sum(g(s) > LIMIT)",
+    ):
+        assert made(other) != first
+    recursive = "def f(s): return f(s) if s else 0"
+    assert made(recursive) == made(recursive)
+
+
+def test_failed_cases_are_tried_again_when_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, case = tmp_path / "study.nc", {"thickness": [1e-5], "young": [1e11]}
+
+    def exhausted(**_: object) -> None:
+        raise MemoryError("no room")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("nacre._core.solve", exhausted)
+        with pytest.warns(nacre.NacreWarning, match="1 of 1"):
+            nacre.sweep(ball, case, store=store)
+    with pytest.warns(nacre.NacreWarning, match="1 of 1"):
+        assert "no room" in str(nacre.sweep(ball, case, store=store).error.item())
+    assert nacre.sweep(ball, case, store=store, retry=True).error.item() == ""
+    assert nacre.sweep(ball, case, store=store).error.item() == ""
+
+
+def test_a_line_cut_short_is_dropped_and_a_damaged_one_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, journal = tmp_path / "study.nc", tmp_path / "study.journal"
+    expected = nacre.sweep(ball, PARAMETERS, store=store)
+    whole = journal.read_bytes()
+    solves = count_solves(monkeypatch)
+    for cut in (1, 2, 60):
+        journal.write_bytes(whole[:-cut])
+        assert nacre.sweep(ball, PARAMETERS, store=store).identical(expected)
+        assert len(solves) == 1
+        solves.clear()
+        assert len(journal.read_bytes().splitlines()) == 6
+    journal.write_bytes(b"{" + whole)
+    with pytest.raises(ValueError, match="is no journal of a study: line 1"):
+        nacre.sweep(ball, PARAMETERS, store=store)
+
+
+KILLED = """
+import sys
+import nacre, cases
+
+def ball(load):
+    steel = nacre.Elastic(210e9, 0.3)
+    body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(1e11, 0.3), 1e-5)])
+    grid = nacre.Grid((24, 20), (2e-4, 2e-4))
+    return dict(shape=nacre.Sphere(5e-3), body=body, grid=grid, load=load)
+
+parameters = {"load": [5 + 0.01 * k for k in range(int(sys.argv[1]))]}
+nacre.sweep(ball, parameters, outputs=[cases.logged, "approach"], store="study.nc")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
+    count, kills = 200, 3
+    (tmp_path / "cases.py").write_text(MODULE)
+    (tmp_path / "script.py").write_text(KILLED)
+    store, journal, log = (tmp_path / name for name in ("study.nc", "study.journal", "cases.log"))
+    command = [sys.executable, "script.py", str(count)]
+
+    def finished() -> list[str]:
+        # Of what a kill left: a line without its end is not finished.
+        lines = journal.read_bytes().splitlines(keepends=True) if journal.exists() else []
+        return [json.loads(line)["key"] for line in lines if line.endswith(b"\n")]
+
+    rng = random.Random(7)
+    kept: list[str] = []
+    for kill in range(kills):
+        target = len(kept) + rng.randint(5, 50)
+        with subprocess.Popen(command, cwd=tmp_path) as process:
+            while process.poll() is None and len(finished()) < target:
+                time.sleep(1e-4)
+            time.sleep(0.003 * rng.random())
+            process.send_signal(signal.SIGKILL)
+        assert process.returncode == -signal.SIGKILL, f"it ended before kill {kill}"
+        assert finished()[: len(kept)] == kept  # none lost
+        kept = finished()
+        assert not store.exists()
+    subprocess.run(command, cwd=tmp_path, check=True)
+
+    assert len(finished()) == len(set(finished())) == count  # none twice
+    assert finished()[: len(kept)] == kept
+    # Solved again is only what a kill interrupted: at most one case for each thread.
+    solved = Counter(log.read_text().split())
+    assert len(solved) == count
+    assert sum(solved.values()) - count <= kills * (os.cpu_count() or 1)
+    study = xarray.load_dataset(store, engine="h5netcdf")
+    assert (study.error == "").all()
+    for load in (5.0, 5.5, 6.99):
+        one = study.sel(load=load, method="nearest")
+        expected = nacre.solve(**ball(1e-5, 1e11, one["load"].item()))
+        assert one.logged.item() == expected.peak_pressure
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
+def test_ctrl_c_stops_a_study_and_keeps_what_is_finished(tmp_path: Path) -> None:
+    (tmp_path / "cases.py").write_text(MODULE)
+    (tmp_path / "script.py").write_text(KILLED)
+    journal = tmp_path / "study.journal"
+    command = [sys.executable, "script.py", "5000"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE) as process:
+        while not (journal.exists() and journal.stat().st_size):
+            assert process.poll() is None
+            time.sleep(1e-3)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert err.splitlines()[-1] == b"KeyboardInterrupt"
+    records = [json.loads(line) for line in journal.read_text().splitlines()]
+    assert 0 < len(records) < 5000
+    assert not any("error" in record for record in records)
+    # What was being solved was finished and kept: nothing that was logged is missing.
+    assert len(records) == len((tmp_path / "cases.log").read_text().splitlines())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the lock is another there")
+def test_two_processes_do_not_write_one_study(tmp_path: Path) -> None:
+    store = tmp_path / "study.nc"
+    hold = (
+        "import sys; from pathlib import Path; from nacre._journal import Journal\n"
+        f"with Journal(Path({str(store.with_suffix('.journal'))!r})):\n"
+        "    print('held', flush=True); sys.stdin.read()"
+    )
+    command = [sys.executable, "-c", hold]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"held\n"
+        with pytest.raises(BlockingIOError, match="another process is running this study"):
+            nacre.sweep(ball, PARAMETERS, store=store)
+        process.communicate()
+    assert nacre.sweep(ball, PARAMETERS, store=store).error.size == 6
+
+
+def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "study_that_breaks.py").write_text(MODULE)
+    monkeypatch.syspath_prepend(tmp_path)
+    fatal = importlib.import_module("study_that_breaks").fatal
+    parameters = {"thickness": [1e-5], "young": [1e11], "load": [1.0, 2.0, 3.0, 4.0]}
+    with (
+        ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as executor,
+        pytest.raises(BrokenProcessPool),
+    ):
+        nacre.sweep(
+            ball, parameters, outputs=[fatal], store=tmp_path / "study.nc", executor=executor
+        )
+    lines = (tmp_path / "study.journal").read_text().splitlines()
+    assert [json.loads(line)["parameters"]["load"] for line in lines] == [1.0, 2.0]
+    assert not any("error" in json.loads(line) for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "kind", "message"),
+    [
+        ((ball, {"thickness": 1.0}), {}, TypeError, "thickness must be a sequence"),
+        ((ball, {"thickness": "ab"}), {}, TypeError, "thickness must be a sequence"),
+        ((ball, {"thickness": []}), {}, ValueError, "thickness must have at least one value"),
+        ((ball, PARAMETERS), {"outputs": ["peak"]}, ValueError, "outputs must be attributes"),
+        ((ball, PARAMETERS), {"outputs": []}, ValueError, "outputs must be at least one"),
+        ((ball, PARAMETERS), {"outputs": ["load", "load"]}, ValueError, "different names"),
+        ((ball, PARAMETERS), {"outputs": "load"}, TypeError, "outputs must be a sequence"),
+        ((ball, PARAMETERS), {"outputs": {"error": "load"}}, ValueError, "other names"),
+        ((ball, PARAMETERS), {"outputs": {"young": "load"}}, ValueError, "other names"),
+        ((ball, PARAMETERS), {"store": "study.txt"}, ValueError, r"store must end in \.nc"),
+        ((ball, {"thick": [1.0]}), {}, TypeError, "thick"),
+        (({"body": STEEL}, {"force": [1.0]}), {}, TypeError, "case must give arguments .*force"),
+        (({"progress": print}, {"load": [1.0]}), {}, TypeError, "is not a value that can be kept"),
+    ],
+)
+def test_bad_input_is_refused_before_anything_is_solved(
+    arguments: tuple[Any, ...], options: dict[str, Any], kind: type[Exception], message: str
+) -> None:
+    with pytest.raises(kind, match=message):
+        nacre.sweep(*arguments, **options)
+
+
+def test_the_load_curve_of_a_sphere_is_that_of_hertz() -> None:
+    curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [1.0, 10.0, 100.0])
+    radius = (0.75 * curve["load"] * 5e-3 / STEEL.plane_strain_modulus) ** (1 / 3)
+    # Discretisation with 64 cells over the contact: approach 1e-3, stiffness follows the area of
+    # whole cells, 3e-3.
+    np.testing.assert_allclose(curve.approach, radius**2 / 5e-3, rtol=2e-3)
+    hertz = 2 * STEEL.plane_strain_modulus * radius
+    np.testing.assert_allclose(curve.stiffness, hertz, rtol=5e-3)
+    # And it is the slope of the curve: a difference quotient of the same discrete contact.
+    near = design.load_curve(nacre.Sphere(5e-3), STEEL, [9.99, 10.01], grid=GRID)
+    slope = float(near["load"].diff("load")[0] / near.approach.diff("load")[0])
+    mean = float(near.stiffness.mean())
+    # The contact gains cells one by one, each of 1/n of the stiffness of n cells: below 5e-3.
+    assert slope == pytest.approx(mean, rel=5e-3)
+
+
+def test_a_coating_of_the_substrates_modulus_changes_nothing_in_the_chart() -> None:
+    chart = design.coating_chart(
+        nacre.Sphere(5e-3),
+        STEEL,
+        thickness=[1e-6, 1e-4],
+        young=[105e9, 210e9, 420e9],
+        load=10.0,
+        grid=GRID,
+    )
+    bare = nacre.solve(nacre.Sphere(5e-3), STEEL, load=10.0, grid=GRID)
+    same = chart.peak_pressure.sel(young=210e9)
+    np.testing.assert_allclose(same, bare.peak_pressure, rtol=1e-6)  # tolerance of the solver, 1e-8
+    assert (chart.peak_pressure.diff("young") > 0).all()
+    assert chart.peak_pressure.attrs["units"] == "Pa"
+    assert chart["thickness"].attrs["units"] == "m"
+
+
+def test_the_tilt_curve_is_odd_and_inverts_the_eccentricity() -> None:
+    roller = nacre.Roller(5e-3, 8e-3, 2.0)
+    grid = nacre.Grid((128, 24), (16e-3, 3e-4))
+    curve = design.tilt_curve(roller, STEEL, [-3e-5, 0.0, 3e-5], load=1e3, grid=grid)
+    moment = curve.moment.sel(axis="x").values
+    # Symmetric to the tolerance of the solver, 1e-8, against W times half the side.
+    assert abs(moment[1]) < 1e-6 * 1e3 * 8e-3
+    assert moment[2] == pytest.approx(-moment[0], rel=1e-6)
+    solution = nacre.solve(
+        roller, STEEL, load=1e3, eccentricity=(float(moment[2]) / 1e3, None), grid=grid
+    )
+    assert solution.tilt[0] == pytest.approx(3e-5, rel=1e-5)
+
+
+def test_an_unknown_option_of_a_helper_is_refused() -> None:
+    with pytest.raises(TypeError, match="force: no argument of"):
+        design.load_curve(nacre.Sphere(5e-3), STEEL, [1.0], force=3)
