@@ -27,6 +27,7 @@ mod problem;
 mod review;
 mod solution;
 mod stiffness;
+mod sums;
 
 pub use automatic::{choose_grid, solve};
 pub use batch::Case;
@@ -454,8 +455,8 @@ impl Fields {
         let p = slice(&self.pressure);
         problem.apply(p, slice_mut(&mut self.displacement), &mut self.workspace);
         let u = slice(&self.displacement);
-        self.lambda = problem.gap_into(p, u, slice_mut(&mut self.gap));
-        let quality = problem.quality(p, u, slice(&self.gap));
+        let (lambda, quality) = problem.gap_into(p, u, slice_mut(&mut self.gap));
+        self.lambda = lambda;
         self.quality = Some(quality);
         quality
     }

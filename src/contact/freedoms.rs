@@ -5,6 +5,7 @@ use std::ops::Range;
 use ndarray::{Array2, ArrayRef2};
 
 use super::hull::{hull_half_planes, interval, outline};
+use super::sums::sum;
 use crate::error::{Error, Result, finite, positive};
 use crate::grid::Grid;
 
@@ -278,56 +279,82 @@ impl Freedoms {
         self.loaded.contains(&true)
     }
 
-    /// Σ over cells of `f`(cell) · (1, x, y), by rows, in a fixed order.
-    pub(super) fn moments(&self, f: impl Fn(usize) -> f64) -> [f64; 3] {
-        let [x, y] = &self.columns;
+    /// Rows of the grid: x, and which cells.
+    fn rows(&self) -> impl Iterator<Item = (f64, Range<usize>)> {
+        let ny = self.columns[1].len();
+        let x = self.columns[0].iter().enumerate();
+        x.map(move |(i, &x)| (x, i * ny..(i + 1) * ny))
+    }
+
+    /// Σ over cells of `values` · (1, x, y).
+    pub(super) fn moments(&self, values: &[f64]) -> [f64; 3] {
+        let y = &self.columns[1];
         let mut sums = [0.0; 3];
-        for (i, x) in x.iter().enumerate() {
-            let (mut row, mut row_y) = (0.0, 0.0);
-            for (j, y) in y.iter().enumerate() {
-                let value = f(i * self.columns[1].len() + j);
-                row += value;
-                row_y += value * y;
-            }
-            sums[0] += row;
-            sums[1] += row * x;
-            sums[2] += row_y;
+        for (x, row) in self.rows() {
+            let [s, sy] = sum([&values[row], y], |[v, y]| [v, v * y]);
+            add_moments(&mut sums, x, [s, sy]);
         }
         sums
     }
 
-    /// Σ weight · b bᵀ over cells.
-    pub(super) fn gram(&self, weight: impl Fn(usize) -> f64) -> [[f64; 3]; 3] {
-        let [x, y] = &self.columns;
-        let mut sums = [[0.0; 3]; 3];
-        for (i, x) in x.iter().enumerate() {
-            let (mut s, mut sy, mut syy) = (0.0, 0.0, 0.0);
-            for (j, y) in y.iter().enumerate() {
-                let w = weight(i * self.columns[1].len() + j);
-                s += w;
-                sy += w * y;
-                syy += w * y * y;
-            }
-            sums[0][0] += s;
-            sums[0][1] += s * x;
-            sums[0][2] += sy;
-            sums[1][1] += s * x * x;
-            sums[1][2] += sy * x;
-            sums[2][2] += syy;
+    /// Σ over the cells with `member` of `values` · (1, x, y).
+    pub(super) fn moments_on(&self, values: &[f64], member: &[bool]) -> [f64; 3] {
+        let masked = |k: usize| if member[k] { values[k] } else { 0.0 };
+        let mut row_values = vec![0.0; self.columns[1].len()];
+        let mut sums = [0.0; 3];
+        for (x, row) in self.rows() {
+            let cells = row_values.iter_mut().zip(row);
+            cells.for_each(|(value, k)| *value = masked(k));
+            let [s, sy] = sum([&row_values, &self.columns[1]], |[v, y]| [v, v * y]);
+            add_moments(&mut sums, x, [s, sy]);
         }
-        sums[1][0] = sums[0][1];
-        sums[2][0] = sums[0][2];
-        sums[2][1] = sums[1][2];
         sums
     }
 
-    /// The multipliers λ that make `f` − Bλ least over the cells with `member`.
-    pub(super) fn fit(&self, f: &[f64], member: impl Fn(usize) -> bool) -> [f64; 3] {
+    /// The multipliers λ that make u + h − Bλ least over the cells with pressure.
+    pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64]) -> [f64; 3] {
         if !self.any_loaded() {
             return [0.0; 3];
         }
-        let right = self.moments(|k| if member(k) { f[k] } else { 0.0 });
-        self.solve(&self.gram(|k| f64::from(u8::from(member(k)))), right)
+        let (mut right, mut gram) = ([0.0; 3], [[0.0; 3]; 3]);
+        for (x, row) in self.rows() {
+            let inputs = [&p[row.clone()], &u[row.clone()], &h[row], &self.columns[1]];
+            let [s, sy, syy, f, fy] = sum(inputs, |[p, u, h, y]| {
+                let (weight, value) = if p > 0.0 { (1.0, u + h) } else { (0.0, 0.0) };
+                [weight, weight * y, weight * y * y, value, value * y]
+            });
+            add_moments(&mut right, x, [f, fy]);
+            add_gram(&mut gram, x, [s, sy, syy]);
+        }
+        self.solve(&symmetric(gram), right)
+    }
+
+    /// Takes from `values` what is nearest to them of the form Bλ over the cells with `member`, and
+    /// all of them outside.
+    pub(super) fn project(&self, values: &mut [f64], member: &[bool]) {
+        for (value, member) in values.iter_mut().zip(member) {
+            if !member {
+                *value = 0.0;
+            }
+        }
+        let mut gram = [[0.0; 3]; 3];
+        for (x, row) in self.rows() {
+            let mut sums = [0.0; 3];
+            for (member, y) in member[row].iter().zip(&self.columns[1]) {
+                if *member {
+                    sums[0] += 1.0;
+                    sums[1] += y;
+                    sums[2] += y * y;
+                }
+            }
+            add_gram(&mut gram, x, sums);
+        }
+        let mean = self.solve(&symmetric(gram), self.moments(values));
+        self.for_each(mean, |k, b| {
+            if member[k] {
+                values[k] -= b;
+            }
+        });
     }
 
     /// Calls `f` with each cell and its Bλ.
@@ -373,7 +400,7 @@ impl Freedoms {
 
     /// Whether Bᵀp is on target within rounding.
     pub(super) fn balanced(&self, pressure: &[f64]) -> bool {
-        let sums = self.moments(|k| pressure[k]);
+        let sums = self.moments(pressure);
         let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let force = sums[0].abs().max(asked);
         (0..3).all(|k| !self.loaded[k] || (sums[k] - self.target[k]).abs() <= BALANCED * force)
@@ -389,56 +416,99 @@ impl Freedoms {
         }
         if self.loaded[0] {
             // First the force alone, so that μ stays small against 1.
-            let force: f64 = self.moments(|k| pressure[k])[0];
+            let force: f64 = self.moments(pressure)[0];
             if force <= 0.0 {
                 return false;
             }
             let factor = self.target[0] / force;
             pressure.iter_mut().for_each(|p| *p *= factor);
         }
+        // p [1 + Bμ]₊ summed: Bᵀ of it less the target, and how large its force is.
         let mismatch = |p: &[f64], mu: [f64; 3]| {
-            let mut factors = vec![0.0; p.len()];
-            self.for_each(mu, |k, b| factors[k] = p[k] * (1.0 + b).max(0.0));
-            let sums = self.moments(|k| factors[k]);
-            let gap = [0, 1, 2].map(|k| {
+            let mut sums = [0.0; 3];
+            for (x, row) in self.rows() {
+                let along = 1.0 + mu[0] + mu[1] * x;
+                let row = sum([&p[row], &self.columns[1]], |[p, y]| {
+                    let factor = along + mu[2] * y;
+                    let p = if factor > 0.0 { p * factor } else { 0.0 };
+                    [p, p * y]
+                });
+                add_moments(&mut sums, x, row);
+            }
+            let missing = |k: usize| {
                 if self.loaded[k] {
                     self.target[k] - sums[k]
                 } else {
                     0.0
                 }
-            });
-            (factors, sums[0], gap)
+            };
+            (sums[0], [0, 1, 2].map(missing))
+        };
+        let curvature = |p: &[f64], mu: [f64; 3]| {
+            let mut gram = [[0.0; 3]; 3];
+            for (x, row) in self.rows() {
+                let along = 1.0 + mu[0] + mu[1] * x;
+                let row = sum([&p[row], &self.columns[1]], |[p, y]| {
+                    let p = if along + mu[2] * y > 0.0 { p } else { 0.0 };
+                    [p, p * y, p * y * y]
+                });
+                add_gram(&mut gram, x, row);
+            }
+            symmetric(gram)
         };
         let size = |gap: [f64; 3]| gap.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let mut mu = [0.0; 3];
-        let (mut factors, mut force, mut gap) = mismatch(pressure, mu);
+        let (mut force, mut gap) = mismatch(pressure, mu);
         let enough = |force: f64| 4.0 * f64::EPSILON * force.max(size(self.target));
+        let mut helps = true;
         for _ in 0..100 {
-            if size(gap) <= enough(force) {
+            if size(gap) <= enough(force) || !helps {
                 break;
             }
-            let matrix = self.gram(|k| if factors[k] > 0.0 { pressure[k] } else { 0.0 });
-            let step = self.solve(&matrix, gap);
+            let step = self.solve(&curvature(pressure, mu), gap);
             let mut length = 1.0;
-            loop {
+            // Where no step helps it is rounding, or there is no such pressure on these cells.
+            helps = loop {
                 let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
-                let (f, w, g) = mismatch(pressure, trial);
+                let (w, g) = mismatch(pressure, trial);
                 if size(g) < size(gap) {
-                    (mu, factors, force, gap) = (trial, f, w, g);
-                    break;
+                    (mu, force, gap) = (trial, w, g);
+                    break true;
                 }
                 length *= 0.5;
                 if length < 1e-9 {
-                    // No step helps: rounding, or no such pressure on these cells.
-                    let done = size(gap) <= 1e3 * enough(force);
-                    if done {
-                        pressure.copy_from_slice(&factors);
-                    }
-                    return done;
+                    break false;
                 }
-            }
+            };
         }
-        pressure.copy_from_slice(&factors);
-        size(gap) <= 1e3 * enough(force)
+        let done = size(gap) <= 1e3 * enough(force);
+        if done || helps {
+            self.for_each(mu, |k, b| pressure[k] *= (1.0 + b).max(0.0));
+        }
+        done
     }
+}
+
+/// Adds the sums of a row, of 1 and y, to those of 1, x and y.
+fn add_moments(sums: &mut [f64; 3], x: f64, [s, sy]: [f64; 2]) {
+    sums[0] += s;
+    sums[1] += s * x;
+    sums[2] += sy;
+}
+
+/// Adds the sums of a row, of 1, y and y², to the upper half of those of b bᵀ, b = (1, x, y).
+fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3]) {
+    sums[0][0] += s;
+    sums[0][1] += s * x;
+    sums[0][2] += sy;
+    sums[1][1] += s * x * x;
+    sums[1][2] += sy * x;
+    sums[2][2] += syy;
+}
+
+fn symmetric(mut upper: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    upper[1][0] = upper[0][1];
+    upper[2][0] = upper[0][2];
+    upper[2][1] = upper[1][2];
+    upper
 }

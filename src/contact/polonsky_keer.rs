@@ -29,6 +29,7 @@ pub(super) fn solve(
     let cells = p.len();
     let mut direction = vec![0.0; cells];
     let mut response = vec![0.0; cells];
+    let none = vec![0.0; cells];
     let mut steepness_before = 1.0;
     let mut conjugate = false;
     let mut work = 0.0;
@@ -36,8 +37,7 @@ pub(super) fn solve(
     for iterations in 0.. {
         problem.apply(p, u, workspace);
         work += problem.convolution.work();
-        let lambda = problem.gap_into(p, u, g);
-        let quality = problem.quality(p, u, g);
+        let (lambda, quality) = problem.gap_into(p, u, g);
         let end = |termination| Outcome {
             termination,
             iterations,
@@ -77,7 +77,7 @@ pub(super) fn solve(
 
         problem.apply(&direction, &mut response, workspace);
         work += problem.convolution.work();
-        let mean = freedoms.fit(&response, |k| p[k] > 0.0);
+        let mean = freedoms.fit(p, &response, &none);
         freedoms.for_each(mean, |k, b| response[k] -= b);
         let (mut slope, mut curvature) = (0.0, 0.0);
         for (k, &t) in direction.iter().enumerate() {

@@ -15,6 +15,7 @@
 use std::ops::Range;
 
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
+use super::sums::dot;
 use crate::convolution::{Convolution, Workspace};
 
 /// A convolution and what approximates it.
@@ -138,8 +139,7 @@ impl<'a> Preconditioned<'a> {
         self.displace(p);
 
         for iterations in 0.. {
-            let lambda = problem.gap_into(p, &self.u, &mut g);
-            let quality = problem.quality(p, &self.u, &g);
+            let (lambda, quality) = problem.gap_into(p, &self.u, &mut g);
             let work = self.work;
             let end = |termination| Outcome {
                 termination,
@@ -178,7 +178,9 @@ impl<'a> Preconditioned<'a> {
             self.deflate(&mut z);
             let mut descent = dot(&r, &z);
             if descent <= 0.0 {
-                self.project(&r, &mut z);
+                // The oblique projection failed: steepest descent, projected orthogonally.
+                z.copy_from_slice(&r);
+                problem.freedoms.project(&mut z, &self.contact);
                 descent = dot(&r, &z);
                 conjugate = false;
             }
@@ -341,16 +343,6 @@ impl<'a> Preconditioned<'a> {
         }
     }
 
-    /// `z` = `r` projected orthogonally, where the oblique projection failed.
-    fn project(&self, r: &[f64], z: &mut [f64]) {
-        z.copy_from_slice(r);
-        let freedoms = self.problem.freedoms;
-        let mean = freedoms.fit(z, |k| self.contact[k]);
-        freedoms.for_each(mean, |k, b| {
-            z[k] = if self.contact[k] { z[k] - b } else { 0.0 }
-        });
-    }
-
     /// Restricts `z` to the contact C and removes from it what would change force and moments.
     ///
     /// ```text
@@ -370,13 +362,13 @@ impl<'a> Preconditioned<'a> {
         let mut matrix = [[0.0; 3]; 3];
         for (column, image) in self.inverse_freedoms.iter().enumerate() {
             if freedoms.loaded[column] {
-                let sums = freedoms.moments(|k| if contact[k] { image[k] } else { 0.0 });
+                let sums = freedoms.moments_on(image, contact);
                 for (row, sum) in sums.into_iter().enumerate() {
                     matrix[row][column] = sum;
                 }
             }
         }
-        let right = freedoms.moments(|k| z[k]);
+        let right = freedoms.moments(z);
         let factors = freedoms.solve(&matrix, right);
         for (factor, image) in factors.into_iter().zip(&self.inverse_freedoms) {
             if factor != 0.0 {
@@ -386,8 +378,4 @@ impl<'a> Preconditioned<'a> {
             }
         }
     }
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

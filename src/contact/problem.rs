@@ -1,6 +1,7 @@
 //! The contact problem in the form that the algorithms solve.
 
 use super::freedoms::Freedoms;
+use super::sums::{largest, sum};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -41,14 +42,16 @@ impl Problem<'_> {
         self.convolution.self_influence()
     }
 
-    /// Gap g = u + h − Bλ, where λ makes it least over the contact; and λ.
-    pub(super) fn gap_into(&self, p: &[f64], u: &[f64], g: &mut [f64]) -> [f64; 3] {
+    /// Gap g = u + h − Bλ, where λ makes it least over the contact; λ, and how good it is.
+    pub(super) fn gap_into(&self, p: &[f64], u: &[f64], g: &mut [f64]) -> ([f64; 3], Quality) {
+        let lambda = self.freedoms.fit(p, u, self.gap);
         for ((g, u), h) in g.iter_mut().zip(u).zip(self.gap) {
             *g = u + h;
         }
-        let lambda = self.freedoms.fit(g, |k| p[k] > 0.0);
-        self.freedoms.for_each(lambda, |k, b| g[k] -= b);
-        lambda
+        if self.freedoms.any_loaded() {
+            self.freedoms.for_each(lambda, |k, b| g[k] -= b);
+        }
+        (lambda, self.quality(p, u, g))
     }
 
     /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
@@ -66,16 +69,16 @@ impl Problem<'_> {
         self.freedoms.balance(p);
     }
 
-    pub(super) fn quality(&self, p: &[f64], u: &[f64], g: &[f64]) -> Quality {
-        let (mut work, mut mismatch, mut deepest, mut largest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
-        for ((p, u), g) in p.iter().zip(u).zip(g) {
-            if g.is_finite() {
-                work += p * u;
-                mismatch += p * g.abs();
-                deepest = deepest.max(-g);
-                largest = largest.max(u.abs());
-            }
-        }
+    fn quality(&self, p: &[f64], u: &[f64], g: &[f64]) -> Quality {
+        let [work, mismatch] = sum([p, u, g], |[p, u, g]| {
+            // The gap is infinite only where there is no pressure.
+            let mismatch = if p > 0.0 { p * g.abs() } else { 0.0 };
+            [p * u, mismatch]
+        });
+        let [deepest, largest] = largest([u, g], |[u, g]| {
+            let touches = g < f64::INFINITY;
+            [-g, if touches { u.abs() } else { 0.0 }]
+        });
         // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
         let over = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
             _ if !(a + scale).is_finite() => f64::INFINITY,

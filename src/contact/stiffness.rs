@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::cascade::{Window, block, bounds};
-use super::preconditioned::dot;
 use super::solution::Solution;
+use super::sums::dot;
 use crate::convolution::{Convolution, Workspace};
 use crate::error::{Error, Result};
 use crate::influence::{coefficients_on, memory};

@@ -1,0 +1,90 @@
+//! Sums in a fixed order, eight at a time: one after the other they would take longer than what they
+//! add up.
+
+const LANES: usize = 8;
+
+/// Σ `term` over the elements of `inputs`, which are equally long.
+pub(super) fn sum<const M: usize, const N: usize>(
+    inputs: [&[f64]; M],
+    term: impl Fn([f64; M]) -> [f64; N],
+) -> [f64; N] {
+    fold(inputs, [0.0; N], |sum, value| sum + value, term)
+}
+
+/// The largest of `term` and 0 over the elements of `inputs`, which are equally long.
+pub(super) fn largest<const M: usize, const N: usize>(
+    inputs: [&[f64]; M],
+    term: impl Fn([f64; M]) -> [f64; N],
+) -> [f64; N] {
+    // Not f64::max, which looks for NaN: there are none.
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    fold(inputs, [0.0; N], larger, term)
+}
+
+fn fold<const M: usize, const N: usize>(
+    inputs: [&[f64]; M],
+    start: [f64; N],
+    join: impl Fn(f64, f64) -> f64,
+    term: impl Fn([f64; M]) -> [f64; N],
+) -> [f64; N] {
+    let mut lanes = start.map(|start| [start; LANES]);
+    let parts = inputs.map(|input| input.as_chunks::<LANES>());
+    let count = parts.iter().map(|(chunks, _)| chunks.len()).min();
+    for chunk in 0..count.unwrap_or(0) {
+        let block = parts.map(|(chunks, _)| chunks[chunk]);
+        for lane in 0..LANES {
+            let values = term(block.map(|block| block[lane]));
+            for (lanes, value) in lanes.iter_mut().zip(values) {
+                lanes[lane] = join(lanes[lane], value);
+            }
+        }
+    }
+    let rest = parts.iter().map(|(_, rest)| rest.len()).min();
+    for lane in 0..rest.unwrap_or(0) {
+        let values = term(parts.map(|(_, rest)| rest[lane]));
+        for (lanes, value) in lanes.iter_mut().zip(values) {
+            lanes[lane] = join(lanes[lane], value);
+        }
+    }
+    lanes.map(|l| {
+        let even = join(join(l[0], l[4]), join(l[2], l[6]));
+        join(even, join(join(l[1], l[5]), join(l[3], l[7])))
+    })
+}
+
+/// Σ a b
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let [dot] = sum([a, b], |[a, b]| [a * b]);
+    dot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{dot, largest, sum};
+
+    #[test]
+    fn sums_and_largest_of_any_length() {
+        for n in 0..40 {
+            let a: Vec<f64> = (0..n).map(f64::from).collect();
+            let b: Vec<f64> = a.iter().map(|a| 2.0 - a).collect();
+            // Integers: every order gives the same sum.
+            let expected: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+            assert_eq!(dot(&a, &b).to_bits(), (expected + 0.0).to_bits());
+            let [first, second] = sum([&a], |[a]| [a, a * a]);
+            assert_eq!(
+                first.to_bits(),
+                a.iter().fold(0.0, |s: f64, a| s + a).to_bits()
+            );
+            assert_eq!(
+                second.to_bits(),
+                a.iter().fold(0.0, |s: f64, a| s + a * a).to_bits()
+            );
+            let [top] = largest([&a, &b], |[a, b]| [a + 3.0 * b]);
+            let expected = a
+                .iter()
+                .zip(&b)
+                .fold(0.0, |t: f64, (a, b)| t.max(a + 3.0 * b));
+            assert_eq!(top.to_bits(), expected.to_bits());
+        }
+    }
+}
