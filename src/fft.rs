@@ -17,7 +17,7 @@ use crate::threads::Threads;
 
 mod parity;
 
-pub(crate) use parity::{ParitySpectrum, Transformed};
+pub(crate) use parity::{KernelRows, ParitySpectrum, Transformed};
 
 /// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
 /// columns of a few thousand points stay in the second-level cache.

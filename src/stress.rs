@@ -17,16 +17,16 @@
 use std::ops::ControlFlow;
 
 use ndarray::{Array1, Array3, ArrayRef2};
-use rayon::prelude::*;
 
 use crate::body::{HalfSpace, Interface, Substrate};
 use crate::error::{Error, Result, finite};
-use crate::fft::{ParitySpectrum, PaddedTransform, Transformed, Workspace};
+use crate::fft::{KernelRows, PaddedTransform, ParitySpectrum, Transformed, Workspace};
 use crate::grid::Grid;
 use crate::memory::check_memory;
 use crate::response::interior::Place;
 use crate::threads::Threads;
 
+mod cells;
 mod components;
 mod hankel;
 mod kernel;
@@ -34,6 +34,7 @@ mod line;
 mod rectangle;
 mod table;
 
+use cells::{Cells, Source};
 use components::{COMPONENTS, EXCHANGED, ODD};
 use kernel::{Kernel, Plan};
 use line::LinePlan;
@@ -165,28 +166,25 @@ pub fn stress_watched(
         8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, options),
     )?;
     let loaded = Loaded::new(body, grid, pressure, options)?;
-    let mut kept: Vec<Vec<f64>> = vec![Vec::new(); fields];
+    let cells = ox * oy;
+    let mut kept: Vec<Vec<f64>> = vec![vec![0.0; depths.len() * cells]; fields];
+    let mut plane = vec![0.0; pressure.len()];
+    let mut scratch = loaded.scratch(fields);
     let mut done = 0;
-    let mut buffer = vec![0.0; pressure.len()];
-    let mut workspace = loaded.transform.workspace();
-    for place in &places {
-        let mut whole = true;
-        let lengths: Vec<usize> = kept.iter().map(Vec::len).collect();
-        let coefficients = loaded.coefficients(place);
+    'depths: for place in &places {
+        loaded.coefficients(place, &mut scratch);
         for (k, kept) in kept.iter_mut().enumerate() {
             let part = (done as f64 + k as f64 / fields as f64) / places.len() as f64;
             if progress(part).is_break() {
-                whole = false;
-                break;
+                break 'depths;
             }
-            loaded.apply(&coefficients, k, &mut buffer, &mut workspace);
-            lines.keep(&buffer, grid.shape(), kept);
-        }
-        if !whole {
-            for (kept, length) in kept.iter_mut().zip(lengths) {
-                kept.truncate(length);
+            let kept = &mut kept[done * cells..(done + 1) * cells];
+            if lines.section.is_none() {
+                loaded.apply(k, kept, &mut scratch);
+            } else {
+                loaded.apply(k, &mut plane, &mut scratch);
+                lines.keep(&plane, grid.shape(), kept);
             }
-            break;
         }
         done += 1;
     }
@@ -194,7 +192,8 @@ pub fn stress_watched(
         // The last word; there is nothing left to stop.
         let _ = progress(1.0);
     }
-    let mut arrays = kept.into_iter().map(|values| {
+    let mut arrays = kept.into_iter().map(|mut values| {
+        values.truncate(done * cells);
         Array3::from_shape_vec((done, ox, oy), values).unwrap_or_else(|_| Array3::zeros((0, 0, 0)))
     });
     let mut next = || arrays.next().unwrap_or_default();
@@ -328,23 +327,21 @@ impl Lines {
         })
     }
 
-    fn keep(&self, plane: &[f64], [nx, ny]: [usize; 2], kept: &mut Vec<f64>) {
+    /// The section of a plane.
+    fn keep(&self, plane: &[f64], [nx, ny]: [usize; 2], kept: &mut [f64]) {
         let Some(line) = &self.section else {
-            kept.extend_from_slice(plane);
+            kept.copy_from_slice(plane);
             return;
         };
-        let mix = |a: f64, b: f64| {
-            if line.weight > 0.0 {
-                a + line.weight * (b - a)
-            } else {
-                a
-            }
+        // Along the line, from one cell to the next; across it.
+        let (along, across, count) = match line.axis {
+            0 => (1, ny, ny),
+            _ => (ny, 1, nx),
         };
-        if line.axis == 0 {
-            let row = |i: usize| &plane[i * ny..(i + 1) * ny];
-            kept.extend(row(line.lower).iter().zip(row(line.upper)).map(|(a, b)| mix(*a, *b)));
-        } else {
-            kept.extend((0..nx).map(|i| mix(plane[i * ny + line.lower], plane[i * ny + line.upper])));
+        for (k, value) in kept.iter_mut().enumerate().take(count) {
+            let lower = plane[k * along + line.lower * across];
+            let upper = plane[k * along + line.upper * across];
+            *value = lower + line.weight * (upper - lower);
         }
     }
 }
@@ -371,9 +368,27 @@ enum Kernels {
     Line(LinePlan),
 }
 
-/// Coefficients at one depth: for each load, its factor, whether it flips the parity in x and in y,
-/// and the components at offsets (i, j) ≥ 0 in C order.
-struct Coefficients(Vec<(f64, [bool; 2], Vec<[f64; COMPONENTS]>)>);
+/// Memory that all depths use.
+struct Scratch {
+    loads: Vec<LoadCells>,
+    rows: KernelRows,
+    workspace: Workspace,
+}
+
+/// Coefficients of one load at one depth.
+struct LoadCells {
+    factor: f64,
+    /// The axis along which it acts, and of which it turns the parities; none for pressure.
+    axis: Option<usize>,
+    cells: Cells,
+    spectrum: ParitySpectrum,
+}
+
+impl LoadCells {
+    fn flipped(&self) -> [bool; 2] {
+        [0, 1].map(|axis| self.axis == Some(axis))
+    }
+}
 
 impl Loaded {
     fn new(
@@ -429,97 +444,118 @@ impl Loaded {
     fn memory(grid: &Grid, options: &StressOptions) -> u64 {
         let [nx, ny] = grid.shape().map(|n| n as u64);
         let loads = if options.friction == 0.0 { 1 } else { 3 };
-        // Coefficients, the transforms of one component and of the pressure, and a plane.
-        nx * ny * 8 * (loads * (COMPONENTS as u64 + 1) + 24)
+        let fields = if options.displacement { 9 } else { 6 };
+        // Coefficients of each load, and a spectrum; transforms of the pressure and of a plane.
+        (nx + 1) * (ny + 1) * 8 * (loads * (2 * fields + 2) + 14)
     }
 
-    fn coefficients(&self, place: &Place) -> Coefficients {
+    /// Memory for `fields` components.
+    fn scratch(&self, fields: usize) -> Scratch {
         let [fx, fy] = self.friction;
-        let mut loads = Vec::new();
-        match &self.kind {
+        let loads = [(1.0, None), (fx, Some(0)), (fy, Some(1))];
+        Scratch {
+            loads: loads
+                .into_iter()
+                .filter(|(factor, _)| *factor != 0.0)
+                .map(|(factor, axis)| LoadCells {
+                    factor,
+                    axis,
+                    cells: Cells::new(self.shape, fields),
+                    spectrum: self.transform.empty_spectrum(),
+                })
+                .collect(),
+            rows: self.transform.kernel_rows(),
+            workspace: self.transform.workspace(),
+        }
+    }
+
+    /// Computes the coefficients at `place`.
+    fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
+        let (plan, pressure, traction) = match &self.kind {
             Kernels::Line(plan) => {
-                loads.push((
-                    1.0,
-                    [false, false],
-                    plan.coefficients::<6, line::Pressure>(place),
-                ));
-                if fx != 0.0 {
-                    let along = plan.coefficients::<3, line::Along>(place);
-                    loads.push((fx, [true, false], along));
+                for LoadCells { axis, cells, .. } in &mut scratch.loads {
+                    cells.fill_line(&match axis {
+                        None => plan.coefficients::<6, line::Pressure>(place),
+                        Some(0) => plan.coefficients::<3, line::Along>(place),
+                        Some(_) => plan.coefficients::<6, line::Across>(place),
+                    });
                 }
-                if fy != 0.0 {
-                    let across = plan.coefficients::<6, line::Across>(place);
-                    loads.push((fy, [false, true], across));
-                }
+                return;
             }
             Kernels::Plane {
                 plan,
                 pressure,
                 traction,
-            } => self.threads.run(|| {
-                let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
-                let kernel = Kernel::new::<components::Pressure>(plan, pressure, place);
-                loads.push((
-                    1.0,
-                    [false, false],
-                    self.over_cells(|x, y| {
-                        kernel.at::<components::Pressure>([x, y], half, rectangle::under_pressure)
-                    }),
-                ));
-                if fx == 0.0 && fy == 0.0 {
-                    return;
-                }
-                let kernel = Kernel::new::<components::Traction>(plan, traction, place);
-                let closed = rectangle::under_traction;
-                if fx != 0.0 {
-                    let along = self
-                        .over_cells(|x, y| kernel.at::<components::Traction>([x, y], half, closed));
-                    loads.push((fx, [true, false], along));
-                }
-                if fy != 0.0 {
-                    let across = self.over_cells(|x, y| {
-                        let values = kernel.at::<components::Traction>([y, x], [b, a], closed);
-                        EXCHANGED.map(|k| values[k])
+            } => (plan, pressure, traction),
+        };
+        self.threads.run(|| {
+            let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
+            let mut of_traction = None;
+            for load in &mut scratch.loads {
+                let (spacing, depth, flipped) = (self.spacing, place.depth, load.flipped());
+                let Some(axis) = load.axis else {
+                    let kernel = Kernel::new::<components::Pressure>(plan, pressure, place);
+                    let closed = rectangle::under_pressure;
+                    load.cells.fill(&Source {
+                        spacing,
+                        depth,
+                        flipped,
+                        mean: |x, y| kernel.at::<components::Pressure>([x, y], half, closed),
+                        point: |x, y| kernel.point::<components::Pressure>(x, y),
                     });
-                    loads.push((fy, [false, true], across));
+                    continue;
+                };
+                let kernel = of_traction.get_or_insert_with(|| {
+                    Kernel::new::<components::Traction>(plan, traction, place)
+                });
+                let closed = rectangle::under_traction;
+                let mean = |x, y, half| kernel.at::<components::Traction>([x, y], half, closed);
+                let point = |x, y| kernel.point::<components::Traction>(x, y);
+                if axis == 0 {
+                    load.cells.fill(&Source {
+                        spacing,
+                        depth,
+                        flipped,
+                        mean: |x, y| mean(x, y, half),
+                        point,
+                    });
+                } else {
+                    let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
+                    load.cells.fill(&Source {
+                        spacing,
+                        depth,
+                        flipped,
+                        mean: |x, y| exchanged(mean(y, x, [b, a])),
+                        point: |x, y| exchanged(point(y, x)),
+                    });
                 }
-            }),
-        }
-        Coefficients(loads)
-    }
-
-    fn over_cells(
-        &self,
-        at: impl Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-    ) -> Vec<[f64; COMPONENTS]> {
-        let ([nx, ny], [dx, dy]) = (self.shape, self.spacing);
-        (0..nx * ny)
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|cell| at((cell / ny) as f64 * dx, (cell % ny) as f64 * dy))
-            .collect()
+            }
+        });
     }
 
     /// Component `k` on the plane of the coefficients.
-    fn apply(
-        &self,
-        coefficients: &Coefficients,
-        k: usize,
-        output: &mut [f64],
-        workspace: &mut Workspace,
-    ) {
-        let ny = self.shape[1];
-        let kernels: Vec<(f64, ParitySpectrum)> = coefficients
-            .0
+    fn apply(&self, k: usize, output: &mut [f64], scratch: &mut Scratch) {
+        let Scratch {
+            loads,
+            rows,
+            workspace,
+        } = scratch;
+        for load in loads.iter_mut() {
+            let flipped = load.flipped();
+            let odd = [0, 1].map(|axis| ODD[k][axis] != flipped[axis]);
+            let cells = &load.cells;
+            self.transform.parity_spectrum_into(
+                odd,
+                |i| cells.row(i, k),
+                &mut load.spectrum,
+                rows,
+                workspace,
+                &self.threads,
+            );
+        }
+        let kernels: Vec<(f64, &ParitySpectrum)> = loads
             .iter()
-            .map(|(factor, flipped, values)| {
-                let odd = [0, 1].map(|axis| ODD[k][axis] != flipped[axis]);
-                let value = |i: usize, j: usize| values[i * ny + j][k];
-                let spectrum =
-                    self.transform
-                        .parity_spectrum(odd, value, workspace, &self.threads);
-                (*factor, spectrum)
-            })
+            .map(|load| (load.factor, &load.spectrum))
             .collect();
         self.transform
             .convolve_parities(&self.pressure, &kernels, output, workspace, &self.threads);

@@ -32,7 +32,7 @@ pub(super) enum Kind {
     Stress,
     Displacement,
     /// Cosine (ν = −½) and sine (ν = ½) transforms 1/π ∫ D {cos, sin} αy dα of a line contact;
-    /// r η is then ∫ H dr.
+    /// η is then ∫₀^r H dr.
     Line,
 }
 
@@ -112,7 +112,7 @@ impl LogMesh {
         2.0 * PI / (self.points as f64 * self.spacing)
     }
 
-    /// Transforms of α^{it} for every term, in polar form: logarithm of the modulus, and phase.
+    /// Transforms of α^{it} for every term: real and imaginary parts.
     pub(super) fn multipliers(&self, order: Order) -> Vec<(f64, f64)> {
         let shift = order.kind.shift();
         let (above, below) = (0.5 * (1.0 + order.nu + shift), 0.5 * (1.0 + order.nu - shift));
@@ -121,10 +121,9 @@ impl LogMesh {
                 let t = m as f64 * self.step();
                 let (num, den) = (ln_gamma(above, 0.5 * t), ln_gamma(below, 0.5 * t));
                 // The denominator is at −it: the conjugate.
-                (
-                    shift * LN_2 + num.0 - den.0,
-                    t * LN_2 + num.1 + den.1,
-                )
+                let size = (shift * LN_2 + num.0 - den.0).exp();
+                let (sin, cos) = (t * LN_2 + num.1 + den.1).sin_cos();
+                (size * cos, size * sin)
             })
             .collect()
     }
@@ -144,8 +143,9 @@ const SPACING: f64 = 0.06;
 pub(super) struct Series<const N: usize> {
     low: f64,
     step: f64,
-    /// Real and imaginary part, of H and of η.
-    terms: Vec<[[f64; 4]; N]>,
+    /// Real and imaginary parts, of H and of r η.
+    terms: Vec<[[f64; N]; 2]>,
+    means: Vec<[[f64; N]; 2]>,
     orders: [Order; N],
     depth: f64,
     /// H/r^ν by powers of (r/depth)².
@@ -163,7 +163,8 @@ impl<const N: usize> Series<N> {
         depth: f64,
     ) -> Self {
         let step = mesh.step();
-        let mut terms = vec![[[0.0; 4]; N]; mesh.points / 2 + 1];
+        let mut terms = vec![[[0.0; N]; 2]; mesh.points / 2 + 1];
+        let mut means = terms.clone();
         let powers = std::array::from_fn(|k| powers(mesh, orders[k], &samples[k], depth));
         let mut kept = 0;
         for (k, mut samples) in samples.into_iter().enumerate() {
@@ -174,28 +175,26 @@ impl<const N: usize> Series<N> {
                 if re.hypot(im) * mesh.points as f64 > 1e-15 * largest {
                     kept = kept.max(m + 1);
                 }
-                let (log, phase) = multipliers[k][m];
+                let (cos, sin) = multipliers[k][m];
                 let t = m as f64 * step;
                 // Real series: each term but the first stands for itself and its conjugate.
-                let size = log.exp() * if m == 0 { 1.0 } else { 2.0 };
-                let (sin, cos) = phase.sin_cos();
-                let (hr, hi) = (size * (re * cos - im * sin), size * (re * sin + im * cos));
+                let twice = if m == 0 { 1.0 } else { 2.0 };
+                let (hr, hi) = (twice * (re * cos - im * sin), twice * (re * sin + im * cos));
                 // Over power − it.
                 let norm = 1.0 / (power * power + t * t);
-                terms[m][k] = [
-                    hr,
-                    hi,
-                    (power * hr - t * hi) * norm,
-                    (power * hi + t * hr) * norm,
-                ];
+                (terms[m][0][k], terms[m][1][k]) = (hr, hi);
+                means[m][0][k] = (power * hr - t * hi) * norm;
+                means[m][1][k] = (power * hi + t * hr) * norm;
             }
         }
         terms.truncate(kept);
+        means.truncate(kept);
         Self {
             low: mesh.low,
             step,
             orders: *orders,
             terms,
+            means,
             depth,
             powers,
         }
@@ -209,29 +208,31 @@ impl<const N: usize> Series<N> {
             let horner = |sum: f64, c: &f64| sum * s + c;
             return self.powers.map(|c| c.iter().rev().fold(0.0, horner));
         }
-        let [mut values, _] = self.at(r);
+        let mut values = self.sum(&self.terms, r);
         for (value, order) in values.iter_mut().zip(&self.orders) {
-            *value /= r.powi(order.nu as i32);
+            *value *= order.kind.scale(r) / r.powi(order.nu as i32);
         }
         values
     }
 
-    /// H and η at r > 0.
-    pub(super) fn at(&self, r: f64) -> [[f64; N]; 2] {
+    /// η at r > 0.
+    pub(super) fn mean(&self, r: f64) -> [f64; N] {
+        let mut values = self.sum(&self.means, r);
+        for (value, order) in values.iter_mut().zip(&self.orders) {
+            *value *= order.kind.scale(r) * r;
+        }
+        values
+    }
+
+    fn sum(&self, terms: &[[[f64; N]; 2]], r: f64) -> [f64; N] {
         let (sin, cos) = (-self.step * (r.ln() + self.low)).sin_cos();
         let (mut re, mut im) = (1.0, 0.0);
-        let mut sums = [[0.0; N]; 2];
-        for term in &self.terms {
-            for (k, [hr, hi, er, ei]) in term.iter().enumerate() {
-                sums[0][k] += hr * re - hi * im;
-                sums[1][k] += er * re - ei * im;
+        let mut sums = [0.0; N];
+        for [real, imaginary] in terms {
+            for k in 0..N {
+                sums[k] += real[k] * re - imaginary[k] * im;
             }
             (re, im) = (re * cos - im * sin, re * sin + im * cos);
-        }
-        for k in 0..N {
-            let scale = self.orders[k].kind.scale(r);
-            sums[0][k] *= scale;
-            sums[1][k] *= scale * r;
         }
         sums
     }
@@ -253,19 +254,22 @@ fn powers(mesh: &LogMesh, order: Order, samples: &[f64], depth: f64) -> [f64; MO
         factor /= divisor;
         divisor += 1.0;
     }
+    // dα = α d(ln α).
+    let power = order.kind.shift() + nu + 1.0;
+    let mut moments = [0.0; MOMENTS];
+    for (alpha, sample) in mesh.wavenumbers().zip(samples) {
+        let mut term = alpha.powf(power) * sample;
+        for moment in &mut moments {
+            *moment += term;
+            term *= (alpha * depth).powi(2);
+        }
+    }
     std::array::from_fn(|k| {
-        let k = k as f64;
-        if k > 0.0 {
+        if k > 0 {
+            let k = k as f64;
             factor *= -0.25 / (k * (nu + k));
         }
-        // dα = α d(ln α).
-        let power = order.kind.shift() + nu + 1.0;
-        let moment: f64 = mesh
-            .wavenumbers()
-            .zip(samples)
-            .map(|(alpha, sample)| alpha.powf(power) * (alpha * depth).powf(2.0 * k) * sample)
-            .sum();
-        factor * moment * mesh.spacing
+        factor * moments[k] * mesh.spacing
     })
 }
 
@@ -324,7 +328,8 @@ mod tests {
             for r in [1e-3_f64, 0.1, 0.7, 5.0, 300.0, 1e4] {
                 let root = r.hypot(z);
                 let t = (r / (root + z)).powf(nu);
-                let [[stress, displacement], _] = series.at(r);
+                let values = series.sum(&series.terms, r);
+                let [stress, displacement] = [0, 1].map(|k| values[k] * orders[k].kind.scale(r));
                 let exact = [
                     (z + nu * root) * t / root.powi(3) / (2.0 * PI),
                     t / root / (2.0 * PI),

@@ -129,7 +129,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
             h
         });
         let mean = series.filter(|_| nearest > 0.0).map(|series| {
-            Table::new([NEAREST * least, 12.0 * most], 0.0, |r| series.at(r)[1])
+            Table::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r))
         });
         Self {
             plan,
@@ -147,14 +147,14 @@ impl<'a, const N: usize> Kernel<'a, N> {
         half @ [a, b]: [f64; 2],
         closed: fn(Elastic, [f64; 2], [f64; 2], f64) -> [f64; COMPONENTS],
     ) -> [f64; COMPONENTS] {
-        let outside = (x.abs() - a).max(0.0).hypot((y.abs() - b).max(0.0));
-        let distance = SECTOR * outside.hypot(self.depth);
+        let outside = [(x.abs() - a).max(0.0), (y.abs() - b).max(0.0), self.depth];
+        let distance = SECTOR * outside.iter().map(|d| d * d).sum::<f64>().sqrt();
         let rule = |half: f64| self.plan.rules.at(distance / half);
         let mut sum = [0.0; COMPONENTS];
         let mut add = |weight: f64, values: [f64; COMPONENTS]| {
             sum.iter_mut().zip(values).for_each(|(s, v)| *s += weight * v);
         };
-        let whole = |x: f64, y: f64| L::components(&self.whole.at(x * x + y * y), x, y);
+        let whole = |x: f64, y: f64| self.point::<L>(x, y);
         match (rule(a), rule(b)) {
             (Some(along), Some(across)) => {
                 for (x, wx) in along.nodes(x, a) {
@@ -188,6 +188,11 @@ impl<'a, const N: usize> Kernel<'a, N> {
             }
         }
         sum
+    }
+
+    /// Components of a unit load on a point, at (x, y) from it.
+    pub(super) fn point<L: Load<N>>(&self, x: f64, y: f64) -> [f64; COMPONENTS] {
+        L::components(&self.whole.at(x * x + y * y), x, y)
     }
 
     /// Nodes of a quadrature from x1 to x2 of a function that varies over √(x² + y² + z²).
