@@ -18,26 +18,30 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array1, Array3, ArrayRef2};
 
-use crate::body::{HalfSpace, Interface, Substrate};
+use crate::body::HalfSpace;
+use crate::contact::Solution;
 use crate::error::{Error, Result, finite};
-use crate::fft::{KernelRows, PaddedTransform, ParitySpectrum, Transformed, Workspace};
 use crate::grid::Grid;
 use crate::memory::check_memory;
-use crate::response::interior::Place;
-use crate::threads::Threads;
 
 mod cells;
 mod components;
+mod derived;
 mod hankel;
 mod kernel;
 mod line;
+mod loaded;
 mod rectangle;
+mod section;
+mod summary;
 mod table;
 
-use cells::{Cells, Source};
-use components::{COMPONENTS, EXCHANGED, ODD};
-use kernel::{Kernel, Plan};
-use line::LinePlan;
+pub use derived::Peak;
+pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary, stress_summary};
+
+use components::COMPONENTS;
+use loaded::Loaded;
+use section::{Lines, place};
 
 /// Which side of an interface a depth is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -59,6 +63,8 @@ pub enum Section {
     X(f64),
     /// On the line y = const.
     Y(f64),
+    /// At the point (x, y).
+    Axis([f64; 2]),
 }
 
 /// What is evaluated beside the depths.
@@ -72,6 +78,9 @@ pub struct StressOptions {
     pub friction: f64,
     /// Direction of the traction that acts on the body, of any length. Default: along x.
     pub direction: [f64; 2],
+    /// Residual stress \[Pa\], equal in x and y, of each layer from the surface down and of the
+    /// substrate; those that are left out have none. It is added to σ_xx and σ_yy. Default: none.
+    pub residual: Vec<f64>,
     /// Whether displacements are evaluated too. Default: no.
     pub displacement: bool,
     /// Threads. Default: all of the machine's.
@@ -85,6 +94,7 @@ impl Default for StressOptions {
             section: Section::default(),
             friction: 0.0,
             direction: [1.0, 0.0],
+            residual: Vec::new(),
             displacement: false,
             threads: None,
         }
@@ -105,13 +115,50 @@ pub struct Stress {
     pub x: Array1<f64>,
     /// Coordinates y \[m\].
     pub y: Array1<f64>,
+    /// The body.
+    pub body: HalfSpace,
     /// The side of an interface that was asked for.
     pub side: Side,
+    /// μ times the unit vector of the traction that acts on the body.
+    pub friction: [f64; 2],
     /// σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz \[Pa\], in this order.
     pub components: [Array3<f64>; 6],
     /// u_x, u_y, u_z \[m\], where they were asked for; in line contact relative to the substrate's
     /// surface at a distance of the grid's width, as all displacements there.
     pub displacement: Option<[Array3<f64>; 3]>,
+}
+
+impl Stress {
+    /// From its parts, of which fields are (depths, nx, ny).
+    ///
+    /// # Errors
+    /// Where the shapes do not agree.
+    pub fn from_fields(
+        [z, x, y]: [Array1<f64>; 3],
+        body: HalfSpace,
+        side: Side,
+        friction: [f64; 2],
+        components: [Array3<f64>; 6],
+        displacement: Option<[Array3<f64>; 3]>,
+    ) -> Result<Self> {
+        let shape = (z.len(), x.len(), y.len());
+        let fields = components.iter().chain(displacement.iter().flatten());
+        if fields.into_iter().any(|field| field.dim() != shape) {
+            return Err(Error::Inconsistent(
+                "fields must be of the shape of their depths and coordinates",
+            ));
+        }
+        Ok(Self {
+            z,
+            x,
+            y,
+            body,
+            side,
+            friction,
+            components,
+            displacement,
+        })
+    }
 }
 
 /// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`.
@@ -165,6 +212,7 @@ pub fn stress_watched(
         grid.shape(),
         8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, options),
     )?;
+    let residual = residual(body, &options.residual)?;
     let loaded = Loaded::new(body, grid, pressure, options)?;
     let cells = ox * oy;
     let mut kept: Vec<Vec<f64>> = vec![vec![0.0; depths.len() * cells]; fields];
@@ -179,11 +227,14 @@ pub fn stress_watched(
                 break 'depths;
             }
             let kept = &mut kept[done * cells..(done + 1) * cells];
-            if lines.section.is_none() {
+            if lines.whole() {
                 loaded.apply(k, kept, &mut scratch);
             } else {
                 loaded.apply(k, &mut plane, &mut scratch);
                 lines.keep(&plane, grid.shape(), kept);
+            }
+            if k < 2 && residual[place.layer] != 0.0 {
+                kept.iter_mut().for_each(|s| *s += residual[place.layer]);
             }
         }
         done += 1;
@@ -205,388 +256,125 @@ pub fn stress_watched(
         z: depths[..done].to_vec().into(),
         x: lines.x,
         y: lines.y,
+        body: body.clone(),
         side: options.side,
+        friction: loaded.friction(),
         components,
         displacement,
     })
 }
 
-/// Where the depth `z` lies in `body`.
-fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
-    /// Nearer than this to an interface, relatively, a depth lies on it: sums of thicknesses are
-    /// rounded.
-    const ON: f64 = 1e-12;
-    if !(z >= 0.0 && z.is_finite()) {
+/// Residual stress of every layer and of the substrate.
+fn residual(body: &HalfSpace, given: &[f64]) -> Result<Vec<f64>> {
+    let count = body.layers().len() + 1;
+    if given.len() > count {
         return Err(Error::Parameter {
-            name: "z",
-            requirement: "finite and at least 0",
-            value: z,
+            name: "residual",
+            requirement: "of one value for each layer and the substrate, at most",
+            value: given.len() as f64,
         });
     }
-    let mut top = 0.0;
-    for ((layer, count), interface) in body.layers().iter().zip(0..).zip(body.interfaces()) {
-        let on = (z - interface).abs() <= ON * interface;
-        if z < interface && !on || on && side == Side::Above {
-            let below_top = if on { layer.thickness() } else { z - top };
-            return Ok(Place {
-                layer: count,
-                below_top,
-                depth: if on { interface } else { z },
-                material: layer.material(),
-            });
-        }
-        top = if on { z } else { interface };
+    let mut values = vec![0.0; count];
+    for (value, given) in values.iter_mut().zip(given) {
+        *value = finite("residual", *given)?;
     }
-    match body.substrate() {
-        Substrate::Elastic(material) => Ok(Place {
-            layer: body.layers().len(),
-            below_top: z - top,
-            depth: z,
-            material,
-        }),
-        Substrate::Rigid => Err(Error::Parameter {
-            name: "z",
-            requirement: "above the rigid substrate (on it, with side \"above\")",
-            value: z,
-        }),
-    }
+    Ok(values)
 }
 
-/// The part of a plane that is kept.
-struct Lines {
-    x: Array1<f64>,
-    y: Array1<f64>,
-    shape: [usize; 2],
-    section: Option<Line>,
+/// One of the two bodies of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Member {
+    /// The body that the shape is pressed into.
+    #[default]
+    Body,
+    /// The body that carries the shape: z points into it, x and y are the same.
+    Counterbody,
 }
 
-/// A line across `axis`, between the cells `lower` and `lower + 1`.
-struct Line {
-    axis: usize,
-    lower: usize,
-    upper: usize,
-    weight: f64,
-}
-
-impl Lines {
-    fn new(grid: &Grid, section: Section) -> Result<Self> {
-        let [nx, ny] = grid.shape();
-        let (axis, at) = match section {
-            Section::Plane => {
-                return Ok(Self {
-                    x: grid.x(),
-                    y: grid.y(),
-                    shape: [nx, ny],
-                    section: None,
-                });
-            }
-            Section::X(at) => (0, at),
-            Section::Y(at) => (1, at),
-        };
-        let n = grid.shape()[axis];
-        let name = ["x", "y"][axis];
-        finite(name, at)?;
-        let position =
-            (at - grid.center()[axis]) / grid.spacing()[axis] + 0.5 * (n - 1) as f64;
-        if !(-0.5 - 1e-9..=n as f64 - 0.5 + 1e-9).contains(&position) {
-            return Err(Error::Parameter {
-                name,
-                requirement: "on the grid",
-                value: at,
-            });
-        }
-        // Rounding must not mix a neighbour into a line through cell centres.
-        let nearest = position.round();
-        let position = if (position - nearest).abs() < 1e-9 {
-            nearest
-        } else {
-            position
-        };
-        let position = position.clamp(0.0, (n - 1) as f64);
-        let lower = position as usize;
-        let line = Line {
-            axis,
-            lower,
-            upper: (lower + 1).min(n - 1),
-            weight: position - lower as f64,
-        };
-        let here = Array1::from_elem(1, at);
-        Ok(match axis {
-            0 => Self {
-                x: here,
-                y: grid.y(),
-                shape: [1, ny],
-                section: Some(line),
-            },
-            _ => Self {
-                x: grid.x(),
-                y: here,
-                shape: [nx, 1],
-                section: Some(line),
-            },
-        })
-    }
-
-    /// The section of a plane.
-    fn keep(&self, plane: &[f64], [nx, ny]: [usize; 2], kept: &mut [f64]) {
-        let Some(line) = &self.section else {
-            kept.copy_from_slice(plane);
-            return;
-        };
-        // Along the line, from one cell to the next; across it.
-        let (along, across, count) = match line.axis {
-            0 => (1, ny, ny),
-            _ => (ny, 1, nx),
-        };
-        for (k, value) in kept.iter_mut().enumerate().take(count) {
-            let lower = plane[k * along + line.lower * across];
-            let upper = plane[k * along + line.upper * across];
-            *value = lower + line.weight * (upper - lower);
-        }
-    }
-}
-
-/// A body under a load, of which planes are evaluated.
-struct Loaded {
-    shape: [usize; 2],
-    spacing: [f64; 2],
-    kind: Kernels,
-    /// μ times the unit vector of the traction.
-    friction: [f64; 2],
-    transform: PaddedTransform,
-    pressure: Transformed,
-    threads: Threads,
-}
-
-/// What makes the coefficients.
-enum Kernels {
-    Plane {
-        plan: Plan,
-        pressure: Vec<Vec<(f64, f64)>>,
-        traction: Vec<Vec<(f64, f64)>>,
-    },
-    Line(LinePlan),
-}
-
-/// Memory that all depths use.
-struct Scratch {
-    loads: Vec<LoadCells>,
-    rows: KernelRows,
-    workspace: Workspace,
-}
-
-/// Coefficients of one load at one depth.
-struct LoadCells {
-    factor: f64,
-    /// The axis along which it acts, and of which it turns the parities; none for pressure.
-    axis: Option<usize>,
-    cells: Cells,
-    spectrum: ParitySpectrum,
-}
-
-impl LoadCells {
-    fn flipped(&self) -> [bool; 2] {
-        [0, 1].map(|axis| self.axis == Some(axis))
-    }
-}
-
-impl Loaded {
-    fn new(
-        body: &HalfSpace,
-        grid: &Grid,
-        pressure: &ArrayRef2<f64>,
+impl Solution {
+    /// Stress at `depths` in one of the bodies. The traction of friction is that on the body; the
+    /// counterbody gets the opposite.
+    ///
+    /// # Errors
+    /// Bad input, a counterbody that is rigid, too little memory.
+    ///
+    /// ```
+    /// use nacre::{Elastic, Member, Motion, Sphere, StressOptions, solve};
+    /// let steel = Elastic::new(210e9, 0.3)?;
+    /// let solution = solve(&Sphere::new(5e-3)?, &steel.into(), &Motion::load(10.0))?;
+    /// let a = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus()).cbrt();
+    /// let field = solution.stress(&[0.48 * a], Member::Body, &StressOptions::default())?;
+    /// let shear = field.max_shear().fold(0.0_f64, |m, s| m.max(*s));
+    /// assert!((shear / solution.peak_pressure() / 0.31 - 1.0).abs() < 5e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn stress(
+        &self,
+        depths: &[f64],
+        member: Member,
         options: &StressOptions,
-    ) -> Result<Self> {
-        let shape = grid.shape();
-        let found = [pressure.nrows(), pressure.ncols()];
-        if found != shape {
-            return Err(Error::Shape {
-                name: "pressure",
-                expected: shape,
-                found,
-            });
-        }
-        if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-            return Err(Error::NonFinite {
-                name: "pressure",
-                index: [index.0, index.1],
-            });
-        }
-        let friction = friction(body, options)?;
-        let threads = Threads::new(options.threads)?;
-        let spacing = grid.spacing();
-        let kind = if grid.is_line() {
-            Kernels::Line(LinePlan::new(body, grid))
-        } else {
-            let [lx, ly] = grid.size();
-            let plan = threads.run(|| Plan::new(body, spacing, 1.01 * lx.hypot(ly)));
-            Kernels::Plane {
-                pressure: plan.multipliers::<6, components::Pressure>(),
-                traction: plan.multipliers::<9, components::Traction>(),
-                plan,
-            }
-        };
-        let transform = PaddedTransform::plan(shape, &threads);
-        let input: Vec<f64> = pressure.iter().copied().collect();
-        let pressure = transform.transform(&input, &mut transform.workspace(), &threads);
-        Ok(Self {
-            shape,
-            spacing,
-            kind,
-            friction,
-            transform,
-            pressure,
-            threads,
-        })
+    ) -> Result<Stress> {
+        let mut go_on = |_| ControlFlow::Continue(());
+        self.stress_watched(depths, member, options, &mut go_on)
     }
 
-    /// Bytes that it takes, with the coefficients of one depth.
-    fn memory(grid: &Grid, options: &StressOptions) -> u64 {
-        let [nx, ny] = grid.shape().map(|n| n as u64);
-        let loads = if options.friction == 0.0 { 1 } else { 3 };
-        let fields = if options.displacement { 9 } else { 6 };
-        // Coefficients of each load, and a spectrum; transforms of the pressure and of a plane.
-        (nx + 1) * (ny + 1) * 8 * (loads * (2 * fields + 2) + 14)
+    /// [`Solution::stress`], telling `progress` how far it is; its break ends with the depths that
+    /// are done.
+    ///
+    /// # Errors
+    /// As [`Solution::stress`].
+    pub fn stress_watched(
+        &self,
+        depths: &[f64],
+        member: Member,
+        options: &StressOptions,
+        progress: &mut StressProgress,
+    ) -> Result<Stress> {
+        let (body, options) = self.loaded_member(member, options)?;
+        stress_watched(body, self.grid(), &self.pressure, depths, &options, progress)
     }
 
-    /// Memory for `fields` components.
-    fn scratch(&self, fields: usize) -> Scratch {
-        let [fx, fy] = self.friction;
-        let loads = [(1.0, None), (fx, Some(0)), (fy, Some(1))];
-        Scratch {
-            loads: loads
-                .into_iter()
-                .filter(|(factor, _)| *factor != 0.0)
-                .map(|(factor, axis)| LoadCells {
-                    factor,
-                    axis,
-                    cells: Cells::new(self.shape, fields),
-                    spectrum: self.transform.empty_spectrum(),
-                })
-                .collect(),
-            rows: self.transform.kernel_rows(),
-            workspace: self.transform.workspace(),
+    /// What is worth knowing of the stress in one of the bodies: peaks in each layer, tractions at
+    /// each interface, margins.
+    ///
+    /// # Errors
+    /// As [`Solution::stress`], and where a limit is not finite and above 0.
+    pub fn stress_summary(
+        &self,
+        member: Member,
+        limits: &Limits,
+        options: &StressOptions,
+        progress: &mut StressProgress,
+    ) -> Result<StressSummary> {
+        let (body, options) = self.loaded_member(member, options)?;
+        summary::stress_summary(body, self.grid(), &self.pressure, limits, &options, progress)
+    }
+
+    /// That body.
+    ///
+    /// # Errors
+    /// Where it is rigid.
+    pub fn member(&self, member: Member) -> Result<&HalfSpace> {
+        match (member, &self.report.counterbody) {
+            (Member::Body, _) => Ok(&self.report.body),
+            (Member::Counterbody, Some(counterbody)) => Ok(counterbody),
+            (Member::Counterbody, None) => Err(Error::Inconsistent(
+                "body must be \"body\" where the counterbody is rigid",
+            )),
         }
     }
 
-    /// Computes the coefficients at `place`.
-    fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
-        let (plan, pressure, traction) = match &self.kind {
-            Kernels::Line(plan) => {
-                for LoadCells { axis, cells, .. } in &mut scratch.loads {
-                    cells.fill_line(&match axis {
-                        None => plan.coefficients::<6, line::Pressure>(place),
-                        Some(0) => plan.coefficients::<3, line::Along>(place),
-                        Some(_) => plan.coefficients::<6, line::Across>(place),
-                    });
-                }
-                return;
-            }
-            Kernels::Plane {
-                plan,
-                pressure,
-                traction,
-            } => (plan, pressure, traction),
-        };
-        self.threads.run(|| {
-            let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
-            let mut of_traction = None;
-            for load in &mut scratch.loads {
-                let (spacing, depth, flipped) = (self.spacing, place.depth, load.flipped());
-                let Some(axis) = load.axis else {
-                    let kernel = Kernel::new::<components::Pressure>(plan, pressure, place);
-                    let closed = rectangle::under_pressure;
-                    load.cells.fill(&Source {
-                        spacing,
-                        depth,
-                        flipped,
-                        mean: |x, y| kernel.at::<components::Pressure>([x, y], half, closed),
-                        point: |x, y| kernel.point::<components::Pressure>(x, y),
-                    });
-                    continue;
-                };
-                let kernel = of_traction.get_or_insert_with(|| {
-                    Kernel::new::<components::Traction>(plan, traction, place)
-                });
-                let closed = rectangle::under_traction;
-                let mean = |x, y, half| kernel.at::<components::Traction>([x, y], half, closed);
-                let point = |x, y| kernel.point::<components::Traction>(x, y);
-                if axis == 0 {
-                    load.cells.fill(&Source {
-                        spacing,
-                        depth,
-                        flipped,
-                        mean: |x, y| mean(x, y, half),
-                        point,
-                    });
-                } else {
-                    let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
-                    load.cells.fill(&Source {
-                        spacing,
-                        depth,
-                        flipped,
-                        mean: |x, y| exchanged(mean(y, x, [b, a])),
-                        point: |x, y| exchanged(point(y, x)),
-                    });
-                }
-            }
-        });
-    }
-
-    /// Component `k` on the plane of the coefficients.
-    fn apply(&self, k: usize, output: &mut [f64], scratch: &mut Scratch) {
-        let Scratch {
-            loads,
-            rows,
-            workspace,
-        } = scratch;
-        for load in loads.iter_mut() {
-            let flipped = load.flipped();
-            let odd = [0, 1].map(|axis| ODD[k][axis] != flipped[axis]);
-            let cells = &load.cells;
-            self.transform.parity_spectrum_into(
-                odd,
-                |i| cells.row(i, k),
-                &mut load.spectrum,
-                rows,
-                workspace,
-                &self.threads,
-            );
+    /// That body, and the options with the traction that acts on it.
+    fn loaded_member(
+        &self,
+        member: Member,
+        options: &StressOptions,
+    ) -> Result<(&HalfSpace, StressOptions)> {
+        let body = self.member(member)?;
+        let mut options = options.clone();
+        if member == Member::Counterbody {
+            options.direction = options.direction.map(|d| -d);
         }
-        let kernels: Vec<(f64, &ParitySpectrum)> = loads
-            .iter()
-            .map(|load| (load.factor, &load.spectrum))
-            .collect();
-        self.transform
-            .convolve_parities(&self.pressure, &kernels, output, workspace, &self.threads);
+        Ok((body, options))
     }
-}
-
-/// μ times the unit vector of the traction on the body.
-fn friction(body: &HalfSpace, options: &StressOptions) -> Result<[f64; 2]> {
-    let friction = finite("friction", options.friction)?;
-    if friction < 0.0 {
-        return Err(Error::Parameter {
-            name: "friction",
-            requirement: "at least 0 (turn the direction)",
-            value: friction,
-        });
-    }
-    let [x, y] = options.direction;
-    let length = x.hypot(y);
-    if !(length > 0.0 && length.is_finite()) {
-        return Err(Error::Parameter {
-            name: "direction",
-            requirement: "a vector of finite length above 0",
-            value: length,
-        });
-    }
-    let slips = |layer: &crate::Layer| layer.interface() == Interface::Frictionless;
-    if friction > 0.0 && body.layers().iter().any(slips) {
-        return Err(Error::Inconsistent(
-            "friction must be 0 on a body with a frictionless interface: nothing holds the layers \
-             above it",
-        ));
-    }
-    Ok([friction * x / length, friction * y / length])
 }
