@@ -227,7 +227,8 @@ impl PySolution {
     /// friction : float, optional
     ///     Coefficient of friction: adds the traction ``friction * pressure``.
     /// direction : tuple of float, optional
-    ///     Direction of the traction on the body, of any length; the counterbody gets the opposite.
+    ///     Direction of the traction on the body, of any length, along x by default; the counterbody
+    ///     gets the opposite.
     /// residual : dict or sequence, optional
     ///     Residual stress [Pa], equal along x and y, that is added in a layer: from its number (0
     ///     at the surface) or ``"substrate"``, or in that order.
@@ -271,7 +272,7 @@ impl PySolution {
         reason = "keywords of the public signature"
     )]
     #[pyo3(signature = (z, *, side="below", body="body", x=None, y=None, friction=0.0,
-        direction=(1.0, 0.0), residual=None, displacement=false, threads=None, progress=None))]
+        direction=None, residual=None, displacement=false, threads=None, progress=None))]
     fn stress(
         &self,
         py: Python<'_>,
@@ -281,7 +282,7 @@ impl PySolution {
         x: Option<f64>,
         y: Option<f64>,
         friction: f64,
-        direction: (f64, f64),
+        direction: Option<(f64, f64)>,
         residual: Option<&Bound<'_, PyAny>>,
         displacement: bool,
         threads: Option<&Bound<'_, PyAny>>,
@@ -325,7 +326,7 @@ impl PySolution {
     /// friction : float, optional
     ///     Coefficient of friction, as in `stress`.
     /// direction : tuple of float, optional
-    ///     Direction of the traction on the body.
+    ///     Direction of the traction on the body, along x by default.
     /// residual : dict or sequence, optional
     ///     Residual stress [Pa] that is added in a layer.
     /// threads : int, optional
@@ -358,7 +359,7 @@ impl PySolution {
         reason = "keywords of the public signature"
     )]
     #[pyo3(signature = (*, body="body", yield_stress=None, strength=None, friction=0.0,
-        direction=(1.0, 0.0), residual=None, threads=None, progress=None))]
+        direction=None, residual=None, threads=None, progress=None))]
     fn stress_summary(
         &self,
         py: Python<'_>,
@@ -366,7 +367,7 @@ impl PySolution {
         yield_stress: Option<&Bound<'_, PyAny>>,
         strength: Option<&Bound<'_, PyAny>>,
         friction: f64,
-        direction: (f64, f64),
+        direction: Option<(f64, f64)>,
         residual: Option<&Bound<'_, PyAny>>,
         threads: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,

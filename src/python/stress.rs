@@ -434,7 +434,7 @@ pub(super) struct Keywords<'a, 'py> {
     pub(super) x: Option<f64>,
     pub(super) y: Option<f64>,
     pub(super) friction: f64,
-    pub(super) direction: (f64, f64),
+    pub(super) direction: Option<(f64, f64)>,
     pub(super) residual: Option<&'a Bound<'py, PyAny>>,
     pub(super) displacement: bool,
     pub(super) threads: Option<&'a Bound<'py, PyAny>>,
@@ -452,7 +452,7 @@ impl Keywords<'_, '_> {
                 (Some(x), Some(y)) => Section::Axis([x, y]),
             },
             friction: self.friction,
-            direction: self.direction.into(),
+            direction: self.direction.map_or([1.0, 0.0], Into::into),
             residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
             displacement: self.displacement,
             threads: self
@@ -554,7 +554,7 @@ pub(super) fn field(stress: Stress, one_depth: bool, keywords: &Keywords) -> PyS
 /// friction : float, optional
 ///     Coefficient of friction: adds the traction ``friction * pressure``.
 /// direction : tuple of float, optional
-///     Direction of the traction that acts on the body, of any length.
+///     Direction of the traction that acts on the body, of any length; along x by default.
 /// residual : dict or sequence, optional
 ///     Residual stress [Pa], equal along x and y, that is added in a layer: from its number (0 at
 ///     the surface) or ``"substrate"``, or in that order.
@@ -601,7 +601,7 @@ pub(super) fn field(stress: Stress, one_depth: bool, keywords: &Keywords) -> PyS
 )]
 #[pyfunction]
 #[pyo3(signature = (body, grid, pressure, z, *, side="below", x=None, y=None, friction=0.0,
-    direction=(1.0, 0.0), residual=None, displacement=false, threads=None, progress=None))]
+    direction=None, residual=None, displacement=false, threads=None, progress=None))]
 pub(super) fn stress(
     py: Python<'_>,
     #[pyo3(from_py_with = body)] body: HalfSpace,
@@ -612,7 +612,7 @@ pub(super) fn stress(
     x: Option<f64>,
     y: Option<f64>,
     friction: f64,
-    direction: (f64, f64),
+    direction: Option<(f64, f64)>,
     residual: Option<&Bound<'_, PyAny>>,
     displacement: bool,
     threads: Option<&Bound<'_, PyAny>>,
