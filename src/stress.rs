@@ -331,7 +331,14 @@ impl Solution {
         progress: &mut StressProgress,
     ) -> Result<Stress> {
         let (body, options) = self.loaded_member(member, options)?;
-        stress_watched(body, self.grid(), &self.pressure, depths, &options, progress)
+        stress_watched(
+            body,
+            self.grid(),
+            &self.pressure,
+            depths,
+            &options,
+            progress,
+        )
     }
 
     /// What is worth knowing of the stress in one of the bodies: peaks in each layer, tractions at
@@ -347,7 +354,14 @@ impl Solution {
         progress: &mut StressProgress,
     ) -> Result<StressSummary> {
         let (body, options) = self.loaded_member(member, options)?;
-        summary::stress_summary(body, self.grid(), &self.pressure, limits, &options, progress)
+        summary::stress_summary(
+            body,
+            self.grid(),
+            &self.pressure,
+            limits,
+            &options,
+            progress,
+        )
     }
 
     /// That body.

@@ -322,7 +322,11 @@ mod tests {
                 );
                 spectra.push((1.0 + seed as f64, spectrum));
                 let side = |a: usize, b: usize, odd: bool| {
-                    let sign = if !odd { 1.0 } else { (a > b) as u8 as f64 - (a < b) as u8 as f64 };
+                    let sign = if !odd {
+                        1.0
+                    } else {
+                        (a > b) as u8 as f64 - (a < b) as u8 as f64
+                    };
                     (a.abs_diff(b), sign)
                 };
                 for (at, sum) in exact.iter_mut().enumerate() {

@@ -16,9 +16,7 @@ use super::call::SIGNALS;
 use super::grid::PyGrid;
 use crate::body::{HalfSpace, Substrate};
 use crate::error::Error;
-use crate::stress::{
-    Member, Section, Side, Stress, StressOptions, StressProgress, stress_watched,
-};
+use crate::stress::{Member, Section, Side, Stress, StressOptions, StressProgress, stress_watched};
 
 /// Names of the components, in the order of [`Stress`].
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];

@@ -188,9 +188,8 @@ impl<const N: usize> PointLoad<N> {
         // e^{y} times the response is a polynomial of degree one in y.
         let at = |y: f64| L::radial(&Fields::homogeneous(material, y), material);
         let (zero, one) = (at(0.0), at(1.0));
-        let coefficients = std::array::from_fn(|k| {
-            [zero[k], one[k] * std::f64::consts::E - zero[k]]
-        });
+        let coefficients =
+            std::array::from_fn(|k| [zero[k], one[k] * std::f64::consts::E - zero[k]]);
         Self {
             orders: L::ORDERS,
             z,
@@ -211,8 +210,9 @@ impl<const N: usize> PointLoad<N> {
             match kind {
                 Kind::Displacement => power * (c0 + c1 * z * first),
                 Kind::Stress | Kind::Line => {
-                    let second = (3.0 * z * z + 3.0 * nu * z * root + (nu * nu - 1.0) * root * root)
-                        * inverse.powi(4);
+                    let second =
+                        (3.0 * z * z + 3.0 * nu * z * root + (nu * nu - 1.0) * root * root)
+                            * inverse.powi(4);
                     power * (c0 * first + c1 * z * second)
                 }
             }

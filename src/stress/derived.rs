@@ -99,9 +99,9 @@ impl Stress {
 
     /// The largest of `values` (depths, nx, ny), and where it is; none where there are none.
     pub fn peak(&self, values: &Array3<f64>) -> Option<Peak> {
-        let found = values.indexed_iter().reduce(|best, next| {
-            if next.1 > best.1 { next } else { best }
-        });
+        let found = values
+            .indexed_iter()
+            .reduce(|best, next| if next.1 > best.1 { next } else { best });
         found.map(|((k, i, j), &value)| Peak {
             value,
             position: [self.x[i], self.y[j], self.z[k]],

@@ -115,7 +115,10 @@ impl LogMesh {
     /// Transforms of α^{it} for every term: real and imaginary parts.
     pub(super) fn multipliers(&self, order: Order) -> Vec<(f64, f64)> {
         let shift = order.kind.shift();
-        let (above, below) = (0.5 * (1.0 + order.nu + shift), 0.5 * (1.0 + order.nu - shift));
+        let (above, below) = (
+            0.5 * (1.0 + order.nu + shift),
+            0.5 * (1.0 + order.nu - shift),
+        );
         (0..=self.points / 2)
             .map(|m| {
                 let t = m as f64 * self.step();

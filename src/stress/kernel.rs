@@ -70,7 +70,12 @@ impl Plan {
     /// Transforms of powers of the wavenumber, for the functions of a load.
     pub(super) fn multipliers<const N: usize, L: Load<N>>(&self) -> Vec<Vec<(f64, f64)>> {
         let of = |spectrum: &Spectrum| L::ORDERS.map(|order| spectrum.mesh.multipliers(order));
-        self.spectrum.as_ref().map(of).into_iter().flatten().collect()
+        self.spectrum
+            .as_ref()
+            .map(of)
+            .into_iter()
+            .flatten()
+            .collect()
     }
 }
 
@@ -103,7 +108,8 @@ impl<'a, const N: usize> Kernel<'a, N> {
             for (alpha, column) in &spectrum.columns {
                 let fields = column.at(&plan.body, place);
                 let layered = L::radial(&fields, material);
-                let homogeneous = crate::response::interior::Fields::homogeneous(material, alpha * depth);
+                let homogeneous =
+                    crate::response::interior::Fields::homogeneous(material, alpha * depth);
                 let homogeneous = L::radial(&homogeneous, material);
                 for k in 0..N {
                     let bias = alpha.powf(L::ORDERS[k].kind.bias());
@@ -128,9 +134,9 @@ impl<'a, const N: usize> Kernel<'a, N> {
             }
             h
         });
-        let mean = series.filter(|_| nearest > 0.0).map(|series| {
-            Table::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r))
-        });
+        let mean = series
+            .filter(|_| nearest > 0.0)
+            .map(|series| Table::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r)));
         Self {
             plan,
             material,
@@ -152,7 +158,9 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let rule = |half: f64| self.plan.rules.at(distance / half);
         let mut sum = [0.0; COMPONENTS];
         let mut add = |weight: f64, values: [f64; COMPONENTS]| {
-            sum.iter_mut().zip(values).for_each(|(s, v)| *s += weight * v);
+            sum.iter_mut()
+                .zip(values)
+                .for_each(|(s, v)| *s += weight * v);
         };
         let whole = |x: f64, y: f64| self.point::<L>(x, y);
         match (rule(a), rule(b)) {

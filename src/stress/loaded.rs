@@ -235,8 +235,13 @@ impl Loaded {
             .iter()
             .map(|load| (load.factor, &load.spectrum))
             .collect();
-        self.transform
-            .convolve_parities(&self.pressure, &kernels, output, workspace, &self.threads);
+        self.transform.convolve_parities(
+            &self.pressure,
+            &kernels,
+            output,
+            workspace,
+            &self.threads,
+        );
     }
 }
 

@@ -88,7 +88,11 @@ impl Lines {
             }
             lines.cuts[axis] = Some(cut(grid, axis, at)?);
             lines.shape[axis] = 1;
-            let centres = if axis == 0 { &mut lines.x } else { &mut lines.y };
+            let centres = if axis == 0 {
+                &mut lines.x
+            } else {
+                &mut lines.y
+            };
             *centres = Array1::from_elem(1, at);
         }
         Ok(lines)

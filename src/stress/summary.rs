@@ -132,7 +132,10 @@ pub fn stress_summary(
         planned: 0,
     };
     let regions = regions(body, half_width(grid, pressure));
-    planes.planned = regions.iter().map(|region| region.len() + 3 * REFINEMENTS).sum();
+    planes.planned = regions
+        .iter()
+        .map(|region| region.len() + 3 * REFINEMENTS)
+        .sum();
     planes.planned += body.layers().len();
     let mut summary = StressSummary {
         layers: Vec::new(),
@@ -197,7 +200,11 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
     }
     if let Substrate::Elastic(material) = body.substrate() {
         let depths = [0.0].into_iter().chain(DEPTHS.map(|d| d * half_width));
-        regions.push(depths.map(|z| at(body.layers().len(), top, z, material)).collect());
+        regions.push(
+            depths
+                .map(|z| at(body.layers().len(), top, z, material))
+                .collect(),
+        );
     }
     regions
 }

@@ -26,11 +26,7 @@ pub(super) struct Table<const N: usize> {
 
 impl<const N: usize> Table<N> {
     /// Of `f(r)` for r in `range`, on the threads of the caller.
-    pub(super) fn new(
-        range: [f64; 2],
-        shift: f64,
-        f: impl Fn(f64) -> [f64; N] + Sync,
-    ) -> Self {
+    pub(super) fn new(range: [f64; 2], shift: f64, f: impl Fn(f64) -> [f64; N] + Sync) -> Self {
         let unit = range[0] * range[0] + shift;
         let last = (range[1] * range[1] + shift) / unit;
         let piece = |v: f64| (v.to_bits() >> (52 - BITS)) as usize;
