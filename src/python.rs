@@ -67,7 +67,10 @@ mod core {
     #[pymodule_export]
     use super::stress::{PyStress, restore_stress, stress};
     #[pymodule_export]
-    use super::summary::{PyInterfaceStress, PyLayerStress, PyStressSummary};
+    use super::summary::{
+        PyInterfaceStress, PyLayerStress, PyStressSummary, restore_interface_stress,
+        restore_layer_stress, restore_stress_summary,
+    };
     #[pymodule_export]
     use super::{ConvergenceError, NacreWarning};
     use pyo3::prelude::*;

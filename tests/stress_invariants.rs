@@ -321,13 +321,13 @@ fn splitting_a_layer_changes_nothing() -> Result<()> {
 }
 
 /// What is found on an endless strip is what the plane strain of line contact gives: a rectangle
-/// of half length 4100, seen at its middle, misses the tails of kernels that fall off as 1/2πr²:
-/// width/(π · half length).
+/// of half length 41 000, seen at its middle, misses the tails of kernels that fall off as 1/2πr²:
+/// width/(π · half length), and of a stretched layer as many times that as it is stiffer.
 #[test]
 fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
-    const ENDS: f64 = 9.4e-4;
+    const ENDS: f64 = 9.4e-5;
     let (n, m) = (41, 12);
-    let long = Grid::new([n, m], [41.0 * 200.0, 12.0])?;
+    let long = Grid::new([n, m], [41.0 * 2000.0, 12.0])?;
     let line = Grid::line(m, 12.0)?;
     let profile = random::uniform([1, m], 7);
     let pressure = Array2::from_shape_fn((n, m), |(_, j)| profile[[0, j]]);
@@ -336,9 +336,11 @@ fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
         let one = stress(&body, &line, &profile, &depths, &options(friction))?;
         let other = stress(&body, &long, &pressure, &depths, &options(friction))?;
         let other = picked(&other, [1, m], [n / 2, 0], [1, 1]);
+        let stiffest = body.layers().iter().map(|layer| layer.material().young());
+        let ends = ENDS * stiffest.fold(1.0, f64::max);
         // Displacements differ by their datum.
         for (error, component) in differences(&one, &other).into_iter().zip(&NAMES[..6]) {
-            assert!(error < ENDS, "{name} {component}: {error:.1e}");
+            assert!(error < ends, "{name} {component}: {error:.1e}");
         }
     }
     Ok(())

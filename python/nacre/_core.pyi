@@ -35,9 +35,12 @@ __all__ = [
     "Stress",
     "StressSummary",
     "__version__",
+    "_restore_interface_stress",
+    "_restore_layer_stress",
     "_restore_report",
     "_restore_solution",
     "_restore_stress",
+    "_restore_stress_summary",
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
@@ -517,6 +520,9 @@ class StressSummary:
     def __eq__(self, other: object, /) -> bool: ...
 
 def _restore_stress(state: tuple[object, ...]) -> Stress: ...
+def _restore_layer_stress(state: tuple[object, ...]) -> LayerStress: ...
+def _restore_interface_stress(state: tuple[object, ...]) -> InterfaceStress: ...
+def _restore_stress_summary(state: tuple[object, ...]) -> StressSummary: ...
 def _restore_report(state: tuple[object, ...]) -> Report: ...
 def _restore_solution(
     fields: tuple[_Field, _Field, _Field], motion: tuple[float, _Pair], report: Report

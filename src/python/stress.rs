@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use ndarray::{Array3, ArrayD, Axis};
 use numpy::{PyArray1, PyArrayDyn};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -71,7 +71,7 @@ impl PyStress {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         match &self.stress.displacement {
             Some(displacement) => self.shaped(py, displacement[k].clone()),
-            None => Err(PyValueError::new_err(
+            None => Err(PyAttributeError::new_err(
                 "displacements were not evaluated: ask for them with displacement=True",
             )),
         }

@@ -54,6 +54,14 @@ impl PyStressSummary {
         table(&self.0)
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (SummaryState,))> {
+        let layers = self.layers().iter().map(PyLayerStress::state).collect();
+        let interfaces = self.interfaces();
+        let interfaces = interfaces.iter().map(PyInterfaceStress::state).collect();
+        let state = (layers, interfaces, self.finished());
+        Ok((restorer(py, "_restore_stress_summary")?, (state,)))
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<nacre.StressSummary of {} layers and {} interfaces>",
@@ -122,6 +130,10 @@ impl PyLayerStress {
         self.0.strength_margin
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (LayerState,))> {
+        Ok((restorer(py, "_restore_layer_stress")?, (self.state(),)))
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<nacre.LayerStress of layer {}: von Mises {:.4e} Pa, tension {:.4e} Pa>",
@@ -183,12 +195,112 @@ impl PyInterfaceStress {
         self.0.jump.as_ref().map(peak)
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (InterfaceState,))> {
+        Ok((restorer(py, "_restore_interface_stress")?, (self.state(),)))
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<nacre.InterfaceStress at depth {:.4e} m: shear {:.4e} Pa, tension {:.4e} Pa>",
             self.0.depth, self.0.shear.value, self.0.tension.value
         )
     }
+}
+
+type PeakState = (f64, [f64; 3]);
+type LayerState = (usize, [f64; 2], [PeakState; 3], (Option<f64>, Option<f64>));
+type SummaryState = (Vec<LayerState>, Vec<InterfaceState>, bool);
+type InterfaceState = (usize, f64, [PeakState; 3], Option<PeakState>);
+
+fn state(peak: &Peak) -> PeakState {
+    (peak.value, peak.position)
+}
+
+fn restored((value, position): PeakState) -> Peak {
+    Peak { value, position }
+}
+
+impl PyLayerStress {
+    fn state(&self) -> LayerState {
+        let s = &self.0;
+        (
+            s.layer,
+            s.depths,
+            [&s.von_mises, &s.tension, &s.shear].map(state),
+            (s.yield_margin, s.strength_margin),
+        )
+    }
+
+    fn restored((layer, depths, peaks, margins): LayerState) -> Self {
+        let [von_mises, tension, shear] = peaks.map(restored);
+        Self(LayerSummary {
+            layer,
+            depths,
+            von_mises,
+            tension,
+            shear,
+            yield_margin: margins.0,
+            strength_margin: margins.1,
+        })
+    }
+}
+
+impl PyInterfaceStress {
+    fn state(&self) -> InterfaceState {
+        let s = &self.0;
+        (
+            s.interface,
+            s.depth,
+            [&s.tension, &s.compression, &s.shear].map(state),
+            s.jump.as_ref().map(state),
+        )
+    }
+
+    fn restored((interface, depth, peaks, jump): InterfaceState) -> Self {
+        let [tension, compression, shear] = peaks.map(restored);
+        Self(InterfaceSummary {
+            interface,
+            depth,
+            tension,
+            compression,
+            shear,
+            jump: jump.map(restored),
+        })
+    }
+}
+
+/// The extremes of one layer from their pickled state.
+#[pyfunction(name = "_restore_layer_stress")]
+pub(super) fn restore_layer_stress(state: LayerState) -> PyLayerStress {
+    PyLayerStress::restored(state)
+}
+
+/// The extremes of one interface from their pickled state.
+#[pyfunction(name = "_restore_interface_stress")]
+pub(super) fn restore_interface_stress(state: InterfaceState) -> PyInterfaceStress {
+    PyInterfaceStress::restored(state)
+}
+
+/// A summary from its pickled state.
+#[pyfunction(name = "_restore_stress_summary")]
+pub(super) fn restore_stress_summary(state: SummaryState) -> PyStressSummary {
+    let (layers, interfaces, finished) = state;
+    PyStressSummary(StressSummary {
+        layers: layers
+            .into_iter()
+            .map(|s| PyLayerStress::restored(s).0)
+            .collect(),
+        interfaces: interfaces
+            .into_iter()
+            .map(|s| PyInterfaceStress::restored(s).0)
+            .collect(),
+        finished,
+    })
+}
+
+/// The function of `nacre._core` that restores a pickled value.
+fn restorer<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("nacre._core")?.getattr(name)
 }
 
 /// Both tables as text.

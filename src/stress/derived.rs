@@ -139,7 +139,7 @@ mod tests {
         let shear = von_mises([0.0, 0.0, 0.0, 0.0, 2.0, 0.0]);
         assert!((shear / (2.0 * 3.0_f64.sqrt()) - 1.0).abs() < 2.0 * ROUNDING);
         let [a, b, c] = principal([1.0, 1.0, -4.0, 0.0, 0.0, 0.0]);
-        assert_eq!([a, b, c], [1.0, 1.0, -4.0]);
+        assert!((a - 1.0).abs() + (b - 1.0).abs() + (c + 4.0).abs() < 10.0 * ROUNDING);
         let [a, b, c] = principal([0.0, 0.0, 0.0, 0.0, 2.0, 0.0]);
         assert!((a - 2.0).abs() + b.abs() + (c + 2.0).abs() < 10.0 * ROUNDING);
         // diag(5, 2, 2) turned about two axes: the double value keeps its digits.

@@ -32,7 +32,7 @@ pub(super) struct Loaded {
 #[derive(Debug)]
 enum Kernels {
     Plane {
-        plan: Plan,
+        plan: Box<Plan>,
         pressure: Vec<Vec<(f64, f64)>>,
         traction: Vec<Vec<(f64, f64)>>,
     },
@@ -96,7 +96,7 @@ impl Loaded {
             Kernels::Plane {
                 pressure: plan.multipliers::<6, components::Pressure>(),
                 traction: plan.multipliers::<9, components::Traction>(),
-                plan,
+                plan: Box::new(plan),
             }
         };
         let transform = PaddedTransform::plan(shape, &threads);

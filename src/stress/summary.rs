@@ -26,7 +26,6 @@ pub struct Limits {
 
 /// The extremes in one layer, or in the substrate.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct LayerSummary {
     /// Its number, from the surface down; that of the substrate is the number of layers.
     pub layer: usize,
@@ -46,7 +45,6 @@ pub struct LayerSummary {
 
 /// The extremes at one interface.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct InterfaceSummary {
     /// Its number, from the surface down.
     pub interface: usize,
@@ -65,7 +63,6 @@ pub struct InterfaceSummary {
 
 /// The extremes of all layers and interfaces.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct StressSummary {
     /// From the surface down; the substrate last, unless it is rigid.
     pub layers: Vec<LayerSummary>,
@@ -368,9 +365,11 @@ impl Planes<'_, '_> {
                         return false;
                     }
                     let mut largest = (f64::NEG_INFINITY, 0);
-                    for cell in 0..self.fields[0].len() {
-                        let [xx, yy, xy] = [(0, 0), (1, 1), (2, 3)]
-                            .map(|(k, field)| self.fields[field][cell] - in_plane[k][cell]);
+                    let [above_xx, above_yy, above_xy] = &in_plane;
+                    let above = above_xx.iter().zip(above_yy).zip(above_xy).enumerate();
+                    for (cell, ((xx, yy), xy)) in above {
+                        let [below_xx, below_yy, _, below_xy, ..] = self.tensor(cell);
+                        let (xx, yy, xy) = (below_xx - xx, below_yy - yy, below_xy - xy);
                         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
                         let value = mean.abs() + half.hypot(xy);
                         if value > largest.0 {
