@@ -15,6 +15,10 @@ use rustfft::{Fft, FftPlanner};
 
 use crate::threads::Threads;
 
+mod parity;
+
+pub(crate) use parity::{KernelRows, ParitySpectrum, Transformed};
+
 /// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
 /// columns of a few thousand points stay in the second-level cache.
 const BLOCK: usize = 16;
@@ -327,12 +331,7 @@ impl PaddedTransform {
         let blocks = &*blocks;
         let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
             for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                let i = first + row;
-                for (block, part) in scratch.spectrum.chunks_mut(BLOCK).enumerate() {
-                    let start = (block * nx + i) * BLOCK;
-                    part.copy_from_slice(&blocks[start..start + part.len()]);
-                }
-                self.spectrum_to_rows(&mut scratch.spectrum, &mut scratch.real, &mut scratch.fft);
+                self.row_from_blocks(blocks, first + row, scratch);
                 values.copy_from_slice(&scratch.real[..ny]);
             }
         };
@@ -366,6 +365,16 @@ impl PaddedTransform {
                     .for_each(|(task, (part, scratch))| work(task * items, part, scratch));
             });
         }
+    }
+
+    /// Row `i` of the data whose columns, transformed back, are in `blocks`.
+    fn row_from_blocks(&self, blocks: &[Complex64], i: usize, scratch: &mut TaskScratch) {
+        let nx = self.shape[0];
+        for (block, part) in scratch.spectrum.chunks_mut(BLOCK).enumerate() {
+            let start = (block * nx + i) * BLOCK;
+            part.copy_from_slice(&blocks[start..start + part.len()]);
+        }
+        self.spectrum_to_rows(&mut scratch.spectrum, &mut scratch.real, &mut scratch.fft);
     }
 
     fn rows_to_spectrum(

@@ -20,10 +20,11 @@ mod conversion;
 mod exact;
 mod line;
 mod potential;
-mod quadrature;
+pub(crate) mod quadrature;
 mod radial;
 
 pub use exact::CellInfluence;
+pub(crate) use exact::powers_of_lagrange;
 
 /// How the frequency response becomes influence coefficients.
 ///

@@ -32,6 +32,7 @@
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
+//! | [`mod@stress`] | stress and displacement below the surface |
 //!
 //! # Conventions
 //!
@@ -71,6 +72,8 @@ pub mod convolution;
 
 pub mod contact;
 
+pub mod stress;
+
 #[cfg(feature = "python")]
 mod python;
 
@@ -85,6 +88,7 @@ pub use graded::graded_layers;
 pub use grid::Grid;
 pub use influence::Method;
 pub use material::Elastic;
+pub use stress::{Member, Section, Side, Stress, StressOptions, stress};
 pub use surface::{
     Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
     Surface,

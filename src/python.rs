@@ -17,6 +17,8 @@ mod profiles;
 mod report;
 mod shapes;
 mod solution;
+mod stress;
+mod summary;
 
 create_exception!(
     nacre,
@@ -62,6 +64,13 @@ mod core {
     };
     #[pymodule_export]
     use super::solution::{PySolution, restore_solution};
+    #[pymodule_export]
+    use super::stress::{PyStress, restore_stress, stress};
+    #[pymodule_export]
+    use super::summary::{
+        PyInterfaceStress, PyLayerStress, PyStressSummary, restore_interface_stress,
+        restore_layer_stress, restore_stress_summary,
+    };
     #[pymodule_export]
     use super::{ConvergenceError, NacreWarning};
     use pyo3::prelude::*;

@@ -16,6 +16,7 @@ use crate::body::{HalfSpace, Interface, Substrate};
 use crate::error::{Result, positive};
 use crate::material::Elastic;
 
+pub(crate) mod interior;
 mod layer;
 
 use layer::Slab;
@@ -37,6 +38,14 @@ pub struct Compliance {
 }
 
 impl Compliance {
+    /// Of a rigid base.
+    const RIGID: Self = Self {
+        c11: 0.0,
+        c12: 0.0,
+        c22: 0.0,
+        ct: 0.0,
+    };
+
     /// α times the compliance of a homogeneous half-space \[1/Pa\], the same at every α.
     ///
     /// ```text
@@ -101,12 +110,7 @@ pub fn surface_compliance(body: &HalfSpace, wavenumber: f64) -> Result<Complianc
 pub(crate) fn alpha_compliance(body: &HalfSpace, alpha: f64) -> Compliance {
     let below = match body.substrate() {
         Substrate::Elastic(material) => Compliance::homogeneous(material),
-        Substrate::Rigid => Compliance {
-            c11: 0.0,
-            c12: 0.0,
-            c22: 0.0,
-            ct: 0.0,
-        },
+        Substrate::Rigid => Compliance::RIGID,
     };
     body.layers().iter().rev().fold(below, |below, layer| {
         let slab = Slab::new(layer.material(), alpha * layer.thickness());

@@ -19,7 +19,9 @@ __all__ = [
     "Grid",
     "HalfSpace",
     "HeightMap",
+    "InterfaceStress",
     "Layer",
+    "LayerStress",
     "LogarithmicProfile",
     "NacreWarning",
     "Paraboloid",
@@ -30,13 +32,20 @@ __all__ = [
     "Shape",
     "Solution",
     "Sphere",
+    "Stress",
+    "StressSummary",
     "__version__",
+    "_restore_interface_stress",
+    "_restore_layer_stress",
     "_restore_report",
     "_restore_solution",
+    "_restore_stress",
+    "_restore_stress_summary",
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
     "solve",
+    "stress",
 ]
 
 _Field: TypeAlias = npt.NDArray[np.float64]
@@ -47,6 +56,10 @@ _Pair: TypeAlias = tuple[float, float]
 _Freedoms: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
+_Side: TypeAlias = Literal["below", "above"]
+_Member: TypeAlias = Literal["body", "counterbody"]
+_ByLayer: TypeAlias = Mapping[int | Literal["substrate"], float] | Sequence[float | None]
+_Peak: TypeAlias = tuple[float, tuple[float, float, float]]
 _Algorithm: TypeAlias = Literal["cascade", "polonsky-keer"]
 
 __version__: Final[str]
@@ -371,6 +384,33 @@ class Solution:
     @property
     def line_load(self) -> _Field: ...
     def stiffness(self) -> _Field: ...
+    def stress(
+        self,
+        z: float | _Vector,
+        *,
+        side: _Side = "below",
+        body: _Member = "body",
+        x: float | None = None,
+        y: float | None = None,
+        friction: float = 0.0,
+        direction: _Pair | None = None,
+        residual: _ByLayer | None = None,
+        displacement: bool = False,
+        threads: int | None = None,
+        progress: Callable[[float], object] | None = None,
+    ) -> Stress: ...
+    def stress_summary(
+        self,
+        *,
+        body: _Member = "body",
+        yield_stress: _ByLayer | None = None,
+        strength: _ByLayer | None = None,
+        friction: float = 0.0,
+        direction: _Pair | None = None,
+        residual: _ByLayer | None = None,
+        threads: int | None = None,
+        progress: Callable[[float], object] | None = None,
+    ) -> StressSummary: ...
     @property
     def report(self) -> Report: ...
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]: ...
@@ -388,6 +428,101 @@ class Solution:
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
 
+@final
+class Stress:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def z(self) -> _Field: ...
+    @property
+    def x(self) -> _Field: ...
+    @property
+    def y(self) -> _Field: ...
+    @property
+    def body(self) -> HalfSpace: ...
+    @property
+    def side(self) -> _Side: ...
+    @property
+    def friction(self) -> _Pair: ...
+    @property
+    def xx(self) -> _Field: ...
+    @property
+    def yy(self) -> _Field: ...
+    @property
+    def zz(self) -> _Field: ...
+    @property
+    def xy(self) -> _Field: ...
+    @property
+    def yz(self) -> _Field: ...
+    @property
+    def xz(self) -> _Field: ...
+    @property
+    def ux(self) -> _Field: ...
+    @property
+    def uy(self) -> _Field: ...
+    @property
+    def uz(self) -> _Field: ...
+    @property
+    def von_mises(self) -> _Field: ...
+    @property
+    def tresca(self) -> _Field: ...
+    @property
+    def max_shear(self) -> _Field: ...
+    @property
+    def principal(self) -> list[_Field]: ...
+    def peak(self, field: str = "von_mises") -> _Peak: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class LayerStress:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def layer(self) -> int: ...
+    @property
+    def depths(self) -> _Pair: ...
+    @property
+    def von_mises(self) -> _Peak: ...
+    @property
+    def tension(self) -> _Peak: ...
+    @property
+    def max_shear(self) -> _Peak: ...
+    @property
+    def yield_margin(self) -> float | None: ...
+    @property
+    def strength_margin(self) -> float | None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class InterfaceStress:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def interface(self) -> int: ...
+    @property
+    def depth(self) -> float: ...
+    @property
+    def tension(self) -> _Peak: ...
+    @property
+    def compression(self) -> _Peak: ...
+    @property
+    def shear(self) -> _Peak: ...
+    @property
+    def jump(self) -> _Peak | None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class StressSummary:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def layers(self) -> list[LayerStress]: ...
+    @property
+    def interfaces(self) -> list[InterfaceStress]: ...
+    @property
+    def finished(self) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+def _restore_stress(state: tuple[object, ...]) -> Stress: ...
+def _restore_layer_stress(state: tuple[object, ...]) -> LayerStress: ...
+def _restore_interface_stress(state: tuple[object, ...]) -> InterfaceStress: ...
+def _restore_stress_summary(state: tuple[object, ...]) -> StressSummary: ...
 def _restore_report(state: tuple[object, ...]) -> Report: ...
 def _restore_solution(
     fields: tuple[_Field, _Field, _Field], motion: tuple[float, _Pair], report: Report
@@ -430,3 +565,19 @@ def solve(
     progress: Callable[[Report], object] | None = None,
     check: bool = True,
 ) -> Solution: ...
+def stress(
+    body: HalfSpace | Elastic,
+    grid: Grid,
+    pressure: _Matrix,
+    z: float | _Vector,
+    *,
+    side: _Side = "below",
+    x: float | None = None,
+    y: float | None = None,
+    friction: float = 0.0,
+    direction: _Pair | None = None,
+    residual: _ByLayer | None = None,
+    displacement: bool = False,
+    threads: int | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> Stress: ...

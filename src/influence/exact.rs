@@ -293,7 +293,9 @@ impl Table {
 }
 
 /// Coefficients by powers of the Lagrange polynomials of `nodes`.
-fn powers_of_lagrange(nodes: &[f64; NODES]) -> [[f64; NODES]; NODES] {
+pub(crate) fn powers_of_lagrange<const NODES: usize>(
+    nodes: &[f64; NODES],
+) -> [[f64; NODES]; NODES] {
     std::array::from_fn(|k| {
         let mut polynomial = [0.0; NODES];
         polynomial[0] = 1.0;

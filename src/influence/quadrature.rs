@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 /// Nodes and weights of the rule of n points, exact for polynomials of degree 2n − 1.
 #[derive(Debug, Clone)]
-pub(super) struct Rule(Vec<(f64, f64)>);
+pub(crate) struct Rule(Vec<(f64, f64)>);
 
 impl Rule {
     /// Newton's iteration on the Legendre polynomial from Tricomi's guess; Press et al., Numerical
     /// Recipes, 3rd ed., §4.6.1.
-    pub(super) fn gauss_legendre(n: usize) -> Self {
+    pub(crate) fn gauss_legendre(n: usize) -> Self {
         let node = |i: usize| {
             let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
             let mut slope = 1.0;
@@ -28,12 +28,12 @@ impl Rule {
     }
 
     /// ∫ f over \[a, b\].
-    pub(super) fn integrate(&self, a: f64, b: f64, f: impl FnMut(f64) -> f64) -> f64 {
+    pub(crate) fn integrate(&self, a: f64, b: f64, f: impl FnMut(f64) -> f64) -> f64 {
         self.around(0.5 * (a + b), 0.5 * (b - a), f)
     }
 
     /// ∫ f over \[middle − half, middle + half\], which keeps the digits of a short interval.
-    pub(super) fn around(&self, middle: f64, half: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    pub(crate) fn around(&self, middle: f64, half: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
         half * self
             .0
             .iter()
@@ -41,8 +41,22 @@ impl Rule {
             .sum::<f64>()
     }
 
+    /// The nodes and weights on \[middle − half, middle + half\].
+    pub(crate) fn nodes(&self, middle: f64, half: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.0
+            .iter()
+            .map(move |&(x, w)| (middle + half * x, half * w))
+    }
+
+    /// Those on \[a, b\], in panels of length 1 at most.
+    pub(crate) fn panels(&self, a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> {
+        let count = (b - a).ceil().max(1.0);
+        let half = 0.5 * (b - a) / count;
+        (0..count as usize).flat_map(move |k| self.nodes(a + (2 * k + 1) as f64 * half, half))
+    }
+
     /// ∫ f over \[a, b\], in panels of length 1 at most.
-    pub(super) fn over_panels(&self, a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn over_panels(&self, a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
         let count = (b - a).ceil().max(1.0);
         let width = (b - a) / count;
         (0..count as usize)
@@ -56,14 +70,14 @@ impl Rule {
 
 /// Rules for an integrand that is analytic up to some distance from the interval.
 #[derive(Debug)]
-pub(super) struct Rules {
+pub(crate) struct Rules {
     rules: [(f64, Rule); 6],
 }
 
 impl Rules {
     /// With a singularity at q half-intervals from it, n points leave an error of the order of
     /// (q + √(q² + 1))^{−2n}: for 1/r, some 1e-12 at these bounds.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let rule = |q: f64, n: usize| (q, Rule::gauss_legendre(n));
         Self {
             rules: [
@@ -77,8 +91,23 @@ impl Rules {
         }
     }
 
+    /// The same for errors of some 1e-9.
+    pub(crate) fn coarse() -> Self {
+        let rule = |q: f64, n: usize| (q, Rule::gauss_legendre(n));
+        Self {
+            rules: [
+                rule(60.0, 2),
+                rule(13.0, 3),
+                rule(6.5, 4),
+                rule(4.2, 5),
+                rule(2.9, 7),
+                rule(NEAREST, 11),
+            ],
+        }
+    }
+
     /// The rule for a singularity at `q` half-intervals; none below [`NEAREST`].
-    pub(super) fn at(&self, q: f64) -> Option<&Rule> {
+    pub(crate) fn at(&self, q: f64) -> Option<&Rule> {
         self.rules
             .iter()
             .find(|(bound, _)| q >= *bound)
@@ -87,7 +116,7 @@ impl Rules {
 }
 
 /// The nearest singularity, in half-intervals, for which there is a rule.
-pub(super) const NEAREST: f64 = 2.0;
+pub(crate) const NEAREST: f64 = 2.0;
 
 #[cfg(test)]
 mod tests {

@@ -12,7 +12,10 @@ use pyo3::types::PyTuple;
 use super::arrays::{read_only, real_matrix};
 use super::bodies::PyHalfSpace;
 use super::report::PyReport;
+use super::stress::{self, Keywords, PyStress};
+use super::summary::PyStressSummary;
 use crate::contact::Solution;
+use crate::stress::Limits;
 
 /// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 ///
@@ -206,6 +209,191 @@ impl PySolution {
             py,
             Array2::from(stiffness.unwrap_or_default().to_vec()),
         ))
+    }
+
+    /// Stress below the surface, at any depth of either body.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Depths into the body, at least 0 [m].
+    /// side : {"below", "above"}, optional
+    ///     The side that a depth on an interface is on.
+    /// body : {"body", "counterbody"}, optional
+    ///     Which of the two; in the counterbody z points into it, and x and y are the same.
+    /// x, y : float, optional
+    ///     A vertical section: only the line ``x = const`` or ``y = const`` of every depth is kept,
+    ///     by linear interpolation between cell centres; only a point where both are given.
+    /// friction : float, optional
+    ///     Coefficient of friction: adds the traction ``friction * pressure``.
+    /// direction : tuple of float, optional
+    ///     Direction of the traction on the body, of any length, along x by default; the counterbody
+    ///     gets the opposite.
+    /// residual : dict or sequence, optional
+    ///     Residual stress [Pa], equal along x and y, that is added in a layer: from its number (0
+    ///     at the surface) or ``"substrate"``, or in that order.
+    /// displacement : bool, optional
+    ///     Whether displacements are evaluated too.
+    /// threads : int, optional
+    ///     Threads; all of the machine's by default.
+    /// progress : callable, optional
+    ///     Called with the part that is done, from 0 to 1; returning False stops, and gives the
+    ///     depths that are done.
+    ///
+    /// Returns
+    /// -------
+    /// Stress
+    ///     Components, invariants and displacement.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If an argument is out of range, or the counterbody is rigid.
+    /// MemoryError
+    ///     If the fields do not fit.
+    ///
+    /// Notes
+    /// -----
+    /// Friction does not act back on the pressure. That is exact where the bodies are alike or
+    /// incompressible, and good where friction is small: what is left out is of the order of
+    /// ``friction * (1 - 2 nu) / (2 - 2 nu)`` of the pressure.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
+    /// >>> above = solution.stress(body.interfaces[0], side="above")
+    /// >>> below = solution.stress(body.interfaces[0])
+    /// >>> bool(np.allclose(above.xz, below.xz)), bool(np.allclose(above.xx, below.xx))
+    /// (True, False)
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keywords of the public signature"
+    )]
+    #[pyo3(signature = (z, *, side="below", body="body", x=None, y=None, friction=0.0,
+        direction=None, residual=None, displacement=false, threads=None, progress=None))]
+    fn stress(
+        &self,
+        py: Python<'_>,
+        z: &Bound<'_, PyAny>,
+        side: &str,
+        body: &str,
+        x: Option<f64>,
+        y: Option<f64>,
+        friction: f64,
+        direction: Option<(f64, f64)>,
+        residual: Option<&Bound<'_, PyAny>>,
+        displacement: bool,
+        threads: Option<&Bound<'_, PyAny>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyStress> {
+        let member = stress::member(body)?;
+        let (depths, one) = stress::depths(z)?;
+        let keywords = Keywords {
+            side,
+            x,
+            y,
+            friction,
+            direction,
+            residual,
+            displacement,
+            threads,
+        };
+        let options = keywords.options(self.solution.member(member)?)?;
+        let field = stress::watched(py, progress, |progress| {
+            self.solution
+                .stress_watched(&depths, member, &options, progress)
+        })?;
+        Ok(stress::field(field, one, &keywords))
+    }
+
+    /// The extremes of the stress in each layer and at each interface, and margins.
+    ///
+    /// Depths are the faces of the layers and some 18 inside each, spread over its thickness and
+    /// over the width of the contact; peaks inside are then found by parabolas through three
+    /// depths.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : {"body", "counterbody"}, optional
+    ///     Which of the two.
+    /// yield_stress : dict or sequence, optional
+    ///     Yield stress [Pa] of layers: from their number (0 at the surface) or ``"substrate"``, or
+    ///     in that order, with None where it is not known.
+    /// strength : dict or sequence, optional
+    ///     Tensile strength [Pa], likewise.
+    /// friction : float, optional
+    ///     Coefficient of friction, as in `stress`.
+    /// direction : tuple of float, optional
+    ///     Direction of the traction on the body, along x by default.
+    /// residual : dict or sequence, optional
+    ///     Residual stress [Pa] that is added in a layer.
+    /// threads : int, optional
+    ///     Threads; all of the machine's by default.
+    /// progress : callable, optional
+    ///     Called with the part that is done; returning False stops, and gives what is done.
+    ///
+    /// Returns
+    /// -------
+    /// StressSummary
+    ///     Peaks and their places; printed it is a table.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If an argument is out of range, or the counterbody is rigid.
+    /// MemoryError
+    ///     If the grid does not fit.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
+    /// >>> summary = solution.stress_summary(yield_stress={"substrate": 1.8e9})
+    /// >>> bool(summary.layers[0].yield_margin > 1.0)
+    /// True
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keywords of the public signature"
+    )]
+    #[pyo3(signature = (*, body="body", yield_stress=None, strength=None, friction=0.0,
+        direction=None, residual=None, threads=None, progress=None))]
+    fn stress_summary(
+        &self,
+        py: Python<'_>,
+        body: &str,
+        yield_stress: Option<&Bound<'_, PyAny>>,
+        strength: Option<&Bound<'_, PyAny>>,
+        friction: f64,
+        direction: Option<(f64, f64)>,
+        residual: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyStressSummary> {
+        let member = stress::member(body)?;
+        let of = self.solution.member(member)?;
+        let limits = Limits {
+            yield_stress: stress::by_layer("yield_stress", of, yield_stress)?,
+            strength: stress::by_layer("strength", of, strength)?,
+        };
+        let keywords = Keywords {
+            side: "below",
+            x: None,
+            y: None,
+            friction,
+            direction,
+            residual,
+            displacement: false,
+            threads,
+        };
+        let options = keywords.options(of)?;
+        let summary = stress::watched(py, progress, |progress| {
+            self.solution
+                .stress_summary(member, &limits, &options, progress)
+        })?;
+        Ok(PyStressSummary(summary))
     }
 
     /// How the solution came about, and how good it is.

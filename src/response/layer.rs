@@ -158,4 +158,66 @@ impl Slab {
             ct: self.twist.h11 + self.twist.h12 * self.twist.h12 * twist,
         }
     }
+
+    /// What reaches the bottom face of this layer, on a body of compliance `below`, under
+    /// `traction` (P, τ) on its top: traction, and α times the displacement of its own side.
+    ///
+    /// Bonded, with f = H12ᵀ t and M = H22 C:
+    ///
+    /// ```text
+    /// D = 1 + tr M + det M      t_bot = (I + adj M) f / D      u_bot = (C + det C · adj H22) f / D
+    /// ```
+    ///
+    /// Frictionless, the limit for C⁻¹ = diag(1/c11, 0), of which the shear traction is 0.
+    pub(super) fn through(
+        &self,
+        below: Compliance,
+        interface: Interface,
+        [p, tau]: [f64; 2],
+    ) -> ([f64; 2], [f64; 2]) {
+        let Symmetric(k11, k12, k22) = self.h22;
+        let Compliance { c11, c12, c22, .. } = below;
+        let [[a, b], [c, d]] = self.h12;
+        let (f1, f2) = (a * p + c * tau, b * p + d * tau);
+        match interface {
+            Interface::Bonded => {
+                let det = c11 * c22 - c12 * c12;
+                let (m11, m12) = (k11 * c11 + k12 * c12, k11 * c12 + k12 * c22);
+                let (m21, m22) = (k12 * c11 + k22 * c12, k12 * c12 + k22 * c22);
+                let den = 1.0 + m11 + m22 + det * self.det_h22;
+                let traction = [
+                    ((1.0 + m22) * f1 - m12 * f2) / den,
+                    ((1.0 + m11) * f2 - m21 * f1) / den,
+                ];
+                let displacement = [
+                    ((c11 + det * k22) * f1 + (c12 - det * k12) * f2) / den,
+                    ((c12 - det * k12) * f1 + (c22 + det * k11) * f2) / den,
+                ];
+                (traction, displacement)
+            }
+            Interface::Frictionless => {
+                let den = c11 * self.det_h22 + k22;
+                let pressure = (k22 * f1 - k12 * f2) / den;
+                let lateral = ((1.0 + c11 * k11) * f2 - c11 * k12 * f1) / den;
+                ([pressure, 0.0], [c11 * pressure, lateral])
+            }
+        }
+    }
+
+    /// The same of the twist: traction Q and α times the displacement U at the bottom.
+    pub(super) fn twist_through(
+        &self,
+        below: Compliance,
+        interface: Interface,
+        q: f64,
+    ) -> (f64, f64) {
+        let f = self.twist.h12 * q;
+        match interface {
+            Interface::Bonded => {
+                let q = f / (1.0 + below.ct * self.twist.h22);
+                (q, below.ct * q)
+            }
+            Interface::Frictionless => (0.0, f / self.twist.h22),
+        }
+    }
 }

@@ -22,6 +22,7 @@ THIRDS = np.arange(12).reshape(3, 4) / 3e6  # no finite number of decimals gives
 LOGARITHMIC = nacre.LogarithmicProfile(1e-5 / 3, 20e-3, flat_length=5e-3, end_factor=0.9)
 SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1e-6 / 7])
 SOLUTION = nacre.solve(SPHERE, COATED, load=10.0, grid=GRID)
+SUMMARY = SOLUTION.stress_summary(strength={0: 1e9}, threads=1)
 
 MADE_BY_A_CALL: dict[str, Any] = {
     "elastic": STEEL,
@@ -57,7 +58,14 @@ MADE_BY_A_CALL: dict[str, Any] = {
         COATED, GRID, FLOATING, method="image", refinement=2, threads=1
     ),
 }
-VALUES = MADE_BY_A_CALL | {"solution": SOLUTION, "report": SOLUTION.report}
+VALUES = MADE_BY_A_CALL | {
+    "solution": SOLUTION,
+    "report": SOLUTION.report,
+    "stress": SOLUTION.stress([0.0, 1e-6], y=0.0, friction=0.1, displacement=True),
+    "stress summary": SUMMARY,
+    "layer stress": SUMMARY.layers[0],
+    "interface stress": SUMMARY.interfaces[0],
+}
 
 every_value = pytest.mark.parametrize("value", VALUES.values(), ids=VALUES.keys())
 

@@ -1,0 +1,636 @@
+//! `nacre.stress` and `nacre.Stress`.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use ndarray::{Array3, ArrayD, Axis};
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::arrays::{Repr, count, read_only, real_array, real_matrix};
+use super::bodies::{PyHalfSpace, body};
+use super::call::SIGNALS;
+use super::grid::PyGrid;
+use crate::body::{HalfSpace, Substrate};
+use crate::error::Error;
+use crate::stress::{Member, Section, Side, Stress, StressOptions, StressProgress, stress_watched};
+
+/// Names of the components, in the order of [`Stress`].
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/// Stress below the surface, and displacement where it was asked for.
+///
+/// Fields have an axis for each of depth, x and y that was not given as a number: ``(nz, nx, ny)``
+/// for depths, ``(nx, ny)`` at one depth, ``(nz, nx)`` on the section ``y = const``. Tension is
+/// positive; at the surface ``zz`` is minus the pressure.
+///
+/// Examples
+/// --------
+/// Below a sphere the largest shear is 0.31 of the peak pressure, at 0.48 contact radii:
+///
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+/// >>> radius = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus) ** (1 / 3)
+/// >>> field = solution.stress(np.linspace(0.3, 0.7, 9) * radius, y=0.0)
+/// >>> value, (x, y, z) = field.peak("max_shear")
+/// >>> round(value / solution.peak_pressure, 2), round(z / radius, 1)
+/// (0.31, 0.5)
+#[pyclass(name = "Stress", module = "nacre", frozen)]
+pub(super) struct PyStress {
+    stress: Arc<Stress>,
+    /// Whether depth, x and y were numbers.
+    dropped: [bool; 3],
+}
+
+impl PyStress {
+    fn shaped<'py>(
+        &self,
+        py: Python<'py>,
+        field: Array3<f64>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let mut field: ArrayD<f64> = field.into_dyn();
+        for axis in (0..3).rev() {
+            if self.dropped[axis] && field.len_of(Axis(axis)) == 1 {
+                field = field.index_axis_move(Axis(axis), 0);
+            }
+        }
+        read_only(py, field)
+    }
+
+    fn component<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.shaped(py, self.stress.components[k].clone())
+    }
+
+    fn displacement<'py>(
+        &self,
+        py: Python<'py>,
+        k: usize,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        match &self.stress.displacement {
+            Some(displacement) => self.shaped(py, displacement[k].clone()),
+            None => Err(PyAttributeError::new_err(
+                "displacements were not evaluated: ask for them with displacement=True",
+            )),
+        }
+    }
+}
+
+#[pymethods]
+impl PyStress {
+    /// Depths ``(nz,)`` [m].
+    #[getter]
+    fn z<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.stress.z.clone())
+    }
+
+    /// Coordinates along x ``(nx,)`` [m].
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.stress.x.clone())
+    }
+
+    /// Coordinates along y ``(ny,)`` [m].
+    #[getter]
+    fn y<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        read_only(py, self.stress.y.clone())
+    }
+
+    /// The body it is in.
+    #[getter]
+    fn body(&self) -> PyHalfSpace {
+        PyHalfSpace(self.stress.body.clone())
+    }
+
+    /// The side of an interface that depths on one are on: "above" or "below".
+    #[getter]
+    fn side(&self) -> &'static str {
+        side_word(self.stress.side)
+    }
+
+    /// Traction over pressure, ``(x, y)``: the coefficient of friction times its direction.
+    #[getter]
+    fn friction(&self) -> (f64, f64) {
+        self.stress.friction.into()
+    }
+
+    /// Normal stress along x [Pa].
+    #[getter]
+    fn xx<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.component(py, 0)
+    }
+
+    /// Normal stress along y [Pa].
+    #[getter]
+    fn yy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.component(py, 1)
+    }
+
+    /// Normal stress along z [Pa].
+    #[getter]
+    fn zz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.component(py, 2)
+    }
+
+    /// Shear stress in the plane of the surface [Pa].
+    #[getter]
+    fn xy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.component(py, 3)
+    }
+
+    /// Shear stress along y on planes z = const [Pa].
+    #[getter]
+    fn yz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.component(py, 4)
+    }
+
+    /// Shear stress along x on planes z = const [Pa].
+    #[getter]
+    fn xz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.component(py, 5)
+    }
+
+    /// Displacement along x [m]; with ``displacement=True`` only.
+    #[getter]
+    fn ux<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.displacement(py, 0)
+    }
+
+    /// Displacement along y [m]; with ``displacement=True`` only.
+    #[getter]
+    fn uy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.displacement(py, 1)
+    }
+
+    /// Displacement into the body [m]; with ``displacement=True`` only.
+    #[getter]
+    fn uz<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.displacement(py, 2)
+    }
+
+    /// Von Mises' equivalent stress [Pa].
+    #[getter]
+    fn von_mises<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let field = py.detach(|| self.stress.von_mises());
+        self.shaped(py, field)
+    }
+
+    /// Tresca's equivalent stress: the largest principal stress less the smallest [Pa].
+    #[getter]
+    fn tresca<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let field = py.detach(|| self.stress.tresca());
+        self.shaped(py, field)
+    }
+
+    /// Largest shear stress on any plane: half of Tresca's [Pa].
+    #[getter]
+    fn max_shear<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let field = py.detach(|| self.stress.max_shear());
+        self.shaped(py, field)
+    }
+
+    /// The three principal stresses, the largest first [Pa].
+    #[getter]
+    fn principal<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; 3]> {
+        let [a, b, c] = py.detach(|| self.stress.principal());
+        Ok([
+            self.shaped(py, a)?,
+            self.shaped(py, b)?,
+            self.shaped(py, c)?,
+        ])
+    }
+
+    /// The largest value of a field, and where it is.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : str, optional
+    ///     A component, ``"von_mises"``, ``"tresca"``, ``"max_shear"``, or ``"tension"``: the
+    ///     largest principal stress.
+    ///
+    /// Returns
+    /// -------
+    /// tuple
+    ///     The value [Pa] and ``(x, y, z)`` [m].
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no such field, or it is empty.
+    ///
+    /// Examples
+    /// --------
+    /// >>> field = nacre.stress(nacre.Elastic(1.0, 0.3), nacre.Grid((2, 2), (2.0, 2.0)),
+    /// ...                      np.ones((2, 2)), 1.0)
+    /// >>> value, (x, y, z) = field.peak("von_mises")
+    /// >>> z
+    /// 1.0
+    #[pyo3(signature = (field="von_mises"))]
+    fn peak(&self, py: Python<'_>, field: &str) -> PyResult<(f64, (f64, f64, f64))> {
+        let stress = &self.stress;
+        let values = py.detach(|| match field {
+            "von_mises" => Some(stress.von_mises()),
+            "tresca" => Some(stress.tresca()),
+            "max_shear" => Some(stress.max_shear()),
+            "tension" => {
+                let [largest, ..] = stress.principal();
+                Some(largest)
+            }
+            name => COMPONENTS
+                .iter()
+                .position(|component| *component == name)
+                .map(|k| stress.components[k].clone()),
+        });
+        let values = values.ok_or_else(|| Error::Choice {
+            name: "field",
+            requirement: "a component, \"von_mises\", \"tresca\", \"max_shear\" or \"tension\"",
+            value: field.into(),
+        })?;
+        let peak = stress
+            .peak(&values)
+            .ok_or_else(|| PyValueError::new_err("the field holds no depth"))?;
+        Ok((peak.value, peak.position.into()))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.dropped == other.dropped && self.stress == other.stress
+    }
+
+    fn __repr__(&self) -> String {
+        let s = &self.stress;
+        let range = |values: &ndarray::Array1<f64>| match (values.first(), values.last()) {
+            (Some(first), Some(last)) => {
+                format!("{} from {first:.6e} to {last:.6e}", values.len())
+            }
+            _ => "none".into(),
+        };
+        format!(
+            "<nacre.Stress: depths {}, x {}, y {}, side '{}'>",
+            range(&s.z),
+            range(&s.x),
+            range(&s.y),
+            self.side()
+        )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State<'py>,))> {
+        let whole = |field: &Array3<f64>| {
+            Ok::<_, PyErr>(read_only(py, field.clone().into_dyn())?.into_any())
+        };
+        let s = &self.stress;
+        let mut fields = Vec::new();
+        for field in s.components.iter().chain(s.displacement.iter().flatten()) {
+            fields.push(whole(field)?);
+        }
+        let restore = py.import("nacre._core")?.getattr("_restore_stress")?;
+        let state = (
+            [s.z.to_vec(), s.x.to_vec(), s.y.to_vec()],
+            fields,
+            self.body(),
+            self.side().to_owned(),
+            s.friction,
+            self.dropped,
+        );
+        Ok((restore, (state,)))
+    }
+}
+
+/// Coordinates, fields, body, side, friction and shape.
+type State<'py> = (
+    [Vec<f64>; 3],
+    Vec<Bound<'py, PyAny>>,
+    PyHalfSpace,
+    String,
+    [f64; 2],
+    [bool; 3],
+);
+
+/// A stress field from its pickled state.
+#[pyfunction(name = "_restore_stress")]
+pub(super) fn restore_stress(state: State<'_>) -> PyResult<PyStress> {
+    let ([z, x, y], fields, body, side, friction, dropped) = state;
+    let mut arrays = Vec::new();
+    for field in &fields {
+        let array = real_array("field", field)?;
+        let wrong = |_| PyValueError::new_err("field must have three dimensions");
+        arrays.push(array.into_dimensionality().map_err(wrong)?);
+    }
+    let wrong = || PyValueError::new_err("state must hold 6 or 9 fields");
+    let displacement = match arrays.len() {
+        6 => None,
+        _ => Some(arrays.split_off(6).try_into().map_err(|_| wrong())?),
+    };
+    let stress = Stress::from_fields(
+        [z.into(), x.into(), y.into()],
+        body.0,
+        self::side(&side)?,
+        friction,
+        arrays.try_into().map_err(|_| wrong())?,
+        displacement,
+    )?;
+    Ok(PyStress {
+        stress: Arc::new(stress),
+        dropped,
+    })
+}
+
+fn side_word(side: Side) -> &'static str {
+    match side {
+        Side::Above => "above",
+        Side::Below => "below",
+    }
+}
+
+fn side(word: &str) -> PyResult<Side> {
+    match word {
+        "above" => Ok(Side::Above),
+        "below" => Ok(Side::Below),
+        other => Err(Error::Choice {
+            name: "side",
+            requirement: "\"above\" or \"below\"",
+            value: other.into(),
+        }
+        .into()),
+    }
+}
+
+/// The body of a solution by its name.
+pub(super) fn member(word: &str) -> PyResult<Member> {
+    match word {
+        "body" => Ok(Member::Body),
+        "counterbody" => Ok(Member::Counterbody),
+        other => Err(Error::Choice {
+            name: "body",
+            requirement: "\"body\" or \"counterbody\"",
+            value: other.into(),
+        }
+        .into()),
+    }
+}
+
+/// Values of some layers: a sequence from the surface down, or a mapping from the number of a
+/// layer, or "substrate".
+pub(super) fn by_layer(
+    name: &str,
+    body: &HalfSpace,
+    given: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<Option<f64>>> {
+    let Some(given) = given else {
+        return Ok(Vec::new());
+    };
+    let layers = body.layers().len();
+    let count = layers + usize::from(body.substrate() != Substrate::Rigid);
+    let number = |value: &Bound<'_, PyAny>| {
+        value.extract::<f64>().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "{name} must hold real numbers, got {}",
+                Repr(value)
+            ))
+        })
+    };
+    let Ok(mapping) = given.cast::<PyDict>() else {
+        let values: Vec<Option<f64>> = given.extract().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "{name} must be a dict from layers to numbers, or a sequence of them, got {}",
+                Repr(given)
+            ))
+        })?;
+        if values.len() > count {
+            return Err(PyValueError::new_err(format!(
+                "{name} must hold at most {count} values, one for each layer and the substrate, \
+                 got {}",
+                values.len()
+            )));
+        }
+        return Ok(values);
+    };
+    let mut values = vec![None; count];
+    for (key, value) in mapping {
+        let layer = match key.extract::<String>() {
+            Ok(word) if word == "substrate" && count > layers => layers,
+            Ok(_) => count,
+            Err(_) => key.extract::<usize>().unwrap_or(count),
+        };
+        if layer >= count {
+            return Err(PyValueError::new_err(format!(
+                "keys of {name} must be \"substrate\" (where it is elastic) or numbers of layers \
+                 from 0 at the surface to {}, got {}",
+                count - 1,
+                Repr(&key)
+            )));
+        }
+        values[layer] = Some(number(&value)?);
+    }
+    Ok(values)
+}
+
+/// Keywords that all evaluations share.
+pub(super) struct Keywords<'a, 'py> {
+    pub(super) side: &'a str,
+    pub(super) x: Option<f64>,
+    pub(super) y: Option<f64>,
+    pub(super) friction: f64,
+    pub(super) direction: Option<(f64, f64)>,
+    pub(super) residual: Option<&'a Bound<'py, PyAny>>,
+    pub(super) displacement: bool,
+    pub(super) threads: Option<&'a Bound<'py, PyAny>>,
+}
+
+impl Keywords<'_, '_> {
+    pub(super) fn options(&self, body: &HalfSpace) -> PyResult<StressOptions> {
+        let residual = by_layer("residual", body, self.residual)?;
+        Ok(StressOptions {
+            side: side(self.side)?,
+            section: match (self.x, self.y) {
+                (None, None) => Section::Plane,
+                (Some(x), None) => Section::X(x),
+                (None, Some(y)) => Section::Y(y),
+                (Some(x), Some(y)) => Section::Axis([x, y]),
+            },
+            friction: self.friction,
+            direction: self.direction.map_or([1.0, 0.0], Into::into),
+            residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
+            displacement: self.displacement,
+            threads: self
+                .threads
+                .map(|threads| count("threads", 1, threads))
+                .transpose()?,
+        })
+    }
+}
+
+/// Runs `work` without the interpreter; it is interrupted by Ctrl-C, and by the callback.
+pub(super) fn watched<R: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&mut StressProgress) -> crate::Result<R> + Send,
+) -> PyResult<R> {
+    if let Some(progress) = progress.filter(|p| !p.is_callable()) {
+        return Err(PyTypeError::new_err(format!(
+            "progress must be callable, got {}",
+            Repr(progress)
+        )));
+    }
+    let callback = progress.map(|p| p.clone().unbind());
+    let mut failure: Option<PyErr> = None;
+    let mut stopped = false;
+    let result = py.detach(|| {
+        let mut last = Instant::now();
+        work(&mut |part: f64| {
+            if failure.is_some() || stopped {
+                return ControlFlow::Break(());
+            }
+            let due = last.elapsed() > SIGNALS;
+            if !due && callback.is_none() {
+                return ControlFlow::Continue(());
+            }
+            let outcome = Python::attach(|py| {
+                if due {
+                    last = Instant::now();
+                    py.check_signals()?;
+                }
+                let Some(callback) = &callback else {
+                    return Ok(true);
+                };
+                let answer = callback.bind(py).call1((part,))?;
+                Ok(answer.is_none() || answer.is_truthy()?)
+            });
+            match outcome {
+                Ok(true) => return ControlFlow::Continue(()),
+                Ok(false) => stopped = true,
+                Err(error) => failure = Some(error),
+            }
+            ControlFlow::Break(())
+        })
+    });
+    if let Some(error) = failure {
+        return Err(error);
+    }
+    py.check_signals()?;
+    Ok(result?)
+}
+
+/// Depths, and whether they were one number.
+pub(super) fn depths(z: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
+    let values = real_array("z", z)?;
+    if values.ndim() > 1 {
+        return Err(PyValueError::new_err(format!(
+            "z must be a depth or a sequence of depths, got shape {:?}",
+            values.shape()
+        )));
+    }
+    Ok((values.iter().copied().collect(), values.ndim() == 0))
+}
+
+/// A field, of which the axes that were numbers are dropped.
+pub(super) fn field(stress: Stress, one_depth: bool, keywords: &Keywords) -> PyStress {
+    PyStress {
+        stress: Arc::new(stress),
+        dropped: [one_depth, keywords.x.is_some(), keywords.y.is_some()],
+    }
+}
+
+/// Stress of a body under a pressure, at any depth.
+///
+/// Parameters
+/// ----------
+/// body : HalfSpace or Elastic
+///     The body.
+/// grid : Grid
+///     The cells.
+/// pressure : array_like
+///     Pressure ``(nx, ny)`` on them [Pa], uniform over a cell.
+/// z : float or array_like
+///     Depths, at least 0 [m].
+/// side : {"below", "above"}, optional
+///     The side that a depth on an interface is on.
+/// x, y : float, optional
+///     A vertical section: only the line ``x = const`` or ``y = const`` of every depth is kept, by
+///     linear interpolation between cell centres; only a point where both are given.
+/// friction : float, optional
+///     Coefficient of friction: adds the traction ``friction * pressure``.
+/// direction : tuple of float, optional
+///     Direction of the traction that acts on the body, of any length; along x by default.
+/// residual : dict or sequence, optional
+///     Residual stress [Pa], equal along x and y, that is added in a layer: from its number (0 at
+///     the surface) or ``"substrate"``, or in that order.
+/// displacement : bool, optional
+///     Whether displacements are evaluated too.
+/// threads : int, optional
+///     Threads; all of the machine's by default.
+/// progress : callable, optional
+///     Called with the part that is done, from 0 to 1; returning False stops, and gives the depths
+///     that are done.
+///
+/// Returns
+/// -------
+/// Stress
+///     Components, invariants and displacement.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If an argument is out of range.
+/// MemoryError
+///     If the fields do not fit.
+///
+/// Notes
+/// -----
+/// The pressure is not coupled to friction. That is exact where the bodies are alike or
+/// incompressible, and good where the friction is small: what is left out is of the order of
+/// ``friction * (1 - 2 nu) / (2 - 2 nu)`` of the pressure.
+///
+/// Examples
+/// --------
+/// The largest shear below a uniformly loaded square, over the pressure:
+///
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> grid = nacre.Grid(shape=(65, 65), size=(2e-3, 2e-3))
+/// >>> field = nacre.stress(steel, grid, np.full((65, 65), 1e9), [0.0, 0.5e-3], y=0.0)
+/// >>> field.zz.shape
+/// (2, 65)
+/// >>> bool(abs(field.zz[0, 32] + 1e9) < 1.0)
+/// True
+#[expect(
+    clippy::too_many_arguments,
+    reason = "keywords of the public signature"
+)]
+#[pyfunction]
+#[pyo3(signature = (body, grid, pressure, z, *, side="below", x=None, y=None, friction=0.0,
+    direction=None, residual=None, displacement=false, threads=None, progress=None))]
+pub(super) fn stress(
+    py: Python<'_>,
+    #[pyo3(from_py_with = body)] body: HalfSpace,
+    grid: PyGrid,
+    pressure: &Bound<'_, PyAny>,
+    z: &Bound<'_, PyAny>,
+    side: &str,
+    x: Option<f64>,
+    y: Option<f64>,
+    friction: f64,
+    direction: Option<(f64, f64)>,
+    residual: Option<&Bound<'_, PyAny>>,
+    displacement: bool,
+    threads: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyStress> {
+    let pressure = real_matrix("pressure", pressure)?;
+    let (depths, one) = depths(z)?;
+    let keywords = Keywords {
+        side,
+        x,
+        y,
+        friction,
+        direction,
+        residual,
+        displacement,
+        threads,
+    };
+    let options = keywords.options(&body)?;
+    let evaluated = watched(py, progress, |progress| {
+        stress_watched(&body, &grid.0, &pressure, &depths, &options, progress)
+    })?;
+    Ok(field(evaluated, one, &keywords))
+}

@@ -1,0 +1,394 @@
+//! Stress and displacement below the surface, under the pressure of a contact and its friction.
+//!
+//! ```text
+//! σ[i, j] = Σ_kl K[i−k, j−l; z] p[k, l]
+//! ```
+//!
+//! at depth z, where K are influence coefficients without aliasing: closed forms of a half-space of
+//! the material at that depth, and exact transforms of what the layers add. Both fall off as they
+//! do in an endless body, so that a larger domain changes nothing, and the error does not depend on
+//! how deep or how thick a layer is: it is below 1e-8 of the pressure (`tests/stress_*.rs`). What is
+//! left is that the pressure is uniform over a cell.
+//!
+//! Sliding adds the traction q = μ p along a direction; it does not act back on the pressure. That
+//! holds where the bodies are alike (the same elastic constants), where ν = ½, or where μ is small:
+//! the coupling that is left out changes the pressure by the order of μ (1 − 2ν)/(2 − 2ν).
+
+use std::ops::ControlFlow;
+
+use ndarray::{Array1, Array3, ArrayRef2};
+
+use crate::body::HalfSpace;
+use crate::contact::Solution;
+use crate::error::{Error, Result, finite};
+use crate::grid::Grid;
+use crate::memory::check_memory;
+
+mod cells;
+mod components;
+mod derived;
+mod hankel;
+mod kernel;
+mod line;
+mod loaded;
+mod rectangle;
+mod section;
+mod summary;
+mod table;
+
+pub use derived::Peak;
+pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary, stress_summary};
+
+use components::COMPONENTS;
+use loaded::Loaded;
+use section::{Lines, place};
+
+/// Which side of an interface a depth is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Side {
+    /// In the layer above.
+    Above,
+    /// In the layer below, or the substrate.
+    #[default]
+    Below,
+}
+
+/// Where on a plane at some depth fields are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Section {
+    /// Everywhere.
+    #[default]
+    Plane,
+    /// On the line x = const, by linear interpolation between cell centres.
+    X(f64),
+    /// On the line y = const.
+    Y(f64),
+    /// At the point (x, y).
+    Axis([f64; 2]),
+}
+
+/// What is evaluated beside the depths.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StressOptions {
+    /// Side of an interface, for depths that lie on one. Default: below.
+    pub side: Side,
+    /// Where fields are kept. Default: on whole planes.
+    pub section: Section,
+    /// Coefficient of friction μ. Default: 0.
+    pub friction: f64,
+    /// Direction of the traction that acts on the body, of any length. Default: along x.
+    pub direction: [f64; 2],
+    /// Residual stress \[Pa\], equal in x and y, of each layer from the surface down and of the
+    /// substrate; those that are left out have none. It is added to σ_xx and σ_yy. Default: none.
+    pub residual: Vec<f64>,
+    /// Whether displacements are evaluated too. Default: no.
+    pub displacement: bool,
+    /// Threads. Default: all of the machine's.
+    pub threads: Option<usize>,
+}
+
+impl Default for StressOptions {
+    fn default() -> Self {
+        Self {
+            side: Side::default(),
+            section: Section::default(),
+            friction: 0.0,
+            direction: [1.0, 0.0],
+            residual: Vec::new(),
+            displacement: false,
+            threads: None,
+        }
+    }
+}
+
+/// Is told what part of the work is done, from 0 to 1, and breaks to stop.
+pub type StressProgress<'a> = dyn FnMut(f64) -> ControlFlow<()> + 'a;
+
+/// Stress at some depths. Arrays are (depths, nx, ny); on a section nx or ny is 1. Tension is
+/// positive.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Stress {
+    /// Depths z \[m\].
+    pub z: Array1<f64>,
+    /// Coordinates x \[m\].
+    pub x: Array1<f64>,
+    /// Coordinates y \[m\].
+    pub y: Array1<f64>,
+    /// The body.
+    pub body: HalfSpace,
+    /// The side of an interface that was asked for.
+    pub side: Side,
+    /// μ times the unit vector of the traction that acts on the body.
+    pub friction: [f64; 2],
+    /// σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz \[Pa\], in this order.
+    pub components: [Array3<f64>; 6],
+    /// u_x, u_y, u_z \[m\], where they were asked for; in line contact relative to the substrate's
+    /// surface at a distance of the grid's width, as all displacements there.
+    pub displacement: Option<[Array3<f64>; 3]>,
+}
+
+impl Stress {
+    /// From its parts, of which fields are (depths, nx, ny).
+    ///
+    /// # Errors
+    /// Where the shapes do not agree.
+    pub fn from_fields(
+        [z, x, y]: [Array1<f64>; 3],
+        body: HalfSpace,
+        side: Side,
+        friction: [f64; 2],
+        components: [Array3<f64>; 6],
+        displacement: Option<[Array3<f64>; 3]>,
+    ) -> Result<Self> {
+        let shape = (z.len(), x.len(), y.len());
+        let fields = components.iter().chain(displacement.iter().flatten());
+        if fields.into_iter().any(|field| field.dim() != shape) {
+            return Err(Error::Inconsistent(
+                "fields must be of the shape of their depths and coordinates",
+            ));
+        }
+        Ok(Self {
+            z,
+            x,
+            y,
+            body,
+            side,
+            friction,
+            components,
+            displacement,
+        })
+    }
+}
+
+/// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`.
+///
+/// # Errors
+/// Bad input, or too little memory.
+///
+/// ```
+/// use ndarray::array;
+/// use nacre::{Elastic, Grid, StressOptions, stress};
+/// // Under the middle of a uniformly loaded square of side 2: Love (1929).
+/// let grid = Grid::new([2, 2], [2.0, 2.0])?;
+/// let pressure = array![[1.0, 1.0], [1.0, 1.0]];
+/// let options = StressOptions { section: nacre::Section::Y(0.0), ..StressOptions::default() };
+/// let field = stress(&Elastic::new(1.0, 0.3)?.into(), &grid, &pressure, &[0.0, 1.0], &options)?;
+/// assert!((field.components[2][[0, 0, 0]] + 1.0).abs() < 1e-12);
+/// assert!(field.components[2][[1, 0, 0]] > -0.7);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+pub fn stress(
+    body: &HalfSpace,
+    grid: &Grid,
+    pressure: &ArrayRef2<f64>,
+    depths: &[f64],
+    options: &StressOptions,
+) -> Result<Stress> {
+    let mut go_on = |_| ControlFlow::Continue(());
+    stress_watched(body, grid, pressure, depths, options, &mut go_on)
+}
+
+/// [`stress`], telling `progress` how far it is; its break ends with the depths that are done.
+///
+/// # Errors
+/// As [`stress`].
+pub fn stress_watched(
+    body: &HalfSpace,
+    grid: &Grid,
+    pressure: &ArrayRef2<f64>,
+    depths: &[f64],
+    options: &StressOptions,
+    progress: &mut StressProgress,
+) -> Result<Stress> {
+    let places = depths
+        .iter()
+        .map(|&z| place(body, z, options.side))
+        .collect::<Result<Vec<_>>>()?;
+    let lines = Lines::new(grid, options.section)?;
+    let fields = if options.displacement { COMPONENTS } else { 6 };
+    let [ox, oy] = lines.shape;
+    check_memory(
+        grid.shape(),
+        8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, options),
+    )?;
+    let residual = residual(body, &options.residual)?;
+    let loaded = Loaded::new(body, grid, pressure, options)?;
+    let cells = ox * oy;
+    let mut kept: Vec<Vec<f64>> = vec![vec![0.0; depths.len() * cells]; fields];
+    let mut plane = vec![0.0; pressure.len()];
+    let mut scratch = loaded.scratch(fields);
+    let mut done = 0;
+    'depths: for place in &places {
+        loaded.coefficients(place, &mut scratch);
+        for (k, kept) in kept.iter_mut().enumerate() {
+            let part = (done as f64 + k as f64 / fields as f64) / places.len() as f64;
+            if progress(part).is_break() {
+                break 'depths;
+            }
+            let kept = &mut kept[done * cells..(done + 1) * cells];
+            if lines.whole() {
+                loaded.apply(k, kept, &mut scratch);
+            } else {
+                loaded.apply(k, &mut plane, &mut scratch);
+                lines.keep(&plane, grid.shape(), kept);
+            }
+            if k < 2 && residual[place.layer] != 0.0 {
+                kept.iter_mut().for_each(|s| *s += residual[place.layer]);
+            }
+        }
+        done += 1;
+    }
+    if done == places.len() {
+        // The last word; there is nothing left to stop.
+        let _ = progress(1.0);
+    }
+    let mut arrays = kept.into_iter().map(|mut values| {
+        values.truncate(done * cells);
+        Array3::from_shape_vec((done, ox, oy), values).unwrap_or_else(|_| Array3::zeros((0, 0, 0)))
+    });
+    let mut next = || arrays.next().unwrap_or_default();
+    let components = std::array::from_fn(|_| next());
+    let displacement = options
+        .displacement
+        .then(|| std::array::from_fn(|_| next()));
+    Ok(Stress {
+        z: depths[..done].to_vec().into(),
+        x: lines.x,
+        y: lines.y,
+        body: body.clone(),
+        side: options.side,
+        friction: loaded.friction(),
+        components,
+        displacement,
+    })
+}
+
+/// Residual stress of every layer and of the substrate.
+fn residual(body: &HalfSpace, given: &[f64]) -> Result<Vec<f64>> {
+    let count = body.layers().len() + 1;
+    if given.len() > count {
+        return Err(Error::Parameter {
+            name: "residual",
+            requirement: "of one value for each layer and the substrate, at most",
+            value: given.len() as f64,
+        });
+    }
+    let mut values = vec![0.0; count];
+    for (value, given) in values.iter_mut().zip(given) {
+        *value = finite("residual", *given)?;
+    }
+    Ok(values)
+}
+
+/// One of the two bodies of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Member {
+    /// The body that the shape is pressed into.
+    #[default]
+    Body,
+    /// The body that carries the shape: z points into it, x and y are the same.
+    Counterbody,
+}
+
+impl Solution {
+    /// Stress at `depths` in one of the bodies. The traction of friction is that on the body; the
+    /// counterbody gets the opposite.
+    ///
+    /// # Errors
+    /// Bad input, a counterbody that is rigid, too little memory.
+    ///
+    /// ```
+    /// use nacre::{Elastic, Member, Motion, Sphere, StressOptions, solve};
+    /// let steel = Elastic::new(210e9, 0.3)?;
+    /// let solution = solve(&Sphere::new(5e-3)?, &steel.into(), &Motion::load(10.0))?;
+    /// let a = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus()).cbrt();
+    /// let field = solution.stress(&[0.48 * a], Member::Body, &StressOptions::default())?;
+    /// let shear = field.max_shear().fold(0.0_f64, |m, s| m.max(*s));
+    /// assert!((shear / solution.peak_pressure() / 0.31 - 1.0).abs() < 5e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn stress(
+        &self,
+        depths: &[f64],
+        member: Member,
+        options: &StressOptions,
+    ) -> Result<Stress> {
+        let mut go_on = |_| ControlFlow::Continue(());
+        self.stress_watched(depths, member, options, &mut go_on)
+    }
+
+    /// [`Solution::stress`], telling `progress` how far it is; its break ends with the depths that
+    /// are done.
+    ///
+    /// # Errors
+    /// As [`Solution::stress`].
+    pub fn stress_watched(
+        &self,
+        depths: &[f64],
+        member: Member,
+        options: &StressOptions,
+        progress: &mut StressProgress,
+    ) -> Result<Stress> {
+        let (body, options) = self.loaded_member(member, options)?;
+        stress_watched(
+            body,
+            self.grid(),
+            &self.pressure,
+            depths,
+            &options,
+            progress,
+        )
+    }
+
+    /// What is worth knowing of the stress in one of the bodies: peaks in each layer, tractions at
+    /// each interface, margins.
+    ///
+    /// # Errors
+    /// As [`Solution::stress`], and where a limit is not finite and above 0.
+    pub fn stress_summary(
+        &self,
+        member: Member,
+        limits: &Limits,
+        options: &StressOptions,
+        progress: &mut StressProgress,
+    ) -> Result<StressSummary> {
+        let (body, options) = self.loaded_member(member, options)?;
+        summary::stress_summary(
+            body,
+            self.grid(),
+            &self.pressure,
+            limits,
+            &options,
+            progress,
+        )
+    }
+
+    /// That body.
+    ///
+    /// # Errors
+    /// Where it is rigid.
+    pub fn member(&self, member: Member) -> Result<&HalfSpace> {
+        match (member, &self.report.counterbody) {
+            (Member::Body, _) => Ok(&self.report.body),
+            (Member::Counterbody, Some(counterbody)) => Ok(counterbody),
+            (Member::Counterbody, None) => Err(Error::Inconsistent(
+                "body must be \"body\" where the counterbody is rigid",
+            )),
+        }
+    }
+
+    /// That body, and the options with the traction that acts on it.
+    fn loaded_member(
+        &self,
+        member: Member,
+        options: &StressOptions,
+    ) -> Result<(&HalfSpace, StressOptions)> {
+        let body = self.member(member)?;
+        let mut options = options.clone();
+        if member == Member::Counterbody {
+            options.direction = options.direction.map(|d| -d);
+        }
+        Ok((body, options))
+    }
+}

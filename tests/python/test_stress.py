@@ -1,0 +1,239 @@
+"""Stress from Python: shapes, sections, both bodies, residual stress, summary, errors, progress."""
+
+import copy
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+
+STEEL = nacre.Elastic(young=210e9, poisson=0.3)
+HARD = nacre.Elastic(young=420e9, poisson=0.2)
+COATED = nacre.HalfSpace(STEEL, [nacre.Layer(HARD, thickness=20e-6)])
+GRID = nacre.Grid(shape=(41, 31), size=(4.1e-4, 3.1e-4))
+SLIPPING = nacre.HalfSpace(STEEL, [nacre.Layer(HARD, 20e-6, "frictionless")])
+
+# Sums over a thousand cells, of numbers of the order of the peak pressure.
+ROUNDING = 1e-12
+
+
+@pytest.fixture(scope="module")
+def solution() -> nacre.Solution:
+    """Press a sphere of another material into the coated body."""
+    return nacre.solve(nacre.Sphere(5e-3), COATED, HARD, grid=GRID, load=5.0)
+
+
+def close(a: Any, b: Any, solution: nacre.Solution) -> bool:
+    return bool(np.allclose(a, b, rtol=0.0, atol=ROUNDING * solution.peak_pressure))
+
+
+def test_axes_that_are_numbers_are_dropped(solution: nacre.Solution) -> None:
+    depths = [0.0, 10e-6, 50e-6]
+    assert solution.stress(depths).xx.shape == (3, 41, 31)
+    assert solution.stress(10e-6).von_mises.shape == (41, 31)
+    assert solution.stress([10e-6]).max_shear.shape == (1, 41, 31)
+    assert solution.stress(depths, y=0.0).tresca.shape == (3, 41)
+    assert solution.stress(depths, x=0.0).zz.shape == (3, 31)
+    assert solution.stress(depths, x=0.0, y=0.0).principal[0].shape == (3,)
+    assert solution.stress(10e-6, x=0.0, y=0.0).xz.shape == ()
+    assert solution.stress([]).xx.shape == (0, 41, 31)
+
+
+def test_sections_are_those_of_the_planes(solution: nacre.Solution) -> None:
+    depths = np.array([0.0, 5e-6, 40e-6])
+    planes = solution.stress(depths, friction=0.2, displacement=True)
+    along = solution.stress(depths, friction=0.2, displacement=True, y=GRID.y[12])
+    between = solution.stress(depths, x=0.5 * (GRID.x[3] + GRID.x[4]), friction=0.2)
+    for name in ("xx", "yy", "zz", "xy", "yz", "xz"):
+        plane = getattr(planes, name)
+        assert np.array_equal(getattr(along, name), plane[:, :, 12])
+        middle = 0.5 * (plane[:, 3] + plane[:, 4])
+        assert close(getattr(between, name), middle, solution)
+    assert np.array_equal(along.uz, planes.uz[:, :, 12])
+    assert np.array_equal(along.y, [GRID.y[12]])
+
+
+def test_the_free_function_is_that_of_the_solution(solution: nacre.Solution) -> None:
+    field = nacre.stress(COATED, GRID, solution.pressure, [0.0, 30e-6], friction=0.1)
+    assert field == solution.stress([0.0, 30e-6], friction=0.1)
+    assert np.array_equal(-field.zz[0].round(-1), solution.pressure.round(-1))
+    assert field.body == COATED
+    assert field.friction == (0.1, 0.0)
+
+
+def test_displacements_of_both_surfaces_are_that_of_the_solution(solution: nacre.Solution) -> None:
+    body = solution.stress(0.0, displacement=True)
+    counterbody = solution.stress(0.0, displacement=True, body="counterbody")
+    assert counterbody.body == nacre.HalfSpace(HARD)
+    total = body.uz + counterbody.uz
+    # Influence coefficients keep 1e-9, those of stress 1e-9 of the largest.
+    assert np.allclose(total, solution.displacement, rtol=3e-9)
+    with pytest.raises(AttributeError, match=r"^displacements were not evaluated"):
+        _ = solution.stress(0.0).uz
+
+
+def test_displacement_of_a_line_contact_has_the_same_datum() -> None:
+    grid = nacre.Grid.line(64, 3e-4)
+    solution = nacre.solve(nacre.Cylinder(5e-3), COATED, grid=grid, load=2e4)
+    surface = solution.stress(0.0, displacement=True)
+    assert np.allclose(surface.uz, solution.displacement, rtol=1e-8)
+
+
+def test_the_counterbody_is_drawn_the_other_way(solution: nacre.Solution) -> None:
+    body = solution.stress(0.0, friction=0.3, direction=(0.0, 2.0))
+    counterbody = solution.stress(0.0, friction=0.3, direction=(0.0, 2.0), body="counterbody")
+    assert close(body.yz, -0.3 * solution.pressure, solution)
+    assert close(counterbody.yz, 0.3 * solution.pressure, solution)
+    assert close(body.xz, 0.0, solution)
+
+
+def test_residual_stress_is_added_in_its_layer(solution: nacre.Solution) -> None:
+    depths = [10e-6, 30e-6]
+    without = solution.stress(depths)
+    both: list[Any] = [{0: -2e9, "substrate": 1e8}, [-2e9, 1e8]]
+    for residual in both:
+        field = solution.stress(depths, residual=residual)
+        for name in ("xx", "yy"):
+            added = getattr(field, name) - getattr(without, name)
+            assert np.allclose(added[0], -2e9, rtol=1e-12)
+            assert np.allclose(added[1], 1e8, rtol=1e-12)
+        assert np.array_equal(field.zz, without.zz)
+        assert np.array_equal(field.xy, without.xy)
+
+
+def test_invariants_are_those_of_the_components(solution: nacre.Solution) -> None:
+    field = solution.stress([3e-6, 30e-6], friction=0.4, direction=(1.0, 1.0), y=0.0)
+    tensor = np.array(
+        [
+            [field.xx, field.xy, field.xz],
+            [field.xy, field.yy, field.yz],
+            [field.xz, field.yz, field.zz],
+        ]
+    )
+    values = np.linalg.eigvalsh(np.moveaxis(tensor, (0, 1), (-2, -1)))[..., ::-1]
+    for k in range(3):
+        assert close(field.principal[k], values[..., k], solution)
+    assert close(field.tresca, values[..., 0] - values[..., 2], solution)
+    assert close(field.max_shear, 0.5 * field.tresca, solution)
+    deviator = values - values.mean(axis=-1, keepdims=True)
+    assert close(field.von_mises, np.sqrt(1.5 * (deviator**2).sum(axis=-1)), solution)
+    value, (x, y, z) = field.peak("tension")
+    assert value == field.principal[0].max()
+    assert field.principal[0][list(field.z).index(z), list(field.x).index(x)] == value
+    assert y == 0.0
+
+
+def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
+    summary = solution.stress_summary(
+        yield_stress={"substrate": 2e9}, strength=[1e9, None], friction=0.2, residual={0: -1e9}
+    )
+    coating, substrate = summary.layers
+    (interface,) = summary.interfaces
+    depths = np.linspace(0.0, 20e-6, 41)
+    fine = solution.stress(depths, side="above", friction=0.2, residual={0: -1e9})
+    # Parabolas between depths: the second order of what is left between them.
+    assert coating.von_mises[0] == pytest.approx(fine.von_mises.max(), rel=2e-3)
+    assert coating.tension[0] == pytest.approx(fine.principal[0].max(), rel=2e-3)
+    fine = solution.stress(20e-6 + np.linspace(0.0, 150e-6, 76), friction=0.2)
+    value, (_, _, z) = substrate.von_mises
+    assert value == pytest.approx(fine.von_mises.max(), rel=1e-3)
+    assert z == pytest.approx(fine.peak("von_mises")[1][2], abs=3e-6)
+    assert substrate.max_shear[0] == pytest.approx(fine.max_shear.max(), rel=1e-3)
+    assert substrate.yield_margin == 2e9 / value
+    assert coating.yield_margin is None
+    assert coating.strength_margin == pytest.approx(1e9 / coating.tension[0])
+    assert substrate.strength_margin is None
+    above = solution.stress(20e-6, side="above", friction=0.2, residual={0: -1e9})
+    below = solution.stress(20e-6, friction=0.2)
+    assert interface.depth == 20e-6
+    assert interface.shear[0] == pytest.approx(np.hypot(below.xz, below.yz).max(), rel=1e-12)
+    assert interface.tension[0] == pytest.approx(below.zz.max(), rel=1e-9)
+    assert interface.compression[0] == pytest.approx(below.zz.min(), rel=1e-12)
+    jump = [getattr(below, name) - getattr(above, name) for name in ("xx", "yy", "xy")]
+    largest = abs(jump[0] + jump[1]) / 2 + np.hypot((jump[0] - jump[1]) / 2, jump[2])
+    assert interface.jump is not None
+    assert interface.jump[0] == pytest.approx(largest.max(), rel=1e-12)
+    text = str(summary)
+    assert text.splitlines()[0].split()[:2] == ["layer", "from"]
+    assert "substrate" in text
+    assert summary.finished
+
+
+def test_fields_and_summaries_are_values(solution: nacre.Solution) -> None:
+    field = solution.stress([0.0, 30e-6], y=0.0, friction=0.1, displacement=True)
+    again = pickle.loads(pickle.dumps(field))
+    assert again == field == copy.deepcopy(field)
+    assert np.array_equal(again.ux, field.ux)
+    assert field != solution.stress([0.0, 30e-6], y=0.0)
+    assert repr(field).startswith("<nacre.Stress: depths 2 from 0")
+    assert not field.xx.flags.writeable
+    summary = solution.stress_summary()
+    assert pickle.loads(pickle.dumps(summary)) == summary
+    assert pickle.loads(pickle.dumps(summary.layers[0])) == summary.layers[0]
+    assert pickle.loads(pickle.dumps(summary.interfaces[0])) == summary.interfaces[0]
+
+
+def test_progress_stops_and_raises(solution: nacre.Solution) -> None:
+    parts: list[float] = []
+    solution.stress([0.0, 1e-6, 2e-6], progress=parts.append)
+    assert parts == sorted(parts)
+    assert (parts[0], parts[-1]) == (0.0, 1.0)
+    stopped = solution.stress([0.0, 1e-6, 2e-6], progress=lambda part: part < 0.5)
+    assert stopped.xx.shape == (1, 41, 31)
+    assert list(stopped.z) == [0.0]
+    assert not solution.stress_summary(progress=lambda part: part < 0.1).finished
+
+    class StopError(Exception):
+        pass
+
+    def fail(part: float) -> None:
+        raise StopError
+
+    with pytest.raises(StopError):
+        solution.stress(0.0, progress=fail)
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"z": -1e-6}, r"^z must be finite and at least 0, got -0.000001$"),
+    ({"z": float("nan")}, r"^z must be finite and at least 0, got NaN$"),
+    ({"z": [[0.0]]}, r"^z must be a depth or a sequence of depths, got shape \[1, 1\]$"),
+    ({"side": "left"}, r'^side must be "above" or "below", got "left"$'),
+    ({"body": "both"}, r'^body must be "body" or "counterbody", got "both"$'),
+    ({"x": 1.0}, r"^x must be on the grid, got 1$"),
+    ({"y": float("inf")}, r"^y must be finite, got inf$"),
+    ({"friction": -0.1}, r"^friction must be at least 0 \(turn the direction\), got -0.1$"),
+    ({"friction": float("nan")}, r"^friction must be finite, got NaN$"),
+    ({"direction": (0.0, 0.0)}, r"^direction must be a vector of finite length above 0, got 0$"),
+    ({"residual": {2: 1e9}}, r'^keys of residual must be "substrate"'),
+    ({"residual": [1.0, 2.0, 3.0]}, r"^residual must hold at most 2 values"),
+    ({"residual": {0: float("inf")}}, r"^residual must be finite, got inf$"),
+    ({"threads": 0}, r"^threads must be an integer of at least 1, got 0$"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), WRONG)
+def test_bad_input(arguments: dict[str, Any], message: str, solution: nacre.Solution) -> None:
+    with pytest.raises(ValueError, match=message):
+        solution.stress(**({"z": 0.0} | arguments))
+
+
+def test_bad_bodies(solution: nacre.Solution) -> None:
+    rigid = nacre.solve(nacre.Sphere(5e-3), COATED, grid=GRID, load=5.0)
+    with pytest.raises(ValueError, match=r'^body must be "body" where the counterbody is rigid$'):
+        rigid.stress(0.0, body="counterbody")
+    on_rigid = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(STEEL, 1e-5)])
+    with pytest.raises(ValueError, match=r"^z must be above the rigid substrate"):
+        nacre.stress(on_rigid, GRID, solution.pressure, 1e-5)
+    assert nacre.stress(on_rigid, GRID, solution.pressure, 1e-5, side="above").zz.min() < 0.0
+    with pytest.raises(ValueError, match=r"^friction must be 0 on a body with a frictionless"):
+        nacre.stress(SLIPPING, GRID, solution.pressure, 0.0, friction=0.1)
+    with pytest.raises(ValueError, match=r"^pressure: expected shape \[41, 31\]"):
+        nacre.stress(COATED, GRID, np.zeros((3, 3)), 0.0)
+    with pytest.raises(ValueError, match=r"^pressure is not finite at \[0, 1\]$"):
+        nacre.stress(COATED, nacre.Grid((2, 2), (1.0, 1.0)), [[0.0, np.inf], [0.0, 0.0]], 0.0)
+    with pytest.raises(ValueError, match=r"^yield_stress must be finite and above 0, got -1$"):
+        solution.stress_summary(yield_stress=[-1.0])
+    with pytest.raises(TypeError, match=r"^strength must be a dict"):
+        solution.stress_summary(strength=3.0)  # type: ignore[arg-type]

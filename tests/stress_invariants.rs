@@ -1,0 +1,376 @@
+//! What stress fields must satisfy whatever the body: independence of cells, domain and artificial
+//! interfaces, surface conditions, continuity.
+
+#[path = "support/random.rs"]
+mod random;
+
+use nacre::{
+    Elastic, Grid, HalfSpace, Interface, Layer, Result, Side, Stress, StressOptions, Substrate,
+    stress,
+};
+use ndarray::{Array2, Array3};
+
+fn layer(young: f64, poisson: f64, thickness: f64) -> Result<Layer> {
+    Layer::new(Elastic::new(young, poisson)?, thickness)
+}
+
+/// Hard, soft, thin, many layers, incompressible, rigid base: lengths in cells of the grids here.
+fn bodies() -> Result<Vec<(&'static str, HalfSpace)>> {
+    let base = Elastic::new(1.0, 0.3)?;
+    Ok(vec![
+        ("bare", base.into()),
+        ("hard", HalfSpace::new(base, [layer(4.0, 0.25, 3.0)?])?),
+        ("soft", HalfSpace::new(base, [layer(0.1, 0.45, 1.0)?])?),
+        ("thin", HalfSpace::new(base, [layer(10.0, 0.2, 0.05)?])?),
+        ("thick", HalfSpace::new(base, [layer(3.0, 0.3, 200.0)?])?),
+        (
+            "three",
+            HalfSpace::new(
+                base,
+                [
+                    layer(20.0, 0.2, 0.3)?,
+                    layer(0.3, 0.4, 0.5)?,
+                    layer(2.0, 0.0, 4.0)?,
+                ],
+            )?,
+        ),
+        (
+            "incompressible",
+            HalfSpace::new(Elastic::new(1.0, 0.5)?, [layer(5.0, 0.5, 2.0)?])?,
+        ),
+        (
+            "rigid base",
+            HalfSpace::new(Substrate::Rigid, [layer(1.0, 0.3, 2.5)?])?,
+        ),
+        (
+            "soft on rigid",
+            HalfSpace::new(
+                Substrate::Rigid,
+                [layer(5.0, 0.3, 0.7)?, layer(1.0, 0.49, 1.5)?],
+            )?,
+        ),
+    ])
+}
+
+fn slipping() -> Result<Vec<(&'static str, HalfSpace)>> {
+    let base = Elastic::new(1.0, 0.3)?;
+    let slips = Interface::Frictionless;
+    Ok(vec![
+        (
+            "slipping",
+            HalfSpace::new(base, [layer(4.0, 0.25, 2.0)?.with_interface(slips)])?,
+        ),
+        (
+            "slipping on rigid",
+            HalfSpace::new(
+                Substrate::Rigid,
+                [
+                    layer(4.0, 0.25, 0.5)?,
+                    layer(1.0, 0.3, 1.0)?.with_interface(slips),
+                ],
+            )?,
+        ),
+    ])
+}
+
+fn options(friction: f64) -> StressOptions {
+    StressOptions {
+        friction,
+        direction: [0.8, 0.6],
+        displacement: true,
+        ..StressOptions::default()
+    }
+}
+
+/// Depths, in cells, of which those in a body's interior count.
+fn depths(body: &HalfSpace) -> Vec<f64> {
+    let end = match (body.substrate(), body.interfaces().last()) {
+        (Substrate::Rigid, Some(end)) => *end,
+        _ => f64::INFINITY,
+    };
+    [0.0, 0.01, 0.04, 0.1, 0.25, 0.6, 1.1, 1.7, 2.9, 6.0, 20.0]
+        .into_iter()
+        .filter(|z| *z < end)
+        .collect()
+}
+
+fn all(field: &Stress) -> Vec<&Array3<f64>> {
+    field
+        .components
+        .iter()
+        .chain(field.displacement.iter().flatten())
+        .collect()
+}
+
+const NAMES: [&str; 9] = ["xx", "yy", "zz", "xy", "yz", "xz", "ux", "uy", "uz"];
+
+/// The largest difference of each component; displacements over the largest of them.
+fn differences(one: &Stress, other: &Stress) -> Vec<f64> {
+    let largest = |field: &Array3<f64>| field.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let pairs = all(one).into_iter().zip(all(other)).enumerate();
+    pairs
+        .map(|(k, (a, b))| {
+            let scale = if k < 6 { 1.0 } else { largest(a) };
+            largest(&(a - b)) / scale
+        })
+        .collect()
+}
+
+fn every_body() -> Result<Vec<(&'static str, HalfSpace, f64)>> {
+    let bonded = bodies()?.into_iter().map(|(name, body)| (name, body, 0.5));
+    let slipping = slipping()?
+        .into_iter()
+        .map(|(name, body)| (name, body, 0.0));
+    Ok(bonded.chain(slipping).collect())
+}
+
+/// Every `step`-th cell of a field, from `first` on.
+fn picked(field: &Stress, shape: [usize; 2], first: [usize; 2], step: [usize; 2]) -> Stress {
+    let pick = |fine: &Array3<f64>| {
+        Array3::from_shape_fn((fine.dim().0, shape[0], shape[1]), |(z, i, j)| {
+            fine[[z, first[0] + step[0] * i, first[1] + step[1] * j]]
+        })
+    };
+    let mut picked = field.clone();
+    picked.components = field.components.each_ref().map(pick);
+    picked.displacement = field.displacement.as_ref().map(|u| u.each_ref().map(pick));
+    picked
+}
+
+/// A cell that is cut into 3 × 5 carries the same load. Next to a cell a closed form is used, and
+/// a sum over its corners; farther off, quadrature over tables, and differences: each here meets
+/// the others. The rules of the quadrature are chosen for errors of 1e-9; the worst are 2e-9, below
+/// three thin layers, and 6e-9 of the displacement of one that slips.
+#[test]
+fn the_cut_into_cells_does_not_matter() -> Result<()> {
+    const QUADRATURE: f64 = 1e-8;
+    let (n, m) = (12, 9);
+    let coarse = Grid::new([n, m], [12.0, 5.4])?;
+    let fine = Grid::new([3 * n, 5 * m], [12.0, 5.4])?;
+    let pressure = random::uniform([n, m], 1);
+    let cut = Array2::from_shape_fn((3 * n, 5 * m), |(i, j)| pressure[[i / 3, j / 5]]);
+    for (name, body, friction) in every_body()? {
+        let depths = depths(&body);
+        let one = stress(&body, &coarse, &pressure, &depths, &options(friction))?;
+        let other = stress(&body, &fine, &cut, &depths, &options(friction))?;
+        let other = picked(&other, [n, m], [1, 2], [3, 5]);
+        for (error, component) in differences(&one, &other).into_iter().zip(NAMES) {
+            assert!(error < QUADRATURE, "{name} {component}: {error:.1e}");
+        }
+    }
+    Ok(())
+}
+
+/// Far cells by differences of the values at centres: a strip of cells so long that most are far.
+#[test]
+fn the_cut_into_cells_does_not_matter_far_off() -> Result<()> {
+    const DIFFERENCES: f64 = 2e-8;
+    let (n, m) = (200, 4);
+    let coarse = Grid::new([n, m], [200.0, 4.0])?;
+    let fine = Grid::new([3 * n, 3 * m], [200.0, 4.0])?;
+    let pressure = random::uniform([n, m], 1);
+    let cut = Array2::from_shape_fn((3 * n, 3 * m), |(i, j)| pressure[[i / 3, j / 3]]);
+    for (name, body, friction) in every_body()? {
+        let depths = depths(&body);
+        let one = stress(&body, &coarse, &pressure, &depths, &options(friction))?;
+        let other = stress(&body, &fine, &cut, &depths, &options(friction))?;
+        let other = picked(&other, [n, m], [1, 1], [3, 3]);
+        for (error, component) in differences(&one, &other).into_iter().zip(NAMES) {
+            assert!(error < DIFFERENCES, "{name} {component}: {error:.1e}");
+        }
+    }
+    Ok(())
+}
+
+/// 1e-12 is rounding, over 360 cells.
+const ROUNDING: f64 = 1e-12;
+
+#[test]
+fn surface_tractions_are_those_that_are_given() -> Result<()> {
+    let grid = Grid::new([24, 15], [24.0, 9.0])?;
+    let pressure = random::uniform([24, 15], 2);
+    for (name, body, friction) in every_body()? {
+        let field = stress(&body, &grid, &pressure, &[0.0], &options(friction))?;
+        for ((i, j), p) in pressure.indexed_iter() {
+            for (k, factor) in [(2, 1.0), (5, 0.8 * friction), (4, 0.6 * friction)] {
+                let error = field.components[k][[0, i, j]] + factor * p;
+                assert!(error.abs() < ROUNDING, "{name} {}: {error:.1e}", NAMES[k]);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Across bonded interfaces tractions and displacements, across slipping ones the normal ones of
+/// both; and there is no shear there, nor any displacement on a rigid base.
+#[test]
+fn tractions_and_displacements_are_continuous() -> Result<()> {
+    // Displacements, over the largest: series of 1e-13 each.
+    const SERIES: f64 = 1e-11;
+    let grid = Grid::new([24, 15], [24.0, 9.0])?;
+    let pressure = random::uniform([24, 15], 3);
+    let largest = |field: &Array3<f64>| field.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    for (name, body, friction) in every_body()? {
+        let at_surface = stress(&body, &grid, &pressure, &[0.0], &options(friction))?;
+        let scale = largest(all(&at_surface)[8]);
+        for (layer, depth) in body.layers().iter().zip(body.interfaces()) {
+            let slips = layer.interface() == Interface::Frictionless;
+            let side = |side| {
+                let options = StressOptions {
+                    side,
+                    ..options(friction)
+                };
+                stress(&body, &grid, &pressure, &[depth], &options)
+            };
+            let above = side(Side::Above)?;
+            let (fields, shear) = (all(&above), [4, 5]);
+            if slips {
+                for k in shear {
+                    assert!(largest(fields[k]) < ROUNDING, "{name} {}", NAMES[k]);
+                }
+            }
+            let Ok(below) = side(Side::Below) else {
+                assert_eq!(body.substrate(), Substrate::Rigid);
+                assert!(largest(fields[8]) < SERIES * scale, "{name}");
+                assert!(slips || largest(fields[6]).max(largest(fields[7])) < SERIES * scale);
+                continue;
+            };
+            for (k, (a, b)) in fields.into_iter().zip(all(&below)).enumerate() {
+                let (continuous, tolerance) = match k {
+                    2 | 4 | 5 => (true, ROUNDING),
+                    8 => (true, SERIES * scale),
+                    6 | 7 => (!slips, SERIES * scale),
+                    _ => (false, 0.0),
+                };
+                let jump = largest(&(a - b));
+                assert!(
+                    !continuous || jump < tolerance,
+                    "{name} {}: {jump:.1e}",
+                    NAMES[k]
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// There are no periodic images.
+#[test]
+fn a_larger_domain_changes_nothing() -> Result<()> {
+    let (small, large) = (
+        Grid::new([24, 15], [24.0, 9.0])?,
+        Grid::new([48, 31], [48.0, 18.6])?,
+    );
+    let pressure = random::uniform([24, 15], 4);
+    let mut padded = Array2::zeros((48, 31));
+    for ((i, j), p) in pressure.indexed_iter() {
+        padded[[i + 12, j + 8]] = *p;
+    }
+    for (name, body, friction) in every_body()? {
+        let depths = depths(&body);
+        let one = stress(&body, &small, &pressure, &depths, &options(friction))?;
+        let other = stress(&body, &large, &padded, &depths, &options(friction))?;
+        let other = picked(&other, [24, 15], [12, 8], [1, 1]);
+        for (error, component) in differences(&one, &other).into_iter().zip(NAMES) {
+            assert!(error < ROUNDING, "{name} {component}: {error:.1e}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn layers_of_the_substrates_material_change_nothing() -> Result<()> {
+    let grid = Grid::new([24, 15], [24.0, 9.0])?;
+    let pressure = random::uniform([24, 15], 5);
+    let base = Elastic::new(1.0, 0.3)?;
+    for h in [0.05, 1.0, 30.0] {
+        let body = HalfSpace::new(base, [Layer::new(base, h)?, Layer::new(base, 2.0 * h)?])?;
+        let depths = depths(&body);
+        let one = stress(&base.into(), &grid, &pressure, &depths, &options(0.5))?;
+        let other = stress(&body, &grid, &pressure, &depths, &options(0.5))?;
+        for (error, component) in differences(&one, &other).into_iter().zip(NAMES) {
+            assert!(error < ROUNDING, "{h} {component}: {error:.1e}");
+        }
+    }
+    Ok(())
+}
+
+/// A layer that is split: deeper layers are reached through more of them. The response of either
+/// body keeps 1e-14, its transforms 1e-12 of the pressure.
+#[test]
+fn splitting_a_layer_changes_nothing() -> Result<()> {
+    const SERIES: f64 = 1e-10;
+    let grid = Grid::new([16, 10], [16.0, 6.0])?;
+    let pressure = random::uniform([16, 10], 6);
+    for base in [Substrate::from(Elastic::new(1.0, 0.3)?), Substrate::Rigid] {
+        let whole = HalfSpace::new(base, [layer(5.0, 0.2, 0.6)?, layer(0.3, 0.45, 2.0)?])?;
+        let parts = [
+            layer(5.0, 0.2, 0.1)?,
+            layer(5.0, 0.2, 0.5)?,
+            layer(0.3, 0.45, 0.7)?,
+        ];
+        let split = HalfSpace::new(base, parts.into_iter().chain([layer(0.3, 0.45, 1.3)?]))?;
+        let depths = [0.05, 0.1, 0.3, 0.6, 1.0, 1.3, 2.2];
+        let one = stress(&whole, &grid, &pressure, &depths, &options(0.5))?;
+        let other = stress(&split, &grid, &pressure, &depths, &options(0.5))?;
+        for (error, component) in differences(&one, &other).into_iter().zip(NAMES) {
+            assert!(error < SERIES, "{component}: {error:.1e}");
+        }
+    }
+    Ok(())
+}
+
+/// What is found on an endless strip is what the plane strain of line contact gives: a rectangle
+/// of half length 41 000, seen at its middle, misses the tails of kernels that fall off as 1/2πr²:
+/// width/(π · half length), and of a stretched layer as many times that as it is stiffer.
+#[test]
+fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
+    const ENDS: f64 = 9.4e-5;
+    let (n, m) = (41, 12);
+    let long = Grid::new([n, m], [41.0 * 2000.0, 12.0])?;
+    let line = Grid::line(m, 12.0)?;
+    let profile = random::uniform([1, m], 7);
+    let pressure = Array2::from_shape_fn((n, m), |(_, j)| profile[[0, j]]);
+    for (name, body, friction) in every_body()? {
+        let depths = depths(&body);
+        let one = stress(&body, &line, &profile, &depths, &options(friction))?;
+        let other = stress(&body, &long, &pressure, &depths, &options(friction))?;
+        let other = picked(&other, [1, m], [n / 2, 0], [1, 1]);
+        let stiffest = body.layers().iter().map(|layer| layer.material().young());
+        let ends = ENDS * stiffest.fold(1.0, f64::max);
+        // Displacements differ by their datum.
+        for (error, component) in differences(&one, &other).into_iter().zip(&NAMES[..6]) {
+            assert!(error < ends, "{name} {component}: {error:.1e}");
+        }
+    }
+    Ok(())
+}
+
+/// x and y exchanged, and z kept.
+#[test]
+fn axes_can_be_exchanged() -> Result<()> {
+    const EXCHANGED: [usize; 9] = [1, 0, 2, 3, 5, 4, 7, 6, 8];
+    let pressure = random::uniform([14, 9], 8);
+    let (grid, turned) = (
+        Grid::new([14, 9], [14.0, 5.0])?,
+        Grid::new([9, 14], [5.0, 14.0])?,
+    );
+    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer(4.0, 0.2, 0.8)?])?;
+    let depths = depths(&body);
+    let one = stress(&body, &grid, &pressure, &depths, &options(0.5))?;
+    let turned_options = StressOptions {
+        direction: [0.6, 0.8],
+        ..options(0.5)
+    };
+    let transposed = pressure.t().to_owned();
+    let other = stress(&body, &turned, &transposed, &depths, &turned_options)?;
+    for (k, from) in EXCHANGED.into_iter().enumerate() {
+        let back = all(&other)[from].clone().permuted_axes([0, 2, 1]);
+        let error = (all(&one)[k] - &back)
+            .iter()
+            .fold(0.0_f64, |m, v| m.max(v.abs()));
+        // Displacements are of the order of ten.
+        assert!(error < 20.0 * ROUNDING, "{}: {error:.1e}", NAMES[k]);
+    }
+    Ok(())
+}
