@@ -7,7 +7,7 @@ use std::time::Instant;
 use ndarray::{Array2, ArrayRef2};
 
 use crate::body::HalfSpace;
-use crate::convolution::{Convolution, Workspace};
+use crate::convolution::Convolution;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::{Method, coefficients_on};
@@ -218,7 +218,7 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let mut fields = Fields::new(self.grid.shape(), &self.convolution);
+        let mut fields = Fields::new(self.grid.shape());
         let cascade = match options.algorithm {
             Algorithm::Cascade => Cascade::new(
                 &problem,
@@ -435,25 +435,24 @@ struct Fields {
     gap: Array2<f64>,
     lambda: [f64; 3],
     quality: Option<Quality>,
-    workspace: Workspace,
 }
 
 impl Fields {
-    fn new(shape: [usize; 2], convolution: &Convolution) -> Self {
+    fn new(shape: [usize; 2]) -> Self {
         Self {
             pressure: Array2::zeros(shape),
             displacement: Array2::zeros(shape),
             gap: Array2::zeros(shape),
             lambda: [0.0; 3],
             quality: None,
-            workspace: convolution.workspace(),
         }
     }
 
     /// Computes displacement, rigid motion, gap and quality of the pressure afresh.
     fn certify(&mut self, problem: &Problem) -> Quality {
         let p = slice(&self.pressure);
-        problem.apply(p, slice_mut(&mut self.displacement), &mut self.workspace);
+        let workspace = &mut problem.convolution.workspace();
+        problem.apply(p, slice_mut(&mut self.displacement), workspace);
         let u = slice(&self.displacement);
         let (lambda, quality) = problem.gap_into(p, u, slice_mut(&mut self.gap));
         self.lambda = lambda;

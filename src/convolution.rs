@@ -3,7 +3,7 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ndarray::{Array2, ArrayRef2};
 
@@ -32,25 +32,31 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
-    idle: Idle,
+    idle: Arc<Idle>,
 }
 
 /// Memory of applications that ended, for those to come: to get it anew takes as long as a transform.
-type Idle = Arc<Mutex<Vec<FftWorkspace>>>;
+/// A convolution and its parts share it.
+#[derive(Debug, Default)]
+struct Idle(Mutex<Vec<FftWorkspace>>);
 
-/// Memory for one application at a time. When dropped, it is kept for the next of its convolution.
+impl Idle {
+    fn lock(&self) -> MutexGuard<'_, Vec<FftWorkspace>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Memory for one application at a time, of a convolution or a part of it. When dropped, it is kept
+/// for the next.
 #[derive(Debug)]
 pub struct Workspace {
-    memory: Option<FftWorkspace>,
-    idle: Idle,
+    memory: FftWorkspace,
+    idle: Arc<Idle>,
 }
 
 impl Drop for Workspace {
     fn drop(&mut self) {
-        if let Some(memory) = self.memory.take() {
-            let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-            idle.push(memory);
-        }
+        self.idle.lock().push(std::mem::take(&mut self.memory));
     }
 }
 
@@ -80,23 +86,29 @@ impl Convolution {
             });
         }
         let transform = PaddedTransform::plan(shape, &threads);
-        Ok(Self::with(coefficients, transform, &threads))
+        Ok(Self::with(
+            coefficients,
+            transform,
+            &threads,
+            Arc::default(),
+        ))
     }
 
     fn with(
         coefficients: &ArrayRef2<f64>,
         transform: PaddedTransform,
         threads: &Arc<Threads>,
+        idle: Arc<Idle>,
     ) -> Self {
-        let mut memory = transform.workspace();
-        let spectrum = transform.even_spectrum(coefficients, &mut memory, threads);
+        let mut workspace = lease(&idle, &transform);
+        let spectrum = transform.even_spectrum(coefficients, &mut workspace.memory, threads);
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
             transform,
             spectrum: Arc::new(spectrum),
             threads: Arc::clone(threads),
-            idle: Arc::new(Mutex::new(vec![memory])),
+            idle,
         }
     }
 
@@ -106,7 +118,7 @@ impl Convolution {
             transform: self.transform.on_threads(threads),
             spectrum: Arc::clone(&self.spectrum),
             threads: Arc::clone(threads),
-            idle: Idle::default(),
+            idle: Arc::default(),
             ..*self
         }
     }
@@ -114,10 +126,12 @@ impl Convolution {
     /// Convolution with part of the coefficients of this one, for a part of its grid.
     pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
+        let transform = PaddedTransform::plan(shape, &self.threads);
         Self::with(
             coefficients,
-            PaddedTransform::plan(shape, &self.threads),
+            transform,
             &self.threads,
+            Arc::clone(&self.idle),
         )
     }
 
@@ -128,7 +142,8 @@ impl Convolution {
         const FLOOR: f64 = 1e-6;
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan_periodic(shape, &self.threads);
-        let periodic = Self::with(coefficients, transform, &self.threads);
+        let idle = Arc::clone(&self.idle);
+        let periodic = Self::with(coefficients, transform, &self.threads, idle);
         let inverse = periodic
             .transform
             .inverse_spectrum(&periodic.spectrum, FLOOR);
@@ -169,12 +184,7 @@ impl Convolution {
 
     /// Memory for [`Convolution::apply_into`].
     pub fn workspace(&self) -> Workspace {
-        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-        let memory = idle.pop();
-        Workspace {
-            memory: Some(memory.unwrap_or_else(|| self.transform.workspace())),
-            idle: Arc::clone(&self.idle),
-        }
+        lease(&self.idle, &self.transform)
     }
 
     /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
@@ -233,11 +243,19 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        // It is there until it is dropped.
-        let memory = workspace
-            .memory
-            .get_or_insert_with(|| self.transform.workspace());
+        let memory = &mut workspace.memory;
+        self.transform.fit(memory);
         self.transform
             .convolve_into(&self.spectrum, input, output, memory, &self.threads);
+    }
+}
+
+/// Idle memory, large enough for `transform`.
+fn lease(idle: &Arc<Idle>, transform: &PaddedTransform) -> Workspace {
+    let mut memory = idle.lock().pop().unwrap_or_default();
+    transform.fit(&mut memory);
+    Workspace {
+        memory,
+        idle: Arc::clone(idle),
     }
 }

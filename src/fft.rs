@@ -64,15 +64,15 @@ impl fmt::Debug for PaddedTransform {
 #[derive(Debug)]
 pub(crate) struct EvenSpectrum(Vec<f64>);
 
-/// Memory for one convolution at a time.
-#[derive(Debug)]
+/// Memory for one convolution at a time; it may be larger than needed.
+#[derive(Debug, Default)]
 pub(crate) struct Workspace {
     rows: Vec<Complex64>,
     blocks: Vec<Complex64>,
     tasks: Vec<TaskScratch>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct TaskScratch {
     real: Vec<f64>,
     spectrum: Vec<Complex64>,
@@ -151,22 +151,39 @@ impl PaddedTransform {
     }
 
     pub(crate) fn workspace(&self) -> Workspace {
+        let mut workspace = Workspace::default();
+        self.fit(&mut workspace);
+        workspace
+    }
+
+    /// Makes `workspace` large enough for this transform.
+    pub(crate) fn fit(&self, workspace: &mut Workspace) {
+        fn at_least<T: Clone>(memory: &mut Vec<T>, length: usize, zero: T) {
+            if memory.len() < length {
+                memory.resize(length, zero);
+            }
+        }
         let fft = self
             .column_forward
             .get_inplace_scratch_len()
             .max(self.column_inverse.get_inplace_scratch_len())
             .max(self.row_forward.get_scratch_len())
             .max(self.row_inverse.get_scratch_len());
-        let task = || TaskScratch {
-            real: vec![0.0; self.padded[1]],
-            spectrum: vec![ZERO; self.columns()],
-            columns: vec![ZERO; BLOCK * self.padded[0]],
-            fft: vec![ZERO; fft],
-        };
-        Workspace {
-            rows: vec![ZERO; self.shape[0] * self.columns()],
-            blocks: vec![ZERO; self.blocks() * self.shape[0] * BLOCK],
-            tasks: (0..self.tasks).map(|_| task()).collect(),
+        let Workspace {
+            rows,
+            blocks,
+            tasks,
+        } = workspace;
+        at_least(rows, self.shape[0] * self.columns(), ZERO);
+        at_least(blocks, self.blocks() * self.shape[0] * BLOCK, ZERO);
+        if tasks.len() < self.tasks {
+            tasks.resize_with(self.tasks, TaskScratch::default);
+        }
+        for task in &mut tasks[..self.tasks] {
+            at_least(&mut task.real, self.padded[1], 0.0);
+            at_least(&mut task.spectrum, self.columns(), ZERO);
+            at_least(&mut task.columns, BLOCK * self.padded[0], ZERO);
+            at_least(&mut task.fft, fft, ZERO);
         }
     }
 
@@ -181,11 +198,12 @@ impl PaddedTransform {
         let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let Workspace { rows, tasks, .. } = workspace;
+        let rows = &mut rows[..nx * columns];
         let scale = 1.0 / (mx as f64 * my as f64);
         let rows_of_a_task = nx.div_ceil(self.tasks);
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
             for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {
-                let real = &mut scratch.real;
+                let real = &mut scratch.real[..my];
                 real.fill(0.0);
                 for (j, &c) in quarter.row(first + row).iter().take(columns).enumerate() {
                     real[j] = c;
@@ -208,7 +226,7 @@ impl PaddedTransform {
             for (block, values) in blocks.chunks_exact_mut(quarter_rows * BLOCK).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
-                scratch.columns.fill(ZERO);
+                scratch.columns[..width * mx].fill(ZERO);
                 for i in 0..nx.min(quarter_rows) {
                     for b in 0..width {
                         let value = Complex64::new(rows[i * columns + start + b].re, 0.0);
@@ -264,6 +282,8 @@ impl PaddedTransform {
             blocks,
             tasks,
         } = workspace;
+        let rows = &mut rows[..nx * columns];
+        let blocks = &mut blocks[..self.blocks() * nx * BLOCK];
         let rows_of_a_task = nx.div_ceil(self.tasks);
 
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
@@ -275,8 +295,9 @@ impl PaddedTransform {
                     continue;
                 }
                 scratch.real[..ny].copy_from_slice(values);
-                scratch.real[ny..].fill(0.0);
-                self.rows_to_spectrum(&mut scratch.real, half, &mut scratch.fft);
+                let real = &mut scratch.real[..self.padded[1]];
+                real[ny..].fill(0.0);
+                self.rows_to_spectrum(real, half, &mut scratch.fft);
             }
         };
         self.over_rows(
@@ -360,7 +381,7 @@ impl PaddedTransform {
         } else {
             threads.run(|| {
                 data.par_chunks_mut(chunk)
-                    .zip(tasks.par_iter_mut())
+                    .zip(tasks[..self.tasks].par_iter_mut())
                     .enumerate()
                     .for_each(|(task, (part, scratch))| work(task * items, part, scratch));
             });
@@ -370,11 +391,13 @@ impl PaddedTransform {
     /// Row `i` of the data whose columns, transformed back, are in `blocks`.
     fn row_from_blocks(&self, blocks: &[Complex64], i: usize, scratch: &mut TaskScratch) {
         let nx = self.shape[0];
-        for (block, part) in scratch.spectrum.chunks_mut(BLOCK).enumerate() {
+        let spectrum = &mut scratch.spectrum[..self.columns()];
+        for (block, part) in spectrum.chunks_mut(BLOCK).enumerate() {
             let start = (block * nx + i) * BLOCK;
             part.copy_from_slice(&blocks[start..start + part.len()]);
         }
-        self.spectrum_to_rows(&mut scratch.spectrum, &mut scratch.real, &mut scratch.fft);
+        let real = &mut scratch.real[..self.padded[1]];
+        self.spectrum_to_rows(spectrum, real, &mut scratch.fft);
     }
 
     fn rows_to_spectrum(

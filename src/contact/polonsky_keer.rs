@@ -22,9 +22,9 @@ pub(super) fn solve(
         pressure,
         displacement,
         gap,
-        workspace,
         ..
     } = fields;
+    let workspace = &mut problem.convolution.workspace();
     let (p, u, g) = (slice_mut(pressure), slice_mut(displacement), slice_mut(gap));
     let cells = p.len();
     let mut direction = vec![0.0; cells];

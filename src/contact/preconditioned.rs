@@ -31,7 +31,6 @@ pub(super) struct Preconditioned<'a> {
     problem: &'a Problem<'a>,
     approximation: &'a Approximation,
     workspace: Workspace,
-    periodic_workspace: Workspace,
     /// The inverse applied to the loaded freedoms on a contact, see [`Self::invert_freedoms`].
     inverse_freedoms: [Vec<f64>; 3],
     /// Displacement K p.
@@ -79,7 +78,6 @@ impl<'a> Preconditioned<'a> {
             problem,
             approximation,
             workspace: problem.convolution.workspace(),
-            periodic_workspace: approximation.inverse.workspace(),
             inverse_freedoms: [Vec::new(), Vec::new(), Vec::new()],
             u: vec![0.0; cells],
             contact: vec![false; cells],
@@ -109,7 +107,7 @@ impl<'a> Preconditioned<'a> {
 
     fn precondition(&mut self, r: &[f64], out: &mut [f64]) {
         let inverse = &self.approximation.inverse;
-        inverse.apply_slices(r, out, &mut self.periodic_workspace);
+        inverse.apply_slices(r, out, &mut self.workspace);
         self.work += inverse.work();
     }
 
@@ -300,11 +298,7 @@ impl<'a> Preconditioned<'a> {
         // left that the plan was worth little. Beyond twice the best length the energy would rise.
         const AS_PLANNED: Range<f64> = 0.6..1.8;
         let periodic = &self.approximation.periodic;
-        periodic.apply_slices(
-            &self.direction,
-            &mut self.response,
-            &mut self.periodic_workspace,
-        );
+        periodic.apply_slices(&self.direction, &mut self.response, &mut self.workspace);
         self.work += periodic.work();
         let curvature = dot(&self.response, &self.direction) * self.curvature_ratio;
         if !(curvature > 0.0 && slope > 0.0) {

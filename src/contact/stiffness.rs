@@ -176,7 +176,6 @@ impl Tangent {
     ) -> Result<Option<Vec<f64>>> {
         let cells = right.len();
         let mut workspace = self.convolution.workspace();
-        let mut inverse_workspace = self.inverse.workspace();
         let (mut x, mut r) = (vec![0.0; cells], right.to_vec());
         let (mut z, mut image) = (vec![0.0; cells], vec![0.0; cells]);
         let mut direction = vec![0.0; cells];
@@ -189,7 +188,7 @@ impl Tangent {
             if watch().is_break() {
                 return Ok(None);
             }
-            self.restricted(&self.inverse, &r, &mut z, &mut inverse_workspace);
+            self.restricted(&self.inverse, &r, &mut z, &mut workspace);
             let descent = dot(&r, &z);
             let beta = descent / descent_before;
             descent_before = descent;
