@@ -237,3 +237,87 @@ def test_colours_differ_in_lightness_for_those_who_see_no_hue() -> None:
     colours = [np.array(mpl.colors.to_rgb(c)) for c in plot.style.COLOURS[:3]]
     greys = sorted(float(weights @ c**2.2) for c in colours)
     assert min(np.diff(greys)) > 0.05
+
+
+@pytest.fixture(scope="module")
+def coated() -> nacre.Solution:
+    body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.25), 30e-6)])
+    grid = nacre.Grid((61, 51), (5e-4, 4e-4))
+    return nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=20.0)
+
+
+def meshes(axes: Axes) -> list[QuadMesh]:
+    return [child for child in axes.collections if isinstance(child, QuadMesh)]
+
+
+@pytest.mark.parametrize("quantity", ["von_mises", "xx", "tension"])
+def test_a_stress_section_shows_the_stress(coated: nacre.Solution, quantity: str) -> None:
+    axes = plot.stress_section(coated, quantity, along="y", at=1e-5, rows=12, friction=0.2)
+    drawn(axes.figure)
+    (mesh,) = meshes(axes)
+    shown = np.asarray(mesh.get_array(), dtype=np.float64)
+    edges = np.asarray(mesh.get_coordinates())[:, 0, 1] / 1e6
+    assert 30e-6 in edges.round(12)
+    depths = 0.5 * (edges[1:] + edges[:-1])
+    field = coated.stress(depths, x=1e-5, friction=0.2)
+    values = field.principal[0] if quantity == "tension" else getattr(field, quantity)
+    assert axes.get_ylim()[1] == 0.0
+    np.testing.assert_allclose(shown, values / 1e9, atol=1e-9)
+    assert written(float(values.max()), "Pa", 3) in axes.get_title(loc="left")
+
+
+def test_curves_over_depth_hold_both_sides_of_an_interface(coated: nacre.Solution) -> None:
+    axes = plot.stress_depth(coated, ["xx"], depth=90e-6, points=12)
+    drawn(axes.figure)
+    curve = np.asarray(axes.lines[0].get_xydata(), dtype=np.float64)
+    (rows,) = np.nonzero(np.isclose(curve[:, 0], 30.0))
+    assert rows.size == 2
+    for row, side in zip(rows, ("above", "below"), strict=True):
+        value = coated.stress(30e-6, x=0.0, y=0.0, side=side).xx  # type: ignore[arg-type]
+        assert curve[row, 1] == pytest.approx(float(value) / 1e9)
+    assert axes.get_xlim() == pytest.approx((0.0, 90.0))
+
+
+def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:
+    field = coated.stress(30e-6, friction=0.1)
+    axes = plot.interface_map(coated, friction=0.1)
+    drawn(axes.figure)
+    (mesh,) = meshes(axes)
+    shear = np.hypot(field.xz, field.yz).T / 1e6
+    np.testing.assert_allclose(np.asarray(mesh.get_array()), shear, rtol=1e-9)
+    axes = plot.interface_map(coated, quantity="normal", friction=0.1)
+    (mesh,) = meshes(axes)
+    np.testing.assert_allclose(np.asarray(mesh.get_array()), field.zz.T / 1e9, rtol=1e-9)
+
+
+def test_stress_of_lines_and_of_nothing_can_be_drawn(
+    line: nacre.Solution, nothing: nacre.Solution
+) -> None:
+    for axes in (
+        plot.stress_section(line, along="y", rows=6),
+        plot.stress_depth(line, points=6),
+        plot.stress_section(nothing, rows=4),
+        plot.stress_depth(nothing, points=4),
+    ):
+        drawn(axes.figure)
+    with pytest.raises(ValueError, match=r"^the grid of a solution must have cells along x"):
+        plot.interface_map(line)
+
+
+def test_bad_stress_pictures(coated: nacre.Solution, ball: nacre.Solution) -> None:
+    with pytest.raises(ValueError, match=r"^quantity must be one of xx, .*, got 'pressure'$"):
+        plot.stress_section(coated, "pressure")
+    with pytest.raises(ValueError, match=r"^along must be 'x' or 'y', got 'z'$"):
+        plot.stress_section(coated, along="z")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"^depth must be finite and above 0, got -1$"):
+        plot.stress_depth(coated, depth=-1.0)
+    with pytest.raises(ValueError, match=r"^quantities must hold at least one name"):
+        plot.stress_depth(coated, [])
+    with pytest.raises(ValueError, match=r"^the number of depths must be at least 1, got 0$"):
+        plot.stress_depth(coated, points=0)
+    with pytest.raises(ValueError, match=r"^interface must be from 0 to 0, got 1$"):
+        plot.interface_map(coated, 1)
+    with pytest.raises(ValueError, match=r"^quantity must be 'shear' or 'normal', got 'xx'$"):
+        plot.interface_map(coated, quantity="xx")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"^a solution must have layers for a map of an interface"):
+        plot.interface_map(ball)

@@ -7,6 +7,7 @@ carry SI units with a prefix. `nacre.Solution` has most of them as methods.
 from nacre.plot.maps import overview, pressure_map
 from nacre.plot.relief import relief, view
 from nacre.plot.sections import compare, section
+from nacre.plot.stress import interface_map, stress_depth, stress_section
 from nacre.plot.studies import chart, curve
 from nacre.plot.style import STYLE
 
@@ -15,9 +16,12 @@ __all__ = [
     "chart",
     "compare",
     "curve",
+    "interface_map",
     "overview",
     "pressure_map",
     "relief",
     "section",
+    "stress_depth",
+    "stress_section",
     "view",
 ]

@@ -1,0 +1,410 @@
+"""Stress below a contact: sections, curves over depth, tractions at interfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre._core import HalfSpace, Solution, Stress
+from nacre._extras import extra
+from nacre.plot.style import COLOURMAP, STYLE, WIDTH, look
+from nacre.units import Scale, written
+
+with extra("plot"):
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+
+Array = npt.NDArray[np.float64]
+
+LABELS = {
+    "xx": "stress xx",
+    "yy": "stress yy",
+    "zz": "stress zz",
+    "xy": "stress xy",
+    "yz": "stress yz",
+    "xz": "stress xz",
+    "von_mises": "von Mises stress",
+    "tresca": "Tresca stress",
+    "max_shear": "largest shear stress",
+    "tension": "largest principal stress",
+}
+"""What can be drawn, and what it is called."""
+
+SIGNED = "RdBu_r"
+"""Colours of what may be tension or compression."""
+
+
+def stress_section(
+    solution: Solution,
+    quantity: str = "von_mises",
+    *,
+    along: Literal["x", "y"] = "x",
+    at: float = 0.0,
+    depth: float | None = None,
+    rows: int = 60,
+    axes: Axes | None = None,
+    **options: Any,
+) -> Axes:
+    """Draw a vertical section, with the interfaces.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    quantity
+        A component ("xx" …), "von_mises", "tresca", "max_shear" or "tension".
+    along
+        Direction of the section.
+    at
+        Its place in the other direction [m].
+    depth
+        How deep it goes [m]; 2.5 half-widths of the contact by default.
+    rows
+        Depths that are evaluated; every layer gets four at least.
+    axes
+        Where to draw; a new figure by default.
+    options
+        Passed on to `Solution.stress`: `body`, `friction`, `direction`, `residual`, `threads`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such quantity or direction, or `Solution.stress` would raise.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
+    >>> plot.stress_section(solution, friction=0.2, rows=8).get_ylabel()
+    'z [µm]'
+    """
+    _check(quantity)
+    if along not in ("x", "y"):
+        raise ValueError(f"along must be 'x' or 'y', got {along!r}")
+    body, bottom = _reach(solution, depth, options)
+    edges = _edges(body, bottom, rows)
+    line: dict[str, Any] = {"y": at} if along == "x" else {"x": at}
+    field = solution.stress(0.5 * (edges[1:] + edges[:-1]), **line, **options)
+    values = _values(field, quantity)
+    centres = field.x if along == "x" else field.y
+    grid = solution.report.grid
+    axis = "xy".index(along)
+    sides = grid.center[axis] + grid.size[axis] * np.linspace(-0.5, 0.5, len(centres) + 1)
+    low, high = np.clip(_around(solution, axis, bottom), sides[0], sides[-1])
+    length = Scale.of(max(abs(low), abs(high), bottom), "m")
+    scale = Scale.of(np.abs(values).max(initial=0.0), "Pa")
+    signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
+    largest = scale.factor * np.abs(values).max(initial=0.0) or 1.0
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            size = (0.75 * WIDTH, 0.45 * WIDTH)
+            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        mesh = axes.pcolormesh(
+            length.factor * sides,
+            length.factor * edges,
+            scale.factor * values,
+            cmap=SIGNED if signed else COLOURMAP,
+            vmin=-largest if signed else 0.0,
+            vmax=largest,
+            rasterized=True,
+        )
+        axes.grid(visible=False)
+        _colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
+        for interface in body.interfaces:
+            if interface < bottom:
+                for colour, width in (("white", 2.0), ("black", 0.9)):
+                    axes.axhline(length.factor * interface, color=colour, linewidth=width)
+        row, column = np.unravel_index(np.argmax(values), values.shape)
+        peak = (length.factor * centres[column], length.factor * field.z[row])
+        for colour, width in (("black", 2.6), ("white", 1.2)):
+            axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
+        axes.set(xlabel=f"{along} [{length.unit}]", ylabel=f"z [{length.unit}]")
+        axes.set_xlim(length.factor * low, length.factor * high)
+        axes.set_ylim(length.factor * bottom, 0.0)
+        axes.set_aspect("equal")
+        other = "y" if along == "x" else "x"
+        axes.set_title(
+            f"at {other} = {written(at, 'm', 3)};  + {written(float(values.max()), 'Pa', 3)}"
+        )
+    return axes
+
+
+def stress_depth(
+    solution: Solution,
+    quantities: Sequence[str] = ("xx", "yy", "zz", "von_mises"),
+    *,
+    at: tuple[float, float] = (0.0, 0.0),
+    depth: float | None = None,
+    points: int = 80,
+    axes: Axes | None = None,
+    **options: Any,
+) -> Axes:
+    """Draw stresses over depth below a point, with both sides of every interface.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    quantities
+        Components, "von_mises", "tresca", "max_shear" or "tension".
+    at
+        The point (x, y) [m].
+    depth
+        How deep it goes [m]; 2.5 half-widths of the contact by default.
+    points
+        Depths that are evaluated; every layer gets four at least.
+    axes
+        Where to draw; a new figure by default.
+    options
+        Passed on to `Solution.stress`: `body`, `friction`, `direction`, `residual`, `threads`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such quantity, or `Solution.stress` would raise.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    >>> plot.stress_depth(solution, points=8).get_ylabel()
+    'stress [GPa]'
+    """
+    if not quantities:
+        raise ValueError("quantities must hold at least one name, got none")
+    for quantity in quantities:
+        _check(quantity)
+    body, bottom = _reach(solution, depth, options)
+    edges = _edges(body, bottom, points)
+    above = solution.stress(edges, x=at[0], y=at[1], side="above", **options)
+    # A rigid base has no side below; there the curve ends.
+    inner = edges[:-1] if bottom in body.interfaces else edges
+    below = solution.stress(inner, x=at[0], y=at[1], **options)
+    z = np.concatenate([edges, inner])
+    order = np.argsort(z, kind="stable")
+    drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
+    length = Scale.of(bottom, "m")
+    scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            axes = plt.figure(figsize=(WIDTH, 0.5 * WIDTH), layout="constrained").add_subplot()
+        for number, (quantity, values) in enumerate(zip(quantities, drawn, strict=True)):
+            curve = (length.factor * z[order], scale.factor * values)
+            axes.plot(*curve, **look(number), label=LABELS[quantity])
+        for interface in body.interfaces:
+            if interface < bottom:
+                axes.axvline(length.factor * interface, color="0.5", linewidth=0.8)
+        axes.set(xlabel=f"z [{length.unit}]", ylabel=f"stress [{scale.unit}]")
+        axes.set_xlim(0.0, length.factor * bottom)
+        axes.set_title(f"at x = {written(at[0], 'm', 3)}, y = {written(at[1], 'm', 3)}")
+        axes.legend()
+    return axes
+
+
+def interface_map(
+    solution: Solution,
+    interface: int = 0,
+    quantity: Literal["shear", "normal"] = "shear",
+    *,
+    axes: Axes | None = None,
+    **options: Any,
+) -> Axes:
+    """Draw the traction at an interface from above.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    interface
+        Its number, from 0 below the first layer.
+    quantity
+        "shear": its magnitude, and arrows along the traction that acts on the layer above;
+        "normal": tension positive.
+    axes
+        Where to draw; a new figure by default.
+    options
+        Passed on to `Solution.stress`: `body`, `friction`, `direction`, `threads`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    ValueError
+        If there is no such interface or quantity, or the grid is one of strips.
+
+    Examples
+    --------
+    >>> from nacre import plot
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+    >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
+    >>> plot.interface_map(solution, friction=0.1).get_xlabel()
+    'x [µm]'
+    """
+    grid = solution.report.grid
+    if grid.is_line:
+        raise ValueError("the grid of a solution must have cells along x for a map, got a line")
+    if quantity not in ("shear", "normal"):
+        raise ValueError(f"quantity must be 'shear' or 'normal', got {quantity!r}")
+    depths = _body(solution, options).interfaces
+    if not depths:
+        raise ValueError("a solution must have layers for a map of an interface, got a bare body")
+    if not 0 <= interface < len(depths):
+        raise ValueError(f"interface must be from 0 to {len(depths) - 1}, got {interface}")
+    depth = depths[interface]
+    field = solution.stress(depth, side="above", **options)
+    values = field.zz if quantity == "normal" else np.hypot(field.xz, field.yz)
+    ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
+    window = [np.array(side) for side in ends]
+    if solution.contact_area > 0:
+        narrow = min(float(np.diff(contact)[0]) for contact in solution.contact_extent)
+        window = [
+            np.clip(_around(solution, axis, narrow), *ends[axis]) for axis in range(len(ends))
+        ]
+    length = Scale.of(np.abs(window).max(), "m")
+    scale = Scale.of(np.abs(values).max(), "Pa")
+    largest = scale.factor * np.abs(values).max() or 1.0
+    signed = quantity == "normal"
+    with mpl.rc_context(STYLE):
+        if axes is None:
+            size = (0.7 * WIDTH, 0.5 * WIDTH)
+            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        corners = [
+            length.factor * np.linspace(*side, cells + 1)
+            for side, cells in zip(ends, grid.shape, strict=True)
+        ]
+        mesh = axes.pcolormesh(
+            *corners,
+            scale.factor * values.T,
+            cmap=SIGNED if signed else COLOURMAP,
+            vmin=-largest if signed else 0.0,
+            vmax=largest,
+            rasterized=True,
+        )
+        axes.grid(visible=False)
+        _colourbar(axes, mesh, f"{quantity} traction [{scale.unit}]")
+        if solution.contact_area > 0:
+            inside = solution.in_contact.astype(float).T
+            x, y = length.factor * solution.x, length.factor * solution.y
+            axes.contour(x, y, inside, levels=[0.5], colors="black", linewidths=0.7)
+        if not signed and np.any(values):
+            _arrows(axes, field, length.factor, values, window)
+        axes.set(
+            xlabel=f"x [{length.unit}]",
+            ylabel=f"y [{length.unit}]",
+            xlim=length.factor * window[0],
+            ylim=length.factor * window[1],
+        )
+        axes.set_aspect("equal")
+        axes.set_title(f"interface at z = {written(depth, 'm', 3)}; the contact outlined")
+    return axes
+
+
+def _colourbar(axes: Axes, mesh: QuadMesh, label: str) -> None:
+    """Draw a colour bar as high as the picture."""
+    bar: Any = axes.figure.colorbar(mesh, cax=axes.inset_axes((1.03, 0.0, 0.035, 1.0)))
+    bar.set_label(label)
+    bar.outline.set_linewidth(0.6)
+    bar.ax.grid(visible=False)
+
+
+def _arrows(
+    axes: Axes, field: Stress, factor: float, values: Array, window: Sequence[Array]
+) -> None:
+    """Draw the shear traction that acts on the layer above, some 15 arrows along each side."""
+    rows, columns = (
+        _every(np.flatnonzero((centres > low) & (centres < high)))
+        for centres, (low, high) in zip((field.x, field.y), window, strict=True)
+    )
+    pick = np.ix_(rows, columns)
+    axes.quiver(
+        factor * field.x[rows],
+        factor * field.y[columns],
+        field.xz[pick].T,
+        field.yz[pick].T,
+        color="white",
+        pivot="middle",
+        scale=14 * float(values.max()),
+        width=0.004,
+    )
+
+
+def _every(cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    step = max(1, round(cells.size / 15))
+    return cells[step // 2 :: step]
+
+
+def _check(quantity: str) -> None:
+    if quantity not in LABELS:
+        raise ValueError(f"quantity must be one of {', '.join(LABELS)}, got {quantity!r}")
+
+
+def _values(field: Stress, quantity: str) -> Array:
+    """Return a quantity; of a line contact the one row that there is."""
+    values: Array = field.principal[0] if quantity == "tension" else getattr(field, quantity)
+    return values.reshape(values.shape[0], -1) if values.ndim > 1 else values
+
+
+def _body(solution: Solution, options: dict[str, Any]) -> HalfSpace:
+    body = solution.report.body
+    if options.get("body") == "counterbody" and solution.report.counterbody is not None:
+        body = solution.report.counterbody
+    return body
+
+
+def _reach(
+    solution: Solution, depth: float | None, options: dict[str, Any]
+) -> tuple[HalfSpace, float]:
+    """Return the body, and the depth down to which it is drawn."""
+    body = _body(solution, options)
+    grid = solution.report.grid
+    axes = (1,) if grid.is_line else (0, 1)
+    if depth is None:
+        widths = [np.diff(solution.contact_extent[axis])[0] for axis in axes]
+        narrow = min(widths) or min(grid.size[axis] for axis in axes)
+        depth = 1.25 * float(narrow)
+    elif not 0 < depth < np.inf:
+        raise ValueError(f"depth must be finite and above 0, got {depth:g}")
+    # A rigid base has nothing to show.
+    rigid = not hasattr(body.substrate, "young")
+    return body, min(depth, body.interfaces[-1]) if rigid else depth
+
+
+def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
+    """Return depths that hold every interface, and about `rows` between."""
+    if rows < 1:
+        raise ValueError(f"the number of depths must be at least 1, got {rows}")
+    faces = [0.0, *(z for z in body.interfaces if z < bottom), bottom]
+    parts = [
+        np.linspace(top, end, max(4, round(rows * (end - top) / bottom)), endpoint=False)
+        for top, end in pairwise(faces)
+    ]
+    return np.concatenate([*parts, [bottom]])
+
+
+def _around(solution: Solution, axis: int, width: float) -> Array:
+    """Return the ends of what is shown: the contact, and half of `width` beside it."""
+    low, high = solution.contact_extent[axis]
+    return np.array([low - 0.5 * width, high + 0.5 * width])
