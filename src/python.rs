@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use crate::error::Error;
 
 mod arrays;
+mod background;
 mod batch;
 mod bodies;
 mod call;

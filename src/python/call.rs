@@ -1,12 +1,10 @@
 //! Keyword arguments of a solve, and how it runs: without the interpreter, told of Ctrl-C.
 
-use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
-
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::arrays::{Repr, count, number, pair, real_matrix};
+use super::background;
 use super::report::PyReport;
 use super::shapes::{PyShape, Shape};
 use super::solution::PySolution;
@@ -126,7 +124,7 @@ impl Call {
         })
     }
 
-    /// Runs `work` without the interpreter; it is interrupted by Ctrl-C, and by the callback.
+    /// Runs `work` in the background; it is interrupted by Ctrl-C, and by the callback.
     pub(super) fn run(
         self,
         py: Python<'_>,
@@ -136,7 +134,8 @@ impl Call {
             &Options,
             &mut crate::contact::Progress,
         ) -> crate::Result<Solution>
-        + Send,
+        + Send
+        + 'static,
     ) -> PyResult<PySolution> {
         let Self {
             shape,
@@ -145,48 +144,15 @@ impl Call {
             progress,
             check,
         } = self;
-        let callback = progress;
-        let mut failure: Option<PyErr> = None;
-        let mut stopped = false;
-        let result = py.detach(|| {
-            let mut last = Instant::now();
-            work(&shape, &motion, &options, &mut |report: &Report| {
-                if failure.is_some() || stopped {
-                    return ControlFlow::Break(());
-                }
-                let due = last.elapsed() > SIGNALS;
-                if !due && callback.is_none() {
-                    return ControlFlow::Continue(());
-                }
-                let outcome = Python::attach(|py| {
-                    if due {
-                        last = Instant::now();
-                        py.check_signals()?;
-                    }
-                    let Some(callback) = &callback else {
-                        return Ok(true);
-                    };
-                    let answer = callback.bind(py).call1((PyReport(report.clone()),))?;
-                    Ok(answer.is_none() || answer.is_truthy()?)
-                });
-                match outcome {
-                    Ok(true) => return ControlFlow::Continue(()),
-                    Ok(false) => stopped = true,
-                    Err(error) => failure = Some(error),
-                }
-                ControlFlow::Break(())
+        let tolerance = options.tolerance;
+        let solution = background::run(py, progress, move |caller| {
+            work(&shape, &motion, &options, &mut |report| {
+                caller.tell(|| PyReport(report.clone()))
             })
-        });
-        if let Some(error) = failure {
-            return Err(error);
-        }
-        py.check_signals()?;
-        finish(py, result?, options.tolerance, check)
+        })?;
+        finish(py, solution?, tolerance, check)
     }
 }
-
-/// How often Ctrl-C is looked for.
-pub(super) const SIGNALS: Duration = Duration::from_millis(50);
 
 /// Issues the warnings, and raises where the tolerance was not met.
 pub(super) fn finish(

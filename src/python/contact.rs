@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 
 use super::arrays::count;
+use super::background::{self, Caller};
 use super::batch;
 use super::bodies::{PyHalfSpace, body};
 use super::call::{Call, options};
@@ -114,8 +115,9 @@ impl PyContact {
         threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let setup = setup(counterbody, method, refinement, threads)?;
-        let contact = py.detach(|| Contact::plan(&body, grid.0, setup))?;
-        py.check_signals()?;
+        let contact = background::run(py, None, move |_: &Caller<()>| {
+            Contact::plan(&body, grid.0, setup)
+        })??;
         Ok(Self {
             contact: Arc::new(contact),
         })

@@ -5,6 +5,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::arrays::{Repr, count, real_array};
+use super::background::{self, Caller};
 use super::bodies::{PyLayer, body, substrate};
 use super::contact::method;
 use super::grid::PyGrid;
@@ -102,7 +103,9 @@ pub(super) fn influence_coefficients<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let refinement = refinement.map_or(Ok(4), |r| count("refinement", 1, r))?;
     let method = self::method(method, refinement)?;
-    let coefficients = py.detach(|| influence::influence_coefficients(&body, &grid.0, method))?;
+    let coefficients = background::run(py, None, move |_: &Caller<()>| {
+        influence::influence_coefficients(&body, &grid.0, method)
+    })??;
     Ok(coefficients.into_pyarray(py))
 }
 

@@ -1,6 +1,5 @@
 //! `nacre.Solution`.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use ndarray::Array2;
@@ -10,6 +9,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 
 use super::arrays::{read_only, real_matrix};
+use super::background::{self, Caller};
 use super::bodies::PyHalfSpace;
 use super::report::PyReport;
 use super::stress::{self, Keywords, PyStress};
@@ -192,19 +192,10 @@ impl PySolution {
     /// >>> round(stiffness / (2 * steel.plane_strain_modulus * radius), 2)
     /// 1.0
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut failure = None;
-        let stiffness = py.detach(|| {
-            self.solution.stiffness_watched(&mut || {
-                failure = Python::attach(|py| py.check_signals()).err();
-                match failure {
-                    Some(_) => ControlFlow::Break(()),
-                    None => ControlFlow::Continue(()),
-                }
-            })
-        })?;
-        if let Some(error) = failure {
-            return Err(error);
-        }
+        let solution = Arc::clone(&self.solution);
+        let stiffness = background::run(py, None, move |caller: &Caller<()>| {
+            solution.stiffness_watched(&mut || caller.go_on())
+        })??;
         Ok(PyArray2::from_owned_array(
             py,
             Array2::from(stiffness.unwrap_or_default().to_vec()),
@@ -301,9 +292,9 @@ impl PySolution {
             threads,
         };
         let options = keywords.options(self.solution.member(member)?)?;
-        let field = stress::watched(py, progress, |progress| {
-            self.solution
-                .stress_watched(&depths, member, &options, progress)
+        let solution = Arc::clone(&self.solution);
+        let field = stress::watched(py, progress, move |progress| {
+            solution.stress_watched(&depths, member, &options, progress)
         })?;
         Ok(stress::field(field, one, &keywords))
     }
@@ -389,9 +380,9 @@ impl PySolution {
             threads,
         };
         let options = keywords.options(of)?;
-        let summary = stress::watched(py, progress, |progress| {
-            self.solution
-                .stress_summary(member, &limits, &options, progress)
+        let solution = Arc::clone(&self.solution);
+        let summary = stress::watched(py, progress, move |progress| {
+            solution.stress_summary(member, &limits, &options, progress)
         })?;
         Ok(PyStressSummary(summary))
     }

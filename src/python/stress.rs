@@ -1,8 +1,6 @@
 //! `nacre.stress` and `nacre.Stress`.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 
 use ndarray::{Array3, ArrayD, Axis};
 use numpy::{PyArray1, PyArrayDyn};
@@ -11,8 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::arrays::{Repr, count, read_only, real_array, real_matrix};
+use super::background;
 use super::bodies::{PyHalfSpace, body};
-use super::call::SIGNALS;
+use super::call::progress_callable;
 use super::grid::PyGrid;
 use crate::body::{HalfSpace, Substrate};
 use crate::error::Error;
@@ -461,54 +460,16 @@ impl Keywords<'_, '_> {
     }
 }
 
-/// Runs `work` without the interpreter; it is interrupted by Ctrl-C, and by the callback.
-pub(super) fn watched<R: Send>(
+/// Runs `work` in the background; it is interrupted by Ctrl-C, and by the callback.
+pub(super) fn watched<R: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&mut StressProgress) -> crate::Result<R> + Send,
+    work: impl FnOnce(&mut StressProgress) -> crate::Result<R> + Send + 'static,
 ) -> PyResult<R> {
-    if let Some(progress) = progress.filter(|p| !p.is_callable()) {
-        return Err(PyTypeError::new_err(format!(
-            "progress must be callable, got {}",
-            Repr(progress)
-        )));
-    }
-    let callback = progress.map(|p| p.clone().unbind());
-    let mut failure: Option<PyErr> = None;
-    let mut stopped = false;
-    let result = py.detach(|| {
-        let mut last = Instant::now();
-        work(&mut |part: f64| {
-            if failure.is_some() || stopped {
-                return ControlFlow::Break(());
-            }
-            let due = last.elapsed() > SIGNALS;
-            if !due && callback.is_none() {
-                return ControlFlow::Continue(());
-            }
-            let outcome = Python::attach(|py| {
-                if due {
-                    last = Instant::now();
-                    py.check_signals()?;
-                }
-                let Some(callback) = &callback else {
-                    return Ok(true);
-                };
-                let answer = callback.bind(py).call1((part,))?;
-                Ok(answer.is_none() || answer.is_truthy()?)
-            });
-            match outcome {
-                Ok(true) => return ControlFlow::Continue(()),
-                Ok(false) => stopped = true,
-                Err(error) => failure = Some(error),
-            }
-            ControlFlow::Break(())
-        })
-    });
-    if let Some(error) = failure {
-        return Err(error);
-    }
-    py.check_signals()?;
+    let callback = progress_callable(progress)?;
+    let result = background::run(py, callback, move |caller| {
+        work(&mut |part: f64| caller.tell(|| part))
+    })?;
     Ok(result?)
 }
 
@@ -629,7 +590,7 @@ pub(super) fn stress(
         threads,
     };
     let options = keywords.options(&body)?;
-    let evaluated = watched(py, progress, |progress| {
+    let evaluated = watched(py, progress, move |progress| {
         stress_watched(&body, &grid.0, &pressure, &depths, &options, progress)
     })?;
     Ok(field(evaluated, one, &keywords))

@@ -1,0 +1,119 @@
+//! Work on a thread of its own, while Python's own looks for Ctrl-C: whatever the work is at, a signal
+//! is seen within [`ASKED`]. What was interrupted ends by itself, at its next iteration.
+
+use std::ops::ControlFlow;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+
+/// How often Ctrl-C is looked for.
+const ASKED: Duration = Duration::from_millis(50);
+
+enum Message<M, T> {
+    Told(M),
+    Done(T),
+}
+
+/// What the work asks whether to go on.
+pub(super) struct Caller<M> {
+    stopped: Arc<AtomicBool>,
+    /// Calls Python's callback, and says whether to go on.
+    callback: Option<Box<dyn Fn(M) -> bool + Send>>,
+}
+
+impl<M> Caller<M> {
+    /// Whether nobody has interrupted.
+    pub(super) fn go_on(&self) -> ControlFlow<()> {
+        if self.stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    /// The same, having told the callback, if there is one.
+    pub(super) fn tell(&self, message: impl FnOnce() -> M) -> ControlFlow<()> {
+        if let Some(callback) = &self.callback
+            && !callback(message())
+        {
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+        self.go_on()
+    }
+}
+
+/// What `work` returns. `callback` is called on this thread with what it tells; where that returns
+/// False, the work is asked to stop.
+pub(super) fn run<M, T>(
+    py: Python<'_>,
+    callback: Option<Py<PyAny>>,
+    work: impl FnOnce(&Caller<M>) -> T + Send + 'static,
+) -> PyResult<T>
+where
+    M: for<'py> IntoPyObject<'py> + Send + 'static,
+    T: Send + 'static,
+{
+    let (sender, mut messages) = mpsc::channel();
+    let (answer, answers) = mpsc::channel::<bool>();
+    let stopped = Arc::new(AtomicBool::new(false));
+    let told = sender.clone();
+    let caller = Caller {
+        stopped: Arc::clone(&stopped),
+        callback: callback.is_some().then(|| {
+            // Where nobody listens any more, it was interrupted.
+            Box::new(move |message| {
+                told.send(Message::Told(message)).is_ok() && answers.recv().unwrap_or(false)
+            }) as Box<dyn Fn(M) -> bool + Send>
+        }),
+    };
+    let worker = thread::Builder::new().name("nacre".into()).spawn(move || {
+        let done = work(&caller);
+        drop(caller);
+        // Nobody waits for what was interrupted.
+        let _ = sender.send(Message::Done(done));
+    })?;
+    let outcome = loop {
+        let messages = &mut messages;
+        match py.detach(move || messages.recv_timeout(ASKED)) {
+            Ok(Message::Done(done)) => break Ok(done),
+            Ok(Message::Told(message)) => match tell(py, callback.as_ref(), message) {
+                Ok(go_on) => {
+                    let _ = answer.send(go_on);
+                }
+                Err(error) => break Err(error),
+            },
+            Err(RecvTimeoutError::Timeout) => {
+                if let Err(error) = py.check_signals() {
+                    break Err(error);
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => match worker.join() {
+                Err(panic) => resume_unwind(panic),
+                Ok(()) => unreachable!("it sends what it has done"),
+            },
+        }
+    };
+    stopped.store(true, Ordering::Relaxed);
+    outcome.and_then(|done| py.check_signals().map(|()| done))
+}
+
+/// Whether the callback says to go on.
+fn tell<M: for<'py> IntoPyObject<'py>>(
+    py: Python<'_>,
+    callback: Option<&Py<PyAny>>,
+    message: M,
+) -> PyResult<bool> {
+    py.check_signals()?;
+    let Some(callback) = callback else {
+        return Ok(true);
+    };
+    let message = message.into_py_any(py)?;
+    let answer = callback.bind(py).call1((message,))?;
+    Ok(answer.is_none() || answer.is_truthy()?)
+}
