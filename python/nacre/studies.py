@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from threading import Lock
+from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -252,7 +252,7 @@ def _run(
     pool = executor or ThreadPoolExecutor(max_workers=_cores())
     futures: list[Future[Record]] = []
     ended: SimpleQueue[BaseException | None] = SimpleQueue()
-    turn = Lock()
+    turn, stopped = Lock(), Event()
 
     def end(key: str, future: Future[Record]) -> None:
         try:
@@ -263,10 +263,21 @@ def _run(
         else:
             ended.put(None)
 
+    def submit() -> None:
+        try:
+            for key, arguments in tasks.items():
+                if stopped.is_set():
+                    return
+                futures.append(pool.submit(_solve, arguments, dict(outputs), os.getpid()))
+                futures[-1].add_done_callback(partial(end, key))
+        except BaseException as error:  # of the executor: raised below
+            ended.put(error)
+
+    # Ctrl-C interrupts the main thread alone: no case is submitted there, so that none is begun
+    # whose end nobody would keep.
+    submitter = Thread(target=submit)
+    submitter.start()
     try:
-        for key, arguments in tasks.items():
-            futures.append(pool.submit(_solve, arguments, dict(outputs), os.getpid()))
-            futures[-1].add_done_callback(partial(end, key))
         for _ in tasks:
             while True:
                 with suppress(Empty):
@@ -276,6 +287,8 @@ def _run(
                 raise failure
             yield
     finally:
+        stopped.set()
+        submitter.join()
         for future in futures:
             future.cancel()
         if executor is None:
