@@ -94,6 +94,8 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
+/// A plan and a solve take up to 170 bytes a cell: what does not fit is refused before it starts.
+///
 /// ```
 /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
 ///
@@ -343,10 +345,12 @@ impl Contact {
     }
 }
 
-/// Bytes that a plan, its coefficients, and the arrays of one solve take.
+/// Bytes that a plan, its coefficients, and the arrays of one solve take: 168 a cell (measured: 157
+/// where the contact fills the grid, 91 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
+    const ARRAYS: u64 = 16;
     let [nx, ny] = grid.shape();
-    Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * 24
+    Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * ARRAYS
 }
 
 /// A balanced pressure on all cells that can touch.
