@@ -18,6 +18,7 @@ unexport CONDA_PREFIX PYTHONHOME PYTHONPATH
 # Stamps: what .venv holds.
 BUILD := $(VENV)/.build
 DEV := $(VENV)/.dev
+DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
 .PHONY: help demo test check bench peers develop stubs docs
@@ -59,13 +60,18 @@ peers: $(WHEEL) ## nacre beside other solvers: docs/peers.md; OPTIONS=--quick ta
 
 develop: $(DEV) ## build in place: Python files are used where they are, Rust after the next make develop
 	rm -f $(WHEEL)
-	$(BIN)/maturin develop --release --extras all
+	$(BIN)/maturin develop --release
+	$(BIN)/python -m pip install --quiet 'nacre[all]'  # of the one just installed, the extras
 
 stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 	$(BIN)/python -m mypy.stubtest nacre._core
 
-docs: ## the Rust documentation, under target/doc/nacre
-	cargo doc --no-deps
+# The gallery runs; a warning is an error. Rust's own documentation goes beside, under rust/.
+docs: $(WHEEL) $(DOCS) ## this documentation as a site: docs/_build/html/index.html
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -d docs/_build/doctrees docs docs/_build/html
+	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
+	rm -rf docs/_build/html/rust
+	cp -R $(TARGET)/doc docs/_build/html/rust
 
 # pip takes --group since 25.1.
 $(BUILD): pyproject.toml
@@ -77,6 +83,10 @@ $(BUILD): pyproject.toml
 
 $(DEV): $(BUILD)
 	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+$(DOCS): $(BUILD)
+	$(BIN)/python -m pip install --quiet --group docs
 	@touch $@
 
 # The wheel as users get it, and not the checkout, is what is tested.

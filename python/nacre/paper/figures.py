@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -63,16 +63,21 @@ class Drawing:
 def draw(results: Iterable[Result]) -> list[Drawing]:
     """Draw figures 1 to 6 from the results of all cases."""
     results = list(results)
-    main, printed = ECCENTRIC
+    return [figure(number, results) for number in FIGURES]
+
+
+def figure(number: int, results: Iterable[Result]) -> Drawing:
+    """Draw one of figures 1 to 6 from the results of all cases.
+
+    Raises
+    ------
+    ValueError
+        If the paper has no figure of that number.
+    """
+    if number not in FIGURES:
+        raise ValueError(f"number must be one of {', '.join(map(str, FIGURES))}, got {number!r}")
     with mpl.rc_context(STYLE):
-        return [
-            _sphere(results),
-            _profiles(results, [[(series, "x")] for series in CENTRED], height=0.75),
-            _profiles(results, [[(series, "y") for series in CENTRED]], height=0.55),
-            _surface(results, CENTRED[0]),
-            _profiles(results, [[(s, "x"), (s, "y")] for s in (main, printed)], height=0.85),
-            _surface(results, main),
-        ]
+        return FIGURES[number](list(results))
 
 
 def _sphere(results: list[Result]) -> Drawing:
@@ -231,3 +236,17 @@ def _finish(figure: Figure, header: Sequence[str], rows: list[Row]) -> Drawing:
     png = io.BytesIO()
     figure.savefig(png, format="png", dpi=300)
     return Drawing(png.getvalue(), header, rows)
+
+
+_MAIN, _PRINTED = ECCENTRIC
+FIGURES: dict[int, Callable[[list[Result]], Drawing]] = {
+    1: _sphere,
+    2: lambda results: _profiles(results, [[(series, "x")] for series in CENTRED], height=0.75),
+    3: lambda results: _profiles(results, [[(series, "y") for series in CENTRED]], height=0.55),
+    4: lambda results: _surface(results, CENTRED[0]),
+    5: lambda results: _profiles(
+        results, [[(s, "x"), (s, "y")] for s in (_MAIN, _PRINTED)], height=0.85
+    ),
+    6: lambda results: _surface(results, _MAIN),
+}
+"""What each figure is drawn by, from the results of all cases."""

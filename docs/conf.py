@@ -1,0 +1,78 @@
+"""Settings of the documentation site; `make docs` builds it."""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import version as version_of
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))  # drawings
+
+project = "nacre"
+author = copyright = "The nacre developers"
+version = release = version_of("nacre")
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "sphinx_gallery.gen_gallery",
+    "sphinx-mathjax-offline",
+]
+exclude_patterns = ["_build", "extensions", "gallery"]
+
+# Equations: $ and $$, numbered where they have a label.
+myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+math_eqref_format = "({number})"
+
+# The compiled classes have NumPy docstrings, and signatures without types.
+autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True, "undoc-members": False}
+autodoc_typehints = "none"
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True
+
+html_theme = "furo"
+html_title = f"nacre {release}"
+html_static_path = ["_static"]
+html_css_files = ["nacre.css"]
+html_show_sphinx = False
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#0072B2", "color-brand-content": "#0072B2"},
+    "dark_css_variables": {"color-brand-primary": "#56B4E9", "color-brand-content": "#56B4E9"},
+}
+copybutton_prompt_text = ">>> |$ "
+copybutton_prompt_is_regexp = False
+
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "pictures",
+    "filename_pattern": r"\.py$",
+    "subsection_order": ["gallery/paper", "gallery/nacre"],
+    "within_subsection_order": "FileNameSortKey",
+    "image_scrapers": ("matplotlib", "drawings.scraper"),
+    "abort_on_example_error": True,
+    "show_memory": False,
+    "show_signature": False,
+    "min_reported_time": 600,
+    "copyfile_regex": "",
+    "write_computation_times": False,
+    "remove_config_comments": True,
+    "download_all_examples": False,
+}
+
+
+def link_pages(app: Any, name: str, source: list[str]) -> None:
+    """Make links of files that are read outside the site too lead to its pages."""
+    source[0] = source[0].replace("(../benches/README.md)", "(benches.md)")
+
+
+def setup(app: Any) -> None:
+    """Connect what Sphinx calls."""
+    app.connect("source-read", link_pages)

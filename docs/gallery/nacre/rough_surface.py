@@ -1,0 +1,31 @@
+"""
+A rough surface in contact
+==========================
+
+A ball whose surface was measured, here made up: noise without its short waves, 5 nm high. The picture is
+``solution.plot()``.
+"""
+
+import numpy as np
+
+import nacre
+
+cells, spacing, shortest_wave, height = 256, 1e-6, 8e-6, 5e-9
+waves = np.fft.fftfreq(cells, spacing)
+spectrum = np.fft.fft2(np.random.default_rng(7).standard_normal((cells, cells)))
+spectrum[np.hypot(waves[:, None], waves[None, :]) > 1 / shortest_wave] = 0
+heights = np.fft.ifft2(spectrum).real
+heights *= height / heights.std()
+
+ball = nacre.Sphere(5e-3) + nacre.HeightMap(heights, spacing=spacing)
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+hard = nacre.Layer(nacre.Elastic(young=420e9, poisson=0.3), thickness=2e-6)
+body = nacre.HalfSpace(steel, layers=[hard])
+solution = nacre.solve(ball, body, load=2.0)
+parts = solution.plot()
+
+# %%
+# What the roughness costs, against the smooth ball on the same cells:
+smooth = nacre.solve(nacre.Sphere(5e-3), body, grid=solution.report.grid, load=2.0)
+print(f"smooth   peak {smooth.peak_pressure / 1e9:.2f} GPa, area {smooth.contact_area * 1e12:.0f} µm²")
+print(f"rough    peak {solution.peak_pressure / 1e9:.2f} GPa, area {solution.contact_area * 1e12:.0f} µm²")
