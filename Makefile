@@ -67,7 +67,7 @@ stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 	$(BIN)/python -m mypy.stubtest nacre._core
 
 # The gallery runs; a warning is an error. Rust's own documentation goes beside, under rust/.
-docs: $(WHEEL) $(DOCS) ## this documentation as a site: docs/_build/html/index.html
+docs: $(WHEEL) $(DOCS) ## the documentation as a site: docs/_build/html/index.html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -d docs/_build/doctrees docs docs/_build/html
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 	rm -rf docs/_build/html/rust

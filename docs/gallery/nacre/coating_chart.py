@@ -2,8 +2,8 @@
 Which coating spares the most pressure?
 =======================================
 
-Peak pressure under a ball over the thickness and the modulus of a coating on steel. A soft coating helps
-once it is not thin against the contact; a stiff one costs.
+Peak pressure under a ball over the thickness and the modulus of a coating on steel. A soft
+coating helps once it is not thin against the contact; a stiff one costs.
 """
 
 import numpy as np

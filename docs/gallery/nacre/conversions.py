@@ -2,10 +2,10 @@
 What conversion by inverse FFT costs
 ====================================
 
-The paper obtains influence coefficients by transforming the frequency response back on a mesh of finite
-extent. nacre's ``exact`` coefficients have no such error, so that the error of the conversions can be
-shown: relative to ``exact``, over the offset along x, for a coating four times as stiff as its substrate
-and eight cells thick (:ref:`conversions`).
+The paper obtains influence coefficients by transforming the frequency response back on a mesh
+of finite extent. nacre's ``exact`` coefficients have no such error, so that the error of the
+conversions can be shown: relative to ``exact``, over the offset along x, for a coating four
+times as stiff as its substrate and eight cells thick (:ref:`conversions`).
 """
 
 import matplotlib.pyplot as plt

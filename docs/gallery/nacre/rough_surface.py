@@ -2,8 +2,8 @@
 A rough surface in contact
 ==========================
 
-A ball whose surface was measured, here made up: noise without its short waves, 5 nm high. The picture is
-``solution.plot()``.
+A ball whose surface was measured, here made up: noise without its short waves, 5 nm high. The
+picture is ``solution.plot()``.
 """
 
 import numpy as np
@@ -27,5 +27,9 @@ parts = solution.plot()
 # %%
 # What the roughness costs, against the smooth ball on the same cells:
 smooth = nacre.solve(nacre.Sphere(5e-3), body, grid=solution.report.grid, load=2.0)
-print(f"smooth   peak {smooth.peak_pressure / 1e9:.2f} GPa, area {smooth.contact_area * 1e12:.0f} µm²")
-print(f"rough    peak {solution.peak_pressure / 1e9:.2f} GPa, area {solution.contact_area * 1e12:.0f} µm²")
+print(
+    f"smooth   peak {smooth.peak_pressure / 1e9:.2f} GPa, area {smooth.contact_area * 1e12:.0f} µm²"
+)
+print(
+    f"rough    peak {solution.peak_pressure / 1e9:.2f} GPa, area {solution.contact_area * 1e12:.0f} µm²"
+)

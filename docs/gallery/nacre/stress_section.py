@@ -2,8 +2,8 @@
 Stresses below a coated sphere
 ==============================
 
-A ball on a coating twice as stiff as the steel below it. The stiffer coating carries more: von Mises'
-stress jumps at the interface, and is largest just above it, where the coating bends.
+A ball on a coating twice as stiff as the steel below it. The stiffer coating carries more: von
+Mises' stress jumps at the interface, and is largest just above it, where the coating bends.
 """
 
 import matplotlib.pyplot as plt
@@ -17,7 +17,8 @@ body = nacre.HalfSpace(steel, layers=[nacre.Layer(hard, thickness=40e-6)])
 solution = nacre.solve(nacre.Sphere(5e-3), body, load=100.0)
 
 # %%
-# The section y = 0. Depths are cut at the interface, and each part is evaluated on its own side of it.
+# The section y = 0. Depths are cut at the interface, and each part is evaluated on its own side
+# of it.
 interface = body.interfaces[0]
 coating = solution.stress(np.linspace(0, interface, 41), side="above", y=0.0)
 below = solution.stress(np.linspace(interface, 4 * interface, 81), side="below", y=0.0)
@@ -31,11 +32,12 @@ for part in (coating, below):
 axes.axhline(1e6 * interface, color="white", linewidth=1)
 axes.set(xlabel="x [µm]", ylabel="depth z [µm]", aspect="equal", xlim=(-150, 150))
 axes.invert_yaxis()
-bar = figure.colorbar(filled, ax=axes, label="von Mises stress [GPa]", ticks=np.arange(0, highest, 0.5))
+ticks = np.arange(0, highest, 0.5)
+bar = figure.colorbar(filled, ax=axes, label="von Mises stress [GPa]", ticks=ticks)
 
 # %%
-# On the axis below the ball, and along the interface: what is in the plane jumps there, and what pulls or
-# shears the interface is the same on both sides.
+# On the axis below the ball, and along the interface: what is in the plane jumps there, and
+# what pulls or shears the interface is the same on both sides.
 x = solution.x
 middle = float(x[np.argmin(np.abs(x))])
 above = solution.stress(interface, side="above", y=middle)
@@ -45,8 +47,8 @@ figure, (left, right) = plt.subplots(1, 2, figsize=(7.1, 3.3), layout="constrain
 for part in (coating, below):
     column = np.argmin(np.abs(part.x))
     depth = 1e6 * part.z
-    left.plot(part.zz[:, column] / 1e9, depth, color="#0072B2", label="σzz")
-    left.plot(part.xx[:, column] / 1e9, depth, color="#D55E00", linestyle="--", label="σxx")
+    left.plot(part.zz[:, column] / 1e9, depth, "-", color="#0072B2", label="σzz")
+    left.plot(part.xx[:, column] / 1e9, depth, "--", color="#D55E00", label="σxx")
 left.axhline(1e6 * interface, color="0.7", linewidth=0.8)
 left.invert_yaxis()
 left.set(xlabel="stress on the axis [GPa]", ylabel="depth z [µm]")

@@ -2,9 +2,9 @@
 How stiff is a roller against tilting?
 ======================================
 
-Moment over tilt of the paper's roller under 1 kN, bare and with 40 µm of a coating a quarter as stiff. The
-slope at the origin is the tilting stiffness that a bearing calculation needs; it agrees with the tangent
-that :py:meth:`nacre.Solution.stiffness` returns for one solution.
+Moment over tilt of the paper's roller under 1 kN, bare and with 40 µm of a coating a quarter as
+stiff. The slope at the origin is the tilting stiffness that a bearing calculation needs; it
+agrees with the tangent that :py:meth:`nacre.Solution.stiffness` returns for one solution.
 """
 
 import matplotlib.pyplot as plt
@@ -17,16 +17,16 @@ steel = nacre.Elastic(young=210e9, poisson=0.3)
 soft = nacre.Elastic(young=52.5e9, poisson=0.3)
 bodies = {
     "bare": nacre.HalfSpace(steel),
-    "40 µm, E₁ = E₂/4": nacre.HalfSpace(steel, layers=[nacre.Layer(soft, thickness=40e-6)]),
+    "40 µm, E₁ = E₂/4": nacre.HalfSpace(steel, layers=[nacre.Layer(soft, 40e-6)]),
 }
 roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
 grid = nacre.Grid(shape=(384, 64), size=(32e-3, 0.16e-3))
 tilts = np.linspace(0, 6e-5, 13)
 
 figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
-for (name, body), style in zip(bodies.items(), ("-", "--"), strict=True):
+for (name, body), colour in zip(bodies.items(), ("#0072B2", "#D55E00"), strict=True):
     curve = design.tilt_curve(roller, body, tilts, load=1e3, grid=grid, progress=False)
-    plot.curve(curve, "moment", axes, label=name, linestyle=style)
+    plot.curve(curve, "moment", axes, label=name, color=colour)
     upright = nacre.solve(roller, body, grid=grid, load=1e3)
     tangent = upright.stiffness()
     # With the force held, the approach gives way: a Schur complement.

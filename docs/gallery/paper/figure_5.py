@@ -2,9 +2,9 @@
 Figure 5: a roller whose load is off its centre
 ===============================================
 
-The load acts at 0.3 of the straight part's half-length, and the roller is free to tilt along its axis:
-sections along and across, for two thicknesses of the coating. The pressure rises towards the load, and
-more so with a stiff coating as thick as the contact is wide.
+The load acts at 0.3 of the straight part's half-length, and the roller is free to tilt along
+its axis: sections along and across, for two thicknesses of the coating. The pressure rises
+towards the load, and more so with a stiff coating as thick as the contact is wide.
 """
 
 from nacre import paper

@@ -2,8 +2,8 @@
 Figure 6: the pressure of a tilted roller
 =========================================
 
-Coating and substrate alike, load at 0.3 of the straight part's half-length: the riser on the loaded side
-grows, the other one fades.
+Coating and substrate alike, load at 0.3 of the straight part's half-length: the riser on the
+loaded side grows, the other one fades.
 """
 
 from nacre import paper

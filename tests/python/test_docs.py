@@ -1,0 +1,107 @@
+"""The programs of the documentation run as they stand, and print what it says they print."""
+
+import doctest
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+import nacre
+import nacre.design
+import nacre.paper
+import nacre.plot
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = [DOCS / "start.md", *sorted((DOCS / "howto").glob("*.md"))]
+FENCE = re.compile(
+    r"^```(?:\{code-block\} )?(\w+)\n(?::caption: (\S+)\n\n)?(.*?)^```$", re.MULTILINE | re.DOTALL
+)
+FLAGS = doctest.ELLIPSIS
+SEPARATOR = "~~~ next block ~~~"
+
+
+class Block(NamedTuple):
+    """A fenced block of a page: its language, the file that it stands for, and what is in it."""
+
+    language: str
+    caption: str | None
+    text: str
+
+
+def blocks(page: Path) -> list[Block]:
+    found = FENCE.findall(page.read_text(encoding="utf-8"))
+    return [Block(language, caption or None, text) for language, caption, text in found]
+
+
+def programs() -> list[Path]:
+    return [page for page in PAGES if any(block.language == "python" for block in blocks(page))]
+
+
+def run(*command: str, folder: Path) -> str:
+    """Return what a program printed, in a folder of its own."""
+    environment = os.environ | {"MPLBACKEND": "agg", "PYTHONUTF8": "1"}
+    done = subprocess.run(
+        command, capture_output=True, encoding="utf-8", cwd=folder, env=environment, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_pages_are_there() -> None:
+    assert {page.stem for page in programs()} >= {"start", "roller", "surface", "coating", "both"}
+
+
+@pytest.mark.parametrize("page", programs(), ids=lambda page: page.stem)
+def test_what_a_page_prints_is_what_it_says(page: Path, tmp_path: Path) -> None:
+    program, expected = [], []
+    for block in blocks(page):
+        if block.language == "python":
+            program.append(f"{block.text}\nprint({SEPARATOR!r})\n")
+            expected.append("")
+        elif block.language == "text":
+            expected[-1] = block.text
+    # In a file, so that other processes can be started from it.
+    lines = "".join(program).replace("\n", "\n    ")
+    text = f"def main():\n    {lines}\n\nif __name__ == '__main__':\n    main()\n"
+    (tmp_path / "page.py").write_text(text, encoding="utf-8")
+    printed = run(sys.executable, "-W", "error", "page.py", folder=tmp_path)
+    parts = [part.removeprefix("\n") for part in printed.split(SEPARATOR)]
+    checker = doctest.OutputChecker()
+    for got, wanted in zip(parts, expected, strict=False):
+        assert checker.check_output(wanted, got, FLAGS), f"said:\n{wanted}\nprinted:\n{got}"
+    assert len(parts) == len(expected) + 1
+
+
+def test_the_commands_of_the_start_run(tmp_path: Path) -> None:
+    found = blocks(DOCS / "start.md")
+    for block in found:
+        if block.caption:
+            (tmp_path / block.caption).write_text(block.text, encoding="utf-8")
+    lines = [line for block in found if block.language == "sh" for line in block.text.splitlines()]
+    assert len(lines) == 2
+    for line in lines:
+        program, *arguments = shlex.split(line)
+        assert program == "nacre"
+        run(sys.executable, "-m", "nacre.cli", *arguments, folder=tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} >= {"roller.nc", "roller.png", "rollers.nc"}
+
+
+def test_every_public_name_is_in_the_reference() -> None:
+    text = "\n".join(page.read_text(encoding="utf-8") for page in (DOCS / "api").glob("*.rst"))
+    listed = set(re.findall(r"^\.\. auto\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
+    public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
+        f"{module.__name__}.{name}"
+        for module in (nacre.design, nacre.plot)
+        for name in module.__all__
+    }
+    assert public - listed == set()
+
+
+def test_every_figure_of_the_paper_has_a_page() -> None:
+    pages = {page.stem for page in (DOCS / "gallery" / "paper").glob("*.py")}
+    assert pages == {f"figure_{number}" for number in range(1, 7)}
