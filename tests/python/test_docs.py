@@ -93,7 +93,7 @@ def test_the_commands_of_the_start_run(tmp_path: Path) -> None:
 
 def test_every_public_name_is_in_the_reference() -> None:
     text = "\n".join(page.read_text(encoding="utf-8") for page in (DOCS / "api").glob("*.rst"))
-    listed = set(re.findall(r"^\.\. auto\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
+    listed = set(re.findall(r"^\.\. (?:auto|py:)\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
     public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
         f"{module.__name__}.{name}"
         for module in (nacre.design, nacre.plot)

@@ -27,9 +27,6 @@ parts = solution.plot()
 # %%
 # What the roughness costs, against the smooth ball on the same cells:
 smooth = nacre.solve(nacre.Sphere(5e-3), body, grid=solution.report.grid, load=2.0)
-print(
-    f"smooth   peak {smooth.peak_pressure / 1e9:.2f} GPa, area {smooth.contact_area * 1e12:.0f} µm²"
-)
-print(
-    f"rough    peak {solution.peak_pressure / 1e9:.2f} GPa, area {solution.contact_area * 1e12:.0f} µm²"
-)
+for name, solved in {"smooth": smooth, "rough": solution}.items():
+    peak, area = solved.peak_pressure, solved.contact_area
+    print(f"{name:8} peak {peak / 1e9:.2f} GPa, area {area * 1e12:.0f} µm²")
