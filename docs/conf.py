@@ -22,12 +22,16 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",
 ]
+default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]
 
 # Equations: $ and $$, numbered where they have a label.
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 math_eqref_format = "({number})"
+numfig = True
+numfig_format = {"code-block": "%.0s"}  # captions of code are names of files
+numfig_secnum_depth = 1
 
 # The compiled classes have NumPy docstrings, and signatures without types.
 autodoc_member_order = "bysource"

@@ -19,7 +19,6 @@ print("h/mm   E1/E2   tilt/1e-5   peak/MPa   riser")
 for series in paper.ECCENTRIC:
     for result in paper.of_series(results, series):
         solution = result.solution
-        print(
-            f"{1e3 * series.thickness:4.2f}   {result.ratio:5.2f}   {1e5 * solution.tilt[0]:9.2f}"
-            f"   {1e-6 * solution.peak_pressure:8.0f}   {result.riser:5.3f}"
-        )
+        tilt, peak = 1e5 * solution.tilt[0], 1e-6 * solution.peak_pressure
+        case = f"{1e3 * series.thickness:4.2f}   {result.ratio:5.2f}"
+        print(f"{case}   {tilt:9.2f}   {peak:8.0f}   {result.riser:5.3f}")
