@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
 from nacre.studies import ARGUMENTS, Output, sweep
@@ -19,13 +20,15 @@ if TYPE_CHECKING:
 
 __all__ = ["coating_chart", "load_curve", "tilt_curve"]
 
+Values = Sequence[float] | npt.NDArray[np.float64]
+
 
 def coating_chart(
     shape: core.Shape,
     substrate: core.Elastic | core.Rigid,
     *,
-    thickness: Sequence[float],
-    young: Sequence[float],
+    thickness: Values,
+    young: Values,
     poisson: float = 0.3,
     **options: Any,
 ) -> xarray.Dataset:
@@ -74,7 +77,7 @@ def coating_chart(
 
 
 def load_curve(
-    shape: core.Shape, body: core.HalfSpace | core.Elastic, load: Sequence[float], **options: Any
+    shape: core.Shape, body: core.HalfSpace | core.Elastic, load: Values, **options: Any
 ) -> xarray.Dataset:
     """Approach, normal stiffness dW/dδ, area and peak pressure over the load.
 
@@ -122,7 +125,7 @@ def load_curve(
 def tilt_curve(
     shape: core.Shape,
     body: core.HalfSpace | core.Elastic,
-    tilt: Sequence[float],
+    tilt: Values,
     *,
     load: float,
     **options: Any,

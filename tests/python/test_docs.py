@@ -13,7 +13,6 @@ import pytest
 
 import nacre
 import nacre.design
-import nacre.paper
 import nacre.plot
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -13,7 +13,7 @@ import pytest
 
 import nacre
 import nacre.paper
-from nacre.paper import cases, evaluation
+from nacre.paper import cases, evaluation, figures
 
 COARSE = 0.005  # error of the coarse grids in pressure, relative
 NAMES = {"table.csv"} | {f"figure{k}.{kind}" for k in range(1, 7) for kind in ("png", "csv")}
@@ -161,6 +161,15 @@ def test_surface_carries_the_load(
     assert series.eccentricity is not None
     moment = np.trapezoid(line_load * x[:, 0], x[:, 0])
     assert moment / load == pytest.approx(1e3 * series.eccentricity[0], abs=0.05)
+
+
+def test_one_figure_is_that_of_all_and_others_are_refused(
+    results: list[nacre.paper.Result],
+) -> None:
+    one, all_of_them = figures.figure(3, results), figures.draw(results)
+    assert (one.header, one.rows) == (all_of_them[2].header, all_of_them[2].rows)
+    with pytest.raises(ValueError, match="number must be one of 1, 2, 3, 4, 5, 6, got 7"):
+        figures.figure(7, results)
 
 
 def test_reference_values_are_hertz_where_coating_is_substrate() -> None:

@@ -8,6 +8,8 @@ conversions can be shown: relative to ``exact``, over the offset along x, for a 
 times as stiff as its substrate and eight cells thick (:ref:`conversions`).
 """
 
+from typing import Literal
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -18,7 +20,10 @@ body = nacre.HalfSpace(soft, layers=[nacre.Layer(stiff, thickness=8.0)])
 grid = nacre.Grid(shape=(64, 64), size=(64.0, 64.0))
 exact = nacre.influence_coefficients(body, grid)
 
+# %%
+# Refinement χ of the spectral mesh moves the periodic images away, and cures no more than that.
 figure, axes = plt.subplots(figsize=(6, 3.8), layout="constrained")
+styles: dict[Literal["plain", "difference", "image"], str]
 styles = {"plain": "-", "difference": "--", "image": ":"}
 for method, style in styles.items():
     for refinement, colour in ((1, "#56B4E9"), (4, "#0072B2")):

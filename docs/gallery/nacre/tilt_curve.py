@@ -23,13 +23,15 @@ roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
 grid = nacre.Grid(shape=(384, 64), size=(32e-3, 0.16e-3))
 tilts = np.linspace(0, 6e-5, 13)
 
+# %%
+# The thin lines are tangents, each from one solution of the upright roller. With the force held,
+# the approach gives way: the stiffness against tilting is a Schur complement.
 figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
 for (name, body), colour in zip(bodies.items(), ("#0072B2", "#D55E00"), strict=True):
     curve = design.tilt_curve(roller, body, tilts, load=1e3, grid=grid, progress=False)
     plot.curve(curve, "moment", axes, label=name, color=colour)
     upright = nacre.solve(roller, body, grid=grid, load=1e3)
     tangent = upright.stiffness()
-    # With the force held, the approach gives way: a Schur complement.
     slope = tangent[1, 1] - tangent[0, 1] ** 2 / tangent[0, 0]
     print(f"{name:18} {slope / 1e3:.1f} N m per mrad")
     axes.plot(tilts, slope * tilts, color="0.6", linewidth=0.8, zorder=0)
