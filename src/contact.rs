@@ -10,17 +10,21 @@ use crate::body::HalfSpace;
 use crate::convolution::Convolution;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::influence::{Method, coefficients_on};
+use crate::influence::coefficients_on;
 use crate::memory::check_memory;
 use crate::surface::Surface;
 use crate::threads::Threads;
 
 mod automatic;
+mod balance;
 mod batch;
 mod cascade;
 mod discretisation;
+mod fields;
 mod freedoms;
 mod hull;
+mod options;
+mod patch;
 mod polonsky_keer;
 mod preconditioned;
 mod problem;
@@ -33,61 +37,15 @@ pub use automatic::{choose_grid, solve};
 pub use batch::Case;
 pub use discretisation::Discretisation;
 pub use freedoms::Motion;
+pub use options::{Algorithm, Options, Setup};
 pub use problem::Termination;
 pub use solution::{Balance, Report, Solution, Warning};
 
 use cascade::{Cascade, Levels};
 use discretisation::{Figures, estimate};
+use fields::{Fields, array, slice};
 use freedoms::Freedoms;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
-
-/// What is planned beside body and grid.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Setup {
-    /// The body that carries the shape; `None` is rigid.
-    pub counterbody: Option<HalfSpace>,
-    /// How influence coefficients are computed. Default: [`Method::Exact`].
-    pub method: Method,
-    /// Threads of the plan. Default: all of the machine's.
-    pub threads: Option<usize>,
-}
-
-/// How a solution is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum Algorithm {
-    /// Preconditioned conjugate gradients on nested grids, in a window around the contact.
-    #[default]
-    Cascade,
-    /// The constrained conjugate gradient method of the paper, as a reference.
-    PolonskyKeer,
-}
-
-/// When to end an iteration, and where to start it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Options {
-    /// Largest residual and overlap of a converged solution. Default: 1e-8.
-    pub tolerance: f64,
-    /// Iterations after which to give up. Default: 10 000.
-    pub max_iterations: Option<usize>,
-    /// Default: [`Algorithm::Cascade`].
-    pub algorithm: Algorithm,
-    /// Pressure to start from (nx, ny) \[Pa\]. Default: uniform.
-    pub initial: Option<Array2<f64>>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-8,
-            max_iterations: None,
-            algorithm: Algorithm::default(),
-            initial: None,
-        }
-    }
-}
-
-const MAX_ITERATIONS: usize = 10_000;
 
 /// Is told of each iteration, and breaks to stop.
 pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
@@ -429,69 +387,6 @@ fn solve_in_window(
                 ..end
             };
         }
-    }
-}
-
-/// Pressure, displacement and gap of a problem, and how good they are, once that was seen.
-struct Fields {
-    pressure: Array2<f64>,
-    displacement: Array2<f64>,
-    gap: Array2<f64>,
-    lambda: [f64; 3],
-    quality: Option<Quality>,
-}
-
-impl Fields {
-    fn new(shape: [usize; 2]) -> Self {
-        Self {
-            pressure: Array2::zeros(shape),
-            displacement: Array2::zeros(shape),
-            gap: Array2::zeros(shape),
-            lambda: [0.0; 3],
-            quality: None,
-        }
-    }
-
-    /// Computes displacement, rigid motion, gap and quality of the pressure afresh.
-    fn certify(&mut self, problem: &Problem) -> Quality {
-        let p = slice(&self.pressure);
-        let workspace = &mut problem.convolution.workspace();
-        problem.apply(p, slice_mut(&mut self.displacement), workspace);
-        let u = slice(&self.displacement);
-        let (lambda, quality) = problem.gap_into(p, u, slice_mut(&mut self.gap));
-        self.lambda = lambda;
-        self.quality = Some(quality);
-        quality
-    }
-}
-
-/// Values in C order as an array.
-fn array(shape: [usize; 2], values: Vec<f64>) -> Array2<f64> {
-    Array2::from_shape_vec(shape, values).unwrap_or_else(|_| Array2::zeros(shape))
-}
-
-/// Arrays here are made in C order, and stay so.
-fn slice(array: &Array2<f64>) -> &[f64] {
-    array.as_slice().unwrap_or(&[])
-}
-
-fn slice_mut(array: &mut Array2<f64>) -> &mut [f64] {
-    array.as_slice_mut().unwrap_or(&mut [])
-}
-
-impl Options {
-    fn limits(&self) -> Result<Limits> {
-        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
-            return Err(Error::Parameter {
-                name: "tolerance",
-                requirement: "above 0 and below 1",
-                value: self.tolerance,
-            });
-        }
-        Ok(Limits {
-            tolerance: self.tolerance,
-            max_iterations: self.max_iterations.unwrap_or(MAX_ITERATIONS),
-        })
     }
 }
 

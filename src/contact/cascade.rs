@@ -9,10 +9,11 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
+use ndarray::{Array2, ArrayRef2};
 
 use super::discretisation::Figures;
 use super::freedoms::Freedoms;
+use super::patch::{Patch, block, bounds, hull, widened};
 use super::preconditioned::{Approximation, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
@@ -29,12 +30,6 @@ const COARSE_TOLERANCE: f64 = 1e-5;
 
 /// Tolerance of the grids before: somewhat below their discretisation error.
 const COARSER_TOLERANCE: f64 = 1e-4;
-
-/// Cells around the contact in a window.
-const MARGIN: usize = 6;
-
-/// A window that covers more of the grid than this is not worth its planning.
-const WORTH_WINDOW: f64 = 0.6;
 
 /// Which directions of a grid are halved for the next coarser one; none at the coarsest.
 fn halved(shape: [usize; 2]) -> [bool; 2] {
@@ -133,143 +128,6 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
             f64::INFINITY
         }
     })
-}
-
-/// Cells i0..i1, j0..j1 of a grid.
-pub(super) type Window = [Range<usize>; 2];
-
-/// A pressure that is zero outside a window.
-#[derive(Debug, Clone)]
-struct Patch {
-    window: Window,
-    values: Vec<f64>,
-}
-
-/// `cells` and a margin around them; the whole grid where that is not worth a window.
-fn widened(cells: &Window, shape: [usize; 2]) -> Window {
-    let window = [0, 1]
-        .map(|k| cells[k].start.saturating_sub(MARGIN)..(cells[k].end + MARGIN).min(shape[k]));
-    let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
-    if part > WORTH_WINDOW {
-        shape.map(|n| 0..n)
-    } else {
-        window
-    }
-}
-
-/// The smallest window that holds both.
-fn hull(a: &Window, b: &Window) -> Window {
-    [0, 1].map(|k| a[k].start.min(b[k].start)..a[k].end.max(b[k].end))
-}
-
-/// Rows and columns of an array.
-pub(super) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> {
-    let mut view = array.view();
-    view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
-    view.slice_axis_inplace(Axis(1), Slice::from(y.clone()));
-    view
-}
-
-/// The smallest window that holds all cells of which `member` holds; none without any.
-pub(super) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
-    let mut found: Option<Window> = None;
-    for i in window[0].clone() {
-        let row = window[1].clone();
-        let Some(first) = row.clone().find(|&j| member(i, j)) else {
-            continue;
-        };
-        let last = row.rev().find(|&j| member(i, j)).unwrap_or(first);
-        let line = [i..i + 1, first..last + 1];
-        found = Some(found.map_or(line.clone(), |found| hull(&found, &line)));
-    }
-    found
-}
-
-impl Patch {
-    /// All of a grid.
-    fn whole(pressure: &Array2<f64>) -> Self {
-        let window = [0..pressure.nrows(), 0..pressure.ncols()];
-        Self {
-            window,
-            values: pressure.iter().copied().collect(),
-        }
-    }
-
-    fn at(&self, i: usize, j: usize) -> f64 {
-        let [x, y] = &self.window;
-        if x.contains(&i) && y.contains(&j) {
-            self.values[(i - x.start) * y.len() + j - y.start]
-        } else {
-            0.0
-        }
-    }
-
-    /// The smallest window around its contact.
-    fn contact(&self) -> Option<Window> {
-        bounds(&self.window, |i, j| self.at(i, j) > 0.0)
-    }
-
-    /// The same pressure in another window.
-    fn moved(&self, window: Window) -> Self {
-        let [x, y] = window.clone();
-        let values = x
-            .flat_map(|i| y.clone().map(move |j| self.at(i, j)))
-            .collect();
-        Self { window, values }
-    }
-
-    fn paste(&self, array: &mut Array2<f64>) {
-        array.fill(0.0);
-        let [x, y] = &self.window;
-        let rows = array.outer_iter_mut().skip(x.start);
-        for (mut row, values) in rows.zip(self.values.chunks_exact(y.len())) {
-            for (to, from) in row.iter_mut().skip(y.start).zip(values) {
-                *to = *from;
-            }
-        }
-    }
-
-    /// Linear interpolation between the centres of its cells, on a grid of `shape` of which the
-    /// directions of `halved` have half as many cells here; in a window around the contact.
-    fn interpolated(&self, shape: [usize; 2], halved: [bool; 2]) -> Self {
-        let none = || [0..0, 0..0];
-        let contact = self.contact().unwrap_or_else(none);
-        let fine = [0, 1].map(|k| {
-            let factor = if halved[k] { 2 } else { 1 };
-            factor * contact[k].start..(factor * contact[k].end).min(shape[k])
-        });
-        let window = widened(&fine, shape);
-        let taps = |k: usize, i: usize| -> [(usize, f64); 2] {
-            if !halved[k] {
-                return [(i, 1.0), (i, 0.0)];
-            }
-            let (near, last) = (i / 2, shape[k].div_ceil(2) - 1);
-            let next = if i.is_multiple_of(2) {
-                near.saturating_sub(1)
-            } else {
-                (near + 1).min(last)
-            };
-            [(near, 0.75), (next, 0.25)]
-        };
-        let mut values = Vec::with_capacity(window[0].len() * window[1].len());
-        for i in window[0].clone() {
-            let x = taps(0, i);
-            for j in window[1].clone() {
-                let y = taps(1, j);
-                if self.at(x[0].0, y[0].0) <= 0.0 {
-                    // Interpolation would widen the contact by half a cell on every side.
-                    values.push(0.0);
-                    continue;
-                }
-                values.push(
-                    x[0].1 * (y[0].1 * self.at(x[0].0, y[0].0) + y[1].1 * self.at(x[0].0, y[1].0))
-                        + x[1].1
-                            * (y[0].1 * self.at(x[1].0, y[0].0) + y[1].1 * self.at(x[1].0, y[1].0)),
-                );
-            }
-        }
-        Self { window, values }
-    }
 }
 
 /// One grid: its coefficients, and its problem.

@@ -7,8 +7,8 @@
 //! - scaling p to the load becomes p ← [p (1 + Bμ)]₊, which restores force and moments;
 //! - it ends on complementarity and overlap, not on the change of pressure.
 
+use super::fields::{Fields, slice_mut};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
-use super::{Fields, slice_mut};
 
 /// Solves from the balanced pressure `p`, which becomes the solution.
 pub(super) fn solve(

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::cascade::{Window, block, bounds};
+use super::patch::{Window, block, bounds};
 use super::solution::Solution;
 use super::sums::dot;
 use crate::convolution::{Convolution, Workspace};

@@ -1,0 +1,99 @@
+//! Force and moments on target.
+
+use super::freedoms::{Freedoms, add_gram, add_moments, symmetric};
+use super::sums::sum;
+
+/// Mismatch of force and scaled moments, over the force, that rounding leaves in large sums.
+const BALANCED: f64 = 2e-13;
+
+impl Freedoms {
+    /// Whether Bᵀp is on target within rounding.
+    pub(super) fn balanced(&self, pressure: &[f64]) -> bool {
+        let sums = self.moments(pressure);
+        let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let force = sums[0].abs().max(asked);
+        (0..3).all(|k| !self.loaded[k] || (sums[k] - self.target[k]).abs() <= BALANCED * force)
+    }
+
+    /// Restores balance: p ← [p (1 + Bμ)]₊ with Bᵀp on target. Returns whether it got there.
+    ///
+    /// μ maximises the concave μᵀF − ½ Σ p [1 + Bμ]₊², of which the gradient is the mismatch: by
+    /// Newton's method, with steps halved until the mismatch falls.
+    pub(super) fn balance(&self, pressure: &mut [f64]) -> bool {
+        if !self.any_loaded() {
+            return true;
+        }
+        if self.loaded[0] {
+            // First the force alone, so that μ stays small against 1.
+            let force: f64 = self.moments(pressure)[0];
+            if force <= 0.0 {
+                return false;
+            }
+            let factor = self.target[0] / force;
+            pressure.iter_mut().for_each(|p| *p *= factor);
+        }
+        // p [1 + Bμ]₊ summed: Bᵀ of it less the target, and how large its force is.
+        let mismatch = |p: &[f64], mu: [f64; 3]| {
+            let mut sums = [0.0; 3];
+            for (x, row) in self.rows() {
+                let along = 1.0 + mu[0] + mu[1] * x;
+                let row = sum([&p[row], &self.columns[1]], |[p, y]| {
+                    let factor = along + mu[2] * y;
+                    let p = if factor > 0.0 { p * factor } else { 0.0 };
+                    [p, p * y]
+                });
+                add_moments(&mut sums, x, row);
+            }
+            let missing = |k: usize| {
+                if self.loaded[k] {
+                    self.target[k] - sums[k]
+                } else {
+                    0.0
+                }
+            };
+            (sums[0], [0, 1, 2].map(missing))
+        };
+        let curvature = |p: &[f64], mu: [f64; 3]| {
+            let mut gram = [[0.0; 3]; 3];
+            for (x, row) in self.rows() {
+                let along = 1.0 + mu[0] + mu[1] * x;
+                let row = sum([&p[row], &self.columns[1]], |[p, y]| {
+                    let p = if along + mu[2] * y > 0.0 { p } else { 0.0 };
+                    [p, p * y, p * y * y]
+                });
+                add_gram(&mut gram, x, row);
+            }
+            symmetric(gram)
+        };
+        let size = |gap: [f64; 3]| gap.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let mut mu = [0.0; 3];
+        let (mut force, mut gap) = mismatch(pressure, mu);
+        let enough = |force: f64| 4.0 * f64::EPSILON * force.max(size(self.target));
+        let mut helps = true;
+        for _ in 0..100 {
+            if size(gap) <= enough(force) || !helps {
+                break;
+            }
+            let step = self.solve(&curvature(pressure, mu), gap);
+            let mut length = 1.0;
+            // Where no step helps it is rounding, or there is no such pressure on these cells.
+            helps = loop {
+                let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
+                let (w, g) = mismatch(pressure, trial);
+                if size(g) < size(gap) {
+                    (mu, force, gap) = (trial, w, g);
+                    break true;
+                }
+                length *= 0.5;
+                if length < 1e-9 {
+                    break false;
+                }
+            };
+        }
+        let done = size(gap) <= 1e3 * enough(force);
+        if done || helps {
+            self.for_each(mu, |k, b| pressure[k] *= (1.0 + b).max(0.0));
+        }
+        done
+    }
+}
