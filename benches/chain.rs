@@ -9,7 +9,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::{
     Algorithm, Contact, Convolution, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid,
-    Result, Roller, Setup, Solution, Surface,
+    Result, Roller, Setup, Solution, StressOptions, Surface, stress,
 };
 use ndarray::Array2;
 
@@ -176,5 +176,36 @@ fn roller() -> Result<(Contact, Motion)> {
     Ok((Contact::plan(&body, grid, setup)?, motion))
 }
 
-criterion_group!(chain, response, coefficients, convolution, contact);
+fn interior(c: &mut Criterion) {
+    let mut group = c.benchmark_group("stress");
+    group.sample_size(10);
+    let body = coated(1).expect("valid");
+    let depths: Vec<f64> = (0..16).map(|k| 0.5 + f64::from(k)).collect();
+    let options = StressOptions {
+        threads: Some(1),
+        ..StressOptions::default()
+    };
+    for n in [128, 512] {
+        let grid = square(n).expect("valid");
+        let inside = |i: usize| (n / 4..3 * n / 4).contains(&i);
+        let pressure =
+            Array2::from_shape_fn((n, n), |(i, j)| f64::from(u8::from(inside(i) && inside(j))));
+        let field = stress(&body, &grid, &pressure, &[0.0], &options).expect("valid");
+        assert!((field.components[2][[0, n / 2, n / 2]] + 1.0).abs() < 1e-12);
+        group.throughput(Throughput::Elements((16 * n * n) as u64));
+        group.bench_function(BenchmarkId::new("depths16", n), |b| {
+            b.iter(|| stress(&body, &grid, &pressure, &depths, &options));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(
+    chain,
+    response,
+    coefficients,
+    convolution,
+    contact,
+    interior
+);
 criterion_main!(chain);

@@ -17,7 +17,7 @@ use crate::threads::Threads;
 
 mod parity;
 
-pub(crate) use parity::{KernelRows, ParitySpectrum, Transformed};
+pub(crate) use parity::{Blocks, KernelTransform, ParitySpectrum, Transformed};
 
 /// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
 /// columns of a few thousand points stay in the second-level cache.
@@ -352,7 +352,7 @@ impl PaddedTransform {
         let blocks = &*blocks;
         let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
             for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                self.row_from_blocks(blocks, first + row, scratch);
+                self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
                 values.copy_from_slice(&scratch.real[..ny]);
             }
         };
@@ -388,13 +388,16 @@ impl PaddedTransform {
         }
     }
 
-    /// Row `i` of the data whose columns, transformed back, are in `blocks`.
-    fn row_from_blocks(&self, blocks: &[Complex64], i: usize, scratch: &mut TaskScratch) {
-        let nx = self.shape[0];
+    /// Row `i` of the data whose columns, transformed back, are in `parts` by blocks.
+    fn row_from_parts<'a>(
+        &self,
+        parts: impl Iterator<Item = &'a [Complex64]>,
+        i: usize,
+        scratch: &mut TaskScratch,
+    ) {
         let spectrum = &mut scratch.spectrum[..self.columns()];
-        for (block, part) in spectrum.chunks_mut(BLOCK).enumerate() {
-            let start = (block * nx + i) * BLOCK;
-            part.copy_from_slice(&blocks[start..start + part.len()]);
+        for (block, row) in parts.zip(spectrum.chunks_mut(BLOCK)) {
+            row.copy_from_slice(&block[i * BLOCK..i * BLOCK + row.len()]);
         }
         let real = &mut scratch.real[..self.padded[1]];
         self.spectrum_to_rows(spectrum, real, &mut scratch.fft);

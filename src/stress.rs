@@ -216,26 +216,36 @@ pub fn stress_watched(
     let loaded = Loaded::new(body, grid, pressure, options)?;
     let cells = ox * oy;
     let mut kept: Vec<Vec<f64>> = vec![vec![0.0; depths.len() * cells]; fields];
-    let mut plane = vec![0.0; pressure.len()];
+    // Planes go where they are kept, sections by way of a plane.
+    let mut planes = match lines.whole() {
+        true => Vec::new(),
+        false => vec![vec![0.0; pressure.len()]; fields],
+    };
     let mut scratch = loaded.scratch(fields);
     let mut done = 0;
-    'depths: for place in &places {
+    for place in &places {
         loaded.coefficients(place, &mut scratch);
-        for (k, kept) in kept.iter_mut().enumerate() {
-            let part = (done as f64 + k as f64 / fields as f64) / places.len() as f64;
-            if progress(part).is_break() {
-                break 'depths;
-            }
-            let kept = &mut kept[done * cells..(done + 1) * cells];
-            if lines.whole() {
-                loaded.apply(k, kept, &mut scratch);
-            } else {
-                loaded.apply(k, &mut plane, &mut scratch);
-                lines.keep(&plane, grid.shape(), kept);
-            }
-            if k < 2 && residual[place.layer] != 0.0 {
-                kept.iter_mut().for_each(|s| *s += residual[place.layer]);
-            }
+        let mut go_on = |part: f64| {
+            progress((done as f64 + part) / places.len() as f64) == ControlFlow::Continue(())
+        };
+        let mut here: Vec<&mut [f64]> = kept
+            .iter_mut()
+            .map(|kept| &mut kept[done * cells..(done + 1) * cells])
+            .collect();
+        let whole = if planes.is_empty() {
+            loaded.plane(&mut here, &mut scratch, &mut go_on)
+        } else {
+            let mut outputs: Vec<_> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+            loaded.plane(&mut outputs, &mut scratch, &mut go_on)
+        };
+        if !whole {
+            break;
+        }
+        for (plane, kept) in planes.iter().zip(&mut here) {
+            lines.keep(plane, grid.shape(), kept);
+        }
+        for kept in &mut here[..2] {
+            kept.iter_mut().for_each(|s| *s += residual[place.layer]);
         }
         done += 1;
     }

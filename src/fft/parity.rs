@@ -1,13 +1,38 @@
 //! Convolution of one input with many kernels, each even or odd along x and along y.
+//!
+//! Of such a kernel only offsets ≥ 0 are given and transformed: along each direction a cosine or
+//! sine transform of half the length. With f_j, 0 ≤ j ≤ N, f_N = 0 and M = 2N points in all,
+//!
+//! ```text
+//! even: y_j = ½ (f_j + f_{N−j}) − sin(πj/N) (f_j − f_{N−j})      C_2k = Re Y_k   C_{2k+1} = C_{2k−1} − Im Y_k
+//! odd:  y_j = ½ (f_j − f_{N−j}) + sin(πj/N) (f_j + f_{N−j})      S_2k = −Im Y_k  S_{2k+1} = S_{2k−1} + Re Y_k
+//! ```
+//!
+//! where Y is the transform of y over N points, C_1 = ½ f_0 + Σ f_j cos(πj/N) and S_1 = ½ Y_0; the
+//! transform of the whole is 2C, or −2i S. Press et al., Numerical Recipes, 3rd ed., §12.4.
 
+use std::f64::consts::PI;
+use std::fmt;
+use std::ops::{Add, Mul, Sub};
+use std::sync::Arc;
+
+use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
 
 use super::{BLOCK, PaddedTransform, TaskScratch, Workspace, ZERO};
 use crate::threads::Threads;
 
+/// Columns of real numbers that are gathered together: those of a cache line.
+const GROUP: usize = 8;
+
 /// The transform of padded data: columns of the half spectrum, one after another.
 #[derive(Debug)]
 pub(crate) struct Transformed(Vec<Complex64>);
+
+/// Memory for planes whose columns are transformed back, by blocks of columns.
+#[derive(Debug)]
+pub(crate) struct Blocks(Vec<Complex64>);
 
 /// The transform of a kernel that is even or odd along x and along y: a quarter of it, less the
 /// factor i for each direction in which it is odd. Scaled by 1/(mx my), by columns.
@@ -17,9 +42,28 @@ pub(crate) struct ParitySpectrum {
     values: Vec<f64>,
 }
 
-/// Memory for the transform of one kernel at a time.
-#[derive(Debug)]
-pub(crate) struct KernelRows(Vec<f64>);
+/// Cosine and sine transforms of kernels, and memory for one at a time.
+pub(crate) struct KernelTransform {
+    row: Arc<dyn RealToComplex<f64>>,
+    column: Arc<dyn Fft<f64>>,
+    /// Along x and along y.
+    angles: [Angles; 2],
+    /// Transformed along y.
+    rows: Vec<f64>,
+}
+
+/// sin and cos of πj/N, 0 < j < N.
+struct Angles {
+    sin: Vec<f64>,
+    cos: Vec<f64>,
+}
+
+impl fmt::Debug for KernelTransform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [nx, ny] = self.angles.each_ref().map(|angles| angles.sin.len() + 1);
+        write!(f, "KernelTransform({nx} x {ny})")
+    }
+}
 
 impl PaddedTransform {
     /// Of data (nx, ny) in C order.
@@ -36,11 +80,13 @@ impl PaddedTransform {
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
             for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
                 let start = (first + row) * ny;
-                scratch.real[..ny].copy_from_slice(&input[start..start + ny]);
-                scratch.real[ny..].fill(0.0);
-                self.rows_to_spectrum(&mut scratch.real, half, &mut scratch.fft);
+                let real = &mut scratch.real[..self.padded[1]];
+                real[..ny].copy_from_slice(&input[start..start + ny]);
+                real[ny..].fill(0.0);
+                self.rows_to_spectrum(real, half, &mut scratch.fft);
             }
         };
+        let rows = &mut rows[..nx * columns];
         self.over_rows(
             threads,
             rows,
@@ -72,8 +118,31 @@ impl PaddedTransform {
         Transformed(spectrum)
     }
 
-    pub(crate) fn kernel_rows(&self) -> KernelRows {
-        KernelRows(vec![0.0; self.shape[0] * self.columns()])
+    /// Lengths are even, as kernels of either parity need.
+    pub(crate) fn plan_even(shape: [usize; 2], threads: &Threads) -> Self {
+        let even = |n: usize| {
+            let mut half = n.max(2);
+            while super::fast_length(half) != half {
+                half += 1;
+            }
+            2 * half
+        };
+        Self::on(shape, shape.map(even), threads)
+    }
+
+    pub(crate) fn kernel_transform(&self) -> KernelTransform {
+        let half = self.padded.map(|m| m / 2);
+        let angles = half.map(|n| {
+            let angles = (1..n).map(|j| (PI * j as f64 / n as f64).sin_cos());
+            let (sin, cos) = angles.unzip();
+            Angles { sin, cos }
+        });
+        KernelTransform {
+            row: RealFftPlanner::new().plan_fft_forward(half[1]),
+            column: FftPlanner::new().plan_fft_forward(half[0]),
+            angles,
+            rows: vec![0.0; self.shape[0] * self.columns()],
+        }
     }
 
     /// Room for the transform of a kernel.
@@ -91,161 +160,228 @@ impl PaddedTransform {
         odd: [bool; 2],
         row: impl Fn(usize) -> &'a [f64] + Sync,
         spectrum: &mut ParitySpectrum,
-        rows: &mut KernelRows,
+        kernel: &mut KernelTransform,
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        let ([nx, ny], [mx, my]) = (self.shape, self.padded);
-        let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
+        let ([nx, ny], columns, quarter_rows) = (self.shape, self.columns(), self.quarter_rows());
+        let KernelTransform {
+            row: row_plan,
+            column: column_plan,
+            angles,
+            rows,
+        } = kernel;
         let tasks = &mut workspace.tasks;
         let [odd_x, odd_y] = odd;
-        let scale = 1.0 / (mx as f64 * my as f64);
         let rows_of_a_task = nx.div_ceil(self.tasks);
-        let forward = |first: usize, rows: &mut [f64], scratch: &mut TaskScratch| {
+        let along_y = |first: usize, rows: &mut [f64], scratch: &mut TaskScratch| {
+            let (length, fft) = (columns - 1, &mut scratch.fft);
+            fft.resize(fft.len().max(row_plan.get_scratch_len()), ZERO);
+            let half = &mut scratch.spectrum[..length / 2 + 1];
+            let (values, folded) = scratch.real[..2 * length].split_at_mut(length);
             for (i, kept) in rows.chunks_exact_mut(columns).enumerate() {
-                let TaskScratch {
-                    real,
-                    spectrum,
-                    fft,
-                    ..
-                } = &mut *scratch;
-                mirrored(&row(first + i)[..ny], odd_y, real);
-                self.rows_to_spectrum(real, spectrum, fft);
-                for (k, c) in kept.iter_mut().zip(&*spectrum) {
-                    *k = if odd_y { c.im } else { c.re };
-                }
+                values[..ny].copy_from_slice(&row(first + i)[..ny]);
+                values[ny..].fill(0.0);
+                let start = fold(values, odd_y, &angles[1], folded);
+                let fft = &mut fft[..row_plan.get_scratch_len()];
+                let done = row_plan.process_with_scratch(folded, half, fft);
+                debug_assert!(done.is_ok(), "lengths are the plan's own");
+                unfold(half, odd_y, start, kept);
             }
         };
-        let rows = &mut rows.0;
         self.over_rows(
             threads,
             rows,
             columns * rows_of_a_task,
             tasks,
             rows_of_a_task,
-            forward,
+            along_y,
         );
         let rows = &*rows;
-        // What is left along x is real: two columns make one complex transform.
-        let pairs = |first: usize, part: &mut [f64], scratch: &mut TaskScratch| {
-            for (block, values) in part.chunks_mut(BLOCK * quarter_rows).enumerate() {
-                let start = first + block * BLOCK;
-                let width = BLOCK.min(columns - start);
-                let count = width.div_ceil(2);
-                let buffer = &mut scratch.columns[..count * mx];
-                for pair in buffer.chunks_exact_mut(mx) {
-                    pair[nx..mx + 1 - nx].fill(ZERO);
-                }
-                for i in 0..nx {
-                    let row = &rows[i * columns + start..i * columns + start + width];
-                    let turned = (mx - i) % mx;
-                    for (pair, two) in row.chunks(2).enumerate() {
-                        let second = if two.len() > 1 { two[1] } else { 0.0 };
-                        let entry = Complex64::new(two[0], second);
-                        let entry = if odd_x && i == 0 { ZERO } else { entry };
-                        buffer[pair * mx + turned] = if odd_x { -entry } else { entry };
-                        buffer[pair * mx + i] = entry;
+        let scale = 1.0 / (self.padded[0] as f64 * self.padded[1] as f64);
+        // Two columns, which are real, make one complex transform.
+        let along_x = |first: usize, part: &mut [f64], scratch: &mut TaskScratch| {
+            let length = quarter_rows - 1;
+            let fft = &mut scratch.fft;
+            fft.resize(fft.len().max(column_plan.get_inplace_scratch_len()), ZERO);
+            let (values, folded) = scratch.columns.split_at_mut(GROUP / 2 * length);
+            let folded = &mut folded[..length];
+            let mut spare = vec![0.0; quarter_rows];
+            for (k, group) in part.chunks_mut(GROUP * quarter_rows).enumerate() {
+                let l = first + GROUP * k;
+                let width = group.len() / quarter_rows;
+                for (i, row) in rows.chunks_exact(columns).enumerate() {
+                    for (pair, two) in row[l..l + width].chunks(2).enumerate() {
+                        let second = two.get(1).copied().unwrap_or(0.0);
+                        values[pair * length + i] = Complex64::new(two[0], second) * scale;
                     }
                 }
-                self.column_forward
-                    .process_with_scratch(buffer, &mut scratch.fft);
-                for (two, pair) in values
-                    .chunks_mut(2 * quarter_rows)
-                    .zip(buffer.chunks_exact(mx))
-                {
-                    let (one, other) = two.split_at_mut(quarter_rows);
-                    // Of an odd column, i times a real one.
-                    if odd_x {
-                        pair.iter().zip(one).for_each(|(c, v)| *v = scale * c.im);
-                        pair.iter().zip(other).for_each(|(c, v)| *v = -scale * c.re);
-                    } else {
-                        pair.iter().zip(one).for_each(|(c, v)| *v = scale * c.re);
-                        pair.iter().zip(other).for_each(|(c, v)| *v = scale * c.im);
-                    }
+                let pairs = group.chunks_mut(2 * quarter_rows);
+                for (pair, values) in pairs.zip(values.chunks_exact_mut(length)) {
+                    values[nx..].fill(ZERO);
+                    let start = fold(values, odd_x, &angles[0], folded);
+                    column_plan.process_with_scratch(folded, fft);
+                    let two = pair.len() > quarter_rows;
+                    let (one, other) = pair.split_at_mut(quarter_rows);
+                    let other = if two { other } else { &mut spare };
+                    unfold_pair(folded, odd_x, start, one, other);
                 }
             }
         };
-        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
+        let columns_of_a_task = GROUP * columns.div_ceil(GROUP * self.tasks);
         self.over_rows(
             threads,
             &mut spectrum.values,
-            blocks_of_a_task * BLOCK * quarter_rows,
+            columns_of_a_task * quarter_rows,
             tasks,
-            blocks_of_a_task * BLOCK,
-            pairs,
+            columns_of_a_task,
+            along_x,
         );
         spectrum.odd = odd;
     }
 
-    /// `output` = Σ weight · kernel ∗ input, (nx, ny) in C order.
+    /// Memory for [`Self::convolve_parities`] with `count` outputs.
+    pub(crate) fn block_memory(&self, count: usize) -> Blocks {
+        Blocks(vec![ZERO; self.blocks() * count * self.shape[0] * BLOCK])
+    }
+
+    /// Each output, (nx, ny) in C order, = Σ weight · kernel ∗ input over its kernels.
+    ///
+    /// All at once, so that the input passes through the caches once.
     pub(crate) fn convolve_parities(
         &self,
         input: &Transformed,
-        kernels: &[(f64, &ParitySpectrum)],
-        output: &mut [f64],
+        kernels: &[Vec<(f64, &ParitySpectrum)>],
+        outputs: &mut [&mut [f64]],
+        blocks: &mut Blocks,
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
+        let blocks = blocks.0.as_mut_slice();
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace { blocks, tasks, .. } = workspace;
+        let tasks = &mut workspace.tasks;
+        let size = kernels.len() * nx * BLOCK;
         let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
-            for (block, kept) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
+            for (block, parts) in blocks.chunks_exact_mut(size).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
                 let buffer = &mut scratch.columns[..width * mx];
-                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                    let l = start + b;
-                    let data = &input.0[l * mx..(l + 1) * mx];
-                    for (k, (weight, kernel)) in kernels.iter().enumerate() {
-                        let values = &kernel.values[l * quarter_rows..(l + 1) * quarter_rows];
-                        multiply_add(column, data, values, kernel.odd, *weight, k > 0);
+                for (kernels, kept) in kernels.iter().zip(parts.chunks_exact_mut(nx * BLOCK)) {
+                    for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
+                        let l = start + b;
+                        let data = &input.0[l * mx..(l + 1) * mx];
+                        for (k, (weight, kernel)) in kernels.iter().enumerate() {
+                            let values = &kernel.values[l * quarter_rows..(l + 1) * quarter_rows];
+                            multiply_add(column, data, values, kernel.odd, *weight, k > 0);
+                        }
                     }
-                }
-                self.column_inverse
-                    .process_with_scratch(buffer, &mut scratch.fft);
-                for (b, column) in buffer.chunks_exact(mx).enumerate() {
-                    for (i, value) in column[..nx].iter().enumerate() {
-                        kept[i * BLOCK + b] = *value;
+                    self.column_inverse
+                        .process_with_scratch(buffer, &mut scratch.fft);
+                    for (b, column) in buffer.chunks_exact(mx).enumerate() {
+                        for (i, value) in column[..nx].iter().enumerate() {
+                            kept[i * BLOCK + b] = *value;
+                        }
                     }
                 }
             }
         };
         let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * nx * BLOCK;
+        let chunk = blocks_of_a_task * size;
         self.over_rows(threads, blocks, chunk, tasks, blocks_of_a_task, multiply);
 
         let blocks = &*blocks;
         let rows_of_a_task = nx.div_ceil(self.tasks);
-        let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
-            for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                self.row_from_blocks(blocks, first + row, scratch);
-                values.copy_from_slice(&scratch.real[..ny]);
-            }
-        };
-        self.over_rows(
-            threads,
-            output,
-            ny * rows_of_a_task,
-            tasks,
-            rows_of_a_task,
-            inverse,
-        );
+        for (k, output) in outputs.iter_mut().enumerate() {
+            let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
+                for (row, values) in output.chunks_exact_mut(ny).enumerate() {
+                    let blocks = blocks.chunks_exact(size);
+                    let parts = blocks.map(|block| &block[k * nx * BLOCK..(k + 1) * nx * BLOCK]);
+                    self.row_from_parts(parts, first + row, scratch);
+                    values.copy_from_slice(&scratch.real[..ny]);
+                }
+            };
+            self.over_rows(
+                threads,
+                output,
+                ny * rows_of_a_task,
+                tasks,
+                rows_of_a_task,
+                inverse,
+            );
+        }
     }
 }
 
-/// `half` at offsets ≥ 0, and what the parity makes of it at those below, in wrap-around order.
-fn mirrored(half: &[f64], odd: bool, whole: &mut [f64]) {
-    let (n, m) = (half.len(), whole.len());
-    whole[..n].copy_from_slice(half);
-    whole[n..m + 1 - n].fill(0.0);
-    let negative = &mut whole[m + 1 - n..];
-    for (turned, value) in negative.iter_mut().rev().zip(&half[1..]) {
-        *turned = if odd { -value } else { *value };
+/// y of the module's formula from f, and C_1 of an even sequence.
+fn fold<T>(f: &[T], odd: bool, angles: &Angles, y: &mut [T]) -> T
+where
+    T: Copy + Default + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    let pairs = f[1..].iter().zip(f[1..].iter().rev());
+    let entries = y[1..].iter_mut().zip(pairs).zip(&angles.sin);
+    if odd {
+        entries.for_each(|((y, (a, b)), sin)| *y = (*a - *b) * 0.5 + (*a + *b) * *sin);
+        y[0] = T::default();
+        return T::default();
+    }
+    entries.for_each(|((y, (a, b)), sin)| *y = (*a + *b) * 0.5 - (*a - *b) * *sin);
+    y[0] = f[0] * 0.5;
+    // Four sums side by side: each addition would wait for the one before.
+    let mut sums = [y[0], T::default(), T::default(), T::default()];
+    let (fours, last) = f[1..].as_chunks::<4>();
+    let (cosines, last_cosines) = angles.cos.as_chunks::<4>();
+    for (f, cos) in fours.iter().zip(cosines) {
+        for k in 0..4 {
+            sums[k] = sums[k] + f[k] * cos[k];
+        }
+    }
+    let [a, b, c, d] = sums;
+    let rest = last.iter().zip(last_cosines);
+    rest.fold((a + b) + (c + d), |sum, (f, cos)| sum + *f * *cos)
+}
+
+/// The transform of the whole, less −i where it is odd, from Y at 0 … N/2.
+fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64]) {
+    let mut term = if odd { y[0].re } else { 2.0 * first };
+    for (k, (two, y)) in values.chunks_mut(2).zip(y).enumerate() {
+        let (even, step) = if odd { (-y.im, y.re) } else { (y.re, -y.im) };
+        if k > 0 {
+            term += 2.0 * step;
+        }
+        two[0] = 2.0 * even;
+        if let Some(last) = two.get_mut(1) {
+            *last = term;
+        }
     }
     if odd {
-        whole[0] = 0.0;
+        values.iter_mut().for_each(|value| *value = -*value);
+    }
+}
+
+/// The same of two sequences, of which Y is that of the first plus i times the second.
+fn unfold_pair(y: &[Complex64], odd: bool, first: Complex64, one: &mut [f64], other: &mut [f64]) {
+    // Twice Y of the first is y + y*, of the second −i (y − y*), with y* mirrored and conjugate.
+    let mut terms = if odd { y[0] } else { 2.0 * first };
+    let sign = if odd { -1.0 } else { 1.0 };
+    let mirrored = y[..1].iter().chain(y[1..].iter().rev());
+    let twos = one.chunks_mut(2).zip(other.chunks_mut(2));
+    for (k, ((one, other), (y, m))) in twos.zip(y.iter().zip(mirrored)).enumerate() {
+        let (re, im) = (
+            Complex64::new(y.re + m.re, y.im + m.im),
+            Complex64::new(y.im - m.im, m.re - y.re),
+        );
+        let (even, step) = if odd { (-im, re) } else { (re, -im) };
+        if k > 0 {
+            terms += step;
+        }
+        one[0] = sign * even.re;
+        other[0] = sign * even.im;
+        if let (Some(one), Some(other)) = (one.get_mut(1), other.get_mut(1)) {
+            *one = sign * terms.re;
+            *other = sign * terms.im;
+        }
     }
 }
 
@@ -302,8 +438,8 @@ mod tests {
         let threads = Threads::new(Some(1))?;
         let parities = [[false, false], [true, false], [false, true], [true, true]];
         for [nx, ny] in [[5, 4], [1, 7], [6, 1], [3, 8]] {
-            let transform = PaddedTransform::plan([nx, ny], &threads);
-            let (mut workspace, mut rows) = (transform.workspace(), transform.kernel_rows());
+            let transform = PaddedTransform::plan_even([nx, ny], &threads);
+            let (mut workspace, mut rows) = (transform.workspace(), transform.kernel_transform());
             let input: Vec<f64> = (0..nx * ny).map(|k| ((k * k + 3) % 7) as f64).collect();
             let transformed = transform.transform(&input, &mut workspace, &threads);
             let mut exact = vec![0.0; nx * ny];
@@ -338,15 +474,18 @@ mod tests {
                 }
             }
             let kernels: Vec<_> = spectra.iter().map(|(w, s)| (*w, s)).collect();
-            let mut output = vec![0.0; nx * ny];
+            let (first, last) = (kernels[..3].to_vec(), kernels[3..].to_vec());
+            let mut outputs = [vec![0.0; nx * ny], vec![0.0; nx * ny]];
             transform.convolve_parities(
                 &transformed,
-                &kernels,
-                &mut output,
+                &[first, last],
+                &mut outputs.each_mut().map(Vec::as_mut_slice),
+                &mut transform.block_memory(2),
                 &mut workspace,
                 &threads,
             );
-            for (value, exact) in output.iter().zip(&exact) {
+            for ((a, b), exact) in outputs[0].iter().zip(&outputs[1]).zip(&exact) {
+                let value = a + b;
                 // Sums of some hundred numbers of at most 4 · 24.
                 assert!((value - exact).abs() < 1e-11, "{nx} {ny}: {value} {exact}");
             }

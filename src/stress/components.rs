@@ -18,6 +18,7 @@
 //! ```
 
 use super::hankel::{Kind, Order};
+use super::rectangle;
 use crate::material::Elastic;
 use crate::response::interior::Fields;
 
@@ -50,6 +51,10 @@ pub(super) trait Load<const N: usize>: Sync {
 
     /// Components from h_ν = H_ν/r^ν, at (x, y).
     fn components(h: &[f64; N], x: f64, y: f64) -> [f64; COMPONENTS];
+
+    /// Components in a homogeneous half-space, of a unit load on a cell of half sides `half`, at
+    /// (x, y) from its centre and depth z.
+    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS];
 }
 
 const fn stress(nu: f64) -> Order {
@@ -108,6 +113,32 @@ impl Load<6> for Pressure {
             w,
         ]
     }
+
+    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
+        rectangle::under_pressure(material, half, at, z)
+    }
+}
+
+/// The same, without its displacements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PressureStress;
+
+impl Load<4> for PressureStress {
+    const ORDERS: [Order; 4] = [stress(0.0), stress(0.0), stress(2.0), stress(1.0)];
+
+    fn radial(fields: &Fields, material: Elastic) -> [f64; 4] {
+        let [p, s, d, tau, ..] = Pressure::radial(fields, material);
+        [p, s, d, tau]
+    }
+
+    fn components(h: &[f64; 4], x: f64, y: f64) -> [f64; COMPONENTS] {
+        let [p, s, d, tau] = *h;
+        Pressure::components(&[p, s, d, tau, 0.0, 0.0], x, y)
+    }
+
+    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
+        rectangle::under_pressure(material, half, at, z)
+    }
 }
 
 /// Unit traction along x.
@@ -163,6 +194,39 @@ impl Load<9> for Traction {
             -n * sin2,
             w * x,
         ]
+    }
+
+    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
+        rectangle::under_traction(material, half, at, z)
+    }
+}
+
+/// The same, without its displacements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TractionStress;
+
+impl Load<6> for TractionStress {
+    const ORDERS: [Order; 6] = [
+        stress(1.0),
+        stress(0.0),
+        stress(2.0),
+        stress(1.0),
+        stress(1.0),
+        stress(3.0),
+    ];
+
+    fn radial(fields: &Fields, material: Elastic) -> [f64; 6] {
+        let [p, a, b, s, e1, e3, ..] = Traction::radial(fields, material);
+        [p, a, b, s, e1, e3]
+    }
+
+    fn components(h: &[f64; 6], x: f64, y: f64) -> [f64; COMPONENTS] {
+        let [p, a, b, s, e1, e3] = *h;
+        Traction::components(&[p, a, b, s, e1, e3, 0.0, 0.0, 0.0], x, y)
+    }
+
+    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
+        rectangle::under_traction(material, half, at, z)
     }
 }
 

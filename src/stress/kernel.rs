@@ -3,7 +3,7 @@
 //! The layered body at a place differs from a half-space of the material that is there by a
 //! response whose transforms ([`Series`]) are smooth.
 //!
-//! - On the loaded cell and next to it: the half-space in closed form (`rectangle`), and the
+//! - On the loaded cell and next to it: the half-space in closed form ([`super::rectangle`]), and the
 //!   difference by the sum over the corners of
 //!
 //! ```text
@@ -151,7 +151,6 @@ impl<'a, const N: usize> Kernel<'a, N> {
         &self,
         [x, y]: [f64; 2],
         half @ [a, b]: [f64; 2],
-        closed: fn(Elastic, [f64; 2], [f64; 2], f64) -> [f64; COMPONENTS],
     ) -> [f64; COMPONENTS] {
         let outside = [(x.abs() - a).max(0.0), (y.abs() - b).max(0.0), self.depth];
         let distance = SECTOR * outside.iter().map(|d| d * d).sum::<f64>().sqrt();
@@ -182,7 +181,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
                 }
             }
             (None, None) => {
-                add(1.0, closed(self.material, half, [x, y], self.depth));
+                add(1.0, L::closed(self.material, half, [x, y], self.depth));
                 if let Some(mean) = &self.mean {
                     for (sign, x, y) in [
                         (1.0, x + a, y + b),

@@ -4,13 +4,14 @@ use ndarray::ArrayRef2;
 
 use super::StressOptions;
 use super::cells::{Cells, Source};
-use super::components::{self, COMPONENTS, EXCHANGED, ODD};
+use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
 use super::kernel::{Kernel, Plan};
 use super::line::{self, LinePlan};
-use super::rectangle;
 use crate::body::{HalfSpace, Interface};
 use crate::error::{Error, Result, finite};
-use crate::fft::{KernelRows, PaddedTransform, ParitySpectrum, Transformed, Workspace};
+use crate::fft::{
+    Blocks, KernelTransform, PaddedTransform, ParitySpectrum, Transformed, Workspace,
+};
 use crate::grid::Grid;
 use crate::response::interior::Place;
 use crate::threads::Threads;
@@ -21,6 +22,7 @@ pub(super) struct Loaded {
     shape: [usize; 2],
     spacing: [f64; 2],
     kind: Kernels,
+    displacement: bool,
     /// μ times the unit vector of the traction.
     friction: [f64; 2],
     transform: PaddedTransform,
@@ -43,7 +45,8 @@ enum Kernels {
 #[derive(Debug)]
 pub(super) struct Scratch {
     loads: Vec<LoadCells>,
-    rows: KernelRows,
+    kernel: KernelTransform,
+    blocks: Blocks,
     workspace: Workspace,
 }
 
@@ -54,7 +57,7 @@ struct LoadCells {
     /// The axis along which it acts, and of which it turns the parities; none for pressure.
     axis: Option<usize>,
     cells: Cells,
-    spectrum: ParitySpectrum,
+    spectra: Vec<ParitySpectrum>,
 }
 
 impl LoadCells {
@@ -99,13 +102,14 @@ impl Loaded {
                 plan: Box::new(plan),
             }
         };
-        let transform = PaddedTransform::plan(shape, &threads);
+        let transform = PaddedTransform::plan_even(shape, &threads);
         let input: Vec<f64> = pressure.iter().copied().collect();
         let pressure = transform.transform(&input, &mut transform.workspace(), &threads);
         Ok(Self {
             shape,
             spacing,
             kind,
+            displacement: options.displacement,
             friction,
             transform,
             pressure,
@@ -123,8 +127,8 @@ impl Loaded {
         let [nx, ny] = grid.shape().map(|n| n as u64);
         let loads = if options.friction == 0.0 { 1 } else { 3 };
         let fields = if options.displacement { 9 } else { 6 };
-        // Coefficients of each load, and a spectrum; transforms of the pressure and of a plane.
-        (nx + 1) * (ny + 1) * 8 * (loads * (2 * fields + 2) + 14)
+        // Coefficients and spectra of each load; the transforms of planes, and of the pressure.
+        (nx + 1) * (ny + 1) * 8 * (loads * 3 * fields + 2 * fields + 16)
     }
 
     /// Memory for `fields` components.
@@ -139,10 +143,13 @@ impl Loaded {
                     factor,
                     axis,
                     cells: Cells::new(self.shape, fields),
-                    spectrum: self.transform.empty_spectrum(),
+                    spectra: (0..fields)
+                        .map(|_| self.transform.empty_spectrum())
+                        .collect(),
                 })
                 .collect(),
-            rows: self.transform.kernel_rows(),
+            kernel: self.transform.kernel_transform(),
+            blocks: self.transform.block_memory(fields),
             workspace: self.transform.workspace(),
         }
     }
@@ -167,81 +174,113 @@ impl Loaded {
             } => (plan, pressure, traction),
         };
         self.threads.run(|| {
-            let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
-            let mut of_traction = None;
-            for load in &mut scratch.loads {
-                let (spacing, depth, flipped) = (self.spacing, place.depth, load.flipped());
-                let Some(axis) = load.axis else {
-                    let kernel = Kernel::new::<components::Pressure>(plan, pressure, place);
-                    let closed = rectangle::under_pressure;
-                    load.cells.fill(&Source {
-                        spacing,
-                        depth,
-                        flipped,
-                        mean: |x, y| kernel.at::<components::Pressure>([x, y], half, closed),
-                        point: |x, y| kernel.point::<components::Pressure>(x, y),
-                    });
-                    continue;
-                };
-                let kernel = of_traction.get_or_insert_with(|| {
-                    Kernel::new::<components::Traction>(plan, traction, place)
-                });
-                let closed = rectangle::under_traction;
-                let mean = |x, y, half| kernel.at::<components::Traction>([x, y], half, closed);
-                let point = |x, y| kernel.point::<components::Traction>(x, y);
-                if axis == 0 {
-                    load.cells.fill(&Source {
-                        spacing,
-                        depth,
-                        flipped,
-                        mean: |x, y| mean(x, y, half),
-                        point,
-                    });
-                } else {
-                    let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
-                    load.cells.fill(&Source {
-                        spacing,
-                        depth,
-                        flipped,
-                        mean: |x, y| exchanged(mean(y, x, [b, a])),
-                        point: |x, y| exchanged(point(y, x)),
-                    });
+            // Stresses alone need fewer radial functions.
+            if self.displacement {
+                let normal = Kernel::new::<components::Pressure>(plan, pressure, place);
+                self.fill::<6, components::Pressure>(&normal, scratch, place, false);
+                if self.slides() {
+                    let lateral = Kernel::new::<components::Traction>(plan, traction, place);
+                    self.fill::<9, components::Traction>(&lateral, scratch, place, true);
+                }
+            } else {
+                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
+                self.fill::<4, PressureStress>(&normal, scratch, place, false);
+                if self.slides() {
+                    let lateral = Kernel::new::<TractionStress>(plan, traction, place);
+                    self.fill::<6, TractionStress>(&lateral, scratch, place, true);
                 }
             }
         });
     }
 
-    /// Component `k` on the plane of the coefficients.
-    pub(super) fn apply(&self, k: usize, output: &mut [f64], scratch: &mut Scratch) {
+    fn slides(&self) -> bool {
+        self.friction.iter().any(|factor| *factor != 0.0)
+    }
+
+    /// Computes the coefficients of pressure, or those of traction along x and along y.
+    fn fill<const N: usize, L: Load<N>>(
+        &self,
+        kernel: &Kernel<N>,
+        scratch: &mut Scratch,
+        place: &Place,
+        lateral: bool,
+    ) {
+        let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
+        let loads = scratch.loads.iter_mut();
+        for load in loads.filter(|load| load.axis.is_some() == lateral) {
+            let (spacing, depth, flipped) = (self.spacing, place.depth, load.flipped());
+            if load.axis == Some(1) {
+                // Traction along y is traction along x with both exchanged.
+                let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
+                load.cells.fill(&Source {
+                    spacing,
+                    depth,
+                    flipped,
+                    mean: |x, y| exchanged(kernel.at::<L>([y, x], [b, a])),
+                    point: |x, y| exchanged(kernel.point::<L>(y, x)),
+                });
+            } else {
+                load.cells.fill(&Source {
+                    spacing,
+                    depth,
+                    flipped,
+                    mean: |x, y| kernel.at::<L>([x, y], half),
+                    point: |x, y| kernel.point::<L>(x, y),
+                });
+            }
+        }
+    }
+
+    /// Components on the plane of the coefficients, as many as there are `outputs`. Asks `go_on`
+    /// with the part that is done, and ends where it is false; returns whether it did all.
+    pub(super) fn plane(
+        &self,
+        outputs: &mut [&mut [f64]],
+        scratch: &mut Scratch,
+        go_on: &mut dyn FnMut(f64) -> bool,
+    ) -> bool {
         let Scratch {
             loads,
-            rows,
+            kernel,
+            blocks,
             workspace,
         } = scratch;
-        for load in loads.iter_mut() {
-            let flipped = load.flipped();
-            let odd = [0, 1].map(|axis| ODD[k][axis] != flipped[axis]);
-            let cells = &load.cells;
-            self.transform.parity_spectrum_into(
-                odd,
-                |i| cells.row(i, k),
-                &mut load.spectrum,
-                rows,
-                workspace,
-                &self.threads,
-            );
+        let count = outputs.len();
+        for (k, parity) in ODD[..count].iter().enumerate() {
+            if !go_on(k as f64 / count as f64) {
+                return false;
+            }
+            for load in loads.iter_mut() {
+                let flipped = load.flipped();
+                let odd = [0, 1].map(|axis| parity[axis] != flipped[axis]);
+                let cells = &load.cells;
+                self.transform.parity_spectrum_into(
+                    odd,
+                    |i| cells.row(i, k),
+                    &mut load.spectra[k],
+                    kernel,
+                    workspace,
+                    &self.threads,
+                );
+            }
         }
-        let kernels: Vec<(f64, &ParitySpectrum)> = loads
-            .iter()
-            .map(|load| (load.factor, &load.spectrum))
+        let kernels: Vec<Vec<(f64, &ParitySpectrum)>> = (0..count)
+            .map(|k| {
+                loads
+                    .iter()
+                    .map(|load| (load.factor, &load.spectra[k]))
+                    .collect()
+            })
             .collect();
         self.transform.convolve_parities(
             &self.pressure,
             &kernels,
-            output,
+            outputs,
+            blocks,
             workspace,
             &self.threads,
         );
+        true
     }
 }
 

@@ -116,6 +116,10 @@ pub fn stress_summary(
         grid.shape(),
         8 * 7 * pressure.len() as u64 + Loaded::memory(grid, options),
     )?;
+    let options = &StressOptions {
+        displacement: false,
+        ..options.clone()
+    };
     let loaded = Loaded::new(body, grid, pressure, options)?;
     let mut planes = Planes {
         body,
@@ -226,17 +230,22 @@ type Extremes = [Peak; 3];
 impl Planes<'_, '_> {
     /// Computes the stress at `place`; false where it is to stop.
     fn compute(&mut self, place: &Place) -> bool {
-        let part = self.done as f64 / self.planned as f64;
-        if (self.progress)(part.min(1.0)) == ControlFlow::Break(()) {
+        self.loaded.coefficients(place, &mut self.scratch);
+        let (done, planned) = (self.done as f64, self.planned as f64);
+        let progress = &mut self.progress;
+        let mut go_on =
+            |part: f64| progress(((done + part) / planned).min(1.0)) == ControlFlow::Continue(());
+        let mut outputs: Vec<_> = self.fields.iter_mut().map(Vec::as_mut_slice).collect();
+        if !self
+            .loaded
+            .plane(&mut outputs, &mut self.scratch, &mut go_on)
+        {
             return false;
         }
-        self.loaded.coefficients(place, &mut self.scratch);
-        for (k, field) in self.fields.iter_mut().enumerate() {
-            self.loaded.apply(k, field, &mut self.scratch);
-            if k < 2 {
-                let residual = self.residual[place.layer];
-                field.iter_mut().for_each(|s| *s += residual);
-            }
+        for field in &mut self.fields[..2] {
+            field
+                .iter_mut()
+                .for_each(|s| *s += self.residual[place.layer]);
         }
         self.done += 1;
         true

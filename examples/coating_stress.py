@@ -1,0 +1,30 @@
+"""Where does a hard coating crack, and its substrate yield, when a ball slides on it?
+
+A steel ball on steel with a coating of twice its modulus, for three thicknesses and a coefficient of
+friction of 0.15. Tension in the coating opens cracks behind the ball and above the interface; shear
+there peels it off; von Mises' stress makes the substrate yield.
+"""
+
+import nacre
+
+LOAD = 20.0
+STRENGTH, YIELD = 3e9, 2e9
+
+steel, coating = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.25)
+grid = nacre.Grid(shape=(128, 128), size=(0.3e-3, 0.3e-3))
+
+print("h/µm   peak/GPa   tension/GPa   at x/µm    z/µm   margin   peel/GPa   yield margin")
+for thickness in (2e-6, 10e-6, 40e-6):
+    body = nacre.HalfSpace(steel, layers=[nacre.Layer(coating, thickness)])
+    solution = nacre.solve(nacre.Sphere(5e-3), body, steel, grid=grid, load=LOAD)
+    summary = solution.stress_summary(
+        friction=0.15, strength={0: STRENGTH}, yield_stress={"substrate": YIELD}
+    )
+    layer, substrate = summary.layers
+    tension, (x, _, z) = layer.tension
+    peel, _ = summary.interfaces[0].shear
+    print(
+        f"{thickness * 1e6:4.0f}   {solution.peak_pressure / 1e9:8.3f}   {tension / 1e9:11.3f}"
+        f"   {x * 1e6:7.1f}   {z * 1e6:5.1f}   {layer.strength_margin:6.2f}   {peel / 1e9:8.3f}"
+        f"   {substrate.yield_margin:12.2f}"
+    )
