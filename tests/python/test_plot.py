@@ -219,6 +219,11 @@ def test_studies_are_drawn_with_their_units() -> None:
     assert axes.get_xscale() == "log"
     assert axes.get_ylabel() == "Young's modulus of the coating [GPa]"
     drawn(axes.figure)
+    for quantity in ("coating_tension", "interface_shear"):
+        axes = plot.chart(chart, quantity)
+        drawn(axes.figure)
+        highest = axes.collections[0].get_clim()[1]
+        assert highest == pytest.approx(1e-6 * chart[quantity].max().item(), rel=0.2)  # levels
     curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
     axes = plot.curve(curve, "stiffness")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("load [N]", "stiffness [MN/m]")
