@@ -1,7 +1,7 @@
 """Case files: a contact, and a study of it, in TOML.
 
-A table for each thing that `nacre.solve` takes, and one for `Solution.stress_summary`; materials have
-names::
+A table for each thing that `nacre.solve` takes, and one for `Solution.stress_summary`; materials
+have names::
 
     [materials]
     steel = { young = 210e9, poisson = 0.3, yield_stress = 1.5e9 }  # for margins

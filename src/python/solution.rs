@@ -530,7 +530,7 @@ impl PySolution {
     ///     gap, the stresses ``stress_xx`` … ``stress_xz``, ``von_mises``, ``max_shear`` and
     ///     ``tension`` (the largest principal stress) at points below the cell centres; those of a
     ///     depth on an interface twice, above and below it.
-    /// **options
+    /// options : optional
     ///     With depths, those of `stress`: ``body``, ``friction``, ``direction``, ``residual``,
     ///     ``threads``, and ``displacement``, which adds a vector of that name.
     ///

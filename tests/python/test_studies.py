@@ -24,8 +24,9 @@ import pytest
 import xarray
 
 import nacre
-from nacre import design, studies
+from nacre import design
 from nacre._identity import code_of
+from nacre._outputs import Output
 
 STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
@@ -44,7 +45,7 @@ def mean_pressure(solution: nacre.Solution) -> float:
     return solution.load / solution.contact_area
 
 
-OUTPUTS: list[studies.Output] = [
+OUTPUTS: list[Output] = [
     "peak_pressure",
     "tilt",
     "contact_extent",
@@ -104,7 +105,7 @@ STRESSES = [
 
 
 def test_stresses_are_outputs_by_name_and_by_function(tmp_path: Path) -> None:
-    outputs = [*STRESSES, shear_of_summary]
+    outputs: list[Output] = [*STRESSES, shear_of_summary]
     case = {"thickness": [2e-5], "young": YOUNG}
     store = tmp_path / "study.nc"
     study = nacre.sweep(ball, case, outputs=outputs, stress={"friction": 0.2}, store=store)
@@ -146,7 +147,11 @@ def test_the_executor_changes_no_bit(
     name = f"study_on_{kind.replace(' ', '_')}"
     (tmp_path / f"{name}.py").write_text(MODULE)
     monkeypatch.syspath_prepend(tmp_path)
-    outputs = ["peak_pressure", "pressure", importlib.import_module(name).mean_pressure]
+    outputs: list[Output] = [
+        "peak_pressure",
+        "pressure",
+        importlib.import_module(name).mean_pressure,
+    ]
     expected = nacre.sweep(ball, PARAMETERS, outputs=outputs)
     with ExitStack() as stack:
         executor: Executor
