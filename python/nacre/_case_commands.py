@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -33,7 +34,8 @@ def solve(
     as_json: Json = False,
 ) -> None:
     """Solve the contact that a case file describes."""
-    arguments = Case.read(case).arguments()
+    described = Case.read(case)
+    arguments, asked = described.arguments(), described.stress()
     for path in save or []:
         _check_ending(path)
     with warnings.catch_warnings():
@@ -42,9 +44,17 @@ def solve(
             solution = nacre.solve(**arguments)
         except ValueError as error:
             raise CaseError(f"{case}: solve: {error}") from error
+    try:
+        stress = None if asked is None else solution.stress_summary(**asked)
+    except ValueError as error:
+        raise CaseError(f"{case}: stress: {error}") from error
     for path in save or []:
         _save(solution, path)
-    print(json.dumps(_figures(solution), indent=2) if as_json else solution)
+    if as_json:
+        extremes = {} if stress is None else {"stress": _extremes(stress)}
+        print(json.dumps(_plain(_figures(solution) | extremes), indent=2))
+    else:
+        print(solution if stress is None else f"{solution}\n\n{stress}")
 
 
 @app.command()
@@ -89,6 +99,30 @@ def _figures(solution: nacre.Solution) -> dict[str, Any]:
         "overlap": report.overlap,
         "warnings": report.warnings,
         "nacre": nacre.__version__,
+    }
+
+
+def _extremes(summary: nacre.StressSummary) -> dict[str, Any]:
+    """Return the largest stresses in each layer and at each interface, with their places."""
+    parts: dict[str, tuple[Sequence[object], tuple[str, ...]]] = {
+        "layers": (
+            summary.layers,
+            ("depths", "von_mises", "tension", "max_shear", "yield_margin", "strength_margin"),
+        ),
+        "interfaces": (summary.interfaces, ("depth", "tension", "compression", "shear", "jump")),
+    }
+    peaks = ("von_mises", "tension", "max_shear", "compression", "shear", "jump")
+    return {
+        part: [
+            {
+                name: dict(zip(("value", "at"), value, strict=True))
+                if name in peaks and value is not None
+                else value
+                for name, value in ((name, getattr(one, name)) for name in names)
+            }
+            for one in ones
+        ]
+        for part, (ones, names) in parts.items()
     }
 
 

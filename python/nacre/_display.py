@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Elastic, HalfSpace, Rigid, Solution
+from nacre._core import Elastic, HalfSpace, Rigid, Solution, StressSummary
 from nacre.units import written
+
+Peak = tuple[float, tuple[float, float, float]]
 
 WIDEST = 240
 """Pixels along the longer side of the small map."""
@@ -87,6 +89,40 @@ def text(solution: Solution) -> str:
     lines = [f"{name:{width}}  {value}" for name, value in rows]
     lines += [f"warning: {warning}" for warning in solution.report.warnings]
     return "\n".join(lines)
+
+
+def stresses(summary: StressSummary) -> str:
+    """Return the table that ``print(solution.stress_summary())`` shows."""
+    rows = [["", "largest", "value", "z", "x, y", "margin"]]
+
+    def add(name: str, peak: Peak | None, margin: float | None = None) -> None:
+        if peak is None:
+            return
+        value, (x, y, z) = peak
+        place = f"{written(x, 'm', 3)}, {written(y, 'm', 3)}"
+        number = "" if margin is None else f"{margin:.3g}"
+        rows.append(["", name, written(value, "Pa"), written(z, "m"), place, number])
+
+    for layer in summary.layers:
+        start, (top, bottom) = len(rows), layer.depths
+        add("von Mises", layer.von_mises, layer.yield_margin)
+        add("tension", layer.tension, layer.strength_margin)
+        add("shear", layer.max_shear)
+        ends = f"{written(top, 'm')} to {written(bottom, 'm')}"
+        rows[start][0] = f"layer {layer.layer + 1}, {ends}" if bottom < np.inf else "substrate"
+    for face in summary.interfaces:
+        start = len(rows)
+        add("tension", face.tension)
+        add("compression", face.compression)
+        add("shear", face.shear)
+        add("in-plane jump", face.jump)
+        rows[start][0] = f"interface {face.interface + 1} at {written(face.depth, 'm')}"
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    return "\n".join(lines if summary.finished else [*lines, "stopped before all depths were done"])
 
 
 def markup(solution: Solution) -> str:

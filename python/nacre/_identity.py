@@ -15,12 +15,16 @@ from nacre._core import __version__
 from nacre.values import encode
 
 
-def key_of(arguments: Mapping[str, Any], outputs: Mapping[str, Any]) -> str:
+def key_of(
+    arguments: Mapping[str, Any], outputs: Mapping[str, Any], stress: Mapping[str, Any]
+) -> str:
     """Return what tells a case, and what is kept of it, from any other."""
     kept = {name: o if isinstance(o, str) else code_of(o) for name, o in outputs.items()}
     # Threads change no bit of a solution.
     asked = {name: value for name, value in arguments.items() if name != "threads"}
     what = {"nacre": __version__, "solve": encode(asked, digest=True), "outputs": kept}
+    if stress:
+        what["stress"] = code_of(sorted(stress.items()))
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 

@@ -22,10 +22,16 @@ class Table(BaseModel):
 
 
 class Material(Table):
-    """Constants of an elastic material."""
+    """Constants of an elastic material, and what it bears."""
 
     young: FiniteFloat
     poisson: FiniteFloat
+    yield_stress: FiniteFloat | None = None
+    strength: FiniteFloat | None = None
+
+    def make(self) -> nacre.Elastic:
+        """Return what is elastic of it."""
+        return nacre.Elastic(self.young, self.poisson)
 
 
 class Layer(Table):
@@ -209,6 +215,19 @@ class Solve(Table):
         return found
 
 
+class Stress(Table):
+    """Which stresses are summed up: keywords of `Solution.stress_summary`."""
+
+    body: Literal["body", "counterbody"] = "body"
+    friction: FiniteFloat = 0.0
+    direction: Pair | None = None
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keywords."""
+        direction = {} if self.direction is None else {"direction": tuple(self.direction)}
+        return {"body": self.body, "friction": self.friction, **direction}
+
+
 class Range(Table):
     """Evenly spaced values, ends included."""
 
@@ -246,6 +265,7 @@ class CaseTable(Table):
     counterbody: Body | None = None
     grid: Grid | None = None
     solve: Solve
+    stress: Stress | None = None
     sweep: Sweep | None = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -259,6 +279,18 @@ class CaseTable(Table):
             with _at("grid"):
                 found["grid"] = self.grid.make()
         return found | self.solve.keywords()
+
+    def limits(self) -> dict[str, list[float | None]]:
+        """Return what the layers and the substrate of the body with the stresses bear."""
+        body = self.body if self.stress is None or self.stress.body == "body" else self.counterbody
+        if body is None:
+            return {}
+        named = [*(layer.material for layer in body.layers), body.substrate]
+        found = [self.materials.get(one) if isinstance(one, str) else one for one in named]
+        return {
+            name: [getattr(material, name, None) for material in found]
+            for name in ("yield_stress", "strength")
+        }
 
     def _body(self, name: str, body: Body) -> nacre.HalfSpace:
         with _at(f"{name}.substrate"):
@@ -278,8 +310,8 @@ class CaseTable(Table):
                 known = ", ".join(self.materials) or "none"
                 raise ValueError(f"must be one of the materials ({known}), got {named!r}")
             with _at(f"materials.{named}"):
-                return nacre.Elastic(**dict(self.materials[named]))
-        return nacre.Elastic(**dict(named))
+                return self.materials[named].make()
+        return named.make()
 
 
 def _made(maker: Any, given: dict[str, Any]) -> Any:

@@ -1,10 +1,11 @@
 """Case files: a contact, and a study of it, in TOML.
 
-A table for each thing that `nacre.solve` takes; materials have names::
+A table for each thing that `nacre.solve` takes, and one for `Solution.stress_summary`; materials
+have names::
 
     [materials]
-    steel = { young = 210e9, poisson = 0.3 }
-    dlc = { young = 420e9, poisson = 0.3 }
+    steel = { young = 210e9, poisson = 0.3, yield_stress = 1.5e9 }  # for margins
+    dlc = { young = 420e9, poisson = 0.3, strength = 2e9 }
 
     [shape]
     kind = "roller"
@@ -19,6 +20,9 @@ A table for each thing that `nacre.solve` takes; materials have names::
     [solve]
     load = 1e3
     eccentricity = { x = 2.87e-3 }  # free to tilt along x only
+
+    [stress]  # may be left out, or empty
+    friction = 0.1
 
     [sweep]  # for nacre sweep
     store = "study.nc"
@@ -87,6 +91,11 @@ class Case:
         except ValueError as error:
             raise CaseError(f"{self.name}: {error}") from error
 
+    def stress(self) -> dict[str, Any] | None:
+        """Return the arguments of `Solution.stress_summary`, or None where none was asked for."""
+        asked = self._table.stress
+        return None if asked is None else asked.keywords() | self._table.limits()
+
     def __call__(self, **values: Any) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
         data = copy.deepcopy(self.data)
@@ -96,13 +105,16 @@ class Case:
         return Case(data, self.name, self.folder).arguments()
 
     def study(self) -> dict[str, Any]:
-        """Return the arguments of `nacre.sweep` besides the case: parameters, outputs, store."""
+        """Return the arguments of `nacre.sweep` besides the case."""
         sweep = self._table.sweep
         if sweep is None:
             raise CaseError(f"{self.name}: sweep: this table is missing")
         self.arguments()  # the case as it stands must be one
         for key in sweep.parameters:
             self._place(self.data, key)
+            if key.startswith("stress.") or key.endswith((".yield_stress", ".strength")):
+                message = f"{self.name}: sweep.parameters: {key!r} changes nothing in a solve"
+                raise CaseError(message)
         found: dict[str, Any] = {
             "parameters": {
                 key: values.numbers() if isinstance(values, Range) else values
@@ -113,6 +125,8 @@ class Case:
             found["outputs"] = sweep.outputs
         if sweep.store is not None:
             found["store"] = self.folder / sweep.store
+        if self._table.stress is not None:
+            found["stress"] = self._table.stress.keywords()
         return found
 
     def _place(self, data: Any, key: str) -> tuple[Any, Any]:

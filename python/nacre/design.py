@@ -7,13 +7,15 @@ varied, and `store`, `executor` and `progress` of `nacre.sweep`, are passed on.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.studies import ARGUMENTS, Output, sweep
+from nacre._outputs import Output
+from nacre.studies import ARGUMENTS, sweep
 
 if TYPE_CHECKING:
     import xarray
@@ -30,9 +32,14 @@ def coating_chart(
     thickness: Values,
     young: Values,
     poisson: float = 0.3,
+    friction: float = 0.0,
     **options: Any,
 ) -> xarray.Dataset:
-    """Peak pressure and contact area over the thickness and the modulus of a single coating.
+    """Peak pressure and stresses over the thickness and the modulus of a single coating.
+
+    The stresses are those that crack a coating and peel it off: its largest tension (principal
+    stress), which is looked for on its two faces, and the largest shear traction at the interface.
+    `Solution.stress_summary` looks inside too, on over ten times as many planes.
 
     Parameters
     ----------
@@ -44,13 +51,17 @@ def coating_chart(
         Thicknesses [m] and Young's moduli [Pa] of the coating: every pair is solved.
     poisson
         Poisson's ratio of the coating.
+    friction
+        Coefficient of friction: the stresses are those of sliding, the traction on the coating
+        along x.
     options
         Arguments of `nacre.solve`, as `load` and `counterbody`, and of `nacre.sweep`.
 
     Returns
     -------
     xarray.Dataset
-        ``peak_pressure``, ``contact_area`` and ``approach`` over ``thickness`` and ``young``.
+        ``peak_pressure``, ``coating_tension``, ``interface_shear``, ``contact_area`` and
+        ``approach`` over ``thickness`` and ``young``.
 
     Examples
     --------
@@ -62,6 +73,9 @@ def coating_chart(
     >>> (chart.peak_pressure / 1e9).round(2).values
     array([[1.57, 1.62],
            [1.36, 1.82]])
+    >>> (chart.coating_tension / 1e9).round(2).values
+    array([[0.13, 0.34],
+           [0.15, 0.26]])
     """
     asked, study = _parted(options)
 
@@ -69,8 +83,16 @@ def coating_chart(
         coating = core.Layer(core.Elastic(young, poisson), thickness)
         return {"shape": shape, "body": core.HalfSpace(substrate, [coating]), **asked}
 
-    outputs = ("peak_pressure", "contact_area", "approach")
+    outputs: dict[str, Output] = {
+        "peak_pressure": "peak_pressure",
+        "coating_tension": partial(coating_tension, friction=friction),
+        "interface_shear": partial(interface_shear, friction=friction),
+        "contact_area": "contact_area",
+        "approach": "approach",
+    }
     dataset = sweep(case, {"thickness": thickness, "young": young}, outputs=outputs, **study)
+    for name in ("coating_tension", "interface_shear"):
+        dataset[name].attrs["units"] = "Pa"
     dataset["thickness"].attrs["units"] = "m"
     dataset["young"].attrs = {"units": "Pa", "long_name": "Young's modulus of the coating"}
     return dataset
@@ -165,6 +187,20 @@ def tilt_curve(
 
     outputs = ("moment", "eccentricity", "approach", "peak_pressure")
     return sweep(case, {"tilt": tilt}, outputs=outputs, **study)
+
+
+def coating_tension(solution: core.Solution, friction: float = 0.0) -> float:
+    """Return the largest principal stress on the faces of the only layer [Pa]."""
+    (bottom,) = solution.report.body.interfaces
+    field = solution.stress([0.0, bottom], side="above", friction=friction, threads=1)
+    return field.peak("tension")[0]
+
+
+def interface_shear(solution: core.Solution, friction: float = 0.0) -> float:
+    """Return the largest shear traction at the only interface [Pa]."""
+    (bottom,) = solution.report.body.interfaces
+    field = solution.stress(bottom, side="above", friction=friction, threads=1)
+    return float(np.hypot(field.xz, field.yz).max())
 
 
 def normal_stiffness(solution: core.Solution) -> float:

@@ -6,15 +6,17 @@ import csv
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
+from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS
 from nacre.values import decode, encode, reduced
 
@@ -90,18 +92,30 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
     return dataset
 
 
-def save(solution: core.Solution, path: AnyPath) -> Path:
+def save(
+    solution: core.Solution,
+    path: AnyPath,
+    depths: npt.ArrayLike | None = None,
+    options: Mapping[str, Any] | None = None,
+) -> Path:
     """Write a file of the kind that its ending says, whole or not at all."""
     path = Path(path)
     writers: dict[str, Callable[[core.Solution, Path], None]] = {
         ".nc": _write_netcdf,
-        ".vtr": _write_vtk,
+        ".vtr": write_surface,
         ".csv": _write_csv,
     }
     if path.suffix not in writers:
         raise ValueError(f"path must end in {', '.join(writers)}, got {str(path)!r}")
+    if depths is None and options:
+        raise TypeError(f"{', '.join(sorted(options))}: without depths there are no such options")
+    if depths is not None and path.suffix != ".vtr":
+        raise ValueError(f"path must end in .vtr where depths are given, got {str(path)!r}")
     with replacing(path) as temporary:
-        writers[path.suffix](solution, temporary)
+        if depths is None:
+            writers[path.suffix](solution, temporary)
+        else:
+            write_stress(solution, temporary, depths, options or {})
     return path
 
 
@@ -189,21 +203,6 @@ def _state(solution: core.Solution) -> dict[str, Any]:
 
 def _write_netcdf(solution: core.Solution, path: Path) -> None:
     write_dataset(to_xarray(solution), path)
-
-
-def _write_vtk(solution: core.Solution, path: Path) -> None:
-    """Write the fields as the cells of a rectilinear grid."""
-    with extra("files"):
-        from pyevtk.hl import gridToVTK
-
-    grid = solution.report.grid
-    edges = [
-        c + side * (np.arange(cells + 1) / cells - 0.5)
-        for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
-    ]
-    fields = {name: getattr(solution, name)[..., np.newaxis] for name in list(NAMES)[:3]}
-    cells = {name: np.asfortranarray(field) for name, field in fields.items()}
-    gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
 
 
 def _write_csv(solution: core.Solution, path: Path) -> None:

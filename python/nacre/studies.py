@@ -20,25 +20,14 @@ import nacre._core as core
 from nacre._extras import extra
 from nacre._identity import key_of
 from nacre._journal import Journal, Record
+from nacre._outputs import AXES, OUTPUTS, STRESSES, Output, evaluated, named
 from nacre.units import UNITS
 
 if TYPE_CHECKING:
     import xarray
 
-Output = str | Callable[[core.Solution], Any]
 Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 
-OUTPUTS = (
-    "load",
-    "approach",
-    "tilt",
-    "eccentricity",
-    "peak_pressure",
-    "peak_position",
-    "contact_area",
-)
-AXES = {"tilt", "eccentricity", "moment", "peak_position"}
-"""Outputs with a value along x and one along y."""
 ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
 
 
@@ -47,6 +36,7 @@ def sweep(
     parameters: Mapping[str, Any],
     *,
     outputs: Sequence[Output] | Mapping[str, Output] | None = None,
+    stress: Mapping[str, Any] | None = None,
     store: str | os.PathLike[str] | None = None,
     executor: Executor | None = None,
     progress: bool | None = None,
@@ -70,7 +60,13 @@ def sweep(
     outputs : sequence or mapping, optional
         What is kept of each solution: names of its attributes, and functions of it that return a
         number or an array, by name. By default load, approach, tilt, eccentricity, peak pressure
-        and where it is, and contact area, as far as they are no parameters.
+        and where it is, and contact area, as far as they are no parameters. Of the stresses, the
+        largest anywhere are ``"von_mises"``, ``"tension"`` (principal) and ``"max_shear"``, the
+        largest tension in a layer is ``"coating_tension"``, and the largest tractions at an
+        interface are ``"interface_shear"`` and ``"interface_tension"``; NaN without layers.
+    stress : mapping, optional
+        Arguments of `Solution.stress_summary` for those: ``body``, ``friction``, ``direction``,
+        ``residual``.
     store : path, optional
         A file, ``.nc``, for the finished Dataset. Finished cases are kept beside it, in a
         ``.journal``, as they come.
@@ -113,16 +109,20 @@ def sweep(
     path = None if store is None else Path(store)
     if path is not None and path.suffix != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
-    wanted = _named([o for o in OUTPUTS if o not in parameters] if outputs is None else outputs)
+    wanted = named([o for o in OUTPUTS if o not in parameters] if outputs is None else outputs)
     if taken := set(wanted) & set(parameters):
         raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
+    stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())
+    asked = {**(stress or {})} if stresses else {}
+    if unknown := set(asked) - {"body", "friction", "direction", "residual"}:
+        raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
     coordinates, points = _points(parameters)
     journal = Journal(path.with_suffix(".journal") if path else None)
     with journal, _quiet(), _bar(progress, len(points)) as advance:
         keys, tasks = [], {}
         for point in points:
             arguments, failure = _describe(case, point)
-            key = key_of(arguments if failure is None else {"failed": point}, wanted)
+            key = key_of(arguments if failure is None else {"failed": point}, wanted, asked)
             keys.append(key)
             known = journal.records.get(key)
             if known is not None and not (retry and "error" in known):
@@ -139,7 +139,7 @@ def sweep(
             journal.add({"key": key, "parameters": tasks[key][1], **result})
 
         arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
-        for _ in _run(arguments_of, wanted, executor, keep):
+        for _ in _run(arguments_of, wanted, asked, executor, keep):
             advance()
         dataset = _assemble(coordinates, [journal.records[key] for key in keys], wanted)
         if path is not None:
@@ -152,27 +152,6 @@ def sweep(
         message = f"{failed} of {len(points)} cases failed: see error in the Dataset"
         warnings.warn(message, core.NacreWarning, stacklevel=2)
     return dataset
-
-
-def _named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
-    """Return outputs by name, checked."""
-    if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
-        raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
-    if isinstance(outputs, Mapping):
-        items = [(str(name), output) for name, output in outputs.items()]
-    else:
-        items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    attributes = {name for name in dir(core.Solution) if not name.startswith("_")}
-    for name, output in items:
-        if not (callable(output) or output in attributes):
-            raise ValueError(f"outputs must be attributes of Solution or functions, got {output!r}")
-        if name in ("error", "warnings"):
-            raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
-    named = dict(items)
-    if not named or len(named) != len(items):
-        names = [name for name, _ in items]
-        raise ValueError(f"outputs must be at least one, under different names, got {names}")
-    return named
 
 
 def _points(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
@@ -241,6 +220,7 @@ def _said(point: Mapping[str, Any]) -> dict[str, Any]:
 def _run(
     tasks: Mapping[str, dict[str, Any]],
     outputs: Mapping[str, Output],
+    stress: Mapping[str, Any],
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:
@@ -268,7 +248,8 @@ def _run(
             for key, arguments in tasks.items():
                 if stopped.is_set():
                     return
-                futures.append(pool.submit(_solve, arguments, dict(outputs), os.getpid()))
+                task = arguments, dict(outputs), dict(stress), os.getpid()
+                futures.append(pool.submit(_solve, *task))
                 futures[-1].add_done_callback(partial(end, key))
         except BaseException as error:  # of the executor: raised below
             ended.put(error)
@@ -302,18 +283,15 @@ def _cores() -> int:
     return os.cpu_count() or 1
 
 
-def _solve(arguments: dict[str, Any], outputs: dict[str, Output], parent: int) -> Record:
+def _solve(
+    arguments: dict[str, Any], outputs: dict[str, Output], stress: dict[str, Any], parent: int
+) -> Record:
     """Solve one case, in any process: what is kept of it, or why it failed."""
     if os.getpid() != parent:
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # they are in the record
     try:
         solution = core.solve(**arguments)
-        values = {
-            name: np.asarray(
-                getattr(solution, o) if isinstance(o, str) else o(solution), dtype=np.float64
-            ).tolist()
-            for name, o in outputs.items()
-        }
+        values = evaluated(solution, outputs, {"threads": arguments["threads"], **stress})
         return {"values": values, "warnings": solution.report.warnings}
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": f"{type(error).__name__}: {error}"}

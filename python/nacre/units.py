@@ -18,8 +18,14 @@ UNITS = {
     "central_pressure": "Pa",
     "contact_area": "m²",
     "eccentricity": "m",
+    "von_mises": "Pa",
+    "tension": "Pa",
+    "max_shear": "Pa",
+    "coating_tension": "Pa",
+    "interface_shear": "Pa",
+    "interface_tension": "Pa",
 }
-"""Units of what a solution holds."""
+"""Units of what a solution holds, and of what studies keep of its stresses."""
 
 
 @dataclass(frozen=True)

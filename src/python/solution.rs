@@ -6,7 +6,7 @@ use ndarray::Array2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 use super::arrays::{read_only, real_matrix};
 use super::background::{self, Caller};
@@ -525,6 +525,14 @@ impl PySolution {
     ///     Its ending says what is written: ``.nc`` everything, as NetCDF, for `nacre.load` and
     ///     xarray; ``.vtr`` the fields, for ParaView; ``.csv`` the sections along x and y through
     ///     the largest pressure.
+    /// depths : float or array_like, optional
+    ///     Depths below the surface [m], each above the last. The ``.vtr`` then holds pressure and
+    ///     gap, the stresses ``stress_xx`` … ``stress_xz``, ``von_mises``, ``max_shear`` and
+    ///     ``tension`` (the largest principal stress) at points below the cell centres; those of a
+    ///     depth on an interface twice, above and below it.
+    /// options : optional
+    ///     With depths, those of `stress`: ``body``, ``friction``, ``direction``, ``residual``,
+    ///     ``threads``, and ``displacement``, which adds a vector of that name.
     ///
     /// Returns
     /// -------
@@ -534,7 +542,10 @@ impl PySolution {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the ending is another.
+    ///     If the ending is another, depths do not grow or belong to no ``.vtr``, or `stress` would
+    ///     raise.
+    /// TypeError
+    ///     If there is no such option.
     /// OSError
     ///     If the file cannot be written.
     ///
@@ -546,8 +557,14 @@ impl PySolution {
     /// >>> with tempfile.TemporaryDirectory() as folder:
     /// ...     nacre.load(solution.save(f"{folder}/ball.nc")) == solution
     /// True
-    fn save<'py>(slf: &Bound<'py, Self>, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.files", "save", (path,))
+    #[pyo3(signature = (path, *, depths=None, **options))]
+    fn save<'py>(
+        slf: &Bound<'py, Self>,
+        path: &Bound<'py, PyAny>,
+        depths: Option<&Bound<'py, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre.files", "save", (path, depths, options))
     }
 
     fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -50,8 +50,9 @@ impl PyStressSummary {
         self.0.finished
     }
 
-    fn __str__(&self) -> String {
-        table(&self.0)
+    fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let display = slf.py().import("nacre._display")?;
+        display.getattr("stresses")?.call1((slf,))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (SummaryState,))> {
@@ -301,89 +302,4 @@ pub(super) fn restore_stress_summary(state: SummaryState) -> PyStressSummary {
 /// The function of `nacre._core` that restores a pickled value.
 fn restorer<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("nacre._core")?.getattr(name)
-}
-
-/// Both tables as text.
-fn table(summary: &StressSummary) -> String {
-    let number = |value: f64| format!("{value:.4e}");
-    let optional = |value: Option<f64>| value.map_or_else(|| "-".into(), |v| format!("{v:.3}"));
-    let at = |peak: &Peak| {
-        let [x, y, z] = peak.position;
-        format!("{:.4e} at ({x:.3e}, {y:.3e}, {z:.3e})", peak.value)
-    };
-    let mut rows = vec![
-        [
-            "layer",
-            "from z",
-            "to z",
-            "von Mises",
-            "tension",
-            "max shear",
-            "yield margin",
-            "strength margin",
-        ]
-        .map(String::from)
-        .to_vec(),
-    ];
-    for layer in &summary.layers {
-        let [top, bottom] = layer.depths;
-        rows.push(vec![
-            if bottom.is_finite() {
-                layer.layer.to_string()
-            } else {
-                "substrate".into()
-            },
-            number(top),
-            number(bottom),
-            at(&layer.von_mises),
-            at(&layer.tension),
-            at(&layer.shear),
-            optional(layer.yield_margin),
-            optional(layer.strength_margin),
-        ]);
-    }
-    let mut text = aligned(&rows);
-    if summary.interfaces.is_empty() {
-        return text;
-    }
-    let heading = [
-        "interface",
-        "z",
-        "tension",
-        "compression",
-        "shear",
-        "in-plane jump",
-    ];
-    let mut rows = vec![heading.map(String::from).to_vec()];
-    for interface in &summary.interfaces {
-        rows.push(vec![
-            interface.interface.to_string(),
-            number(interface.depth),
-            at(&interface.tension),
-            at(&interface.compression),
-            at(&interface.shear),
-            interface.jump.as_ref().map_or_else(|| "-".into(), at),
-        ]);
-    }
-    text.push_str("\n\n");
-    text.push_str(&aligned(&rows));
-    text
-}
-
-/// Rows with their columns aligned.
-fn aligned(rows: &[Vec<String>]) -> String {
-    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| {
-        let lengths = rows.iter().filter_map(|row| row.get(column));
-        lengths.map(String::len).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..count).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:<width$}"))
-            .collect();
-        cells.join("  ").trim_end().to_owned()
-    };
-    rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }

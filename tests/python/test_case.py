@@ -137,6 +137,72 @@ def test_a_solve_that_does_not_converge_is_exit_code_1(
     assert not out.exists()
 
 
+STRESSED = (
+    TEXT.replace("[sweep]", '[stress]\nfriction = 0.2\n\n[sweep]\nstore = "b.nc"', 1)
+    .replace('\nstore = "study.nc"', "")
+    .replace("poisson = 0.3 }", "poisson = 0.3, strength = 2e9, yield_stress = 3e9 }", 1)
+)
+
+
+def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    solution = same_call()
+    summary = solution.stress_summary(
+        friction=0.2, yield_stress={"substrate": 3e9}, strength={"substrate": 2e9}
+    )
+    path = written(tmp_path, STRESSED)
+    assert nacre_command("solve", path) == 0
+    assert capsys.readouterr().out == f"{solution}\n\n{summary}\n"
+    assert nacre_command("solve", path, "--json") == 0
+    found = json.loads(capsys.readouterr().out)["stress"]
+    coating, substrate = found["layers"]
+    value, place = summary.layers[1].von_mises
+    assert substrate["von_mises"] == {"value": value, "at": list(place)}
+    assert substrate["yield_margin"] == 3e9 / value
+    assert coating["yield_margin"] is None
+    assert coating["depths"] == [0.0, 40e-6]
+    assert substrate["depths"] == [40e-6, None]
+    assert found["interfaces"][0]["shear"]["value"] == summary.interfaces[0].shear[0]
+
+
+def test_stresses_of_a_study_have_the_friction_of_the_case(tmp_path: Path) -> None:
+    outputs = 'outputs = ["peak_pressure", "tilt"]'
+    path = written(tmp_path, STRESSED.replace(outputs, 'outputs = ["interface_shear"]'))
+    assert nacre_command("sweep", path) == 0
+    study = xarray.load_dataset(tmp_path / "b.nc", engine="h5netcdf")
+    one = study.sel({"materials.dlc.young": 420e9, "solve.load": 1000.0}, method="nearest")
+    expected = same_call(load=one["solve.load"].item()).stress_summary(friction=0.2)
+    assert one.interface_shear == expected.interfaces[0].shear[0]
+
+
+@pytest.mark.parametrize(
+    ("command", "change", "message"),
+    [
+        ("solve", "friction = 0.2 -> friction = -1", "stress: friction must be at least 0"),
+        ("solve", "friction = 0.2 -> fiction = 1", "stress.fiction: there is no such key"),
+        ("solve", 'friction = 0.2 -> body = "x"', "stress.body: should be 'body' or 'counterbody'"),
+        ("solve", 'friction = 0.2 -> body = "counterbody"', 'stress: body must be "body" where'),
+        ("solve", "strength = 2e9 -> strength = -2", "stress: strength must be finite and above 0"),
+        ("sweep", '"solve.load" -> "stress.friction"', "'stress.friction' changes nothing in a"),
+        (
+            "sweep",
+            '"materials.dlc.young" -> "materials.steel.strength"',
+            "'materials.steel.strength' changes nothing in a solve",
+        ),
+    ],
+)
+def test_an_error_about_stresses_is_one_line(
+    command: str, change: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    old, new = change.split(" -> ")
+    assert old in STRESSED
+    assert nacre_command(command, written(tmp_path, STRESSED.replace(old, new, 1))) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert message in err
+
+
 ERRORS = {
     'radius = 5e-3 -> radius = "5"': "shape.radius: should be a valid number, got '5'",
     "radius = 5e-3 -> radius = -5": "shape: radius must be finite and above 0, got -5",

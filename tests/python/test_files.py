@@ -8,6 +8,7 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -140,6 +141,83 @@ def test_pyvista_reads_the_vtk_file_back(
     single = 2 * float(np.finfo(np.float32).eps) * max(GRID.size)
     np.testing.assert_allclose(centres[:, 0, 0], solution.x, rtol=0, atol=single)
     np.testing.assert_allclose(centres[0, :, 1], solution.y, rtol=0, atol=single)
+
+
+@pytest.mark.parametrize("kind", ["both coated, tilted", "line"])
+def test_stresses_in_the_vtk_file_are_those_of_the_solution(
+    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved[kind]
+    depths = [0.0, 2e-5, 4e-5, 5e-5, 8e-5]  # interfaces at 40 and 50 µm
+    options: dict[str, Any] = {"body": "body", "displacement": True, "residual": {0: -1e9}}
+    mesh = pyvista.read(solution.save(tmp_path / "a.vtr", depths=depths, **options))
+    assert isinstance(mesh, pyvista.RectilinearGrid)
+    np.testing.assert_array_equal(mesh.x, solution.x)
+    np.testing.assert_array_equal(mesh.y, solution.y)
+    np.testing.assert_array_equal(mesh.z, [0.0, 2e-5, 4e-5, 4e-5, 5e-5, 5e-5, 8e-5])
+    shape = (*solution.pressure.shape, 7)
+
+    def read(name: str) -> Any:
+        return np.asarray(mesh.point_data[name]).reshape(shape, order="F")
+
+    for name in ("pressure", "gap"):
+        for plane in range(7):
+            np.testing.assert_array_equal(read(name)[..., plane], getattr(solution, name))
+    above = solution.stress(depths, side="above", **options)
+    below = solution.stress(depths, **options)
+    rows = [(below, 0), (below, 1), (above, 2), (below, 2), (above, 3), (below, 3), (below, 4)]
+    for plane, (field, row) in enumerate(rows):
+        for name in ("xx", "yy", "zz", "xy", "yz", "xz"):
+            found = read(f"stress_{name}")[..., plane]
+            np.testing.assert_array_equal(found, getattr(field, name)[row])
+        np.testing.assert_array_equal(read("von_mises")[..., plane], field.von_mises[row])
+        np.testing.assert_array_equal(read("max_shear")[..., plane], field.max_shear[row])
+        np.testing.assert_array_equal(read("tension")[..., plane], field.principal[0][row])
+    vectors = np.asarray(mesh.point_data["displacement"])
+    deepest = vectors.reshape((*shape, 3), order="F")[..., -1, 2]
+    np.testing.assert_array_equal(deepest, below.uz[-1])
+    assert np.any(read("stress_xx")[..., 2] != read("stress_xx")[..., 3])
+
+
+def test_on_a_rigid_base_the_vtk_file_ends_above_it(tmp_path: Path) -> None:
+    body = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(DLC, 1e-5), nacre.Layer(STEEL, 2e-5)])
+    solution = nacre.solve(nacre.Sphere(5e-3), body, DLC, grid=GRID, load=10.0)
+    bottom = body.interfaces[-1]
+    mesh = pyvista.read(solution.save(tmp_path / "a.vtr", depths=[1e-5, bottom], friction=0.1))
+    np.testing.assert_array_equal(mesh.z, [1e-5, 1e-5, bottom])
+    found = np.asarray(mesh.point_data["stress_xz"]).reshape((*GRID.shape, 3), order="F")
+    expected = solution.stress(bottom, side="above", friction=0.1).xz
+    np.testing.assert_array_equal(found[..., -1], expected)
+    path = solution.save(tmp_path / "b.vtr", depths=3e-5, body="counterbody")
+    mesh = pyvista.read(path)
+    found = np.asarray(mesh.point_data["von_mises"]).reshape(GRID.shape, order="F")
+    np.testing.assert_array_equal(found, solution.stress(3e-5, body="counterbody").von_mises)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "kind", "message"),
+    [
+        ("a.nc", {"depths": [0.0]}, ValueError, r"must end in \.vtr where depths are given, got"),
+        ("a.vtr", {"depths": []}, ValueError, r"depths must be at least one, .* got \[\]"),
+        ("a.vtr", {"depths": [1e-6, 1e-6]}, ValueError, "depths must be at least one, each above"),
+        ("a.vtr", {"depths": [-1e-6]}, ValueError, "z must be finite and at least 0"),
+        ("a.vtr", {"depths": [float("nan")]}, ValueError, "z must be finite and at least 0"),
+        ("a.vtr", {"depths": [0.0], "friction": -1.0}, ValueError, "friction must be at least 0"),
+        ("a.vtr", {"depths": [0.0], "x": 0.0}, TypeError, "options must be among body, .* got x"),
+        ("a.vtr", {"friction": 0.1}, TypeError, "friction: without depths there are no such"),
+    ],
+)
+def test_wrong_depths_leave_no_file(
+    name: str,
+    arguments: dict[str, Any],
+    kind: type[Exception],
+    message: str,
+    solved: dict[str, nacre.Solution],
+    tmp_path: Path,
+) -> None:
+    with pytest.raises(kind, match=message):
+        solved["infinite gaps"].save(tmp_path / name, **arguments)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_csv_holds_the_sections_through_the_peak(

@@ -219,6 +219,11 @@ def test_studies_are_drawn_with_their_units() -> None:
     assert axes.get_xscale() == "log"
     assert axes.get_ylabel() == "Young's modulus of the coating [GPa]"
     drawn(axes.figure)
+    for quantity in ("coating_tension", "interface_shear"):
+        axes = plot.chart(chart, quantity)
+        drawn(axes.figure)
+        highest = axes.collections[0].get_clim()[1]
+        assert highest == pytest.approx(1e-6 * chart[quantity].max().item(), rel=0.2)  # levels
     curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
     axes = plot.curve(curve, "stiffness")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("load [N]", "stiffness [MN/m]")
@@ -288,6 +293,25 @@ def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:
     axes = plot.interface_map(coated, quantity="normal", friction=0.1)
     (mesh,) = meshes(axes)
     np.testing.assert_allclose(np.asarray(mesh.get_array()), field.zz.T / 1e9, rtol=1e-9)
+
+
+def test_what_is_long_is_drawn_out_of_scale_and_says_so(coated: nacre.Solution) -> None:
+    body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.25), 30e-6)])
+    roller = nacre.solve(ROLLER, body, grid=LONG, load=1e3)
+    for axes, unit, height in (
+        (plot.stress_section(roller, rows=6, depth=90e-6), "z [µm]", 90.0),
+        (plot.interface_map(roller), "y [µm]", None),
+    ):
+        assert axes.get_aspect() == "auto"
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", unit)
+        assert axes.get_title(loc="left").endswith("to different scales")
+        assert height is None or axes.get_ylim()[0] == pytest.approx(height)
+        edges = np.asarray(meshes(axes)[0].get_coordinates())[0, :, 0]
+        assert (edges[0], edges[-1]) == pytest.approx((-7.0, 7.0))  # mm
+        drawn(axes.figure)
+    for axes in (plot.stress_section(coated, rows=6), plot.interface_map(coated)):
+        assert axes.get_aspect() == 1.0
+        assert "scales" not in axes.get_title(loc="left")
 
 
 def test_stress_of_lines_and_of_nothing_can_be_drawn(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import nacre
+from nacre.units import written
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 HARD = nacre.Elastic(young=420e9, poisson=0.2)
@@ -155,9 +156,16 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     largest = abs(jump[0] + jump[1]) / 2 + np.hypot((jump[0] - jump[1]) / 2, jump[2])
     assert interface.jump is not None
     assert interface.jump[0] == pytest.approx(largest.max(), rel=1e-12)
-    text = str(summary)
-    assert text.splitlines()[0].split()[:2] == ["layer", "from"]
-    assert "substrate" in text
+    lines = str(summary).splitlines()
+    assert max(map(len, lines)) <= 100
+    assert [line.split("  ")[0] for line in lines if not line.startswith(" ")] == [
+        "layer 1, 0 m to 20 µm",
+        "substrate",
+        "interface 1 at 20 µm",
+    ]
+    (row,) = (line for line in lines if line.startswith("substrate"))
+    assert written(value, "Pa") in row
+    assert row.endswith(f"  {2e9 / value:.3g}")
     assert summary.finished
 
 

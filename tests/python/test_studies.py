@@ -24,8 +24,9 @@ import pytest
 import xarray
 
 import nacre
-from nacre import design, studies
+from nacre import design
 from nacre._identity import code_of
+from nacre._outputs import Output
 
 STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
@@ -44,7 +45,7 @@ def mean_pressure(solution: nacre.Solution) -> float:
     return solution.load / solution.contact_area
 
 
-OUTPUTS: list[studies.Output] = [
+OUTPUTS: list[Output] = [
     "peak_pressure",
     "tilt",
     "contact_extent",
@@ -89,6 +90,53 @@ def test_each_case_is_the_solve_it_describes() -> None:
     assert (study.error == "").all()
 
 
+def shear_of_summary(solution: nacre.Solution) -> float:
+    return solution.stress_summary(friction=0.2).interfaces[0].shear[0]
+
+
+STRESSES = [
+    "von_mises",
+    "tension",
+    "max_shear",
+    "coating_tension",
+    "interface_shear",
+    "interface_tension",
+]
+
+
+def test_stresses_are_outputs_by_name_and_by_function(tmp_path: Path) -> None:
+    outputs: list[Output] = [*STRESSES, shear_of_summary]
+    case = {"thickness": [2e-5], "young": YOUNG}
+    store = tmp_path / "study.nc"
+    study = nacre.sweep(ball, case, outputs=outputs, stress={"friction": 0.2}, store=store)
+    for young in YOUNG:
+        one = study.sel(thickness=2e-5, young=young)
+        summary = nacre.solve(**ball(2e-5, young)).stress_summary(friction=0.2)
+        (coating, substrate), (interface,) = summary.layers, summary.interfaces
+        assert one.von_mises == max(coating.von_mises[0], substrate.von_mises[0])
+        assert one.tension == max(coating.tension[0], substrate.tension[0])
+        assert one.max_shear == max(coating.max_shear[0], substrate.max_shear[0])
+        assert one.coating_tension == coating.tension[0]
+        assert one.interface_shear == one.shear_of_summary == interface.shear[0]
+        assert one.interface_tension == interface.tension[0]
+    assert {study[name].attrs["units"] for name in STRESSES} == {"Pa"}
+    # Without friction they are others, and not what the journal holds.
+    other = nacre.sweep(ball, case, outputs=outputs, store=store)
+    assert (other.shear_of_summary == study.shear_of_summary).all()
+    assert (other.interface_shear < study.interface_shear).all()
+
+
+def test_a_bare_body_has_no_stress_in_a_coating() -> None:
+    study = nacre.sweep(
+        {"shape": nacre.Sphere(5e-3), "body": STEEL, "grid": GRID},
+        {"load": [5.0]},
+        outputs=STRESSES,
+    )
+    missing = [name for name in STRESSES if np.isnan(study[name].item())]
+    assert missing == ["coating_tension", "interface_shear", "interface_tension"]
+    assert study.error.item() == ""
+
+
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")  # fork, Python 3.12
 @pytest.mark.parametrize("kind", ["one thread", "fork", "forkserver", "spawn", "dask"])
 def test_the_executor_changes_no_bit(
@@ -99,7 +147,11 @@ def test_the_executor_changes_no_bit(
     name = f"study_on_{kind.replace(' ', '_')}"
     (tmp_path / f"{name}.py").write_text(MODULE)
     monkeypatch.syspath_prepend(tmp_path)
-    outputs = ["peak_pressure", "pressure", importlib.import_module(name).mean_pressure]
+    outputs: list[Output] = [
+        "peak_pressure",
+        "pressure",
+        importlib.import_module(name).mean_pressure,
+    ]
     expected = nacre.sweep(ball, PARAMETERS, outputs=outputs)
     with ExitStack() as stack:
         executor: Executor
@@ -421,6 +473,12 @@ def test_a_broken_executor_is_an_error_and_finished_cases_are_kept(
         ((ball, PARAMETERS), {"outputs": {"young": "load"}}, ValueError, "other names"),
         ((ball, PARAMETERS), {"store": "study.txt"}, ValueError, r"store must end in \.nc"),
         ((ball, {"thick": [1.0]}), {}, TypeError, "thick"),
+        (
+            (ball, PARAMETERS),
+            {"outputs": ["tension"], "stress": {"mu": 1}},
+            TypeError,
+            "stress must",
+        ),
         (({"body": STEEL}, {"force": [1.0]}), {}, TypeError, "case must give arguments .*force"),
         (({"progress": print}, {"load": [1.0]}), {}, TypeError, "is not a value that can be kept"),
     ],
@@ -463,6 +521,30 @@ def test_a_coating_of_the_substrates_modulus_changes_nothing_in_the_chart() -> N
     assert (chart.peak_pressure.diff("young") > 0).all()
     assert chart.peak_pressure.attrs["units"] == "Pa"
     assert chart["thickness"].attrs["units"] == "m"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_the_stresses_of_the_chart_are_those_of_the_summary(friction: float) -> None:
+    # Compliant and stiff, thin and thick: the largest tension is at the edge of the contact, or
+    # below its middle at the interface. In all of them it is on a face, where the chart looks.
+    thickness, young = [2e-6, 2e-5, 1e-4], [52.5e9, 840e9]
+    options: dict[str, Any] = {"grid": GRID, "load": 10.0}
+    chart = design.coating_chart(
+        nacre.Sphere(5e-3), STEEL, thickness=thickness, young=young, friction=friction, **options
+    )
+    depths = set()
+    for h in thickness:
+        for modulus in young:
+            summary = nacre.solve(**ball(h, modulus)).stress_summary(friction=friction)
+            one = chart.sel(thickness=h, young=modulus)
+            tension, (_, _, z) = summary.layers[0].tension
+            depths.add(round(z / h, 9))
+            assert one.coating_tension.item() == pytest.approx(tension, rel=1e-12)
+            assert one.interface_shear.item() == pytest.approx(
+                summary.interfaces[0].shear[0], rel=1e-12
+            )
+    assert depths == ({0.0, 1.0} if friction == 0 else {0.0})  # behind what slides
+    assert chart.coating_tension.attrs["units"] == chart.interface_shear.attrs["units"] == "Pa"
 
 
 def test_the_tilt_curve_is_odd_and_inverts_the_eccentricity() -> None:

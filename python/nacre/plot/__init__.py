@@ -4,10 +4,11 @@ Every function draws into axes that are passed in, or into a new figure, and ret
 carry SI units with a prefix. `nacre.Solution` has most of them as methods.
 """
 
+from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
 from nacre.plot.relief import relief, view
 from nacre.plot.sections import compare, section
-from nacre.plot.stress import interface_map, stress_depth, stress_section
+from nacre.plot.stress import stress_depth, stress_section
 from nacre.plot.studies import chart, curve
 from nacre.plot.style import STYLE
 

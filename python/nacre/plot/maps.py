@@ -11,16 +11,13 @@ from nacre._core import Solution
 from nacre._display import figures
 from nacre._extras import extra
 from nacre.plot.sections import section
-from nacre.plot.style import COLOURMAP, STYLE, WIDTH
+from nacre.plot.style import COLOURMAP, STYLE, WIDTH, lengths
 from nacre.units import Scale
 
 with extra("plot"):
     import matplotlib as mpl
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
-
-LONGEST = 6.0
-"""Side ratio of a contact up to which a map is true to scale."""
 
 
 def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
@@ -100,10 +97,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         contact = np.array(solution.contact_extent)
         margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
         window = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
-    lengths = [Scale.of(np.abs(side).max(), "m") for side in window]
-    widths = np.diff(window).ravel()
-    if widths.max() <= LONGEST * widths.min():
-        lengths = [max(lengths, key=lambda scale: -scale.factor)] * 2
+    scales, same = lengths(window)
     scale = Scale.of(solution.peak_pressure, "Pa")
     with mpl.rc_context(STYLE):
         if axes is None:
@@ -112,7 +106,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         corners = [
             factor * np.linspace(low, high, cells + 1)
             for factor, (low, high), cells in zip(
-                [length.factor for length in lengths], ends, grid.shape, strict=True
+                [length.factor for length in scales], ends, grid.shape, strict=True
             )
         ]
         highest = scale.factor * solution.peak_pressure or 1.0
@@ -123,24 +117,24 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         axes.grid(visible=False)
         colourbar: Any = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
         colourbar.outline.set_linewidth(0.6)
-        x, y = lengths[0].factor * solution.x, lengths[1].factor * solution.y
+        x, y = scales[0].factor * solution.x, scales[1].factor * solution.y
         if 0 < solution.contact_area:
             inside = solution.in_contact.astype(float)
             axes.contour(x, y, inside.T, levels=[0.5], colors="black", linewidths=0.7)
             at = [
-                length.factor * e for length, e in zip(lengths, solution.eccentricity, strict=True)
+                length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
             ]
             for colour, width in (("black", 2.6), ("white", 1.2)):
                 style: dict[str, Any] = {"marker": "+", "markersize": 8, "markeredgewidth": width}
                 axes.plot(*at, color=colour, linestyle="none", **style)
         axes.set(
-            xlabel=f"x [{lengths[0].unit}]",
-            ylabel=f"y [{lengths[1].unit}]",
-            xlim=lengths[0].factor * window[0],
-            ylim=lengths[1].factor * window[1],
+            xlabel=f"x [{scales[0].unit}]",
+            ylabel=f"y [{scales[1].unit}]",
+            xlim=scales[0].factor * window[0],
+            ylim=scales[1].factor * window[1],
         )
         title = "+ resultant force" if solution.contact_area > 0 else "nothing touches"
-        if widths.max() <= LONGEST * widths.min():
+        if same:
             axes.set_aspect("equal")
         else:
             title += "; x and y to different scales"

@@ -1,4 +1,4 @@
-"""Stress below a contact: sections, curves over depth, tractions at interfaces."""
+"""Stress below a contact: sections, and curves over depth."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from nacre._core import HalfSpace, Solution, Stress
 from nacre._extras import extra
-from nacre.plot.style import COLOURMAP, STYLE, WIDTH, look
+from nacre.plot.style import COLOURMAP, SIGNED, STYLE, WIDTH, lengths, look
 from nacre.units import Scale, written
 
 with extra("plot"):
@@ -36,9 +36,6 @@ LABELS = {
 }
 """What can be drawn, and what it is called."""
 
-SIGNED = "RdBu_r"
-"""Colours of what may be tension or compression."""
-
 
 def stress_section(
     solution: Solution,
@@ -52,6 +49,9 @@ def stress_section(
     **options: Any,
 ) -> Axes:
     """Draw a vertical section, with the interfaces.
+
+    The cross marks the largest value. What is much longer than deep is drawn out of scale, and the
+    picture says so.
 
     Parameters
     ----------
@@ -103,8 +103,8 @@ def stress_section(
     grid = solution.report.grid
     axis = "xy".index(along)
     sides = grid.center[axis] + grid.size[axis] * np.linspace(-0.5, 0.5, len(centres) + 1)
-    low, high = np.clip(_around(solution, axis, bottom), sides[0], sides[-1])
-    length = Scale.of(max(abs(low), abs(high), bottom), "m")
+    low, high = np.clip(around(solution, axis, bottom), sides[0], sides[-1])
+    (across, down), same = lengths([(low, high), (0.0, bottom)])
     scale = Scale.of(np.abs(values).max(initial=0.0), "Pa")
     signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
     largest = scale.factor * np.abs(values).max(initial=0.0) or 1.0
@@ -113,8 +113,8 @@ def stress_section(
             size = (0.75 * WIDTH, 0.45 * WIDTH)
             axes = plt.figure(figsize=size, layout="constrained").add_subplot()
         mesh = axes.pcolormesh(
-            length.factor * sides,
-            length.factor * edges,
+            across.factor * sides,
+            down.factor * edges,
             scale.factor * values,
             cmap=SIGNED if signed else COLOURMAP,
             vmin=-largest if signed else 0.0,
@@ -122,23 +122,25 @@ def stress_section(
             rasterized=True,
         )
         axes.grid(visible=False)
-        _colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
+        colourbar(axes, mesh, f"{LABELS[quantity]} [{scale.unit}]")
         for interface in body.interfaces:
             if interface < bottom:
                 for colour, width in (("white", 2.0), ("black", 0.9)):
-                    axes.axhline(length.factor * interface, color=colour, linewidth=width)
+                    axes.axhline(down.factor * interface, color=colour, linewidth=width)
         row, column = np.unravel_index(np.argmax(values), values.shape)
-        peak = (length.factor * centres[column], length.factor * field.z[row])
+        peak = (across.factor * centres[column], down.factor * field.z[row])
         for colour, width in (("black", 2.6), ("white", 1.2)):
             axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
-        axes.set(xlabel=f"{along} [{length.unit}]", ylabel=f"z [{length.unit}]")
-        axes.set_xlim(length.factor * low, length.factor * high)
-        axes.set_ylim(length.factor * bottom, 0.0)
-        axes.set_aspect("equal")
+        axes.set(xlabel=f"{along} [{across.unit}]", ylabel=f"z [{down.unit}]")
+        axes.set_xlim(across.factor * low, across.factor * high)
+        axes.set_ylim(down.factor * bottom, 0.0)
         other = "y" if along == "x" else "x"
-        axes.set_title(
-            f"at {other} = {written(at, 'm', 3)};  + {written(float(values.max()), 'Pa', 3)}"
-        )
+        title = f"at {other} = {written(at, 'm', 3)};  + {written(float(values.max()), 'Pa', 3)}"
+        if same:
+            axes.set_aspect("equal")
+        else:
+            title += f"; {along} and z to different scales"
+        axes.set_title(title)
     return axes
 
 
@@ -220,140 +222,12 @@ def stress_depth(
     return axes
 
 
-def interface_map(
-    solution: Solution,
-    interface: int = 0,
-    quantity: Literal["shear", "normal"] = "shear",
-    *,
-    axes: Axes | None = None,
-    **options: Any,
-) -> Axes:
-    """Draw the traction at an interface from above.
-
-    Parameters
-    ----------
-    solution
-        What to draw.
-    interface
-        Its number, from 0 below the first layer.
-    quantity
-        "shear": its magnitude, and arrows along the traction that acts on the layer above;
-        "normal": tension positive.
-    axes
-        Where to draw; a new figure by default.
-    options
-        Passed on to `Solution.stress`: `body`, `friction`, `direction`, `threads`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-
-    Raises
-    ------
-    ValueError
-        If there is no such interface or quantity, or the grid is one of strips.
-
-    Examples
-    --------
-    >>> from nacre import plot
-    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
-    >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
-    >>> plot.interface_map(solution, friction=0.1).get_xlabel()
-    'x [µm]'
-    """
-    grid = solution.report.grid
-    if grid.is_line:
-        raise ValueError("the grid of a solution must have cells along x for a map, got a line")
-    if quantity not in ("shear", "normal"):
-        raise ValueError(f"quantity must be 'shear' or 'normal', got {quantity!r}")
-    depths = _body(solution, options).interfaces
-    if not depths:
-        raise ValueError("a solution must have layers for a map of an interface, got a bare body")
-    if not 0 <= interface < len(depths):
-        raise ValueError(f"interface must be from 0 to {len(depths) - 1}, got {interface}")
-    depth = depths[interface]
-    field = solution.stress(depth, side="above", **options)
-    values = field.zz if quantity == "normal" else np.hypot(field.xz, field.yz)
-    ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
-    window = [np.array(side) for side in ends]
-    if solution.contact_area > 0:
-        narrow = min(float(np.diff(contact)[0]) for contact in solution.contact_extent)
-        window = [
-            np.clip(_around(solution, axis, narrow), *ends[axis]) for axis in range(len(ends))
-        ]
-    length = Scale.of(np.abs(window).max(), "m")
-    scale = Scale.of(np.abs(values).max(), "Pa")
-    largest = scale.factor * np.abs(values).max() or 1.0
-    signed = quantity == "normal"
-    with mpl.rc_context(STYLE):
-        if axes is None:
-            size = (0.7 * WIDTH, 0.5 * WIDTH)
-            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
-        corners = [
-            length.factor * np.linspace(*side, cells + 1)
-            for side, cells in zip(ends, grid.shape, strict=True)
-        ]
-        mesh = axes.pcolormesh(
-            *corners,
-            scale.factor * values.T,
-            cmap=SIGNED if signed else COLOURMAP,
-            vmin=-largest if signed else 0.0,
-            vmax=largest,
-            rasterized=True,
-        )
-        axes.grid(visible=False)
-        _colourbar(axes, mesh, f"{quantity} traction [{scale.unit}]")
-        if solution.contact_area > 0:
-            inside = solution.in_contact.astype(float).T
-            x, y = length.factor * solution.x, length.factor * solution.y
-            axes.contour(x, y, inside, levels=[0.5], colors="black", linewidths=0.7)
-        if not signed and np.any(values):
-            _arrows(axes, field, length.factor, values, window)
-        axes.set(
-            xlabel=f"x [{length.unit}]",
-            ylabel=f"y [{length.unit}]",
-            xlim=length.factor * window[0],
-            ylim=length.factor * window[1],
-        )
-        axes.set_aspect("equal")
-        axes.set_title(f"interface at z = {written(depth, 'm', 3)}; the contact outlined")
-    return axes
-
-
-def _colourbar(axes: Axes, mesh: QuadMesh, label: str) -> None:
+def colourbar(axes: Axes, mesh: QuadMesh, label: str) -> None:
     """Draw a colour bar as high as the picture."""
     bar: Any = axes.figure.colorbar(mesh, cax=axes.inset_axes((1.03, 0.0, 0.035, 1.0)))
     bar.set_label(label)
     bar.outline.set_linewidth(0.6)
     bar.ax.grid(visible=False)
-
-
-def _arrows(
-    axes: Axes, field: Stress, factor: float, values: Array, window: Sequence[Array]
-) -> None:
-    """Draw the shear traction that acts on the layer above, some 15 arrows along each side."""
-    rows, columns = (
-        _every(np.flatnonzero((centres > low) & (centres < high)))
-        for centres, (low, high) in zip((field.x, field.y), window, strict=True)
-    )
-    pick = np.ix_(rows, columns)
-    axes.quiver(
-        factor * field.x[rows],
-        factor * field.y[columns],
-        field.xz[pick].T,
-        field.yz[pick].T,
-        color="white",
-        pivot="middle",
-        scale=14 * float(values.max()),
-        width=0.004,
-    )
-
-
-def _every(cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    step = max(1, round(cells.size / 15))
-    return cells[step // 2 :: step]
 
 
 def _check(quantity: str) -> None:
@@ -367,7 +241,8 @@ def _values(field: Stress, quantity: str) -> Array:
     return values.reshape(values.shape[0], -1) if values.ndim > 1 else values
 
 
-def _body(solution: Solution, options: dict[str, Any]) -> HalfSpace:
+def body_of(solution: Solution, options: dict[str, Any]) -> HalfSpace:
+    """Return the body that options of `Solution.stress` name."""
     body = solution.report.body
     if options.get("body") == "counterbody" and solution.report.counterbody is not None:
         body = solution.report.counterbody
@@ -378,7 +253,7 @@ def _reach(
     solution: Solution, depth: float | None, options: dict[str, Any]
 ) -> tuple[HalfSpace, float]:
     """Return the body, and the depth down to which it is drawn."""
-    body = _body(solution, options)
+    body = body_of(solution, options)
     grid = solution.report.grid
     axes = (1,) if grid.is_line else (0, 1)
     if depth is None:
@@ -404,7 +279,7 @@ def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
     return np.concatenate([*parts, [bottom]])
 
 
-def _around(solution: Solution, axis: int, width: float) -> Array:
+def around(solution: Solution, axis: int, width: float) -> Array:
     """Return the ends of what is shown: the contact, and half of `width` beside it."""
     low, high = solution.contact_extent[axis]
     return np.array([low - 0.5 * width, high + 0.5 * width])

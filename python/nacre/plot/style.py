@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre.units import Scale
 
 WIDTH = 18 / 2.54
 """Width of a page between its margins [inch]."""
@@ -32,8 +38,21 @@ STYLE: dict[Any, Any] = {
 COLOURS = ("#0072B2", "#D55E00", "#000000", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
 DASHES = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (6, 1.5, 1, 1.5)), (0, (1, 0.7)))
 COLOURMAP = "viridis"
+SIGNED = "RdBu_r"
+"""Colours of what may be tension or compression."""
+LONGEST = 6.0
+"""Side ratio up to which a picture is true to scale."""
 
 
 def look(number: int) -> dict[str, Any]:
     """Return colour and dashes of the curve of that number."""
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
+
+
+def lengths(window: Sequence[npt.ArrayLike] | npt.NDArray[np.float64]) -> tuple[list[Scale], bool]:
+    """Return the scales of both sides of a picture, and whether they are the same."""
+    sides = np.asarray(window, dtype=np.float64)
+    widths = np.diff(sides).ravel()
+    scales = [Scale.of(float(np.abs(side).max()), "m") for side in sides]
+    same = bool(widths.max() <= LONGEST * widths.min())
+    return ([min(scales, key=lambda scale: scale.factor)] * 2 if same else scales), same

@@ -1,0 +1,78 @@
+"""What a study keeps of each solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+import nacre._core as core
+
+Output = str | Callable[[core.Solution], Any]
+
+OUTPUTS = (
+    "load",
+    "approach",
+    "tilt",
+    "eccentricity",
+    "peak_pressure",
+    "peak_position",
+    "contact_area",
+)
+AXES = {"tilt", "eccentricity", "moment", "peak_position"}
+"""Outputs with a value along x and one along y."""
+
+STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
+    "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
+    "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
+    "max_shear": lambda summary: [layer.max_shear[0] for layer in summary.layers],
+    "coating_tension": lambda summary: [
+        layer.tension[0] for layer in summary.layers if np.isfinite(layer.depths[1])
+    ],
+    "interface_shear": lambda summary: [face.shear[0] for face in summary.interfaces],
+    "interface_tension": lambda summary: [face.tension[0] for face in summary.interfaces],
+}
+"""Outputs from `Solution.stress_summary`: the largest of such values; NaN where there is none."""
+
+
+def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
+    """Return outputs by name, checked."""
+    if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
+        raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
+    if isinstance(outputs, Mapping):
+        items = [(str(name), output) for name, output in outputs.items()]
+    else:
+        items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
+    known = {name for name in dir(core.Solution) if not name.startswith("_")} | set(STRESSES)
+    for name, output in items:
+        if not (callable(output) or output in known):
+            raise ValueError(
+                f"outputs must be attributes of Solution, {', '.join(STRESSES)}, or functions, "
+                f"got {output!r}"
+            )
+        if name in ("error", "warnings"):
+            raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
+    found = dict(items)
+    if not found or len(found) != len(items):
+        names = [name for name, _ in items]
+        raise ValueError(f"outputs must be at least one, under different names, got {names}")
+    return found
+
+
+def evaluated(
+    solution: core.Solution, outputs: Mapping[str, Output], stress: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return what is kept of a solution, as plain numbers; the summary of stresses is made once."""
+    summary = None
+    found: dict[str, Any] = {}
+    for name, output in outputs.items():
+        if not isinstance(output, str):
+            value = output(solution)
+        elif output in STRESSES:
+            summary = summary or solution.stress_summary(**stress)
+            value = max(STRESSES[output](summary), default=np.nan)
+        else:
+            value = getattr(solution, output)
+        found[name] = np.asarray(value, dtype=np.float64).tolist()
+    return found

@@ -1,0 +1,94 @@
+"""Rectilinear grids of VTK's, for ParaView: the surface, and what is below it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._extras import extra
+
+Array = npt.NDArray[np.float64]
+
+SURFACE = ("pressure", "gap", "displacement")
+COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
+OPTIONS = ("body", "friction", "direction", "residual", "displacement", "threads")
+"""Options of `Solution.stress` that a file may be written with."""
+ON = 1e-12
+"""Nearer than this to an interface, relatively, a depth is on it, as in `Solution.stress`."""
+
+
+def write_surface(solution: core.Solution, path: Path) -> None:
+    """Write the fields as the cells of a plane."""
+    with extra("files"):
+        from pyevtk.hl import gridToVTK
+
+    grid = solution.report.grid
+    edges = [
+        c + side * (np.arange(cells + 1) / cells - 0.5)
+        for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
+    ]
+    fields = {name: getattr(solution, name)[..., np.newaxis] for name in SURFACE}
+    cells = {name: np.asfortranarray(field) for name, field in fields.items()}
+    gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
+
+
+def write_stress(
+    solution: core.Solution, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
+) -> None:
+    """Write stresses at points below the cell centres, and pressure and gap above them.
+
+    Of a depth on an interface there are two planes of points: above it and below it.
+    """
+    with extra("files"):
+        from pyevtk.hl import gridToVTK
+
+    if unknown := set(options) - set(OPTIONS):
+        known = ", ".join(OPTIONS)
+        raise TypeError(f"options must be among {known}, got {', '.join(sorted(unknown))}")
+    z, planes = _planes(solution, np.atleast_1d(np.asarray(depths, dtype=np.float64)), options)
+    shape = (*solution.pressure.shape, z.size)
+    points: dict[str, Any] = {
+        name: np.asfortranarray(np.broadcast_to(getattr(solution, name)[..., np.newaxis], shape))
+        for name in ("pressure", "gap")
+    }
+    points |= {f"stress_{name}": planes[name] for name in COMPONENTS}
+    points |= {name: planes[name] for name in ("von_mises", "max_shear", "tension")}
+    if "ux" in planes:
+        points["displacement"] = tuple(planes[name] for name in ("ux", "uy", "uz"))
+    gridToVTK(str(path.with_suffix("")), solution.x, solution.y, z, pointData=points)
+
+
+def _planes(
+    solution: core.Solution, depths: Array, options: Mapping[str, Any]
+) -> tuple[Array, dict[str, Array]]:
+    """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
+    if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():
+        raise ValueError(f"depths must be at least one, each above the last, got {depths.tolist()}")
+    report = solution.report
+    body = report.counterbody if options.get("body") == "counterbody" else report.body
+    faces = body.interfaces if body else []
+    on = [np.isclose(depths, face, rtol=ON, atol=0.0) for face in faces]
+    above = np.any(on, axis=0) if on else np.full(depths.shape, False)
+    # A rigid base has no side below.
+    rigid = body is not None and isinstance(body.substrate, core.Rigid)
+    below = ~on[-1] if rigid else np.full(depths.shape, True)
+    parts = [
+        solution.stress(depths[kept], side=side, **options)  # type: ignore[arg-type]
+        for kept, side in ((above, "above"), (below, "below"))
+        if kept.any()
+    ]
+    z = np.concatenate([part.z for part in parts])
+    order = np.argsort(z, kind="stable")  # what is above comes first
+    names = [*COMPONENTS, "von_mises", "max_shear"]
+    names += ["ux", "uy", "uz"] if options.get("displacement") else []
+    planes = {name: [getattr(part, name) for part in parts] for name in names}
+    planes["tension"] = [part.principal[0] for part in parts]
+    return z[order], {
+        name: np.asfortranarray(np.concatenate(fields)[order].transpose(1, 2, 0))
+        for name, fields in planes.items()
+    }
