@@ -109,14 +109,14 @@ def stresses(summary: StressSummary) -> str:
         add("tension", layer.tension, layer.strength_margin)
         add("shear", layer.max_shear)
         ends = f"{written(top, 'm')} to {written(bottom, 'm')}"
-        rows[start][0] = f"layer {layer.layer + 1}, {ends}" if bottom < np.inf else "substrate"
+        rows[start][0] = f"layer {layer.layer}, {ends}" if bottom < np.inf else "substrate"
     for face in summary.interfaces:
         start = len(rows)
         add("tension", face.tension)
         add("compression", face.compression)
         add("shear", face.shear)
         add("in-plane jump", face.jump)
-        rows[start][0] = f"interface {face.interface + 1} at {written(face.depth, 'm')}"
+        rows[start][0] = f"interface {face.interface} at {written(face.depth, 'm')}"
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [
         "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()

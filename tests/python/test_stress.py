@@ -159,9 +159,9 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     lines = str(summary).splitlines()
     assert max(map(len, lines)) <= 100
     assert [line.split("  ")[0] for line in lines if not line.startswith(" ")] == [
-        "layer 1, 0 m to 20 µm",
+        "layer 0, 0 m to 20 µm",
         "substrate",
-        "interface 1 at 20 µm",
+        "interface 0 at 20 µm",
     ]
     (row,) = (line for line in lines if line.startswith("substrate"))
     assert written(value, "Pa") in row

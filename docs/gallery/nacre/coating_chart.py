@@ -25,5 +25,14 @@ axes = plot.chart(study)
 axes.set_title("peak pressure under a ball of 5 mm, 20 N")
 
 # %%
+# The same study has the largest tension in the coating. A thin one is pulled most beside the
+# contact; a stiff and thicker one at the interface below the middle, where it bends.
+axes = plot.chart(study, "coating_tension")
+
+# %%
+# The interface is sheared most where it lies at a fraction of the contact's radius.
+axes = plot.chart(study, "interface_shear")
+
+# %%
 # Bare steel, for comparison:
 print(f"{nacre.solve(ball, steel, load=20.0).peak_pressure / 1e9:.3f} GPa")
