@@ -19,6 +19,7 @@ mod automatic;
 mod balance;
 mod batch;
 mod cascade;
+mod direct;
 mod discretisation;
 mod fields;
 mod freedoms;
@@ -341,11 +342,9 @@ fn solve_in_window(
     const RETRIES: usize = 2;
     let (mut iterations, mut retries) = (0, 0);
     loop {
-        let left = Limits {
-            max_iterations: limits.max_iterations - iterations,
-            ..limits
-        };
+        let left = limits.after(iterations);
         let outcome = cascade.solve(&mut fields.pressure, left, watch);
+        fields.lambda = outcome.lambda;
         let quality = fields.certify(problem);
         cascade.work += problem.convolution.work();
         iterations += outcome.iterations;
@@ -371,14 +370,12 @@ fn solve_in_window(
         retries += 1;
         if !converged || retries > RETRIES {
             // It broke down, by rounding: the reference goes on from there.
-            let left = Limits {
-                max_iterations: limits.max_iterations - iterations,
-                ..limits
-            };
+            let left = limits.after(iterations);
             let before = cascade.work;
             let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
                 watch(iterations + more, before + work, quality)
             });
+            fields.lambda = end.lambda;
             fields.certify(problem);
             let (iterations, work) = (iterations + end.iterations, before + end.work);
             return Outcome {

@@ -30,24 +30,9 @@ fn contact() -> Result<Contact> {
     Contact::plan(&body, Grid::new([16, 16], [16.0; 2])?, Setup::default())
 }
 
-/// A balanced solution. The default algorithm must find it; the reference may give up, and then
-/// says so.
+/// A balanced solution. The default algorithm must find it; the reference may give up, and then says
+/// so.
 fn solve(
-    contact: &Contact,
-    shape: &dyn Surface,
-    motion: &Motion,
-    algorithm: Algorithm,
-) -> Result<Option<Solution>> {
-    let solution = solve_or_give_up(contact, shape, motion, algorithm)?;
-    assert!(
-        solution.is_some() || algorithm == Algorithm::PolonskyKeer,
-        "{motion:?}: not converged"
-    );
-    Ok(solution)
-}
-
-/// A balanced solution, or none where the iteration says that it did not converge.
-fn solve_or_give_up(
     contact: &Contact,
     shape: &dyn Surface,
     motion: &Motion,
@@ -61,6 +46,7 @@ fn solve_or_give_up(
     let solution = contact.solve(shape, motion, &options)?;
     let report = &solution.report;
     if !report.converged() {
+        assert_eq!(algorithm, Algorithm::PolonskyKeer, "{motion:?}: {report:?}");
         return Ok(None);
     }
     let balance = report.balance;
@@ -150,33 +136,77 @@ fn table_stands_on_its_three_long_legs() -> Result<()> {
     Ok(())
 }
 
+/// One leg beneath the load, or two in line with it, leave the body free to turn. A taller leg turns
+/// it, and carries nothing: there are tilts at which both it and the rest, 0.1 high, are clear.
+#[test]
+fn legs_in_line_with_the_load_carry_it_beside_a_taller_one() -> Result<()> {
+    let contact = contact()?;
+    let (x, y) = (contact.grid().x(), contact.grid().y());
+    let one = vec![(5, 7, 0.5, 1.0)];
+    let two = vec![(3, 4, 0.5, 0.75), (11, 10, 0.6, 0.25)];
+    for legs in [one, two] {
+        let mut heights = uniform([16, 16], 1) * 0.1;
+        heights[[13, 2]] = 0.8;
+        let mut place = [0.0; 2];
+        for &(i, j, height, part) in &legs {
+            heights[[i, j]] = height;
+            place = [place[0] + part * x[i], place[1] + part * y[j]];
+        }
+        let shape = HeightMap::new(heights, [1.0, 1.0])?;
+        let undeformed = shape.gaps(contact.grid())?;
+        for load in [1e-6, 1e-3] {
+            let motion = Motion {
+                eccentricity: place.map(Some),
+                ..Motion::load(load)
+            };
+            let Some(solution) = solve(&contact, &shape, &motion, Algorithm::Cascade)? else {
+                continue;
+            };
+            for &(i, j, _, part) in &legs {
+                let error = solution.pressure[[i, j]] / (load * part) - 1.0;
+                assert!(error.abs() < STATICS, "{load:e}, {legs:?}: {error:e}");
+            }
+            let [sx, sy] = solution.tilt;
+            let deepest = solution.displacement.iter().fold(0.0_f64, |a, &u| a.max(u));
+            for ((i, j), h) in undeformed.indexed_iter() {
+                let down = solution.approach + sx * x[i] + sy * y[j];
+                let gap = h + solution.displacement[[i, j]] - down;
+                // The tolerance, and rounding of heights of 1.
+                assert!(gap > -1e-8 * deepest - 1e-15, "{load:e}, {legs:?}: {gap:e}");
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Three or four cells carry the least of these loads, from place to place of a rough surface as the
-/// moments ask: there an iteration may give up, and must say so. What it calls converged is
-/// balanced.
+/// moments ask. The reference may give up, and must say so; what it calls converged is balanced.
 #[test]
 fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
-    let mut given_up = 0;
     let grid = Grid::new([45, 64], [4.5e-4, 4.8e-4])?;
     let body: HalfSpace = Elastic::new(210e9, 0.3)?.into();
     let contact = Contact::plan(&body, grid, Setup::default())?;
-    for seed in 0..8 {
+    // Among the last ones are contacts that, on the way, cannot carry the moment until the body has
+    // turned far.
+    for seed in (0..8).chain([19, 45, 49]) {
         let rough = HeightMap::new(uniform(grid.shape(), seed) * 3e-7, grid.spacing())?;
         let shape = Paraboloid::new(5e-3, 7.5e-3)?.plus(rough);
         let place = uniform([1, 2], seed + 100);
         let e = [0, 1].map(|k| 0.6 * (place[[0, k]] - 0.5) * grid.size()[k]);
-        for load in [1e-3, 1e-2, 1e-1, 1.0] {
-            let motion = Motion {
-                eccentricity: e.map(Some),
-                ..Motion::load(load)
-            };
-            for algorithm in ALGORITHMS {
-                let solution = solve_or_give_up(&contact, &shape, &motion, algorithm)?;
-                if algorithm == Algorithm::Cascade && solution.is_none() {
-                    given_up += 1;
+        for load in [1e-7, 1e-5, 1e-3, 1e-2, 1e-1, 1.0] {
+            for eccentricity in [[Some(e[0]), Some(e[1])], [Some(e[0]), None]] {
+                let motion = Motion {
+                    eccentricity,
+                    ..Motion::load(load)
+                };
+                for algorithm in ALGORITHMS {
+                    // Elsewhere the reference gives up more often than not.
+                    if (seed < 8 && load >= 1e-3) || algorithm == Algorithm::Cascade {
+                        solve(&contact, &shape, &motion, algorithm)?;
+                    }
                 }
             }
         }
     }
-    assert!(given_up <= 8, "{given_up} of 32");
     Ok(())
 }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use ndarray::{Array2, ArrayRef2};
 
+use super::direct;
 use super::discretisation::Figures;
 use super::freedoms::Freedoms;
 use super::patch::{Patch, block, bounds, hull, widened};
@@ -191,17 +192,28 @@ impl Level<'_> {
             };
             let mut solver = Preconditioned::new(&problem, &approximation);
             let before = *work;
-            let left = Limits {
-                max_iterations: limits.max_iterations - done,
-                ..limits
-            };
-            let outcome = solver.solve(
+            let mut outcome = solver.solve(
                 &mut patch.values,
-                left,
+                limits.after(done),
                 &mut |iterations, spent, quality| watch(done + iterations, before + spent, quality),
             );
             *work += solver.work;
             done += outcome.iterations;
+            // Its workspace serves the next.
+            drop(solver);
+            if outcome.termination == Termination::IterationLimit && done < limits.max_iterations {
+                let before = *work;
+                outcome = direct::solve(
+                    &problem,
+                    &corner,
+                    &mut patch.values,
+                    outcome.lambda,
+                    limits.after(done),
+                    &mut |more, spent, quality| watch(done + more, before + spent, quality),
+                );
+                *work += outcome.work;
+                done += outcome.iterations;
+            }
             let outcome = Outcome {
                 iterations: done,
                 work: *work,

@@ -24,13 +24,15 @@ impl Fields {
         }
     }
 
-    /// Computes displacement, rigid motion, gap and quality of the pressure afresh.
+    /// Computes displacement, rigid motion, gap and quality of the pressure afresh. Where the contact
+    /// does not determine a freedom, it stays as it is.
     pub(super) fn certify(&mut self, problem: &Problem) -> Quality {
         let p = slice(&self.pressure);
         let workspace = &mut problem.convolution.workspace();
         problem.apply(p, slice_mut(&mut self.displacement), workspace);
         let u = slice(&self.displacement);
-        let (lambda, quality) = problem.gap_into(p, u, slice_mut(&mut self.gap));
+        let near = self.lambda;
+        let (lambda, quality) = problem.gap_near(p, u, near, slice_mut(&mut self.gap));
         self.lambda = lambda;
         self.quality = Some(quality);
         quality

@@ -14,6 +14,7 @@
 
 use std::ops::Range;
 
+use super::direct;
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use super::sums::dot;
 use crate::convolution::{Convolution, Workspace};
@@ -47,9 +48,8 @@ pub(super) struct Preconditioned<'a> {
     pub(super) work: f64,
 }
 
-/// Iterations after which each step is exact, and a contact that grows restarts the iteration: slower,
-/// but a contact of a few cells may otherwise go round in circles.
-const PATIENCE: usize = 200;
+/// Iterations after which a contact of a few cells is left to [`direct`]; most have converged by then.
+const PATIENCE: usize = 20;
 
 /// How many cells joined the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,7 +117,8 @@ impl<'a> Preconditioned<'a> {
         self.work += self.problem.convolution.work();
     }
 
-    /// Solves from the balanced pressure `p`, which becomes the solution. Its displacement is the sum
+    /// Solves from the balanced pressure `p`, which becomes the solution, or may end with
+    /// [`Termination::IterationLimit`] early where [`direct`] can go on. Its displacement is the sum
     /// of those of the steps: whoever needs it computes it afresh.
     pub(super) fn solve(&mut self, p: &mut [f64], limits: Limits, watch: &mut Watch) -> Outcome {
         let problem = self.problem;
@@ -151,13 +152,11 @@ impl<'a> Preconditioned<'a> {
             if watch(iterations, self.work, quality) {
                 return end(Termination::Stopped);
             }
-            if iterations == limits.max_iterations {
+            if iterations == limits.max_iterations || (iterations >= PATIENCE && direct::few(p)) {
                 return end(Termination::IterationLimit);
             }
 
-            let careful = iterations >= PATIENCE;
-            let joined = self.join(&g);
-            if joined == Joined::Many || (careful && joined == Joined::Few) {
+            if self.join(&g) == Joined::Many {
                 conjugate = false;
             }
             // The projection is symmetric only if these belong to the contact. While the contact
@@ -201,7 +200,7 @@ impl<'a> Preconditioned<'a> {
             conjugate = true;
             // z and g are no longer needed.
             last = match last {
-                Step::Truncated if !careful => self.step_with_losses(p, &r, slope, &mut z, &mut g),
+                Step::Truncated => self.step_with_losses(p, &r, slope, &mut z, &mut g),
                 _ => Step::None,
             };
             if last == Step::None {

@@ -54,6 +54,24 @@ impl Problem<'_> {
         (lambda, self.quality(p, u, g))
     }
 
+    /// The same where λ is about `near`: freedoms that the contact does not determine (one or two
+    /// cells have no tilt) stay so, where [`Problem::gap_into`] takes 0.
+    pub(super) fn gap_near(
+        &self,
+        p: &[f64],
+        u: &[f64],
+        near: [f64; 3],
+        g: &mut [f64],
+    ) -> ([f64; 3], Quality) {
+        g.copy_from_slice(self.gap);
+        self.freedoms.for_each(near, |k, b| g[k] -= b);
+        let change = self.freedoms.fit(p, u, g);
+        g.iter_mut().zip(u).for_each(|(g, u)| *g += u);
+        self.freedoms.for_each(change, |k, b| g[k] -= b);
+        let lambda = [0, 1, 2].map(|k| near[k] + change[k]);
+        (lambda, self.quality(p, u, g))
+    }
+
     /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
     /// that can touch join it.
     pub(super) fn rebalance(&self, p: &mut [f64]) {
@@ -125,4 +143,14 @@ pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> bool + 'a;
 pub(super) struct Limits {
     pub(super) tolerance: f64,
     pub(super) max_iterations: usize,
+}
+
+impl Limits {
+    /// Those that are left after so many iterations.
+    pub(super) fn after(self, iterations: usize) -> Self {
+        Self {
+            max_iterations: self.max_iterations - iterations,
+            ..self
+        }
+    }
 }
