@@ -1,8 +1,8 @@
 """Where does a hard coating crack, and its substrate yield, when a ball slides on it?
 
-A steel ball on steel with a coating of twice its modulus, for three thicknesses and a coefficient of
-friction of 0.15. Tension in the coating opens cracks behind the ball and above the interface; shear
-there peels it off; von Mises' stress makes the substrate yield.
+A steel ball on steel with a coating of twice its modulus, for three thicknesses and a coefficient
+of friction of 0.15. Tension in the coating opens cracks behind the ball and above the interface;
+shear there peels it off; von Mises' stress makes the substrate yield.
 """
 
 import nacre
@@ -22,7 +22,7 @@ for thickness in (2e-6, 10e-6, 40e-6):
     )
     layer, substrate = summary.layers
     tension, (x, _, z) = layer.tension
-    peel, _ = summary.interfaces[0].shear
+    peel = summary.interfaces[0].shear[0]
     print(
         f"{thickness * 1e6:4.0f}   {solution.peak_pressure / 1e9:8.3f}   {tension / 1e9:11.3f}"
         f"   {x * 1e6:7.1f}   {z * 1e6:5.1f}   {layer.strength_margin:6.2f}   {peel / 1e9:8.3f}"
