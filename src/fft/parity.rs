@@ -314,74 +314,114 @@ impl PaddedTransform {
     }
 }
 
-/// y of the module's formula from f, and C_1 of an even sequence.
+/// y of the module's formula from f, and C_1 of an even sequence. Of the entries j and N − j, which
+/// share a sine, both are made at once.
 fn fold<T>(f: &[T], odd: bool, angles: &Angles, y: &mut [T]) -> T
 where
     T: Copy + Default + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
 {
-    let pairs = f[1..].iter().zip(f[1..].iter().rev());
-    let entries = y[1..].iter_mut().zip(pairs).zip(&angles.sin);
+    let pairs = angles.sin.len() / 2;
+    let (low, high) = f[1..].split_at(f.len() - 1 - pairs);
+    let (low_y, high_y) = y[1..].split_at_mut(f.len() - 1 - pairs);
+    let ends = low.iter().zip(high.iter().rev());
+    let made = low_y.iter_mut().zip(high_y.iter_mut().rev());
+    let entries = ends.zip(made).zip(angles.sin.iter().zip(&angles.cos));
+    let (mut first, middle);
     if odd {
-        entries.for_each(|((y, (a, b)), sin)| *y = (*a - *b) * 0.5 + (*a + *b) * *sin);
-        y[0] = T::default();
-        return T::default();
-    }
-    entries.for_each(|((y, (a, b)), sin)| *y = (*a + *b) * 0.5 - (*a - *b) * *sin);
-    y[0] = f[0] * 0.5;
-    // Four sums side by side: each addition would wait for the one before.
-    let mut sums = [y[0], T::default(), T::default(), T::default()];
-    let (fours, last) = f[1..].as_chunks::<4>();
-    let (cosines, last_cosines) = angles.cos.as_chunks::<4>();
-    for (f, cos) in fours.iter().zip(cosines) {
-        for k in 0..4 {
-            sums[k] = sums[k] + f[k] * cos[k];
+        first = T::default();
+        for (((a, b), (low, high)), (sin, _)) in entries {
+            let (half, sum) = ((*a - *b) * 0.5, (*a + *b) * *sin);
+            (*low, *high) = (sum + half, sum - half);
         }
+        y[0] = T::default();
+        middle = 2.0;
+    } else {
+        first = f[0] * 0.5;
+        for (((a, b), (low, high)), (sin, cos)) in entries {
+            let (half, difference) = ((*a + *b) * 0.5, *a - *b);
+            let turned = difference * *sin;
+            (*low, *high) = (half - turned, half + turned);
+            first = first + difference * *cos;
+        }
+        y[0] = f[0] * 0.5;
+        middle = 1.0;
     }
-    let [a, b, c, d] = sums;
-    let rest = last.iter().zip(last_cosines);
-    rest.fold((a + b) + (c + d), |sum, (f, cos)| sum + *f * *cos)
+    // Where N is even, j = N/2 is its own partner; its sine is 1, its cosine 0.
+    if f.len() % 2 == 0 {
+        y[f.len() / 2] = f[f.len() / 2] * middle;
+    }
+    first
 }
 
 /// The transform of the whole, less −i where it is odd, from Y at 0 … N/2.
 fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64]) {
-    let mut term = if odd { y[0].re } else { 2.0 * first };
-    for (k, (two, y)) in values.chunks_mut(2).zip(y).enumerate() {
-        let (even, step) = if odd { (-y.im, y.re) } else { (y.re, -y.im) };
-        if k > 0 {
-            term += 2.0 * step;
-        }
-        two[0] = 2.0 * even;
-        if let Some(last) = two.get_mut(1) {
-            *last = term;
-        }
-    }
     if odd {
-        values.iter_mut().for_each(|value| *value = -*value);
+        unfold_with(y, -y[0].re, values, |y| (2.0 * y.im, -2.0 * y.re));
+    } else {
+        unfold_with(y, 2.0 * first, values, |y| (2.0 * y.re, -2.0 * y.im));
     }
 }
 
-/// The same of two sequences, of which Y is that of the first plus i times the second.
+/// The terms 2k and the steps from 2k − 1 to 2k + 1 by `terms`; the term 1 is given.
+fn unfold_with(
+    y: &[Complex64],
+    first: f64,
+    values: &mut [f64],
+    terms: impl Fn(Complex64) -> (f64, f64),
+) {
+    let mut last = first;
+    (values[0], values[1]) = (terms(y[0]).0, last);
+    let (twos, rest) = values[2..].as_chunks_mut::<2>();
+    for (two, y) in twos.iter_mut().zip(&y[1..]) {
+        let (even, step) = terms(*y);
+        last += step;
+        *two = [even, last];
+    }
+    if let ([end], Some(y)) = (rest, y.get(1 + twos.len())) {
+        *end = terms(*y).0;
+    }
+}
+
+/// The same of two sequences, of which Y, at 0 … N − 1, is that of the first plus i times the
+/// second.
 fn unfold_pair(y: &[Complex64], odd: bool, first: Complex64, one: &mut [f64], other: &mut [f64]) {
-    // Twice Y of the first is y + y*, of the second −i (y − y*), with y* mirrored and conjugate.
-    let mut terms = if odd { y[0] } else { 2.0 * first };
-    let sign = if odd { -1.0 } else { 1.0 };
-    let mirrored = y[..1].iter().chain(y[1..].iter().rev());
-    let twos = one.chunks_mut(2).zip(other.chunks_mut(2));
-    for (k, ((one, other), (y, m))) in twos.zip(y.iter().zip(mirrored)).enumerate() {
-        let (re, im) = (
-            Complex64::new(y.re + m.re, y.im + m.im),
-            Complex64::new(y.im - m.im, m.re - y.re),
-        );
-        let (even, step) = if odd { (-im, re) } else { (re, -im) };
-        if k > 0 {
-            terms += step;
-        }
-        one[0] = sign * even.re;
-        other[0] = sign * even.im;
-        if let (Some(one), Some(other)) = (one.get_mut(1), other.get_mut(1)) {
-            *one = sign * terms.re;
-            *other = sign * terms.im;
-        }
+    // Twice Y of the first is y + y*, of the second −i (y − y*), with y* mirrored and conjugate:
+    // their real parts make y + m, their imaginary parts −i (y − m) conjugate.
+    let real = |y: Complex64, m: Complex64| y + m;
+    let imaginary = |y: Complex64, m: Complex64| Complex64::new(y.im - m.im, m.re - y.re);
+    if odd {
+        unfold_pair_with(y, -y[0], one, other, |y, m| (imaginary(y, m), -real(y, m)));
+    } else {
+        let first = 2.0 * first;
+        unfold_pair_with(y, first, one, other, |y, m| (real(y, m), -imaginary(y, m)));
+    }
+}
+
+fn unfold_pair_with(
+    y: &[Complex64],
+    first: Complex64,
+    one: &mut [f64],
+    other: &mut [f64],
+    terms: impl Fn(Complex64, Complex64) -> (Complex64, Complex64),
+) {
+    let mut last = first;
+    let even = terms(y[0], y[0]).0;
+    (one[0], one[1]) = (even.re, last.re);
+    (other[0], other[1]) = (even.im, last.im);
+    let (ones, one) = one[2..].as_chunks_mut::<2>();
+    let (others, other) = other[2..].as_chunks_mut::<2>();
+    let mirrored = y[1..].iter().zip(y[1..].iter().rev());
+    let middle = 1 + ones.len();
+    for ((one, other), (y, m)) in ones.iter_mut().zip(others).zip(mirrored) {
+        let (even, step) = terms(*y, *m);
+        last += step;
+        *one = [even.re, last.re];
+        *other = [even.im, last.im];
+    }
+    if let ([one], [other]) = (one, other) {
+        let y = y[middle];
+        let even = terms(y, y).0;
+        (*one, *other) = (even.re, even.im);
     }
 }
 
