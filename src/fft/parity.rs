@@ -347,7 +347,7 @@ where
         middle = 1.0;
     }
     // Where N is even, j = N/2 is its own partner; its sine is 1, its cosine 0.
-    if f.len() % 2 == 0 {
+    if f.len().is_multiple_of(2) {
         y[f.len() / 2] = f[f.len() / 2] * middle;
     }
     first
