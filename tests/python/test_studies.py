@@ -160,7 +160,7 @@ def test_the_executor_changes_no_bit(
 
             cluster = stack.enter_context(
                 LocalCluster(  # type: ignore[no-untyped-call]
-                    n_workers=2, threads_per_worker=1, dashboard_address=None
+                    n_workers=2, threads_per_worker=1, dashboard_address=":0"
                 )
             )
             client = stack.enter_context(Client(cluster))  # type: ignore[no-untyped-call]
