@@ -12,6 +12,7 @@ mod batch;
 mod bodies;
 mod call;
 mod contact;
+mod evaluation;
 mod functions;
 mod grid;
 mod profiles;

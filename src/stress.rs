@@ -26,6 +26,7 @@ use crate::memory::check_memory;
 
 mod cells;
 mod components;
+mod depths;
 mod derived;
 mod hankel;
 mod kernel;

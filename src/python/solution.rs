@@ -11,8 +11,9 @@ use pyo3::types::{PyDict, PyTuple};
 use super::arrays::{read_only, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::PyHalfSpace;
+use super::evaluation::{self, Keywords};
 use super::report::PyReport;
-use super::stress::{self, Keywords, PyStress};
+use super::stress::{PyStress, field};
 use super::summary::PyStressSummary;
 use crate::contact::Solution;
 use crate::stress::Limits;
@@ -279,8 +280,8 @@ impl PySolution {
         threads: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyStress> {
-        let member = stress::member(body)?;
-        let (depths, one) = stress::depths(z)?;
+        let member = evaluation::member(body)?;
+        let (depths, one) = evaluation::depths(z)?;
         let keywords = Keywords {
             side,
             x,
@@ -293,10 +294,10 @@ impl PySolution {
         };
         let options = keywords.options(self.solution.member(member)?)?;
         let solution = Arc::clone(&self.solution);
-        let field = stress::watched(py, progress, move |progress| {
+        let evaluated = evaluation::watched(py, progress, move |progress| {
             solution.stress_watched(&depths, member, &options, progress)
         })?;
-        Ok(stress::field(field, one, &keywords))
+        Ok(field(evaluated, one, &keywords))
     }
 
     /// The extremes of the stress in each layer and at each interface, and margins.
@@ -363,11 +364,11 @@ impl PySolution {
         threads: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyStressSummary> {
-        let member = stress::member(body)?;
+        let member = evaluation::member(body)?;
         let of = self.solution.member(member)?;
         let limits = Limits {
-            yield_stress: stress::by_layer("yield_stress", of, yield_stress)?,
-            strength: stress::by_layer("strength", of, strength)?,
+            yield_stress: evaluation::by_layer("yield_stress", of, yield_stress)?,
+            strength: evaluation::by_layer("strength", of, strength)?,
         };
         let keywords = Keywords {
             side: "below",
@@ -381,7 +382,7 @@ impl PySolution {
         };
         let options = keywords.options(of)?;
         let solution = Arc::clone(&self.solution);
-        let summary = stress::watched(py, progress, move |progress| {
+        let summary = evaluation::watched(py, progress, move |progress| {
             solution.stress_summary(member, &limits, &options, progress)
         })?;
         Ok(PyStressSummary(summary))
