@@ -43,7 +43,7 @@ pub use problem::Termination;
 pub use solution::{Balance, Report, Solution, Warning};
 
 use cascade::{Cascade, Levels};
-use discretisation::{Figures, estimate};
+use discretisation::estimate;
 use fields::{Fields, array, slice};
 use freedoms::Freedoms;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
@@ -234,7 +234,7 @@ impl Contact {
             report,
         };
         if solution.report.converged() {
-            figures.push(Figures::of(&solution));
+            figures.push(solution.figures());
             solution.report.discretisation = estimate(&figures);
         }
         solution.report.balance = review::balance(&solution, motion);

@@ -7,7 +7,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use ndarray::{Array2, ArrayRef2};
+use ndarray::ArrayRef2;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
@@ -15,9 +15,12 @@ use rustfft::{Fft, FftPlanner};
 
 use crate::threads::Threads;
 
+mod cosine;
 mod parity;
+mod series;
 
 pub(crate) use parity::{Blocks, KernelTransform, ParitySpectrum, Transformed};
+pub(crate) use series::{fourier_coefficients, inverse_even};
 
 /// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
 /// columns of a few thousand points stay in the second-level cache.
@@ -284,30 +287,8 @@ impl PaddedTransform {
         } = workspace;
         let rows = &mut rows[..nx * columns];
         let blocks = &mut blocks[..self.blocks() * nx * BLOCK];
+        self.rows_forward(input, rows, tasks, threads);
         let rows_of_a_task = nx.div_ceil(self.tasks);
-
-        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
-            for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
-                let start = (first + row) * ny;
-                let values = &input[start..start + ny];
-                if values.iter().all(|&value| value == 0.0) {
-                    half.fill(ZERO);
-                    continue;
-                }
-                scratch.real[..ny].copy_from_slice(values);
-                let real = &mut scratch.real[..self.padded[1]];
-                real[ny..].fill(0.0);
-                self.rows_to_spectrum(real, half, &mut scratch.fft);
-            }
-        };
-        self.over_rows(
-            threads,
-            rows,
-            columns * rows_of_a_task,
-            tasks,
-            rows_of_a_task,
-            forward,
-        );
 
         let rows = &*rows;
         let quarter_rows = self.quarter_rows();
@@ -364,6 +345,34 @@ impl PaddedTransform {
             rows_of_a_task,
             inverse,
         );
+    }
+
+    /// Transforms the rows of `input` along y into `rows`.
+    fn rows_forward(
+        &self,
+        input: &[f64],
+        rows: &mut [Complex64],
+        tasks: &mut [TaskScratch],
+        threads: &Threads,
+    ) {
+        let ([nx, ny], columns) = (self.shape, self.columns());
+        let rows_of_a_task = nx.div_ceil(self.tasks);
+        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
+            for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
+                let start = (first + row) * ny;
+                let values = &input[start..start + ny];
+                if values.iter().all(|&value| value == 0.0) {
+                    half.fill(ZERO);
+                    continue;
+                }
+                let real = &mut scratch.real[..self.padded[1]];
+                real[..ny].copy_from_slice(values);
+                real[ny..].fill(0.0);
+                self.rows_to_spectrum(real, half, &mut scratch.fft);
+            }
+        };
+        let chunk = columns * rows_of_a_task;
+        self.over_rows(threads, rows, chunk, tasks, rows_of_a_task, forward);
     }
 
     /// Calls `work` with the number of its first item for each chunk of `data`, one task a chunk.
@@ -429,74 +438,4 @@ impl PaddedTransform {
         let done = self.row_inverse.process_with_scratch(half, real, scratch);
         debug_assert!(done.is_ok(), "lengths are the plan's own");
     }
-}
-
-/// Inverse transform of a real and even spectrum of (mx, my) points, of which `value(k, l)` gives
-/// the entries 0 ≤ k ≤ mx/2, 0 ≤ l ≤ my/2 (mx, my even); its corner (nx, ny) is returned.
-pub(crate) fn inverse_even(
-    [nx, ny]: [usize; 2],
-    [mx, my]: [usize; 2],
-    value: impl Fn(usize, usize) -> f64 + Sync,
-    threads: &Threads,
-) -> Array2<f64> {
-    let mut planner = FftPlanner::new();
-    let (along_x, along_y) = (planner.plan_fft_forward(mx), planner.plan_fft_forward(my));
-    let (half_x, half_y) = (mx / 2, my / 2);
-    // The transform of real, even data is real and even, and forward and inverse are the same.
-    let even = |fft: &Arc<dyn Fft<f64>>, buffer: &mut [Complex64], scratch: &mut Vec<Complex64>| {
-        scratch.resize(fft.get_inplace_scratch_len(), ZERO);
-        fft.process_with_scratch(buffer, scratch);
-    };
-    let mut columns = Array2::<f64>::zeros((half_y + 1, nx));
-    let mut out = Array2::<f64>::zeros((nx, ny));
-    let scale = 1.0 / (mx as f64 * my as f64);
-    threads.run(|| {
-        columns
-            .axis_iter_mut(ndarray::Axis(0))
-            .into_par_iter()
-            .enumerate()
-            .for_each_init(
-                || (vec![ZERO; mx], Vec::new()),
-                |(buffer, scratch), (l, mut column)| {
-                    for k in 0..=half_x {
-                        let entry = Complex64::new(value(k, l), 0.0);
-                        buffer[k] = entry;
-                        buffer[(mx - k) % mx] = entry;
-                    }
-                    even(&along_x, buffer, scratch);
-                    column.iter_mut().zip(&*buffer).for_each(|(c, b)| *c = b.re);
-                },
-            );
-        out.axis_iter_mut(ndarray::Axis(0))
-            .into_par_iter()
-            .enumerate()
-            .for_each_init(
-                || (vec![ZERO; my], Vec::new()),
-                |(buffer, scratch), (i, mut row)| {
-                    for l in 0..=half_y {
-                        let entry = Complex64::new(columns[[l, i]], 0.0);
-                        buffer[l] = entry;
-                        buffer[(my - l) % my] = entry;
-                    }
-                    even(&along_y, buffer, scratch);
-                    row.iter_mut()
-                        .zip(&*buffer)
-                        .for_each(|(c, b)| *c = b.re * scale);
-                },
-            );
-    });
-    out
-}
-
-/// Fourier coefficients of `samples`, c_m = 1/N Σ f_n e^{−2πi mn/N}, 0 ≤ m ≤ N/2, as (re, im).
-pub(crate) fn fourier_coefficients(mut samples: Vec<f64>) -> Vec<(f64, f64)> {
-    let scale = 1.0 / samples.len() as f64;
-    let fft = RealFftPlanner::new().plan_fft_forward(samples.len());
-    let mut spectrum = fft.make_output_vec();
-    let done = fft.process(&mut samples, &mut spectrum);
-    debug_assert!(done.is_ok(), "lengths are the plan's own");
-    spectrum
-        .iter()
-        .map(|c| (c.re * scale, c.im * scale))
-        .collect()
 }

@@ -32,7 +32,7 @@ const WAVENUMBERS: [f64; 9] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 8.0, 16.0, 32.0];
 /// let layers = graded_layers(steel, 10e-6, 1e-3, |z| Elastic::new(420e9 - 21e15 * z, 0.3))?;
 /// assert!(layers.len() < 200);
 /// let body = HalfSpace::new(steel, layers)?;
-/// assert!((body.interfaces().last().unwrap() / 10e-6 - 1.0).abs() < 1e-12);
+/// assert!(body.interfaces().last().is_some_and(|depth| (depth / 10e-6 - 1.0).abs() < 1e-12));
 /// # Ok::<(), nacre::Error>(())
 /// ```
 pub fn graded_layers(

@@ -106,6 +106,8 @@ def sweep(
     with extra("files"):
         import xarray  # noqa: F401
 
+    if not (callable(case) or isinstance(case, Mapping)):
+        raise TypeError(f"case must be callable or a mapping of arguments, got {case!r}")
     path = None if store is None else Path(store)
     if path is not None and path.suffix != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")

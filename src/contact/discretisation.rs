@@ -1,7 +1,5 @@
 //! How far a solution is from that of ever finer cells, from the cascade's own grids.
 
-use super::solution::Solution;
-
 /// Estimated errors that the size of the cells leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Discretisation {
@@ -19,16 +17,6 @@ pub(super) struct Figures {
     pub(super) peak_pressure: f64,
     pub(super) approach: f64,
     pub(super) load: f64,
-}
-
-impl Figures {
-    pub(super) fn of(solution: &Solution) -> Self {
-        Self {
-            peak_pressure: solution.peak_pressure(),
-            approach: solution.approach,
-            load: solution.load(),
-        }
-    }
 }
 
 /// The error of the last of `figures`, each from cells half as long as those before; none where there

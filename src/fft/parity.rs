@@ -1,25 +1,17 @@
 //! Convolution of one input with many kernels, each even or odd along x and along y.
 //!
 //! Of such a kernel only offsets ≥ 0 are given and transformed: along each direction a cosine or
-//! sine transform of half the length. With f_j, 0 ≤ j ≤ N, f_N = 0 and M = 2N points in all,
-//!
-//! ```text
-//! even: y_j = ½ (f_j + f_{N−j}) − sin(πj/N) (f_j − f_{N−j})      C_2k = Re Y_k   C_{2k+1} = C_{2k−1} − Im Y_k
-//! odd:  y_j = ½ (f_j − f_{N−j}) + sin(πj/N) (f_j + f_{N−j})      S_2k = −Im Y_k  S_{2k+1} = S_{2k−1} + Re Y_k
-//! ```
-//!
-//! where Y is the transform of y over N points, C_1 = ½ f_0 + Σ f_j cos(πj/N) and S_1 = ½ Y_0; the
-//! transform of the whole is 2C, or −2i S. Press et al., Numerical Recipes, 3rd ed., §12.4.
+//! sine transform of half the length, see [`super::cosine`].
 
 use std::f64::consts::PI;
 use std::fmt;
-use std::ops::{Add, Mul, Sub};
 use std::sync::Arc;
 
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
+use super::cosine::{Angles, fold, unfold, unfold_pair};
 use super::{BLOCK, PaddedTransform, TaskScratch, Workspace, ZERO};
 use crate::threads::Threads;
 
@@ -52,12 +44,6 @@ pub(crate) struct KernelTransform {
     rows: Vec<f64>,
 }
 
-/// sin and cos of πj/N, 0 < j < N.
-struct Angles {
-    sin: Vec<f64>,
-    cos: Vec<f64>,
-}
-
 impl fmt::Debug for KernelTransform {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [nx, ny] = self.angles.each_ref().map(|angles| angles.sin.len() + 1);
@@ -73,28 +59,11 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) -> Transformed {
-        let [nx, ny] = self.shape;
+        let nx = self.shape[0];
         let (mx, columns) = (self.padded[0], self.columns());
         let Workspace { rows, tasks, .. } = workspace;
-        let rows_of_a_task = nx.div_ceil(self.tasks);
-        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
-            for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
-                let start = (first + row) * ny;
-                let real = &mut scratch.real[..self.padded[1]];
-                real[..ny].copy_from_slice(&input[start..start + ny]);
-                real[ny..].fill(0.0);
-                self.rows_to_spectrum(real, half, &mut scratch.fft);
-            }
-        };
         let rows = &mut rows[..nx * columns];
-        self.over_rows(
-            threads,
-            rows,
-            columns * rows_of_a_task,
-            tasks,
-            rows_of_a_task,
-            forward,
-        );
+        self.rows_forward(input, rows, tasks, threads);
         let rows = &*rows;
         let mut spectrum = vec![ZERO; columns * mx];
         let along = |first: usize, part: &mut [Complex64], scratch: &mut TaskScratch| {
@@ -311,117 +280,6 @@ impl PaddedTransform {
                 inverse,
             );
         }
-    }
-}
-
-/// y of the module's formula from f, and C_1 of an even sequence. Of the entries j and N − j, which
-/// share a sine, both are made at once.
-fn fold<T>(f: &[T], odd: bool, angles: &Angles, y: &mut [T]) -> T
-where
-    T: Copy + Default + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
-{
-    let pairs = angles.sin.len() / 2;
-    let (low, high) = f[1..].split_at(f.len() - 1 - pairs);
-    let (low_y, high_y) = y[1..].split_at_mut(f.len() - 1 - pairs);
-    let ends = low.iter().zip(high.iter().rev());
-    let made = low_y.iter_mut().zip(high_y.iter_mut().rev());
-    let entries = ends.zip(made).zip(angles.sin.iter().zip(&angles.cos));
-    let (mut first, middle);
-    if odd {
-        first = T::default();
-        for (((a, b), (low, high)), (sin, _)) in entries {
-            let (half, sum) = ((*a - *b) * 0.5, (*a + *b) * *sin);
-            (*low, *high) = (sum + half, sum - half);
-        }
-        y[0] = T::default();
-        middle = 2.0;
-    } else {
-        first = f[0] * 0.5;
-        for (((a, b), (low, high)), (sin, cos)) in entries {
-            let (half, difference) = ((*a + *b) * 0.5, *a - *b);
-            let turned = difference * *sin;
-            (*low, *high) = (half - turned, half + turned);
-            first = first + difference * *cos;
-        }
-        y[0] = f[0] * 0.5;
-        middle = 1.0;
-    }
-    // Where N is even, j = N/2 is its own partner; its sine is 1, its cosine 0.
-    if f.len().is_multiple_of(2) {
-        y[f.len() / 2] = f[f.len() / 2] * middle;
-    }
-    first
-}
-
-/// The transform of the whole, less −i where it is odd, from Y at 0 … N/2.
-fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64]) {
-    if odd {
-        unfold_with(y, -y[0].re, values, |y| (2.0 * y.im, -2.0 * y.re));
-    } else {
-        unfold_with(y, 2.0 * first, values, |y| (2.0 * y.re, -2.0 * y.im));
-    }
-}
-
-/// The terms 2k and the steps from 2k − 1 to 2k + 1 by `terms`; the term 1 is given.
-fn unfold_with(
-    y: &[Complex64],
-    first: f64,
-    values: &mut [f64],
-    terms: impl Fn(Complex64) -> (f64, f64),
-) {
-    let mut last = first;
-    (values[0], values[1]) = (terms(y[0]).0, last);
-    let (twos, rest) = values[2..].as_chunks_mut::<2>();
-    for (two, y) in twos.iter_mut().zip(&y[1..]) {
-        let (even, step) = terms(*y);
-        last += step;
-        *two = [even, last];
-    }
-    if let ([end], Some(y)) = (rest, y.get(1 + twos.len())) {
-        *end = terms(*y).0;
-    }
-}
-
-/// The same of two sequences, of which Y, at 0 … N − 1, is that of the first plus i times the
-/// second.
-fn unfold_pair(y: &[Complex64], odd: bool, first: Complex64, one: &mut [f64], other: &mut [f64]) {
-    // Twice Y of the first is y + y*, of the second −i (y − y*), with y* mirrored and conjugate:
-    // their real parts make y + m, their imaginary parts −i (y − m) conjugate.
-    let real = |y: Complex64, m: Complex64| y + m;
-    let imaginary = |y: Complex64, m: Complex64| Complex64::new(y.im - m.im, m.re - y.re);
-    if odd {
-        unfold_pair_with(y, -y[0], one, other, |y, m| (imaginary(y, m), -real(y, m)));
-    } else {
-        let first = 2.0 * first;
-        unfold_pair_with(y, first, one, other, |y, m| (real(y, m), -imaginary(y, m)));
-    }
-}
-
-fn unfold_pair_with(
-    y: &[Complex64],
-    first: Complex64,
-    one: &mut [f64],
-    other: &mut [f64],
-    terms: impl Fn(Complex64, Complex64) -> (Complex64, Complex64),
-) {
-    let mut last = first;
-    let even = terms(y[0], y[0]).0;
-    (one[0], one[1]) = (even.re, last.re);
-    (other[0], other[1]) = (even.im, last.im);
-    let (ones, one) = one[2..].as_chunks_mut::<2>();
-    let (others, other) = other[2..].as_chunks_mut::<2>();
-    let mirrored = y[1..].iter().zip(y[1..].iter().rev());
-    let middle = 1 + ones.len();
-    for ((one, other), (y, m)) in ones.iter_mut().zip(others).zip(mirrored) {
-        let (even, step) = terms(*y, *m);
-        last += step;
-        *one = [even.re, last.re];
-        *other = [even.im, last.im];
-    }
-    if let ([one], [other]) = (one, other) {
-        let y = y[middle];
-        let even = terms(y, y).0;
-        (*one, *other) = (even.re, even.im);
     }
 }
 

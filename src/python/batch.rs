@@ -84,7 +84,11 @@ pub(super) fn solve_many(
 ) -> PyResult<Vec<Py<PySolution>>> {
     let progress = progress_callable(progress)?;
     let mut parsed = Vec::new();
-    for (number, item) in cases.try_iter()?.enumerate() {
+    let iterable = cases.try_iter().map_err(|_| {
+        let got = Repr(cases);
+        PyTypeError::new_err(format!("cases must be an iterable of mappings, got {got}"))
+    })?;
+    for (number, item) in iterable.enumerate() {
         parsed.push(case(&item?).map_err(|error| of_case(py, error, number))?);
     }
     let total = parsed.len();

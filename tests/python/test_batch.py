@@ -49,6 +49,11 @@ def test_an_error_says_which_case_it_is_of(case: Any, error: type[Exception], me
     assert raised.value.__notes__ == [f"in case {len(CASES)}"]
 
 
+def test_what_is_no_list_of_cases_is_named() -> None:
+    with pytest.raises(TypeError, match="cases must be an iterable of mappings, got 5"):
+        CONTACT.solve_many(5)  # type: ignore[arg-type]
+
+
 def test_a_bad_case_does_not_lose_the_others() -> None:
     with pytest.raises(ValueError, match="load must be") as raised:
         CONTACT.solve_many([*CASES, {"shape": SPHERE, "load": -1.0}, CASES[0]])

@@ -564,3 +564,8 @@ def test_the_tilt_curve_is_odd_and_inverts_the_eccentricity() -> None:
 def test_an_unknown_option_of_a_helper_is_refused() -> None:
     with pytest.raises(TypeError, match="force: no argument of"):
         design.load_curve(nacre.Sphere(5e-3), STEEL, [1.0], force=3)
+
+
+def test_a_case_that_is_no_case_is_named() -> None:
+    with pytest.raises(TypeError, match="case must be callable or a mapping of arguments, got 3"):
+        nacre.sweep(3, PARAMETERS)  # type: ignore[arg-type]

@@ -11,12 +11,11 @@ import numpy.typing as npt
 from nacre._core import Solution, Stress
 from nacre._extras import extra
 from nacre.plot.stress import around, body_of, colourbar
-from nacre.plot.style import COLOURMAP, SIGNED, STYLE, WIDTH, lengths
+from nacre.plot.style import COLOURMAP, SIGNED, STYLE, lengths, new_axes
 from nacre.units import Scale, written
 
 with extra("plot"):
     import matplotlib as mpl
-    import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
@@ -90,9 +89,7 @@ def interface_map(
     largest = scale.factor * np.abs(values).max() or 1.0
     signed = quantity == "normal"
     with mpl.rc_context(STYLE):
-        if axes is None:
-            size = (0.7 * WIDTH, 0.5 * WIDTH)
-            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        axes = axes or new_axes(0.7, 0.5)
         corners = [
             length.factor * np.linspace(*side, cells + 1)
             for length, side, cells in zip((across, up), ends, grid.shape, strict=True)

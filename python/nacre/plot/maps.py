@@ -11,7 +11,7 @@ from nacre._core import Solution
 from nacre._display import figures
 from nacre._extras import extra
 from nacre.plot.sections import section
-from nacre.plot.style import COLOURMAP, STYLE, WIDTH, lengths
+from nacre.plot.style import COLOURMAP, STYLE, WIDTH, lengths, new_axes
 from nacre.units import Scale
 
 with extra("plot"):
@@ -100,9 +100,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     scales, same = lengths(window)
     scale = Scale.of(solution.peak_pressure, "Pa")
     with mpl.rc_context(STYLE):
-        if axes is None:
-            size = (0.7 * WIDTH, 0.5 * WIDTH)
-            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        axes = axes or new_axes(0.7, 0.5)
         corners = [
             factor * np.linspace(low, high, cells + 1)
             for factor, (low, high), cells in zip(

@@ -10,12 +10,11 @@ import numpy.typing as npt
 
 from nacre._core import Solution
 from nacre._extras import extra
-from nacre.plot.style import STYLE, WIDTH, look
+from nacre.plot.style import STYLE, look, new_axes
 from nacre.units import UNITS, Scale, written
 
 with extra("plot"):
     import matplotlib as mpl
-    import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
@@ -61,8 +60,7 @@ def section(
     """
     position, values, place = cut(solution, along, at, quantity)
     with mpl.rc_context(STYLE):
-        if axes is None:
-            axes = plt.figure(figsize=(WIDTH, 0.5 * WIDTH), layout="constrained").add_subplot()
+        axes = axes or new_axes(1.0, 0.5)
         window = _window(solution, along, quantity)
         length = Scale.of(np.abs(window).max(), "m")
         scale = Scale.of(_shown(position, values, window).max(initial=0.0), UNITS[quantity])
@@ -121,8 +119,7 @@ def compare(
     largest = max(_shown(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
     length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, UNITS[quantity])
     with mpl.rc_context(STYLE):
-        if axes is None:
-            axes = plt.figure(figsize=(WIDTH, 0.55 * WIDTH), layout="constrained").add_subplot()
+        axes = axes or new_axes(1.0, 0.55)
         for number, (name, (position, values, _)) in enumerate(cuts.items()):
             label = f"{name} (peak {written(solutions[name].peak_pressure, 'Pa', 3)})"
             curve = (length.factor * position, scale.factor * values)

@@ -11,12 +11,11 @@ import numpy.typing as npt
 
 from nacre._core import HalfSpace, Solution, Stress
 from nacre._extras import extra
-from nacre.plot.style import COLOURMAP, SIGNED, STYLE, WIDTH, lengths, look
+from nacre.plot.style import COLOURMAP, SIGNED, STYLE, lengths, look, new_axes
 from nacre.units import Scale, written
 
 with extra("plot"):
     import matplotlib as mpl
-    import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
@@ -109,9 +108,7 @@ def stress_section(
     signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
     largest = scale.factor * np.abs(values).max(initial=0.0) or 1.0
     with mpl.rc_context(STYLE):
-        if axes is None:
-            size = (0.75 * WIDTH, 0.45 * WIDTH)
-            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        axes = axes or new_axes(0.75, 0.45)
         mesh = axes.pcolormesh(
             across.factor * sides,
             down.factor * edges,
@@ -207,8 +204,7 @@ def stress_depth(
     length = Scale.of(bottom, "m")
     scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
     with mpl.rc_context(STYLE):
-        if axes is None:
-            axes = plt.figure(figsize=(WIDTH, 0.5 * WIDTH), layout="constrained").add_subplot()
+        axes = axes or new_axes(1.0, 0.5)
         for number, (quantity, values) in enumerate(zip(quantities, drawn, strict=True)):
             curve = (length.factor * z[order], scale.factor * values)
             axes.plot(*curve, **look(number), label=LABELS[quantity])

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from nacre._extras import extra
-from nacre.plot.style import COLOURMAP, STYLE, WIDTH, look
+from nacre.plot.style import COLOURMAP, STYLE, look, new_axes
 from nacre.units import UNITS, Scale
 
 with extra("plot"):
     import matplotlib as mpl
-    import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
     from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -46,9 +45,7 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
     x, y = (study[str(name)] for name in field.dims)
     scale = _scale(field, quantity)
     with mpl.rc_context(STYLE):
-        if axes is None:
-            size = (0.7 * WIDTH, 0.5 * WIDTH)
-            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        axes = axes or new_axes(0.7, 0.5)
         sides = [_side(axes, "x", x), _side(axes, "y", y)]
         values = scale.factor * field.values.T
         filled = axes.contourf(*sides, values, levels=24, cmap=COLOURMAP)
@@ -89,9 +86,7 @@ def curve(
     field = _quantity(study, quantity, 1)
     scale = _scale(field, quantity)
     with mpl.rc_context(STYLE):
-        if axes is None:
-            size = (0.6 * WIDTH, 0.42 * WIDTH)
-            axes = plt.figure(figsize=size, layout="constrained").add_subplot()
+        axes = axes or new_axes(0.6, 0.42)
         x = _side(axes, "x", study[str(field.dims[0])])
         axes.plot(x, scale.factor * field.values, **(look(0) | {"marker": "o", "ms": 3} | style))
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")

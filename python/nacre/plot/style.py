@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 
 from nacre.units import Scale
 
@@ -42,6 +44,12 @@ SIGNED = "RdBu_r"
 """Colours of what may be tension or compression."""
 LONGEST = 6.0
 """Side ratio up to which a picture is true to scale."""
+
+
+def new_axes(width: float, height: float) -> Axes:
+    """Return axes of a new figure, of a size in widths of a page."""
+    size = (width * WIDTH, height * WIDTH)
+    return plt.figure(figsize=size, layout="constrained").add_subplot()
 
 
 def look(number: int) -> dict[str, Any]:
