@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
+from nacre._extras import extra
 from nacre.units import Scale
+
+with extra("plot"):
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
 
 WIDTH = 18 / 2.54
 """Width of a page between its margins [inch]."""
