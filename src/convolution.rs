@@ -3,12 +3,13 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result};
 use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
+use crate::pool::{Lease, Pool};
 use crate::threads::Threads;
 
 /// Influence coefficients, transformed once to be applied often.
@@ -32,33 +33,14 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
-    idle: Arc<Idle>,
-}
-
-/// Memory of applications that ended, for those to come: to get it anew takes as long as a transform.
-/// A convolution and its parts share it.
-#[derive(Debug, Default)]
-struct Idle(Mutex<Vec<FftWorkspace>>);
-
-impl Idle {
-    fn lock(&self) -> MutexGuard<'_, Vec<FftWorkspace>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+    /// Shared with its parts.
+    idle: Pool<FftWorkspace>,
 }
 
 /// Memory for one application at a time, of a convolution or a part of it. When dropped, it is kept
 /// for the next.
 #[derive(Debug)]
-pub struct Workspace {
-    memory: FftWorkspace,
-    idle: Arc<Idle>,
-}
-
-impl Drop for Workspace {
-    fn drop(&mut self) {
-        self.idle.lock().push(std::mem::take(&mut self.memory));
-    }
-}
+pub struct Workspace(Lease<FftWorkspace>);
 
 impl Convolution {
     /// Plans the convolution with `coefficients` (nx, ny), those of offsets ≥ 0, on `threads`
@@ -90,7 +72,7 @@ impl Convolution {
             coefficients,
             transform,
             &threads,
-            Arc::default(),
+            Pool::default(),
         ))
     }
 
@@ -98,10 +80,10 @@ impl Convolution {
         coefficients: &ArrayRef2<f64>,
         transform: PaddedTransform,
         threads: &Arc<Threads>,
-        idle: Arc<Idle>,
+        idle: Pool<FftWorkspace>,
     ) -> Self {
         let mut workspace = lease(&idle, &transform);
-        let spectrum = transform.even_spectrum(coefficients, &mut workspace.memory, threads);
+        let spectrum = transform.even_spectrum(coefficients, &mut workspace.0, threads);
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
@@ -118,7 +100,7 @@ impl Convolution {
             transform: self.transform.on_threads(threads),
             spectrum: Arc::clone(&self.spectrum),
             threads: Arc::clone(threads),
-            idle: Arc::default(),
+            idle: Pool::default(),
             ..*self
         }
     }
@@ -127,12 +109,7 @@ impl Convolution {
     pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan(shape, &self.threads);
-        Self::with(
-            coefficients,
-            transform,
-            &self.threads,
-            Arc::clone(&self.idle),
-        )
+        Self::with(coefficients, transform, &self.threads, self.idle.clone())
     }
 
     /// The periodic convolution with `coefficients`, on a mesh that is not padded, at a fifth of the
@@ -142,7 +119,7 @@ impl Convolution {
         const FLOOR: f64 = 1e-6;
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan_periodic(shape, &self.threads);
-        let idle = Arc::clone(&self.idle);
+        let idle = self.idle.clone();
         let periodic = Self::with(coefficients, transform, &self.threads, idle);
         let inverse = periodic
             .transform
@@ -151,7 +128,7 @@ impl Convolution {
             spectrum: Arc::new(inverse),
             transform: periodic.transform.clone(),
             threads: Arc::clone(&self.threads),
-            idle: Arc::clone(&periodic.idle),
+            idle: periodic.idle.clone(),
             ..periodic
         };
         [periodic, inverse]
@@ -175,6 +152,11 @@ impl Convolution {
     /// The coefficient of the loaded cell itself.
     pub(crate) fn self_influence(&self) -> f64 {
         self.self_influence
+    }
+
+    /// Those that it uses.
+    pub(crate) fn own_threads(&self) -> &Threads {
+        &self.threads
     }
 
     /// Threads that it uses.
@@ -243,7 +225,7 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        let memory = &mut workspace.memory;
+        let memory = &mut workspace.0;
         self.transform.fit(memory);
         self.transform
             .convolve_into(&self.spectrum, input, output, memory, &self.threads);
@@ -251,11 +233,8 @@ impl Convolution {
 }
 
 /// Idle memory, large enough for `transform`.
-fn lease(idle: &Arc<Idle>, transform: &PaddedTransform) -> Workspace {
-    let mut memory = idle.lock().pop().unwrap_or_default();
+fn lease(idle: &Pool<FftWorkspace>, transform: &PaddedTransform) -> Workspace {
+    let mut memory = idle.lease();
     transform.fit(&mut memory);
-    Workspace {
-        memory,
-        idle: Arc::clone(idle),
-    }
+    Workspace(memory)
 }

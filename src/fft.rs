@@ -277,6 +277,23 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
+        if self.tasks == 1 {
+            self.convolve_here(spectrum, input, output, workspace, threads);
+        } else {
+            // Once, rather than for each of the three parts.
+            threads.run(|| self.convolve_here(spectrum, input, output, workspace, threads));
+        }
+    }
+
+    /// The same, on one of the threads.
+    fn convolve_here(
+        &self,
+        spectrum: &EvenSpectrum,
+        input: &[f64],
+        output: &mut [f64],
+        workspace: &mut Workspace,
+        threads: &Threads,
+    ) {
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let columns = self.columns();

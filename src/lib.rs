@@ -62,6 +62,8 @@ pub mod response;
 
 mod graded;
 
+mod pool;
+
 mod threads;
 
 mod fft;

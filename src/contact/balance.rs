@@ -1,6 +1,7 @@
 //! Force and moments on target.
 
-use super::freedoms::{Freedoms, add_gram, add_moments, symmetric};
+use super::fit::{add_gram, add_moments, symmetric};
+use super::freedoms::Freedoms;
 use super::sums::sum;
 
 /// Mismatch of force and scaled moments, over the force, that rounding leaves in large sums.
@@ -9,7 +10,11 @@ const BALANCED: f64 = 2e-13;
 impl Freedoms {
     /// Whether Bᵀp is on target within rounding.
     pub(super) fn balanced(&self, pressure: &[f64]) -> bool {
-        let sums = self.moments(pressure);
+        self.on_target(self.moments(pressure))
+    }
+
+    /// Whether a pressure of these moments is.
+    pub(super) fn on_target(&self, sums: [f64; 3]) -> bool {
         let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let force = sums[0].abs().max(asked);
         (0..3).all(|k| !self.loaded[k] || (sums[k] - self.target[k]).abs() <= BALANCED * force)
@@ -31,6 +36,9 @@ impl Freedoms {
             }
             let factor = self.target[0] / force;
             pressure.iter_mut().for_each(|p| *p *= factor);
+            if self.loaded == [true, false, false] {
+                return true;
+            }
         }
         // p [1 + Bμ]₊ summed: Bᵀ of it less the target, and how large its force is.
         let mismatch = |p: &[f64], mu: [f64; 3]| {

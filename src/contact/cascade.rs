@@ -15,11 +15,12 @@ use super::direct;
 use super::discretisation::Figures;
 use super::freedoms::Freedoms;
 use super::patch::{Patch, block, bounds, hull, widened};
-use super::preconditioned::{Approximation, Preconditioned};
+use super::preconditioned::{Approximation, Arrays, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::pool::Pool;
 use crate::surface::Surface;
 use crate::threads::Threads;
 
@@ -66,6 +67,7 @@ pub(super) struct Levels {
     /// Of the coarser ones.
     convolutions: Vec<Convolution>,
     grids: Vec<Grid>,
+    arrays: Pool<Arrays>,
 }
 
 impl Levels {
@@ -90,6 +92,7 @@ impl Levels {
             coefficients: Arc::new(coefficients),
             convolutions,
             grids,
+            arrays: Pool::default(),
         })
     }
 
@@ -100,6 +103,7 @@ impl Levels {
             coefficients: Arc::clone(&self.coefficients),
             convolutions: convolutions.map(|c| c.on_threads(threads)).collect(),
             grids: self.grids.clone(),
+            arrays: Pool::default(),
         }
     }
 }
@@ -137,6 +141,7 @@ struct Level<'a> {
     convolution: &'a Convolution,
     freedoms: Freedoms,
     gap: Cow<'a, Array2<f64>>,
+    arrays: &'a Pool<Arrays>,
 }
 
 impl Level<'_> {
@@ -190,7 +195,7 @@ impl Level<'_> {
                 freedoms: &freedoms,
                 gap: &gap,
             };
-            let mut solver = Preconditioned::new(&problem, &approximation);
+            let mut solver = Preconditioned::new(&problem, &approximation, self.arrays.lease());
             let before = *work;
             let mut outcome = solver.solve(
                 &mut patch.values,
@@ -264,6 +269,7 @@ impl<'a> Cascade<'a> {
             convolution: problem.convolution,
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
+            arrays: &planned.arrays,
         }];
         let mut work = 0.0;
         let mut figures = Vec::new();
@@ -301,6 +307,7 @@ impl<'a> Cascade<'a> {
                 convolution,
                 freedoms,
                 gap: Cow::Owned(gap),
+                arrays: &planned.arrays,
             });
         }
         let limits_at = |depth: usize| Limits {

@@ -79,7 +79,7 @@ pub(super) fn solve(
         };
         problem.apply(p, &mut u, &mut workspace);
         work += problem.convolution.work();
-        let (lambda, quality) = problem.gap_near(p, &u, lambda, &mut g);
+        let (lambda, quality) = problem.gap_into(p, &u, lambda, &mut g);
         let termination = if quality.meets(limits.tolerance) {
             Some(Termination::Converged)
         } else if watch(iterations, work, quality) {

@@ -32,7 +32,7 @@ impl Fields {
         problem.apply(p, slice_mut(&mut self.displacement), workspace);
         let u = slice(&self.displacement);
         let near = self.lambda;
-        let (lambda, quality) = problem.gap_near(p, u, near, slice_mut(&mut self.gap));
+        let (lambda, quality) = problem.gap_into(p, u, near, slice_mut(&mut self.gap));
         self.lambda = lambda;
         self.quality = Some(quality);
         quality

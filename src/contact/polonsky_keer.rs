@@ -37,7 +37,7 @@ pub(super) fn solve(
     for iterations in 0.. {
         problem.apply(p, u, workspace);
         work += problem.convolution.work();
-        let (lambda, quality) = problem.gap_into(p, u, g);
+        let (lambda, quality) = problem.gap_into(p, u, [0.0; 3], g);
         let end = |termination| Outcome {
             termination,
             iterations,
@@ -77,7 +77,7 @@ pub(super) fn solve(
 
         problem.apply(&direction, &mut response, workspace);
         work += problem.convolution.work();
-        let mean = freedoms.fit(p, &response, &none);
+        let mean = problem.fit(p, &response, &none, [0.0; 3]);
         freedoms.for_each(mean, |k, b| response[k] -= b);
         let (mut slope, mut curvature) = (0.0, 0.0);
         for (k, &t) in direction.iter().enumerate() {

@@ -11,13 +11,18 @@
 //! second convolution. While cells leave, a step costs one: its length is taken from the periodic
 //! convolution, which costs a fifth, and the exact one is applied to the change that remains
 //! when cells have left and balance is restored.
+//!
+//! The passes over the arrays of an iteration would take as long as its transforms: what can be done in
+//! one pass is.
 
 use std::ops::Range;
 
 use super::direct;
-use super::problem::{Limits, Outcome, Problem, Termination, Watch};
-use super::sums::dot;
+use super::passes::{Passes, add};
+use super::problem::{Limits, Outcome, Problem, Quality, Termination, Watch, gap_of, join};
+use super::sums::{dot, update};
 use crate::convolution::{Convolution, Workspace};
+use crate::pool::Lease;
 
 /// A convolution and what approximates it.
 pub(super) struct Approximation {
@@ -27,22 +32,69 @@ pub(super) struct Approximation {
     pub(super) periodic: Convolution,
 }
 
-/// Work arrays of one problem, and what is made once for it.
-pub(super) struct Preconditioned<'a> {
-    problem: &'a Problem<'a>,
-    approximation: &'a Approximation,
-    workspace: Workspace,
-    /// The inverse applied to the loaded freedoms on a contact, see [`Self::invert_freedoms`].
-    inverse_freedoms: [Vec<f64>; 3],
+/// Arrays of an iteration, as long as there are cells.
+#[derive(Debug, Default)]
+pub(super) struct Arrays {
     /// Displacement K p.
     u: Vec<f64>,
-    /// The cells that may have a pressure.
-    contact: Vec<bool>,
-    /// Whether these have changed since the last iteration.
-    changed: bool,
+    /// 1 on the cells that may have a pressure, 0 elsewhere.
+    contact: Vec<f64>,
+    /// −g on the contact, 0 elsewhere.
+    r: Vec<f64>,
+    r_before: Vec<f64>,
+    /// The inverse applied to the residual; once the direction is known, the change of the pressure.
+    z: Vec<f64>,
     direction: Vec<f64>,
     /// K applied to the last direction or change.
     response: Vec<f64>,
+    /// The pressure before a step.
+    before: Vec<f64>,
+    /// The inverse applied to the loaded freedoms on a contact; zero for the others.
+    images: [Vec<f64>; 3],
+}
+
+impl Arrays {
+    fn fit(&mut self, cells: usize, loaded: [bool; 3]) {
+        let Self {
+            u,
+            contact,
+            r,
+            r_before,
+            z,
+            direction,
+            response,
+            before,
+            images,
+        } = self;
+        for array in [contact, u, r, r_before, z, direction, response, before] {
+            array.resize(cells, 0.0);
+        }
+        for (image, loaded) in images.iter_mut().zip(loaded) {
+            image.resize(cells, 0.0);
+            if !loaded {
+                image.fill(0.0);
+            }
+        }
+    }
+}
+
+/// The iteration of one problem.
+pub(super) struct Preconditioned<'a> {
+    problem: &'a Problem<'a>,
+    approximation: &'a Approximation,
+    passes: Passes<'a>,
+    workspace: Workspace,
+    arrays: Lease<Arrays>,
+    /// Part of the response that is not yet in the displacement.
+    pending: f64,
+    /// Whether the contact has changed since the images of the freedoms were made, or last seen.
+    changed: bool,
+    /// Whether the images are those of another contact.
+    stale: bool,
+    /// Whether the next direction is conjugate to the last.
+    conjugate: bool,
+    /// r · z of the last iteration.
+    descent: f64,
     /// Curvature of the exact convolution over that of the periodic one, as last seen.
     curvature_ratio: f64,
     pub(super) work: f64,
@@ -50,15 +102,6 @@ pub(super) struct Preconditioned<'a> {
 
 /// Iterations after which a contact of a few cells is left to [`direct`]; most have converged by then.
 const PATIENCE: usize = 20;
-
-/// How many cells joined the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Joined {
-    None,
-    Few,
-    /// So many that the directions so far say little about it.
-    Many,
-}
 
 /// What became of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,74 +114,43 @@ enum Step {
     None,
 }
 
+/// 1 where there is a pressure, 0 elsewhere.
+fn indicator(p: f64) -> f64 {
+    if p > 0.0 { 1.0 } else { 0.0 }
+}
+
 impl<'a> Preconditioned<'a> {
-    pub(super) fn new(problem: &'a Problem<'a>, approximation: &'a Approximation) -> Self {
-        let cells = problem.gap.len();
+    pub(super) fn new(
+        problem: &'a Problem<'a>,
+        approximation: &'a Approximation,
+        mut arrays: Lease<Arrays>,
+    ) -> Self {
+        arrays.fit(problem.gap.len(), problem.freedoms.loaded);
         Self {
             problem,
             approximation,
+            passes: problem.passes(),
             workspace: problem.convolution.workspace(),
-            inverse_freedoms: [Vec::new(), Vec::new(), Vec::new()],
-            u: vec![0.0; cells],
-            contact: vec![false; cells],
+            arrays,
+            pending: 0.0,
             changed: false,
-            direction: vec![0.0; cells],
-            response: vec![0.0; cells],
+            stale: false,
+            conjugate: false,
+            descent: 0.0,
             curvature_ratio: 1.0,
             work: 0.0,
         }
-    }
-
-    /// Applies the inverse to the loaded freedoms, as they are on the contact.
-    fn invert_freedoms(&mut self) {
-        let freedoms = self.problem.freedoms;
-        let mut column = vec![0.0; self.contact.len()];
-        for freedom in (0..3).filter(|&k| freedoms.loaded[k]) {
-            let unit = [0, 1, 2].map(|k| if k == freedom { 1.0 } else { 0.0 });
-            freedoms.for_each(unit, |cell, b| {
-                column[cell] = if self.contact[cell] { b } else { 0.0 }
-            });
-            let mut image = std::mem::take(&mut self.inverse_freedoms[freedom]);
-            image.resize(column.len(), 0.0);
-            self.precondition(&column, &mut image);
-            self.inverse_freedoms[freedom] = image;
-        }
-    }
-
-    fn precondition(&mut self, r: &[f64], out: &mut [f64]) {
-        let inverse = &self.approximation.inverse;
-        inverse.apply_slices(r, out, &mut self.workspace);
-        self.work += inverse.work();
-    }
-
-    /// u = K p
-    fn displace(&mut self, p: &[f64]) {
-        self.problem.apply(p, &mut self.u, &mut self.workspace);
-        self.work += self.problem.convolution.work();
     }
 
     /// Solves from the balanced pressure `p`, which becomes the solution, or may end with
     /// [`Termination::IterationLimit`] early where [`direct`] can go on. Its displacement is the sum
     /// of those of the steps: whoever needs it computes it afresh.
     pub(super) fn solve(&mut self, p: &mut [f64], limits: Limits, watch: &mut Watch) -> Outcome {
-        let problem = self.problem;
-        let cells = p.len();
-        let mut g = vec![0.0; cells];
-        let mut r = vec![0.0; cells];
-        let mut r_before = vec![0.0; cells];
-        let mut z = vec![0.0; cells];
-        let mut descent_before = 0.0;
-        let mut conjugate = false;
-        // Whether the inverse freedoms are those of another contact.
-        let mut stale = false;
+        let passes = self.passes;
         let mut last = Step::Truncated;
-        self.locate(p);
-        self.changed = false;
-        self.invert_freedoms();
-        self.displace(p);
-
+        passes.run(|| self.start(p));
         for iterations in 0.. {
-            let (lambda, quality) = problem.gap_into(p, &self.u, &mut g);
+            let (lambda, quality) = passes.run(|| self.assess(p));
             let work = self.work;
             let end = |termination| Outcome {
                 termination,
@@ -155,57 +167,16 @@ impl<'a> Preconditioned<'a> {
             if iterations == limits.max_iterations || (iterations >= PATIENCE && direct::few(p)) {
                 return end(Termination::IterationLimit);
             }
-
-            if self.join(&g) == Joined::Many {
-                conjugate = false;
-            }
-            // The projection is symmetric only if these belong to the contact. While the contact
-            // changes they need not: once it stays, they must.
-            if stale && !self.changed {
-                self.invert_freedoms();
-                conjugate = false;
-            }
-            stale = self.changed;
-            self.changed = false;
-
-            std::mem::swap(&mut r, &mut r_before);
-            let members = r.iter_mut().zip(&g).zip(&self.contact);
-            members.for_each(|((r, g), inside)| *r = if *inside { -g } else { 0.0 });
-            self.precondition(&r, &mut z);
-            self.deflate(&mut z);
-            let mut descent = dot(&r, &z);
-            if descent <= 0.0 {
-                // The oblique projection failed: steepest descent, projected orthogonally.
-                z.copy_from_slice(&r);
-                problem.freedoms.project(&mut z, &self.contact);
-                descent = dot(&r, &z);
-                conjugate = false;
-            }
-            // Polak and Ribière's.
-            let beta = if conjugate {
-                ((descent - dot(&r_before, &z)) / descent_before).max(0.0)
-            } else {
-                0.0
-            };
-            descent_before = descent;
-            let members = self.direction.iter_mut().zip(&z).zip(&self.contact);
-            members.for_each(|((d, z), inside)| *d = if *inside { z + beta * *d } else { 0.0 });
-            let mut slope = dot(&r, &self.direction);
-            if slope <= 0.0 {
-                // The direction lost too many cells: start again along the gradient.
-                self.direction.copy_from_slice(&z);
-                slope = descent;
-            }
-
-            conjugate = true;
-            // z and g are no longer needed.
-            last = match last {
-                Step::Truncated => self.step_with_losses(p, &r, slope, &mut z, &mut g),
-                _ => Step::None,
-            };
-            if last == Step::None {
-                last = self.step(p, slope);
-            }
+            last = passes.run(|| {
+                let slope = self.direct();
+                match last {
+                    Step::Truncated => match self.step_with_losses(p, slope) {
+                        Step::None => self.step(p, slope),
+                        done => done,
+                    },
+                    _ => self.step(p, slope),
+                }
+            });
             if last == Step::None {
                 return end(Termination::IterationLimit);
             }
@@ -213,48 +184,251 @@ impl<'a> Preconditioned<'a> {
         unreachable!("the loop ends by its limit")
     }
 
-    /// Cells that overlap join the contact.
-    fn join(&mut self, g: &[f64]) -> Joined {
-        // One in so many.
-        const MANY: usize = 10;
-        let (mut joined, mut members) = (0, 0);
-        let cells = self.contact.iter_mut().zip(g).zip(self.problem.gap);
-        for ((inside, &g), gap) in cells {
-            members += usize::from(*inside);
-            if !*inside && g < 0.0 && gap.is_finite() {
-                *inside = true;
-                joined += 1;
-            }
-        }
-        self.changed |= joined > 0;
-        match joined {
-            0 => Joined::None,
-            _ if joined * MANY > members => Joined::Many,
-            _ => Joined::Few,
+    /// Takes the cells with a pressure for the contact.
+    fn start(&mut self, p: &[f64]) {
+        let contact = &mut self.arrays.contact;
+        self.passes.each([p], [contact], add, |_, [p], [contact]| {
+            update([p], [contact], |[p], _| ([indicator(p)], []))
+        });
+        self.invert_freedoms();
+        self.displace(p);
+    }
+
+    /// Applies the inverse to the loaded freedoms, as they are on the contact.
+    fn invert_freedoms(&mut self) {
+        let inverse = &self.approximation.inverse;
+        let Arrays {
+            contact, z, images, ..
+        } = &mut *self.arrays;
+        let loaded = self.problem.freedoms.loaded;
+        for (freedom, image) in images.iter_mut().enumerate().filter(|(k, _)| loaded[*k]) {
+            self.passes
+                .each([contact], [z], add, |row, [contact], [z]| {
+                    update([contact, row.y], [z], |[inside, y], _| {
+                        ([inside * [1.0, row.x, y][freedom]], [])
+                    })
+                });
+            inverse.apply_slices(z, image, &mut self.workspace);
+            self.work += inverse.work();
         }
     }
 
-    /// Takes the cells with a pressure for the contact.
-    fn locate(&mut self, p: &[f64]) {
-        for (inside, p) in self.contact.iter_mut().zip(p) {
-            self.changed |= *inside != (*p > 0.0);
-            *inside = *p > 0.0;
+    /// u = K p
+    fn displace(&mut self, p: &[f64]) {
+        let u = &mut self.arrays.u;
+        self.problem.apply(p, u, &mut self.workspace);
+        self.work += self.problem.convolution.work();
+        self.pending = 0.0;
+    }
+
+    /// The multipliers and how good the pressure is; and the residual on the contact, which cells
+    /// without a pressure have left, and cells that overlap join.
+    fn assess(&mut self, p: &[f64]) -> ([f64; 3], Quality) {
+        // Where more than one cell in so many joins, the directions so far say little.
+        const MANY: f64 = 10.0;
+        let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        let Arrays {
+            u,
+            contact,
+            r,
+            r_before,
+            response,
+            ..
+        } = &mut *self.arrays;
+        std::mem::swap(r, r_before);
+        let pending = std::mem::take(&mut self.pending);
+        let [left, fit @ ..] = self.passes.each(
+            [p, problem.gap, response],
+            [u, contact],
+            add,
+            |row, [p, h, response], [u, contact]| {
+                let [left] = update(
+                    [p, response],
+                    [&mut *u, contact],
+                    |[p, response], [u, before]| {
+                        let now = indicator(p);
+                        let u = if pending > 0.0 {
+                            u + pending * response
+                        } else {
+                            u
+                        };
+                        ([u, now], [(now - before).abs()])
+                    },
+                );
+                let [a, b, c, d, e, f, g, h, i] = freedoms.fit_of(row, [p, u, h], [0.0; 3]);
+                [left, a, b, c, d, e, f, g, h, i]
+            },
+        );
+        let lambda = freedoms.fitted(fit);
+        let sums = self.passes.each(
+            [p, u, problem.gap],
+            [r, contact],
+            join,
+            |row, [p, u, h], [r, contact]| {
+                gap_of(row, [u, h], [[0.0; 3], lambda], r);
+                let [a, b, c, d, e, f, g] = problem.quality_of(row, [p, u, r]);
+                let [joined, members] = update([], [r, contact], |[], [g, before]| {
+                    let inside = before > 0.0 || g < 0.0;
+                    let now = if inside { 1.0 } else { 0.0 };
+                    ([if inside { -g } else { 0.0 }, now], [now - before, before])
+                });
+                [a, b, c, d, e, f, g, joined, members]
+            },
+        );
+        let [quality @ .., joined, members] = sums;
+        if MANY * joined > members {
+            self.conjugate = false;
         }
+        self.changed |= left + joined > 0.0;
+        (lambda, problem.quality(quality))
+    }
+
+    /// Makes the direction of the next step; returns its product with the residual.
+    fn direct(&mut self) -> f64 {
+        // The projection is symmetric only if the images belong to the contact. While the contact
+        // changes they need not: once it stays, they must.
+        if self.stale && !self.changed {
+            self.invert_freedoms();
+            self.conjugate = false;
+        }
+        self.stale = std::mem::take(&mut self.changed);
+        let Arrays { r, z, .. } = &mut *self.arrays;
+        let inverse = &self.approximation.inverse;
+        inverse.apply_slices(r, z, &mut self.workspace);
+        self.work += inverse.work();
+        let [mut descent, with_last] = self.deflate();
+        let Arrays {
+            contact,
+            r,
+            z,
+            direction,
+            ..
+        } = &mut *self.arrays;
+        if descent <= 0.0 {
+            // The oblique projection failed: steepest descent, projected orthogonally.
+            z.copy_from_slice(r);
+            self.problem.freedoms.project(z, contact);
+            descent = dot(r, z);
+            self.conjugate = false;
+        }
+        // Polak and Ribière's.
+        let beta = if self.conjugate {
+            ((descent - with_last) / self.descent).max(0.0)
+        } else {
+            0.0
+        };
+        self.descent = descent;
+        self.conjugate = true;
+        let [slope] = self.passes.each(
+            [contact, z, r],
+            [direction],
+            add,
+            |_, [contact, z, r], [direction]| {
+                update([contact, z, r], [direction], |[inside, z, r], [d]| {
+                    let d = if inside > 0.0 && beta > 0.0 {
+                        z + beta * d
+                    } else {
+                        z
+                    };
+                    ([d], [r * d])
+                })
+            },
+        );
+        if slope > 0.0 {
+            return slope;
+        }
+        // The direction lost too many cells: start again along the gradient.
+        direction.copy_from_slice(z);
+        descent
+    }
+
+    /// Restricts z to the contact C and removes from it what would change force and moments. Returns
+    /// its products with the residual and with the one before.
+    ///
+    /// ```text
+    /// z ← z − (MB)_C [B_Cᵀ (MB)_C]⁻¹ B_Cᵀ z
+    /// ```
+    fn deflate(&mut self) -> [f64; 2] {
+        let freedoms = self.problem.freedoms;
+        let Arrays {
+            contact,
+            r,
+            r_before,
+            z,
+            images,
+            ..
+        } = &mut *self.arrays;
+        let images = images.each_ref().map(Vec::as_slice);
+        let masked = |[inside, z]: [f64; 2]| if inside > 0.0 { z } else { 0.0 };
+        let mut factors = [0.0; 3];
+        if freedoms.any_loaded() {
+            let [i0, i1, i2] = images;
+            let sums = self.passes.each(
+                [contact, z, i0, i1, i2],
+                [],
+                add,
+                |row, [contact, z, images @ ..], []| {
+                    let mut sums = [[0.0; 3]; 4];
+                    sums[3] = freedoms.moments_on(row, contact, z);
+                    for (k, image) in images.into_iter().enumerate() {
+                        if freedoms.loaded[k] {
+                            sums[k] = freedoms.moments_on(row, contact, image);
+                        }
+                    }
+                    let flat: [f64; 12] = std::array::from_fn(|k| sums[k / 3][k % 3]);
+                    flat
+                },
+            );
+            let matrix = [0, 1, 2].map(|row| [0, 1, 2].map(|column| sums[3 * column + row]));
+            factors = freedoms.solve(&matrix, [sums[9], sums[10], sums[11]]);
+        }
+        let [f0, f1, f2] = factors;
+        let [i0, i1, i2] = images;
+        if freedoms.loaded[1] || freedoms.loaded[2] {
+            return self.passes.each(
+                [contact, r, r_before, i0, i1, i2],
+                [z],
+                add,
+                |_, inputs, [z]| {
+                    update(inputs, [z], |[inside, r, last, a, b, c], [z]| {
+                        let z = masked([inside, z - f0 * a - f1 * b - f2 * c]);
+                        ([z], [r * z, last * z])
+                    })
+                },
+            );
+        }
+        self.passes
+            .each([contact, r, r_before, i0], [z], add, |_, inputs, [z]| {
+                update(inputs, [z], |[inside, r, last, a], [z]| {
+                    let z = masked([inside, z - f0 * a]);
+                    ([z], [r * z, last * z])
+                })
+            })
     }
 
     /// Moves `p` by `step` times the direction as far as it stays ≥ 0, and restores balance. Returns
     /// whether it was moved so alone.
-    fn advance(&self, p: &mut [f64], step: f64) -> Step {
-        let mut truncated = false;
-        for (p, d) in p.iter_mut().zip(&self.direction) {
-            *p += step * d;
-            if *p < 0.0 {
-                *p = 0.0;
-                truncated = true;
-            }
-        }
+    fn advance(&mut self, p: &mut [f64], step: f64) -> Step {
+        let freedoms = self.problem.freedoms;
+        let Arrays {
+            direction, before, ..
+        } = &mut *self.arrays;
+        let [truncated, moments @ ..] = self.passes.each(
+            [direction],
+            [&mut *p, before],
+            add,
+            |row, [direction], [p, before]| {
+                let [truncated] = update([direction], [&mut *p, before], |[d], [p, _]| {
+                    let moved = p + step * d;
+                    let kept = if moved > 0.0 { moved } else { 0.0 };
+                    ([kept, p], [if moved < 0.0 { 1.0 } else { 0.0 }])
+                });
+                let [f, fx, fy] = freedoms.moments_of(row, p);
+                [truncated, f, fx, fy]
+            },
+        );
         // A direction that lost cells since it was made is out of balance, too.
-        if truncated || !self.problem.freedoms.balanced(p) {
+        if truncated > 0.0 || !freedoms.on_target(moments) {
             self.problem.rebalance(p);
             return Step::Truncated;
         }
@@ -264,111 +438,80 @@ impl<'a> Preconditioned<'a> {
     /// A step of exact length. Where cells leave, the displacement is computed afresh.
     fn step(&mut self, p: &mut [f64], slope: f64) -> Step {
         let problem = self.problem;
-        problem.apply(&self.direction, &mut self.response, &mut self.workspace);
+        let Arrays {
+            direction,
+            response,
+            ..
+        } = &mut *self.arrays;
+        problem.apply(direction, response, &mut self.workspace);
         self.work += problem.convolution.work();
-        let curvature = dot(&self.response, &self.direction);
+        let [curvature] = self.passes.dots(response, [direction]);
         if !(curvature > 0.0 && slope > 0.0) {
             return Step::None;
         }
-        let step = slope / curvature;
-        let done = self.advance(p, step);
-        self.locate(p);
+        let length = slope / curvature;
+        let done = self.advance(p, length);
         if done == Step::Truncated {
             self.displace(p);
         } else {
-            for (u, response) in self.u.iter_mut().zip(&self.response) {
-                *u += step * response;
-            }
+            self.pending = length;
         }
         done
     }
 
-    /// A step of approximate length, exactly displaced however many cells leave. `r` is the residual;
-    /// `before` and `change` are scratch. None, with nothing done, where it would not descend.
-    fn step_with_losses(
-        &mut self,
-        p: &mut [f64],
-        r: &[f64],
-        slope: f64,
-        before: &mut [f64],
-        change: &mut [f64],
-    ) -> Step {
+    /// A step of approximate length, exactly displaced however many cells leave. None, with nothing
+    /// done, where it would not descend.
+    fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
         // Where the best length along the change is further from the planned one, so many cells have
         // left that the plan was worth little. Beyond twice the best length the energy would rise.
         const AS_PLANNED: Range<f64> = 0.6..1.8;
         let periodic = &self.approximation.periodic;
-        periodic.apply_slices(&self.direction, &mut self.response, &mut self.workspace);
+        let Arrays {
+            direction,
+            response,
+            ..
+        } = &mut *self.arrays;
+        periodic.apply_slices(direction, response, &mut self.workspace);
         self.work += periodic.work();
-        let curvature = dot(&self.response, &self.direction) * self.curvature_ratio;
+        let [curvature] = self.passes.dots(response, [direction]);
+        let curvature = curvature * self.curvature_ratio;
         if !(curvature > 0.0 && slope > 0.0) {
             return Step::None;
         }
-        before.copy_from_slice(p);
         let done = self.advance(p, slope / curvature);
-        for ((change, p), before) in change.iter_mut().zip(&*p).zip(&*before) {
-            *change = p - before;
-        }
+        let Arrays {
+            r,
+            z: change,
+            response,
+            before,
+            ..
+        } = &mut *self.arrays;
+        self.passes
+            .each([p, before], [change], add, |_, inputs, [change]| {
+                update(inputs, [change], |[p, before], _| ([p - before], []))
+            });
         let problem = self.problem;
-        problem.apply(change, &mut self.response, &mut self.workspace);
+        problem.apply(change, response, &mut self.workspace);
         self.work += problem.convolution.work();
         // The best length along the change.
-        let best = dot(r, change) / dot(&self.response, change);
+        let [slope, curvature] = self.passes.dots(change, [r, response]);
+        let best = slope / curvature;
         if !(best > 0.0 && best.is_finite()) {
             p.copy_from_slice(before);
             return Step::None;
         }
         self.curvature_ratio = (self.curvature_ratio / best.clamp(0.8, 1.25)).clamp(0.5, 2.0);
-        let length = if best < AS_PLANNED.start { best } else { 1.0 };
-        if length < 1.0 {
+        self.pending = if best < AS_PLANNED.start { best } else { 1.0 };
+        if best < AS_PLANNED.start {
             for ((p, before), change) in p.iter_mut().zip(&*before).zip(&*change) {
-                *p = before + length * change;
+                *p = before + best * change;
             }
         }
-        for (u, response) in self.u.iter_mut().zip(&self.response) {
-            *u += length * response;
-        }
-        self.locate(p);
         if AS_PLANNED.contains(&best) {
             done
         } else {
             // The next step is an exact one.
             Step::Whole
-        }
-    }
-
-    /// Restricts `z` to the contact C and removes from it what would change force and moments.
-    ///
-    /// ```text
-    /// z ← z − (MB)_C [B_Cᵀ (MB)_C]⁻¹ B_Cᵀ z
-    /// ```
-    fn deflate(&self, z: &mut [f64]) {
-        let contact = &self.contact;
-        for (z, inside) in z.iter_mut().zip(contact) {
-            if !inside {
-                *z = 0.0;
-            }
-        }
-        let freedoms = self.problem.freedoms;
-        if !freedoms.any_loaded() {
-            return;
-        }
-        let mut matrix = [[0.0; 3]; 3];
-        for (column, image) in self.inverse_freedoms.iter().enumerate() {
-            if freedoms.loaded[column] {
-                let sums = freedoms.moments_on(image, contact);
-                for (row, sum) in sums.into_iter().enumerate() {
-                    matrix[row][column] = sum;
-                }
-            }
-        }
-        let right = freedoms.moments(z);
-        let factors = freedoms.solve(&matrix, right);
-        for (factor, image) in factors.into_iter().zip(&self.inverse_freedoms) {
-            if factor != 0.0 {
-                for k in (0..z.len()).filter(|&k| contact[k]) {
-                    z[k] -= factor * image[k];
-                }
-            }
         }
     }
 }

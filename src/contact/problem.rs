@@ -1,7 +1,8 @@
 //! The contact problem in the form that the algorithms solve.
 
 use super::freedoms::Freedoms;
-use super::sums::{largest, sum};
+use super::passes::{Passes, Row, add};
+use super::sums::{largest, sum, update};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -42,34 +43,39 @@ impl Problem<'_> {
         self.convolution.self_influence()
     }
 
-    /// Gap g = u + h − Bλ, where λ makes it least over the contact; λ, and how good it is.
-    pub(super) fn gap_into(&self, p: &[f64], u: &[f64], g: &mut [f64]) -> ([f64; 3], Quality) {
-        let lambda = self.freedoms.fit(p, u, self.gap);
-        for ((g, u), h) in g.iter_mut().zip(u).zip(self.gap) {
-            *g = u + h;
-        }
-        if self.freedoms.any_loaded() {
-            self.freedoms.for_each(lambda, |k, b| g[k] -= b);
-        }
-        (lambda, self.quality(p, u, g))
+    /// The rows of its arrays.
+    pub(super) fn passes(&self) -> Passes<'_> {
+        Passes::new(&self.freedoms.columns, self.convolution.own_threads())
     }
 
-    /// The same where λ is about `near`: freedoms that the contact does not determine (one or two
-    /// cells have no tilt) stay so, where [`Problem::gap_into`] takes 0.
-    pub(super) fn gap_near(
+    /// Change of λ from `near` that makes u + h − Bλ least over the cells with pressure. Freedoms that
+    /// these do not determine (one or two cells have no tilt) stay as they are.
+    pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64], near: [f64; 3]) -> [f64; 3] {
+        let sums = self.passes().each([p, u, h], [], add, |row, fields, []| {
+            self.freedoms.fit_of(row, fields, near)
+        });
+        self.freedoms.fitted(sums)
+    }
+
+    /// Gap g = u + h − Bλ, where λ makes it least over the contact, as [`Problem::fit`] does; λ, and how
+    /// good it is.
+    pub(super) fn gap_into(
         &self,
         p: &[f64],
         u: &[f64],
         near: [f64; 3],
         g: &mut [f64],
     ) -> ([f64; 3], Quality) {
-        g.copy_from_slice(self.gap);
-        self.freedoms.for_each(near, |k, b| g[k] -= b);
-        let change = self.freedoms.fit(p, u, g);
-        g.iter_mut().zip(u).for_each(|(g, u)| *g += u);
-        self.freedoms.for_each(change, |k, b| g[k] -= b);
+        let change = self.fit(p, u, self.gap, near);
+        let fields = [p, u, self.gap];
+        let sums = self
+            .passes()
+            .each(fields, [g], join, |row, [p, u, h], [g]| {
+                gap_of(row, [u, h], [near, change], g);
+                self.quality_of(row, [p, u, g])
+            });
         let lambda = [0, 1, 2].map(|k| near[k] + change[k]);
-        (lambda, self.quality(p, u, g))
+        (lambda, self.quality(sums))
     }
 
     /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
@@ -87,16 +93,24 @@ impl Problem<'_> {
         self.freedoms.balance(p);
     }
 
-    fn quality(&self, p: &[f64], u: &[f64], g: &[f64]) -> Quality {
+    /// What one row adds to the quality.
+    pub(super) fn quality_of(&self, row: Row, [p, u, g]: [&[f64]; 3]) -> QualitySums {
         let [work, mismatch] = sum([p, u, g], |[p, u, g]| {
             // The gap is infinite only where there is no pressure.
             let mismatch = if p > 0.0 { p * g.abs() } else { 0.0 };
             [p * u, mismatch]
         });
-        let [deepest, largest] = largest([u, g], |[u, g]| {
+        let [f, fx, fy] = self.freedoms.moments_of(row, p);
+        let [deepest, most] = largest([u, g], |[u, g]| {
             let touches = g < f64::INFINITY;
             [-g, if touches { u.abs() } else { 0.0 }]
         });
+        [deepest, most, work, mismatch, f, fx, fy]
+    }
+
+    /// The quality of which these are the sums.
+    pub(super) fn quality(&self, sums: QualitySums) -> Quality {
+        let [deepest, most, work, mismatch, f, fx, fy] = sums;
         // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
         let over = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
             _ if !(a + scale).is_finite() => f64::INFINITY,
@@ -104,13 +118,33 @@ impl Problem<'_> {
             (true, false) => f64::INFINITY,
             (false, _) => 0.0,
         };
-        let balanced = self.freedoms.balanced(p);
         Quality {
             residual: over(mismatch, work),
-            overlap: over(deepest, largest),
-            balanced,
+            overlap: over(deepest, most),
+            balanced: self.freedoms.on_target([f, fx, fy]),
         }
     }
+}
+
+/// Of which [`Problem::quality`] makes the quality: two largest values, and sums.
+pub(super) type QualitySums = [f64; 7];
+
+/// Joins two largest values, and sums.
+pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
+    std::array::from_fn(|k| match k {
+        0 | 1 if b[k] > a[k] => b[k],
+        0 | 1 => a[k],
+        _ => a[k] + b[k],
+    })
+}
+
+/// One row of the gap g = u + h − Bλ, where λ is `near` and a `change`: where loads are small, h − Bλ is
+/// far less than either.
+pub(super) fn gap_of(row: Row, [u, h]: [&[f64]; 2], [near, change]: [[f64; 3]; 2], g: &mut [f64]) {
+    let [[a, b], [c, d]] = [near, change].map(|l| [l[0] + l[1] * row.x, l[2]]);
+    update([u, h, row.y], [g], |[u, h, y], _| {
+        ([(h - (a + b * y)) + u - (c + d * y)], [])
+    });
 }
 
 /// How an iteration ended.

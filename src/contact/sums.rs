@@ -46,10 +46,64 @@ fn fold<const M: usize, const N: usize>(
             lanes[lane] = join(lanes[lane], value);
         }
     }
-    lanes.map(|l| {
-        let even = join(join(l[0], l[4]), join(l[2], l[6]));
-        join(even, join(join(l[1], l[5]), join(l[3], l[7])))
-    })
+    lanes.map(|lanes| joined(lanes, &join))
+}
+
+fn joined(l: [f64; LANES], join: impl Fn(f64, f64) -> f64) -> f64 {
+    let even = join(join(l[0], l[4]), join(l[2], l[6]));
+    join(even, join(join(l[1], l[5]), join(l[3], l[7])))
+}
+
+/// Replaces the elements of `outputs` by the first of what `step` makes of those of `inputs` and of
+/// their own, and sums the second. All are equally long.
+pub(super) fn update<const M: usize, const N: usize, const S: usize>(
+    inputs: [&[f64]; M],
+    mut outputs: [&mut [f64]; N],
+    step: impl Fn([f64; M], [f64; N]) -> ([f64; N], [f64; S]),
+) -> [f64; S] {
+    let mut lanes = [[0.0; LANES]; S];
+    let from = inputs.map(|input| input.as_chunks::<LANES>().0);
+    let mut to = outputs
+        .each_mut()
+        .map(|output| output.as_chunks_mut::<LANES>().0);
+    let ends = from.iter().map(|chunks| chunks.len());
+    let count = ends.chain(to.iter().map(|chunks| chunks.len())).min();
+    for chunk in 0..count.unwrap_or(0) {
+        let read = from.map(|chunks| chunks[chunk]);
+        let mut block = to.each_ref().map(|chunks| chunks[chunk]);
+        for lane in 0..LANES {
+            let (new, values) = step(
+                read.map(|read| read[lane]),
+                block.each_ref().map(|block| block[lane]),
+            );
+            for (block, new) in block.iter_mut().zip(new) {
+                block[lane] = new;
+            }
+            for (lanes, value) in lanes.iter_mut().zip(values) {
+                lanes[lane] += value;
+            }
+        }
+        for (chunks, block) in to.iter_mut().zip(block) {
+            chunks[chunk] = block;
+        }
+    }
+    let from = inputs.map(|input| input.as_chunks::<LANES>().1);
+    let mut to = outputs
+        .each_mut()
+        .map(|output| output.as_chunks_mut::<LANES>().1);
+    let ends = from.iter().map(|rest| rest.len());
+    let rest = ends.chain(to.iter().map(|rest| rest.len())).min();
+    for lane in 0..rest.unwrap_or(0) {
+        let old = to.each_ref().map(|rest| rest[lane]);
+        let (new, values) = step(from.map(|rest| rest[lane]), old);
+        for (rest, new) in to.iter_mut().zip(new) {
+            rest[lane] = new;
+        }
+        for (lanes, value) in lanes.iter_mut().zip(values) {
+            lanes[lane] += value;
+        }
+    }
+    lanes.map(|lanes| joined(lanes, |a, b| a + b))
 }
 
 /// Σ a b

@@ -1,0 +1,132 @@
+//! One pass over several arrays at once, row by row, on the plan's threads.
+
+use std::ops::Range;
+
+use super::sums::sum;
+use crate::threads::Threads;
+
+/// Cells that are not divided among threads.
+const LEAF: usize = 1 << 13;
+
+/// Below this number of cells threads cost more than they save.
+const WORTH_THREADS: usize = 1 << 16;
+
+/// A row of the grid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row<'a> {
+    pub(super) number: usize,
+    /// Its coordinate, in the scale of the freedoms.
+    pub(super) x: f64,
+    /// Those of its cells.
+    pub(super) y: &'a [f64],
+}
+
+/// The rows of a grid, and the threads that go over them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passes<'a> {
+    columns: &'a [Vec<f64>; 2],
+    threads: &'a Threads,
+    /// Rows that are not divided.
+    leaf: usize,
+    divided: bool,
+}
+
+/// a + b
+pub(super) fn add<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+impl<'a> Passes<'a> {
+    pub(super) fn new(columns: &'a [Vec<f64>; 2], threads: &'a Threads) -> Self {
+        let [nx, ny] = [columns[0].len(), columns[1].len()];
+        let leaf = (LEAF / ny.max(1)).max(1);
+        Self {
+            columns,
+            threads,
+            leaf,
+            divided: threads.count() > 1 && nx > leaf && nx * ny >= WORTH_THREADS,
+        }
+    }
+
+    /// Calls `work` on one of the threads, where passes and convolutions within it need not get there
+    /// first.
+    pub(super) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        if self.divided {
+            self.threads.run(work)
+        } else {
+            work()
+        }
+    }
+
+    /// Calls `row` with each row of all arrays, and joins what it returns, in an order that does not
+    /// depend on the number of threads.
+    pub(super) fn each<const M: usize, const N: usize, const S: usize>(
+        &self,
+        inputs: [&[f64]; M],
+        outputs: [&mut [f64]; N],
+        join: impl Fn([f64; S], [f64; S]) -> [f64; S] + Sync,
+        row: impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> [f64; S] + Sync,
+    ) -> [f64; S] {
+        let rows = 0..self.columns[0].len();
+        if self.divided {
+            self.threads
+                .run(|| self.divide(rows, inputs, outputs, &join, &row))
+        } else {
+            self.divide(rows, inputs, outputs, &join, &row)
+        }
+    }
+
+    /// Σ a b of one array with others.
+    pub(super) fn dots<const N: usize>(&self, a: &[f64], others: [&[f64]; N]) -> [f64; N] {
+        others.map(|b| {
+            let [dot] = self.each([a, b], [], add, |_, inputs, []| {
+                sum(inputs, |[a, b]| [a * b])
+            });
+            dot
+        })
+    }
+
+    fn divide<const M: usize, const N: usize, const S: usize>(
+        &self,
+        rows: Range<usize>,
+        inputs: [&[f64]; M],
+        mut outputs: [&mut [f64]; N],
+        join: &(impl Fn([f64; S], [f64; S]) -> [f64; S] + Sync),
+        row: &(impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> [f64; S] + Sync),
+    ) -> [f64; S] {
+        let ny = self.columns[1].len();
+        if rows.len() <= self.leaf {
+            let mut sums = [0.0; S];
+            for (k, number) in rows.enumerate() {
+                let cells = k * ny..(k + 1) * ny;
+                let here = Row {
+                    number,
+                    x: self.columns[0][number],
+                    y: &self.columns[1],
+                };
+                let from = inputs.map(|input| &input[cells.clone()]);
+                let to = outputs.each_mut().map(|output| &mut output[cells.clone()]);
+                sums = join(sums, row(here, from, to));
+            }
+            return sums;
+        }
+        let first = rows.len().div_ceil(2).next_multiple_of(self.leaf);
+        let middle = rows.start + first;
+        let near = inputs.map(|input| &input[..first * ny]);
+        let far = inputs.map(|input| &input[first * ny..]);
+        let mut parts = outputs.map(|output| {
+            let (near, far) = output.split_at_mut(first * ny);
+            [near, far]
+        });
+        let here = parts.each_mut().map(|[near, _]| std::mem::take(near));
+        let there = parts.map(|[_, far]| far);
+        let first = || self.divide(rows.start..middle, near, here, join, row);
+        let second = || self.divide(middle..rows.end, far, there, join, row);
+        let (a, b) = if self.divided {
+            rayon::join(first, second)
+        } else {
+            (first(), second())
+        };
+        join(a, b)
+    }
+}

@@ -1,0 +1,70 @@
+//! Memory that is kept for the next use: to get it anew takes as long as a transform.
+
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Memory that is not in use; clones share it.
+pub(crate) struct Pool<T>(Arc<Mutex<Vec<T>>>);
+
+impl<T> Pool<T> {
+    fn lock(&self) -> MutexGuard<'_, Vec<T>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<T: Default> Pool<T> {
+    /// Memory with whatever its last use left in it.
+    pub(crate) fn lease(&self) -> Lease<T> {
+        let memory = self.lock().pop().unwrap_or_default();
+        Lease {
+            memory,
+            pool: self.clone(),
+        }
+    }
+}
+
+impl<T> Default for Pool<T> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<T> Clone for Pool<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T> fmt::Debug for Pool<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Pool({} idle)", self.lock().len())
+    }
+}
+
+/// Memory in use; when dropped, it goes back to its pool.
+#[derive(Debug)]
+pub(crate) struct Lease<T: Default> {
+    memory: T,
+    pool: Pool<T>,
+}
+
+impl<T: Default> Drop for Lease<T> {
+    fn drop(&mut self) {
+        self.pool.lock().push(std::mem::take(&mut self.memory));
+    }
+}
+
+impl<T: Default> Deref for Lease<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.memory
+    }
+}
+
+impl<T: Default> DerefMut for Lease<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.memory
+    }
+}
