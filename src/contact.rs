@@ -48,6 +48,7 @@ use cascade::{Cascade, Levels};
 use discretisation::estimate;
 use fields::{Fields, array, slice};
 use freedoms::Freedoms;
+use passes::Passes;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
 
 /// Is told of each iteration, and breaks to stop.
@@ -165,6 +166,7 @@ impl Contact {
         let mut gap = checked_gaps(shape, &self.grid)?;
         freedoms.check_feasible(&gap)?;
         freedoms.prescribe(&mut gap);
+        let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
         let problem = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,
@@ -196,8 +198,8 @@ impl Contact {
         };
         let mut figures = Vec::new();
         let solved = match cascade {
-            Ok((mut cascade, Some(stopped))) => {
-                cascade.paste(&mut fields.pressure);
+            Ok((cascade, Some(stopped))) => {
+                cascade.give(&mut fields);
                 stopped
             }
             Ok((mut cascade, None)) => {
@@ -209,8 +211,9 @@ impl Contact {
                 polonsky_keer::solve(&problem, &mut fields, limits, &mut watch)
             }
         };
-        let quality = fields.quality.unwrap_or_else(|| fields.certify(&problem));
-        if !slice(&fields.displacement).iter().all(|u| u.is_finite()) {
+        let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, solved.lambda));
+        // The undeformed gap is no longer needed.
+        if !fields.close(&passes, &mut gap) {
             return Err(Error::Inconsistent(
                 "load, lengths and moduli must be in units in which their products do not overflow",
             ));
@@ -220,10 +223,9 @@ impl Contact {
         report.convolutions = solved.work / unit;
         report.residual = quality.residual;
         report.overlap = quality.overlap;
-        let (approach, tilt) = freedoms.motion(fields.lambda);
+        let (approach, tilt) = freedoms.motion(fields.motion.lambda());
         let Fields {
             pressure,
-            gap,
             displacement,
             ..
         } = fields;
@@ -345,9 +347,8 @@ fn solve_in_window(
     let (mut iterations, mut retries) = (0, 0);
     loop {
         let left = limits.after(iterations);
-        let outcome = cascade.solve(&mut fields.pressure, left, watch);
-        fields.lambda = outcome.lambda;
-        let quality = fields.certify(problem);
+        let outcome = cascade.solve(fields, left, watch);
+        let quality = fields.certify(problem, outcome.lambda);
         cascade.work += problem.convolution.work();
         iterations += outcome.iterations;
         let outcome = Outcome {
@@ -365,7 +366,7 @@ fn solve_in_window(
             };
         }
         let converged = outcome.termination == Termination::Converged;
-        if converged && cascade.open(&fields.gap) {
+        if converged && cascade.open(problem, fields) {
             continue;
         }
         // What it took for the displacement may have drifted, by rounding.
@@ -377,8 +378,7 @@ fn solve_in_window(
             let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
                 watch(iterations + more, before + work, quality)
             });
-            fields.lambda = end.lambda;
-            fields.certify(problem);
+            fields.certify(problem, end.lambda);
             let (iterations, work) = (iterations + end.iterations, before + end.work);
             return Outcome {
                 iterations,

@@ -3,6 +3,7 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use ndarray::{Array2, ArrayRef2};
@@ -225,8 +226,20 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
+        self.apply_rows(input, 0..self.shape[0], output, workspace);
+    }
+
+    /// The same where `input` is zero but in the rows of `occupied`, which alone are read.
+    pub(crate) fn apply_rows(
+        &self,
+        input: &[f64],
+        occupied: Range<usize>,
+        output: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
         let memory = &mut workspace.0;
         self.transform.fit(memory);
+        let input = (input, occupied);
         self.transform
             .convolve_into(&self.spectrum, input, output, memory, &self.threads);
     }

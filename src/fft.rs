@@ -5,6 +5,7 @@
 //! (mx, my) only nx rows are transformed along y, and nothing of the padding is stored.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use ndarray::ArrayRef2;
@@ -268,20 +269,23 @@ impl PaddedTransform {
         EvenSpectrum(spectrum.0.iter().map(inverse).collect())
     }
 
-    /// `output` = kernel ∗ `input`, both (nx, ny) in C order. Allocates nothing.
+    /// `output` = kernel ∗ `input`, both (nx, ny) in C order; `input` is read in the rows of `occupied`, and
+    /// zero elsewhere. Allocates nothing.
     pub(crate) fn convolve_into(
         &self,
         spectrum: &EvenSpectrum,
-        input: &[f64],
+        (input, occupied): (&[f64], Range<usize>),
         output: &mut [f64],
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
         if self.tasks == 1 {
-            self.convolve_here(spectrum, input, output, workspace, threads);
+            self.convolve_here(spectrum, (input, occupied), output, workspace, threads);
         } else {
             // Once, rather than for each of the three parts.
-            threads.run(|| self.convolve_here(spectrum, input, output, workspace, threads));
+            threads.run(|| {
+                self.convolve_here(spectrum, (input, occupied), output, workspace, threads)
+            });
         }
     }
 
@@ -289,7 +293,7 @@ impl PaddedTransform {
     fn convolve_here(
         &self,
         spectrum: &EvenSpectrum,
-        input: &[f64],
+        (input, occupied): (&[f64], Range<usize>),
         output: &mut [f64],
         workspace: &mut Workspace,
         threads: &Threads,
@@ -304,8 +308,7 @@ impl PaddedTransform {
         } = workspace;
         let rows = &mut rows[..nx * columns];
         let blocks = &mut blocks[..self.blocks() * nx * BLOCK];
-        self.rows_forward(input, rows, tasks, threads);
-        let rows_of_a_task = nx.div_ceil(self.tasks);
+        self.rows_forward(input, occupied.clone(), rows, tasks, threads);
 
         let rows = &*rows;
         let quarter_rows = self.quarter_rows();
@@ -315,8 +318,10 @@ impl PaddedTransform {
                 let width = BLOCK.min(columns - start);
                 let buffer = &mut scratch.columns[..width * mx];
                 for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                    column[nx..].fill(ZERO);
-                    for (i, value) in column[..nx].iter_mut().enumerate() {
+                    column[..occupied.start].fill(ZERO);
+                    column[occupied.end..].fill(ZERO);
+                    let values = column[occupied.clone()].iter_mut();
+                    for (value, i) in values.zip(occupied.clone()) {
                         *value = rows[i * columns + start + b];
                     }
                 }
@@ -348,6 +353,7 @@ impl PaddedTransform {
         self.over_rows(threads, blocks, chunk, tasks, blocks_of_a_task, multiply);
 
         let blocks = &*blocks;
+        let rows_of_a_task = nx.div_ceil(self.tasks);
         let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
             for (row, values) in output.chunks_exact_mut(ny).enumerate() {
                 self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
@@ -364,19 +370,21 @@ impl PaddedTransform {
         );
     }
 
-    /// Transforms the rows of `input` along y into `rows`.
+    /// Transforms the `occupied` rows of `input` along y into `rows`.
     fn rows_forward(
         &self,
         input: &[f64],
+        occupied: Range<usize>,
         rows: &mut [Complex64],
         tasks: &mut [TaskScratch],
         threads: &Threads,
     ) {
-        let ([nx, ny], columns) = (self.shape, self.columns());
-        let rows_of_a_task = nx.div_ceil(self.tasks);
+        let (ny, columns) = (self.shape[1], self.columns());
+        let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
+        let rows = &mut rows[occupied.start * columns..occupied.end * columns];
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
             for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
-                let start = (first + row) * ny;
+                let start = (occupied.start + first + row) * ny;
                 let values = &input[start..start + ny];
                 if values.iter().all(|&value| value == 0.0) {
                     half.fill(ZERO);

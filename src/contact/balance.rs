@@ -8,12 +8,7 @@ use super::sums::sum;
 const BALANCED: f64 = 2e-13;
 
 impl Freedoms {
-    /// Whether Bᵀp is on target within rounding.
-    pub(super) fn balanced(&self, pressure: &[f64]) -> bool {
-        self.on_target(self.moments(pressure))
-    }
-
-    /// Whether a pressure of these moments is.
+    /// Whether a pressure of these moments is on target, within rounding.
     pub(super) fn on_target(&self, sums: [f64; 3]) -> bool {
         let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let force = sums[0].abs().max(asked);

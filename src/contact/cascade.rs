@@ -9,12 +9,13 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use ndarray::{Array2, ArrayRef2};
+use ndarray::Array2;
 
 use super::direct;
 use super::discretisation::Figures;
+use super::fields::{Fields, slice};
 use super::freedoms::Freedoms;
-use super::patch::{Patch, block, bounds, hull, widened};
+use super::patch::{Patch, block, bounds, hull, whole, widened};
 use super::preconditioned::{Approximation, Arrays, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
@@ -365,32 +366,34 @@ impl<'a> Cascade<'a> {
     }
 
     /// Gives the pressure that it starts from.
-    pub(super) fn paste(&mut self, pressure: &mut Array2<f64>) {
-        self.patch.paste(pressure);
+    pub(super) fn give(&self, fields: &mut Fields) {
+        fields.take(&self.patch);
     }
 
-    /// Solves on the finest grid; `pressure` becomes the solution.
+    /// Solves on the finest grid; its pressure goes into `fields`.
     pub(super) fn solve(
         &mut self,
-        pressure: &mut Array2<f64>,
+        fields: &mut Fields,
         limits: Limits,
         watch: &mut Watch,
     ) -> Outcome {
         let outcome = self
             .finest
             .solve(&mut self.patch, limits, &mut self.work, watch);
-        self.patch.paste(pressure);
+        fields.take(&self.patch);
         outcome
     }
 
-    /// Opens the window around the cells where the gap `g` is negative. False where there is none
-    /// outside it.
-    pub(super) fn open(&mut self, g: &ArrayRef2<f64>) -> bool {
+    /// Opens the window around the cells of which the gap is negative. False where there is none outside
+    /// it.
+    pub(super) fn open(&mut self, problem: &Problem, fields: &Fields) -> bool {
         let shape = self.finest.shape();
         let [x, y] = self.patch.window.clone();
         let outside = |i: usize, j: usize| !(x.contains(&i) && y.contains(&j));
-        let found = bounds(&shape.map(|n| 0..n), |i, j| {
-            outside(i, j) && g[[i, j]] < 0.0
+        let mut g = vec![0.0; problem.gap.len()];
+        problem.gap_into(slice(&fields.displacement), fields.motion, &mut g);
+        let found = bounds(&whole(shape), |i, j| {
+            outside(i, j) && g[i * shape[1] + j] < 0.0
         });
         if let Some(cells) = &found {
             self.patch = self

@@ -25,6 +25,7 @@
 
 use ndarray::ArrayRef2;
 
+use super::patch::whole;
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use super::sums::dot;
 
@@ -67,6 +68,7 @@ pub(super) fn solve(
     };
     let mut workspace = problem.convolution.workspace();
     let (mut u, mut g) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+    let everywhere = whole(problem.convolution.shape());
     let (mut work, mut renewals) = (0.0, 0);
     for iterations in 0.. {
         let Some(lambda) = system.descend(p) else {
@@ -79,7 +81,9 @@ pub(super) fn solve(
         };
         problem.apply(p, &mut u, &mut workspace);
         work += problem.convolution.work();
-        let (lambda, quality) = problem.gap_into(p, &u, lambda, &mut g);
+        let (motion, quality) = problem.judge(p, &everywhere, &u, lambda);
+        let lambda = motion.lambda();
+        problem.gap_into(&u, motion, &mut g);
         let termination = if quality.meets(limits.tolerance) {
             Some(Termination::Converged)
         } else if watch(iterations, work, quality) {

@@ -2,14 +2,18 @@
 
 use ndarray::Array2;
 
-use super::problem::{Problem, Quality};
+use super::passes::{Passes, add};
+use super::patch::{Patch, Window};
+use super::problem::{Near, Problem, Quality};
+use super::sums::sum;
 
-/// Pressure, displacement and gap of a problem, and how good they are, once that was seen.
+/// Pressure and displacement of a problem, and how good they are, once that was seen.
 pub(super) struct Fields {
     pub(super) pressure: Array2<f64>,
+    /// The pressure is zero outside it.
+    pub(super) window: Window,
     pub(super) displacement: Array2<f64>,
-    pub(super) gap: Array2<f64>,
-    pub(super) lambda: [f64; 3],
+    pub(super) motion: Near,
     pub(super) quality: Option<Quality>,
 }
 
@@ -17,25 +21,50 @@ impl Fields {
     pub(super) fn new(shape: [usize; 2]) -> Self {
         Self {
             pressure: Array2::zeros(shape),
+            window: [0..0, 0..0],
             displacement: Array2::zeros(shape),
-            gap: Array2::zeros(shape),
-            lambda: [0.0; 3],
+            motion: Near::default(),
             quality: None,
         }
     }
 
-    /// Computes displacement, rigid motion, gap and quality of the pressure afresh. Where the contact
-    /// does not determine a freedom, it stays as it is.
-    pub(super) fn certify(&mut self, problem: &Problem) -> Quality {
-        let p = slice(&self.pressure);
+    /// Takes the pressure of a window that holds the one before.
+    pub(super) fn take(&mut self, patch: &Patch) {
+        patch.paste(&mut self.pressure);
+        self.window = patch.window.clone();
+    }
+
+    /// Computes displacement, rigid motion and quality of the pressure afresh. Where the contact does not
+    /// determine a freedom, it stays as in `near`.
+    pub(super) fn certify(&mut self, problem: &Problem, near: [f64; 3]) -> Quality {
+        let (p, window) = (slice(&self.pressure), &self.window);
         let workspace = &mut problem.convolution.workspace();
-        problem.apply(p, slice_mut(&mut self.displacement), workspace);
-        let u = slice(&self.displacement);
-        let near = self.lambda;
-        let (lambda, quality) = problem.gap_into(p, u, near, slice_mut(&mut self.gap));
-        self.lambda = lambda;
+        let u = slice_mut(&mut self.displacement);
+        let (motion, quality) = problem.passes().run(|| {
+            problem
+                .convolution
+                .apply_rows(p, window[0].clone(), u, workspace);
+            problem.judge(p, window, u, near)
+        });
+        self.motion = motion;
         self.quality = Some(quality);
         quality
+    }
+
+    /// Makes of the undeformed gap that of the solution. Returns whether all displacements are
+    /// finite.
+    pub(super) fn close(&self, passes: &Passes, gap: &mut Array2<f64>) -> bool {
+        let [lost] = passes.each(
+            [slice(&self.displacement)],
+            [slice_mut(gap)],
+            add,
+            |row, [u], [g]| {
+                let h = g.to_vec();
+                self.motion.gap(row, [u, &h], g);
+                sum([u], |[u]| [if u.is_finite() { 0.0 } else { 1.0 }])
+            },
+        );
+        lost <= 0.0
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::patch::Window;
 use super::sums::sum;
 use crate::threads::Threads;
 
@@ -19,6 +20,20 @@ pub(super) struct Row<'a> {
     pub(super) x: f64,
     /// Those of its cells.
     pub(super) y: &'a [f64],
+}
+
+impl<'a> Row<'a> {
+    /// What `window` has of this row, and of fields in it.
+    pub(super) fn part<const N: usize>(
+        self,
+        [rows, columns]: &Window,
+        fields: [&'a [f64]; N],
+    ) -> Option<(Self, [&'a [f64]; N])> {
+        let part = |values: &'a [f64]| &values[columns.clone()];
+        let y = part(self.y);
+        rows.contains(&self.number)
+            .then(|| (Self { y, ..self }, fields.map(part)))
+    }
 }
 
 /// The rows of a grid, and the threads that go over them.

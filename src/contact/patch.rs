@@ -20,13 +20,18 @@ pub(super) struct Patch {
     pub(super) values: Vec<f64>,
 }
 
+/// All cells of a grid of `shape`.
+pub(super) fn whole(shape: [usize; 2]) -> Window {
+    shape.map(|n| 0..n)
+}
+
 /// `cells` and a margin around them; the whole grid where that is not worth a window.
 pub(super) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
     let window = [0, 1]
         .map(|k| cells[k].start.saturating_sub(MARGIN)..(cells[k].end + MARGIN).min(shape[k]));
     let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
     if part > WORTH_WINDOW {
-        shape.map(|n| 0..n)
+        whole(shape)
     } else {
         window
     }
@@ -93,8 +98,8 @@ impl Patch {
         Self { window, values }
     }
 
+    /// Writes it into an array that is zero outside its window.
     pub(super) fn paste(&self, array: &mut Array2<f64>) {
-        array.fill(0.0);
         let [x, y] = &self.window;
         let rows = array.outer_iter_mut().skip(x.start);
         for (mut row, values) in rows.zip(self.values.chunks_exact(y.len())) {

@@ -8,6 +8,7 @@
 //! - it ends on complementarity and overlap, not on the change of pressure.
 
 use super::fields::{Fields, slice_mut};
+use super::patch::whole;
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 
 /// Solves from the balanced pressure `p`, which becomes the solution.
@@ -21,12 +22,16 @@ pub(super) fn solve(
     let Fields {
         pressure,
         displacement,
-        gap,
+        window,
         ..
     } = fields;
+    // All of the grid may come into contact.
+    *window = whole(problem.convolution.shape());
+    let window = window.clone();
     let workspace = &mut problem.convolution.workspace();
-    let (p, u, g) = (slice_mut(pressure), slice_mut(displacement), slice_mut(gap));
+    let (p, u) = (slice_mut(pressure), slice_mut(displacement));
     let cells = p.len();
+    let mut g = vec![0.0; cells];
     let mut direction = vec![0.0; cells];
     let mut response = vec![0.0; cells];
     let none = vec![0.0; cells];
@@ -37,12 +42,13 @@ pub(super) fn solve(
     for iterations in 0.. {
         problem.apply(p, u, workspace);
         work += problem.convolution.work();
-        let (lambda, quality) = problem.gap_into(p, u, [0.0; 3], g);
+        let (motion, quality) = problem.judge(p, &window, u, [0.0; 3]);
+        problem.gap_into(u, motion, &mut g);
         let end = |termination| Outcome {
             termination,
             iterations,
             work,
-            lambda,
+            lambda: motion.lambda(),
         };
         if quality.meets(limits.tolerance) {
             return end(Termination::Converged);
@@ -60,7 +66,7 @@ pub(super) fn solve(
         let empty = p.iter().all(|&p| p == 0.0);
         let in_contact = |p: f64, g: f64| p > 0.0 || (empty && g < 0.0);
         let mut steepness = 0.0;
-        for (&p, &g) in p.iter().zip(&*g) {
+        for (&p, &g) in p.iter().zip(&g) {
             if in_contact(p, g) {
                 steepness += g * g;
             }
@@ -71,7 +77,7 @@ pub(super) fn solve(
             0.0
         };
         steepness_before = steepness;
-        for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&*g) {
+        for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&g) {
             *t = if in_contact(p, g) { g + beta * *t } else { 0.0 };
         }
 

@@ -19,7 +19,9 @@ use std::ops::Range;
 
 use super::direct;
 use super::passes::{Passes, add};
-use super::problem::{Limits, Outcome, Problem, Quality, Termination, Watch, gap_of, join};
+use super::problem::{
+    Limits, Near, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
+};
 use super::sums::{dot, update};
 use crate::convolution::{Convolution, Workspace};
 use crate::pool::Lease;
@@ -259,20 +261,24 @@ impl<'a> Preconditioned<'a> {
                 [left, a, b, c, d, e, f, g, h, i]
             },
         );
-        let lambda = freedoms.fitted(fit);
+        let motion = Near {
+            change: freedoms.fitted(fit),
+            ..Near::default()
+        };
         let sums = self.passes.each(
             [p, u, problem.gap],
             [r, contact],
             join,
             |row, [p, u, h], [r, contact]| {
-                gap_of(row, [u, h], [[0.0; 3], lambda], r);
-                let [a, b, c, d, e, f, g] = problem.quality_of(row, [p, u, r]);
+                motion.gap(row, [u, h], r);
+                let [deepest, most] = overlap_of([u, r]);
+                let [a, b, c, d, e] = problem.carried_of(row, [p, u, r]);
                 let [joined, members] = update([], [r, contact], |[], [g, before]| {
                     let inside = before > 0.0 || g < 0.0;
                     let now = if inside { 1.0 } else { 0.0 };
                     ([if inside { -g } else { 0.0 }, now], [now - before, before])
                 });
-                [a, b, c, d, e, f, g, joined, members]
+                [deepest, most, a, b, c, d, e, joined, members]
             },
         );
         let [quality @ .., joined, members] = sums;
@@ -280,7 +286,7 @@ impl<'a> Preconditioned<'a> {
             self.conjugate = false;
         }
         self.changed |= left + joined > 0.0;
-        (lambda, problem.quality(quality))
+        (motion.lambda(), problem.quality(quality))
     }
 
     /// Makes the direction of the next step; returns its product with the residual.

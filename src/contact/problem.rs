@@ -2,6 +2,7 @@
 
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
+use super::patch::Window;
 use super::sums::{largest, sum, update};
 use crate::convolution::{Convolution, Workspace};
 
@@ -57,25 +58,44 @@ impl Problem<'_> {
         self.freedoms.fitted(sums)
     }
 
-    /// Gap g = u + h − Bλ, where λ makes it least over the contact, as [`Problem::fit`] does; λ, and how
-    /// good it is.
-    pub(super) fn gap_into(
+    /// λ that makes the gap least over the contact, as [`Problem::fit`] does, and how good `p` is; it is
+    /// zero outside `window`, and not read there.
+    pub(super) fn judge(
         &self,
         p: &[f64],
+        window: &Window,
         u: &[f64],
         near: [f64; 3],
-        g: &mut [f64],
-    ) -> ([f64; 3], Quality) {
-        let change = self.fit(p, u, self.gap, near);
-        let fields = [p, u, self.gap];
-        let sums = self
-            .passes()
-            .each(fields, [g], join, |row, [p, u, h], [g]| {
-                gap_of(row, [u, h], [near, change], g);
-                self.quality_of(row, [p, u, g])
-            });
-        let lambda = [0, 1, 2].map(|k| near[k] + change[k]);
-        (lambda, self.quality(sums))
+    ) -> (Near, Quality) {
+        let (passes, fields) = (self.passes(), [p, u, self.gap]);
+        let sums = passes.each(fields, [], add, |row, fields, []| {
+            row.part(window, fields).map_or([0.0; 9], |(row, fields)| {
+                self.freedoms.fit_of(row, fields, near)
+            })
+        });
+        let motion = Near {
+            near,
+            change: self.freedoms.fitted(sums),
+        };
+        let sums = passes.each(fields, [], join, |row, [p, u, h], []| {
+            let mut g = vec![0.0; u.len()];
+            motion.gap(row, [u, h], &mut g);
+            let [deepest, most] = overlap_of([u, &g]);
+            let carried = row.part(window, [p, u, &g]);
+            let [work, mismatch, f, fx, fy] =
+                carried.map_or([0.0; 5], |(row, fields)| self.carried_of(row, fields));
+            [deepest, most, work, mismatch, f, fx, fy]
+        });
+        (motion, self.quality(sums))
+    }
+
+    /// g = u + h − Bλ
+    pub(super) fn gap_into(&self, u: &[f64], motion: Near, g: &mut [f64]) {
+        let fields = [u, self.gap];
+        self.passes().each(fields, [g], add, |row, fields, [g]| {
+            motion.gap(row, fields, g);
+            []
+        });
     }
 
     /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
@@ -93,19 +113,15 @@ impl Problem<'_> {
         self.freedoms.balance(p);
     }
 
-    /// What one row adds to the quality.
-    pub(super) fn quality_of(&self, row: Row, [p, u, g]: [&[f64]; 3]) -> QualitySums {
+    /// What one row adds to the work, the mismatch and the moments of the pressure.
+    pub(super) fn carried_of(&self, row: Row, [p, u, g]: [&[f64]; 3]) -> [f64; 5] {
         let [work, mismatch] = sum([p, u, g], |[p, u, g]| {
             // The gap is infinite only where there is no pressure.
             let mismatch = if p > 0.0 { p * g.abs() } else { 0.0 };
             [p * u, mismatch]
         });
         let [f, fx, fy] = self.freedoms.moments_of(row, p);
-        let [deepest, most] = largest([u, g], |[u, g]| {
-            let touches = g < f64::INFINITY;
-            [-g, if touches { u.abs() } else { 0.0 }]
-        });
-        [deepest, most, work, mismatch, f, fx, fy]
+        [work, mismatch, f, fx, fy]
     }
 
     /// The quality of which these are the sums.
@@ -138,13 +154,35 @@ pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
     })
 }
 
-/// One row of the gap g = u + h − Bλ, where λ is `near` and a `change`: where loads are small, h − Bλ is
-/// far less than either.
-pub(super) fn gap_of(row: Row, [u, h]: [&[f64]; 2], [near, change]: [[f64; 3]; 2], g: &mut [f64]) {
-    let [[a, b], [c, d]] = [near, change].map(|l| [l[0] + l[1] * row.x, l[2]]);
-    update([u, h, row.y], [g], |[u, h, y], _| {
-        ([(h - (a + b * y)) + u - (c + d * y)], [])
-    });
+/// The deepest overlap of one row, and the largest displacement where it can touch.
+pub(super) fn overlap_of(fields: [&[f64]; 2]) -> [f64; 2] {
+    largest(fields, |[u, g]| {
+        let touches = g < f64::INFINITY;
+        [-g, if touches { u.abs() } else { 0.0 }]
+    })
+}
+
+/// λ in two parts: where loads are small, h − Bλ is far less than either.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Near {
+    pub(super) near: [f64; 3],
+    pub(super) change: [f64; 3],
+}
+
+impl Near {
+    /// λ
+    pub(super) fn lambda(self) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.near[k] + self.change[k])
+    }
+
+    /// One row of the gap g = u + h − Bλ.
+    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
+        let [[a, b], [c, d]] =
+            [self.near, self.change].map(|lambda| [lambda[0] + lambda[1] * row.x, lambda[2]]);
+        update([u, h, row.y], [g], |[u, h, y], _| {
+            ([(h - (a + b * y)) + u - (c + d * y)], [])
+        });
+    }
 }
 
 /// How an iteration ended.

@@ -63,7 +63,7 @@ impl PaddedTransform {
         let (mx, columns) = (self.padded[0], self.columns());
         let Workspace { rows, tasks, .. } = workspace;
         let rows = &mut rows[..nx * columns];
-        self.rows_forward(input, rows, tasks, threads);
+        self.rows_forward(input, 0..nx, rows, tasks, threads);
         let rows = &*rows;
         let mut spectrum = vec![ZERO; columns * mx];
         let along = |first: usize, part: &mut [Complex64], scratch: &mut TaskScratch| {
