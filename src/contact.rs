@@ -50,6 +50,7 @@ use fields::{Fields, array, slice};
 use freedoms::Freedoms;
 use passes::Passes;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
+use review::{Carried, warnings};
 
 /// Is told of each iteration, and breaks to stop.
 pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
@@ -226,6 +227,7 @@ impl Contact {
         let (approach, tilt) = freedoms.motion(fields.motion.lambda());
         let Fields {
             pressure,
+            window,
             displacement,
             ..
         } = fields;
@@ -237,12 +239,13 @@ impl Contact {
             tilt,
             report,
         };
+        let carried = Carried::by(&solution, &window);
         if solution.report.converged() {
-            figures.push(solution.figures());
+            figures.push(carried.figures(solution.approach));
             solution.report.discretisation = estimate(&figures);
         }
-        solution.report.balance = review::balance(&solution, motion);
-        solution.report.warnings = review::warnings(&solution, shape);
+        solution.report.balance = carried.balance(&self.grid, motion);
+        solution.report.warnings = warnings(&solution, &window, shape);
         solution.report.seconds = start.elapsed().as_secs_f64();
         Ok(solution)
     }

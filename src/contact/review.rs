@@ -1,29 +1,74 @@
 //! A finished solution, looked at: balance and warnings.
 
+use super::discretisation::Figures;
+use super::fields::slice;
 use super::freedoms::Motion;
+use super::patch::{Window, block};
 use super::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Solution, Warning};
+use super::sums::{largest, sum};
+use crate::grid::Grid;
 use crate::surface::{Extent, Surface};
 
-/// Mismatch of force and moments against what was asked.
-pub(super) fn balance(solution: &Solution, motion: &Motion) -> Balance {
-    let force = solution.load();
-    let scale = motion.load.unwrap_or(force);
-    let over = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
-    let half = solution.grid().size().map(|length| 0.5 * length);
-    let moments = solution.moment();
-    let moment = [0, 1].map(|k| {
-        let asked =
-            motion.moment[k].or_else(|| Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0)));
-        asked.map_or(0.0, |m| over((moments[k] - m).abs(), scale * half[k]))
-    });
-    Balance {
-        force: motion.load.map_or(0.0, |w| over((force - w).abs(), w)),
-        moment,
+/// What a pressure carries.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Carried {
+    force: f64,
+    moment: [f64; 2],
+    peak: f64,
+}
+
+impl Carried {
+    /// By the pressure of a window, outside of which there is none.
+    pub(super) fn by(solution: &Solution, window: &Window) -> Self {
+        let (grid, pressure) = (solution.grid(), slice(&solution.pressure));
+        let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
+        let mut carried = Self::default();
+        for (i, x) in window[0].clone().zip(x) {
+            let start = i * grid.shape()[1] + window[1].start;
+            let row = &pressure[start..start + y.len()];
+            let [force, moment] = sum([row, &y], |[p, y]| [p, p * y]);
+            let [peak] = largest([row], |[p]| [p]);
+            carried.force += force;
+            carried.moment[0] += force * x;
+            carried.moment[1] += moment;
+            carried.peak = carried.peak.max(peak);
+        }
+        let area = grid.cell_area();
+        Self {
+            force: carried.force * area,
+            moment: carried.moment.map(|m| m * area),
+            ..carried
+        }
+    }
+
+    /// What is compared with coarser grids.
+    pub(super) fn figures(&self, approach: f64) -> Figures {
+        Figures {
+            peak_pressure: self.peak,
+            approach,
+            load: self.force,
+        }
+    }
+
+    /// Mismatch of force and moments against what was asked.
+    pub(super) fn balance(&self, grid: &Grid, motion: &Motion) -> Balance {
+        let scale = motion.load.unwrap_or(self.force);
+        let over = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
+        let half = grid.size().map(|length| 0.5 * length);
+        let moment = [0, 1].map(|k| {
+            let eccentricity = || Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0));
+            let asked = motion.moment[k].or_else(eccentricity);
+            asked.map_or(0.0, |m| over((self.moment[k] - m).abs(), scale * half[k]))
+        });
+        Balance {
+            force: motion.load.map_or(0.0, |w| over((self.force - w).abs(), w)),
+            moment,
+        }
     }
 }
 
 /// What the user of a solution should know.
-pub(super) fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning> {
+pub(super) fn warnings(solution: &Solution, window: &Window, shape: &dyn Surface) -> Vec<Warning> {
     let grid = solution.grid();
     let [nx, ny] = grid.shape();
     let [dx, dy] = grid.spacing();
@@ -46,8 +91,9 @@ pub(super) fn warnings(solution: &Solution, shape: &dyn Surface) -> Vec<Warning>
     // Lines of cells across each axis that hold some of the contact.
     let mut held = [vec![false; nx], vec![false; ny]];
     let mut at_edge = false;
-    for (i, row) in solution.pressure.rows().into_iter().enumerate() {
-        for (j, _) in row.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+    let pressure = block(&solution.pressure, window);
+    for (i, row) in window[0].clone().zip(pressure.rows()) {
+        for (j, _) in window[1].clone().zip(row).filter(|(_, p)| **p > 0.0) {
             (held[0][i], held[1][j]) = (true, true);
             at_edge |= on_edge(i, j) && goes_on(i, j);
         }

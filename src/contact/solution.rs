@@ -4,7 +4,7 @@ use std::fmt;
 
 use ndarray::{Array1, Array2};
 
-use super::discretisation::{Discretisation, Figures};
+use super::discretisation::Discretisation;
 use super::freedoms::Motion;
 use super::problem::Termination;
 use crate::body::HalfSpace;
@@ -168,15 +168,6 @@ impl Solution {
             overlap,
             tolerance,
         })
-    }
-
-    /// What is compared with coarser grids.
-    pub(super) fn figures(&self) -> Figures {
-        Figures {
-            peak_pressure: self.peak_pressure(),
-            approach: self.approach,
-            load: self.load(),
-        }
     }
 
     /// The grid.
