@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use ndarray::{Array2, ArrayRef2};
+use ndarray::Array2;
 
 use crate::body::HalfSpace;
 use crate::convolution::Convolution;
@@ -33,6 +33,7 @@ mod preconditioned;
 mod problem;
 mod review;
 mod solution;
+mod start;
 mod stiffness;
 mod sums;
 
@@ -46,18 +47,19 @@ pub use solution::{Balance, Report, Solution, Warning};
 
 use cascade::{Cascade, Levels};
 use discretisation::estimate;
-use fields::{Fields, array, slice};
+use fields::{Fields, slice};
 use freedoms::Freedoms;
 use passes::Passes;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
 use review::{Carried, warnings};
+use start::{checked_gaps, given_pressure, uniform_pressure};
 
 /// Is told of each iteration, and breaks to stop.
 pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
-/// A plan and a solve take up to 170 bytes a cell: what does not fit is refused before it starts.
+/// A plan and a solve take up to 184 bytes a cell: what does not fit is refused before it starts.
 ///
 /// ```
 /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
@@ -173,7 +175,7 @@ impl Contact {
             freedoms: &freedoms,
             gap: slice(&gap),
         };
-        let initial = self.given_pressure(&problem, options.initial.as_deref())?;
+        let initial = given_pressure(&problem, options.initial.as_deref())?;
         let mut report = self.report(motion, limits.tolerance);
         let unit = self.convolution.work();
         let mut watch = |iterations: usize, work: f64, quality: Quality| {
@@ -270,72 +272,14 @@ impl Contact {
             seconds: 0.0,
         }
     }
-
-    /// The pressure to start from that the caller gave, balanced.
-    fn given_pressure(
-        &self,
-        problem: &Problem,
-        initial: Option<&ArrayRef2<f64>>,
-    ) -> Result<Option<Array2<f64>>> {
-        let Some(initial) = initial else {
-            return Ok(None);
-        };
-        let (name, expected) = ("initial", self.grid.shape());
-        let found = [initial.nrows(), initial.ncols()];
-        if found != expected {
-            return Err(Error::Shape {
-                name,
-                expected,
-                found,
-            });
-        }
-        if let Some(((i, j), _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
-            return Err(Error::NonFinite {
-                name,
-                index: [i, j],
-            });
-        }
-        if let Some(&value) = initial.iter().find(|p| **p < 0.0) {
-            return Err(Error::Parameter {
-                name,
-                requirement: "at least 0 everywhere",
-                value,
-            });
-        }
-        let cells = initial.iter().zip(problem.gap);
-        let mut p: Vec<f64> = cells
-            .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
-            .collect();
-        // One that cannot carry the load is no help.
-        Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))
-    }
 }
 
-/// Bytes that a plan, its coefficients, and the arrays of one solve take: 168 a cell (measured: 157
-/// where the contact fills the grid, 91 where it fills a ninth).
+/// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 164
+/// where the contact fills the grid, 181 where it tilts, too; 86 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
-    const ARRAYS: u64 = 16;
+    const ARRAYS: u64 = 18;
     let [nx, ny] = grid.shape();
     Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * ARRAYS
-}
-
-/// A balanced pressure on all cells that can touch.
-fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
-    let shape = problem.convolution.shape();
-    let mut p = vec![0.0; problem.gap.len()];
-    if problem.freedoms.balance(&mut p) {
-        return Ok(array(shape, p));
-    }
-    let uniform = problem.freedoms.typical_pressure(p.len());
-    for (p, h) in p.iter_mut().zip(problem.gap) {
-        *p = if h.is_finite() { uniform } else { 0.0 };
-    }
-    if problem.freedoms.balance(&mut p) {
-        return Ok(array(shape, p));
-    }
-    Err(Error::Inconsistent(
-        "eccentricity or moment is too near the rim of the cells that can touch",
-    ))
 }
 
 /// Solves in a window, which opens until nothing overlaps on the whole grid.
@@ -390,30 +334,4 @@ fn solve_in_window(
             };
         }
     }
-}
-
-/// Gaps of `shape` on `grid`, finite or +∞.
-fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f64>> {
-    let gaps = shape.gaps(grid)?;
-    let found = [gaps.nrows(), gaps.ncols()];
-    if found != grid.shape() {
-        return Err(Error::Shape {
-            name: "shape",
-            expected: grid.shape(),
-            found,
-        });
-    }
-    let gaps = if gaps.is_standard_layout() {
-        gaps
-    } else {
-        gaps.as_standard_layout().into_owned()
-    };
-    let bad = |h: &f64| h.is_nan() || *h == f64::NEG_INFINITY;
-    if let Some(cell) = slice(&gaps).iter().position(bad) {
-        return Err(Error::NonFinite {
-            name: "shape",
-            index: [cell / found[1], cell % found[1]],
-        });
-    }
-    Ok(gaps)
 }

@@ -145,3 +145,45 @@ impl<'a> Passes<'a> {
         join(a, b)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Passes, add};
+    use crate::contact::sums::update;
+    use crate::error::Result;
+    use crate::threads::Threads;
+
+    /// On any number of threads each cell is seen once, and sums are the same to the bit.
+    #[test]
+    fn threads_change_nothing() -> Result<()> {
+        for [nx, ny] in [[1, 7], [3, 40_000], [331, 257], [700, 100]] {
+            let line = |n: usize| (0..n).map(|k| (k as f64 + 0.3).sin()).collect::<Vec<f64>>();
+            let columns = [line(nx), line(ny)];
+            let values = line(nx * ny);
+            let mut bits = Vec::new();
+            for threads in [1, 2, 5] {
+                let threads = Threads::new(Some(threads))?;
+                let passes = Passes::new(&columns, &threads);
+                let mut out = vec![0.0; nx * ny];
+                let sums = passes.each([&values], [&mut out], add, |row, [v], [out]| {
+                    update([v, row.y], [out], |[v, y], [old]| {
+                        ([old + v * row.x], [v * row.x * y])
+                    })
+                });
+                for (k, (out, v)) in out.iter().zip(&values).enumerate() {
+                    assert_eq!(out.to_bits(), (0.0 + v * columns[0][k / ny]).to_bits());
+                }
+                let terms: Vec<f64> = (0..nx * ny)
+                    .map(|k| values[k] * columns[0][k / ny] * columns[1][k % ny])
+                    .collect();
+                let direct: f64 = terms.iter().sum();
+                let size: f64 = terms.iter().map(|term| term.abs()).sum();
+                // Higham, Accuracy and Stability of Numerical Algorithms (2002), eq. (4.4).
+                assert!((sums[0] - direct).abs() < f64::EPSILON * (nx * ny) as f64 * size);
+                bits.push(sums[0].to_bits());
+            }
+            assert!(bits.iter().all(|b| *b == bits[0]));
+        }
+        Ok(())
+    }
+}

@@ -7,15 +7,11 @@
 //! (2014) 931, doi:10.1007/s10957-013-0499-x, restarts it when cells join). FFT preconditioner and
 //! deflation: Vollebregt, J. Comput. Phys. 257 (2014) 333, doi:10.1016/j.jcp.2013.10.005.
 //!
-//! A step that makes cells leave is not the step that was planned, so that its displacement takes a
-//! second convolution. While cells leave, a step costs one: its length is taken from the periodic
-//! convolution, which costs a fifth, and the exact one is applied to the change that remains
-//! when cells have left and balance is restored.
-//!
 //! The passes over the arrays of an iteration would take as long as its transforms: what can be done in
 //! one pass is.
 
-use std::ops::Range;
+mod arrays;
+mod steps;
 
 use super::direct;
 use super::passes::{Passes, add};
@@ -25,6 +21,7 @@ use super::problem::{
 use super::sums::{dot, update};
 use crate::convolution::{Convolution, Workspace};
 use crate::pool::Lease;
+pub(super) use arrays::Arrays;
 
 /// A convolution and what approximates it.
 pub(super) struct Approximation {
@@ -32,52 +29,6 @@ pub(super) struct Approximation {
     pub(super) inverse: Convolution,
     /// Itself.
     pub(super) periodic: Convolution,
-}
-
-/// Arrays of an iteration, as long as there are cells.
-#[derive(Debug, Default)]
-pub(super) struct Arrays {
-    /// Displacement K p.
-    u: Vec<f64>,
-    /// 1 on the cells that may have a pressure, 0 elsewhere.
-    contact: Vec<f64>,
-    /// −g on the contact, 0 elsewhere.
-    r: Vec<f64>,
-    r_before: Vec<f64>,
-    /// The inverse applied to the residual; once the direction is known, the change of the pressure.
-    z: Vec<f64>,
-    direction: Vec<f64>,
-    /// K applied to the last direction or change.
-    response: Vec<f64>,
-    /// The pressure before a step.
-    before: Vec<f64>,
-    /// The inverse applied to the loaded freedoms on a contact; zero for the others.
-    images: [Vec<f64>; 3],
-}
-
-impl Arrays {
-    fn fit(&mut self, cells: usize, loaded: [bool; 3]) {
-        let Self {
-            u,
-            contact,
-            r,
-            r_before,
-            z,
-            direction,
-            response,
-            before,
-            images,
-        } = self;
-        for array in [contact, u, r, r_before, z, direction, response, before] {
-            array.resize(cells, 0.0);
-        }
-        for (image, loaded) in images.iter_mut().zip(loaded) {
-            image.resize(cells, 0.0);
-            if !loaded {
-                image.fill(0.0);
-            }
-        }
-    }
 }
 
 /// The iteration of one problem.
@@ -364,7 +315,11 @@ impl<'a> Preconditioned<'a> {
             images,
             ..
         } = &mut *self.arrays;
-        let images = images.each_ref().map(Vec::as_slice);
+        // Whatever stands for those that are not loaded has no weight.
+        let images = [0, 1, 2].map(|k| match freedoms.loaded[k] {
+            true => images[k].as_slice(),
+            false => contact.as_slice(),
+        });
         let masked = |[inside, z]: [f64; 2]| if inside > 0.0 { z } else { 0.0 };
         let mut factors = [0.0; 3];
         if freedoms.any_loaded() {
@@ -410,114 +365,5 @@ impl<'a> Preconditioned<'a> {
                     ([z], [r * z, last * z])
                 })
             })
-    }
-
-    /// Moves `p` by `step` times the direction as far as it stays ≥ 0, and restores balance. Returns
-    /// whether it was moved so alone.
-    fn advance(&mut self, p: &mut [f64], step: f64) -> Step {
-        let freedoms = self.problem.freedoms;
-        let Arrays {
-            direction, before, ..
-        } = &mut *self.arrays;
-        let [truncated, moments @ ..] = self.passes.each(
-            [direction],
-            [&mut *p, before],
-            add,
-            |row, [direction], [p, before]| {
-                let [truncated] = update([direction], [&mut *p, before], |[d], [p, _]| {
-                    let moved = p + step * d;
-                    let kept = if moved > 0.0 { moved } else { 0.0 };
-                    ([kept, p], [if moved < 0.0 { 1.0 } else { 0.0 }])
-                });
-                let [f, fx, fy] = freedoms.moments_of(row, p);
-                [truncated, f, fx, fy]
-            },
-        );
-        // A direction that lost cells since it was made is out of balance, too.
-        if truncated > 0.0 || !freedoms.on_target(moments) {
-            self.problem.rebalance(p);
-            return Step::Truncated;
-        }
-        Step::Whole
-    }
-
-    /// A step of exact length. Where cells leave, the displacement is computed afresh.
-    fn step(&mut self, p: &mut [f64], slope: f64) -> Step {
-        let problem = self.problem;
-        let Arrays {
-            direction,
-            response,
-            ..
-        } = &mut *self.arrays;
-        problem.apply(direction, response, &mut self.workspace);
-        self.work += problem.convolution.work();
-        let [curvature] = self.passes.dots(response, [direction]);
-        if !(curvature > 0.0 && slope > 0.0) {
-            return Step::None;
-        }
-        let length = slope / curvature;
-        let done = self.advance(p, length);
-        if done == Step::Truncated {
-            self.displace(p);
-        } else {
-            self.pending = length;
-        }
-        done
-    }
-
-    /// A step of approximate length, exactly displaced however many cells leave. None, with nothing
-    /// done, where it would not descend.
-    fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
-        // Where the best length along the change is further from the planned one, so many cells have
-        // left that the plan was worth little. Beyond twice the best length the energy would rise.
-        const AS_PLANNED: Range<f64> = 0.6..1.8;
-        let periodic = &self.approximation.periodic;
-        let Arrays {
-            direction,
-            response,
-            ..
-        } = &mut *self.arrays;
-        periodic.apply_slices(direction, response, &mut self.workspace);
-        self.work += periodic.work();
-        let [curvature] = self.passes.dots(response, [direction]);
-        let curvature = curvature * self.curvature_ratio;
-        if !(curvature > 0.0 && slope > 0.0) {
-            return Step::None;
-        }
-        let done = self.advance(p, slope / curvature);
-        let Arrays {
-            r,
-            z: change,
-            response,
-            before,
-            ..
-        } = &mut *self.arrays;
-        self.passes
-            .each([p, before], [change], add, |_, inputs, [change]| {
-                update(inputs, [change], |[p, before], _| ([p - before], []))
-            });
-        let problem = self.problem;
-        problem.apply(change, response, &mut self.workspace);
-        self.work += problem.convolution.work();
-        // The best length along the change.
-        let [slope, curvature] = self.passes.dots(change, [r, response]);
-        let best = slope / curvature;
-        if !(best > 0.0 && best.is_finite()) {
-            p.copy_from_slice(before);
-            return Step::None;
-        }
-        self.curvature_ratio = (self.curvature_ratio / best.clamp(0.8, 1.25)).clamp(0.5, 2.0);
-        self.pending = if best < AS_PLANNED.start { best } else { 1.0 };
-        if best < AS_PLANNED.start {
-            for ((p, before), change) in p.iter_mut().zip(&*before).zip(&*change) {
-                *p = before + best * change;
-            }
-        }
-        if AS_PLANNED.contains(&best) {
-            done
-        } else {
-            // The next step is an exact one.
-            Step::Whole
-        }
     }
 }

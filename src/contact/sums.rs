@@ -114,7 +114,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{dot, largest, sum};
+    use super::{dot, largest, sum, update};
 
     #[test]
     fn sums_and_largest_of_any_length() {
@@ -139,6 +139,24 @@ mod tests {
                 .zip(&b)
                 .fold(0.0, |t: f64, (a, b)| t.max(a + 3.0 * b));
             assert_eq!(top.to_bits(), expected.to_bits());
+        }
+    }
+
+    #[test]
+    fn updates_of_any_length() {
+        for n in 0..40 {
+            let a: Vec<f64> = (0..n).map(f64::from).collect();
+            let (mut b, mut c) = (a.clone(), a.clone());
+            let sums = update([&a], [&mut b, &mut c], |[a], [b, c]| {
+                ([a - 3.0 * b, c + 1.0], [c, a * b])
+            });
+            for (k, a) in a.iter().enumerate() {
+                assert_eq!((b[k] + 2.0 * a).abs().to_bits(), 0);
+                assert_eq!((c[k] - a - 1.0).abs().to_bits(), 0);
+            }
+            assert_eq!(sums[1].to_bits(), dot(&a, &a).to_bits());
+            let [first] = sum([&a], |[a]| [a]);
+            assert_eq!(sums[0].to_bits(), first.to_bits());
         }
     }
 }

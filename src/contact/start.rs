@@ -1,0 +1,92 @@
+//! What a solve starts from: the gaps of a shape, and a pressure.
+
+use ndarray::{Array2, ArrayRef2};
+
+use super::fields::{array, slice};
+use super::problem::Problem;
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::surface::Surface;
+
+/// Gaps of `shape` on `grid`, finite or +∞.
+pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f64>> {
+    let gaps = shape.gaps(grid)?;
+    let found = [gaps.nrows(), gaps.ncols()];
+    if found != grid.shape() {
+        return Err(Error::Shape {
+            name: "shape",
+            expected: grid.shape(),
+            found,
+        });
+    }
+    let gaps = if gaps.is_standard_layout() {
+        gaps
+    } else {
+        gaps.as_standard_layout().into_owned()
+    };
+    let bad = |h: &f64| h.is_nan() || *h == f64::NEG_INFINITY;
+    if let Some(cell) = slice(&gaps).iter().position(bad) {
+        return Err(Error::NonFinite {
+            name: "shape",
+            index: [cell / found[1], cell % found[1]],
+        });
+    }
+    Ok(gaps)
+}
+
+/// The pressure to start from that the caller gave, balanced.
+pub(super) fn given_pressure(
+    problem: &Problem,
+    initial: Option<&ArrayRef2<f64>>,
+) -> Result<Option<Array2<f64>>> {
+    let Some(initial) = initial else {
+        return Ok(None);
+    };
+    let (name, expected) = ("initial", problem.convolution.shape());
+    let found = [initial.nrows(), initial.ncols()];
+    if found != expected {
+        return Err(Error::Shape {
+            name,
+            expected,
+            found,
+        });
+    }
+    if let Some(((i, j), _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
+        return Err(Error::NonFinite {
+            name,
+            index: [i, j],
+        });
+    }
+    if let Some(&value) = initial.iter().find(|p| **p < 0.0) {
+        return Err(Error::Parameter {
+            name,
+            requirement: "at least 0 everywhere",
+            value,
+        });
+    }
+    let cells = initial.iter().zip(problem.gap);
+    let mut p: Vec<f64> = cells
+        .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
+        .collect();
+    // One that cannot carry the load is no help.
+    Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))
+}
+
+/// A balanced pressure on all cells that can touch.
+pub(super) fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
+    let shape = problem.convolution.shape();
+    let mut p = vec![0.0; problem.gap.len()];
+    if problem.freedoms.balance(&mut p) {
+        return Ok(array(shape, p));
+    }
+    let uniform = problem.freedoms.typical_pressure(p.len());
+    for (p, h) in p.iter_mut().zip(problem.gap) {
+        *p = if h.is_finite() { uniform } else { 0.0 };
+    }
+    if problem.freedoms.balance(&mut p) {
+        return Ok(array(shape, p));
+    }
+    Err(Error::Inconsistent(
+        "eccentricity or moment is too near the rim of the cells that can touch",
+    ))
+}
