@@ -89,20 +89,23 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
 def batch(request: dict[str, Any]) -> dict[str, Any]:
     """Solve coated spheres under loads of half to one and a half that of `problems`.
 
-    With one thread it is one `solve` after the other, and no solution is kept.
+    With one thread it is one `solve` after the other, and no solution is kept. The first time is
+    not counted: memory that the system has never given to anybody is slow.
     """
     problem = Problem("coated", request["cells"])
     shape, threads = problem.shape(), request["threads"]
     loads = problem.load * np.linspace(0.5, 1.5, request["cases"])
     contact = nacre.Contact(problem.body, problem.grid, threads=threads)
-    contact.solve(shape, load=problem.load)
-    start = time.perf_counter()
-    if threads == 1:
-        worst = max(contact.solve(shape, load=load).report.residual for load in loads)
-    else:
-        solutions = contact.solve_many([{"shape": shape, "load": load} for load in loads])
-        worst = max(solution.report.residual for solution in solutions)
-    return {"seconds": time.perf_counter() - start, "residual": worst}
+    for _ in range(2):
+        start = time.perf_counter()
+        if threads == 1:
+            worst = max(contact.solve(shape, load=load).report.residual for load in loads)
+        else:
+            solutions = contact.solve_many([{"shape": shape, "load": load} for load in loads])
+            worst = max(solution.report.residual for solution in solutions)
+            del solutions
+        seconds = time.perf_counter() - start
+    return {"seconds": seconds, "residual": worst}
 
 
 def convolution(request: dict[str, Any]) -> dict[str, Any]:
