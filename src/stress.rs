@@ -247,8 +247,11 @@ pub fn stress_watched(
         for (plane, kept) in planes.iter().zip(&mut here) {
             lines.keep(plane, grid.shape(), kept);
         }
-        for kept in &mut here[..2] {
-            kept.iter_mut().for_each(|s| *s += residual[place.layer]);
+        let residual = residual[place.layer];
+        if residual != 0.0 {
+            for kept in &mut here[..2] {
+                kept.iter_mut().for_each(|s| *s += residual);
+            }
         }
         done += 1;
     }

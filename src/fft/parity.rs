@@ -1,5 +1,7 @@
 //! Convolution of one input with many kernels, each even or odd along x and along y.
 
+use std::ops::Range;
+
 use rustfft::num_complex::Complex64;
 
 use super::cosine::unfold_pair;
@@ -62,14 +64,16 @@ impl PaddedTransform {
         Self::on(shape, offsets.map(even), threads)
     }
 
-    /// `output`, (nx, ny) in C order, = Σ weight · kernel ∗ input, of the kernels number `number`
-    /// of all sets.
+    /// Each output, (nx, ny) in C order, = Σ weight · kernel ∗ input, of the kernels of these
+    /// `numbers` of all sets.
+    ///
+    /// All at once, so that the input passes through the caches once.
     pub(crate) fn convolve_parities(
         &self,
         input: &Transformed,
         (transform, sets): (&QuarterTransform, &[(f64, &KernelRows)]),
-        number: usize,
-        output: &mut [f64],
+        numbers: Range<usize>,
+        outputs: &mut [&mut [f64]],
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
@@ -77,7 +81,9 @@ impl PaddedTransform {
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let Workspace { blocks, tasks, .. } = workspace;
-        let blocks = &mut blocks[..self.blocks() * nx * BLOCK];
+        let size = numbers.len() * nx * BLOCK;
+        blocks.resize(blocks.len().max(self.blocks() * size), ZERO);
+        let blocks = &mut blocks[..self.blocks() * size];
         let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
             let TaskScratch {
                 real,
@@ -86,54 +92,78 @@ impl PaddedTransform {
                 ..
             } = scratch;
             let length = quarter_rows - 1;
-            memory.resize(memory.len().max(BLOCK * (mx + length / 2)), ZERO);
+            memory.resize(memory.len().max(BLOCK * mx + BLOCK / 2 * length), ZERO);
             real.resize(real.len().max(2 * quarter_rows), 0.0);
             let (memory, folded) = memory.split_at_mut(BLOCK * mx);
             let (one, other) = real[..2 * quarter_rows].split_at_mut(quarter_rows);
-            for (block, kept) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
+            for (block, parts) in blocks.chunks_exact_mut(size).enumerate() {
                 let block = first + block;
                 let start = block * BLOCK;
                 let width = BLOCK.min(columns - start);
                 let pairs = width.div_ceil(2);
                 let buffer = &mut memory[..width * mx];
-                for (set, (weight, kernels)) in sets.iter().enumerate() {
-                    let odd = kernels.odd(number);
-                    let terms = transform.columns(kernels, [block, number], pairs, folded, fft);
-                    let (terms, _) = terms.as_chunks::<2>();
-                    let folded = folded.chunks_exact(length).zip(terms);
-                    let data = input.0[start * mx..].chunks(2 * mx);
-                    for ((buffer, data), (y, term)) in buffer.chunks_mut(2 * mx).zip(data).zip(folded)
-                    {
-                        let term = Complex64::new(term[0], term[1]);
-                        unfold_pair(y, odd[0], term, one, other);
-                        let pairs = buffer.chunks_exact_mut(mx).zip(data.chunks_exact(mx));
-                        for ((column, data), values) in pairs.zip([&*one, &*other]) {
-                            multiply_add(column, data, values, odd, *weight, set > 0);
+                for (number, kept) in numbers.clone().zip(parts.chunks_exact_mut(nx * BLOCK)) {
+                    for (set, (weight, kernels)) in sets.iter().enumerate() {
+                        let odd = kernels.odd(number);
+                        let terms = transform.columns(kernels, [block, number], pairs, folded, fft);
+                        let (terms, _) = terms.as_chunks::<2>();
+                        let folded = folded.chunks_exact(length).zip(terms);
+                        let data = input.0[start * mx..].chunks(2 * mx);
+                        let columns = buffer.chunks_mut(2 * mx).zip(data);
+                        for ((columns, data), (y, term)) in columns.zip(folded) {
+                            let term = Complex64::new(term[0], term[1]);
+                            unfold_pair(y, odd[0], term, one, other);
+                            let pairs = columns.chunks_exact_mut(mx).zip(data.chunks_exact(mx));
+                            for ((column, data), values) in pairs.zip([&*one, &*other]) {
+                                multiply_add(column, data, values, odd, *weight, set > 0);
+                            }
                         }
                     }
-                }
-                self.column_inverse.process_with_scratch(buffer, fft);
-                for (b, column) in buffer.chunks_exact(mx).enumerate() {
-                    for (i, value) in column[..nx].iter().enumerate() {
-                        kept[i * BLOCK + b] = *value;
-                    }
+                    self.column_inverse.process_with_scratch(buffer, fft);
+                    scatter(buffer, mx, kept);
                 }
             }
         };
         let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * nx * BLOCK;
+        let chunk = blocks_of_a_task * size;
         self.over_rows(threads, blocks, chunk, tasks, blocks_of_a_task, multiply);
 
         let blocks = &*blocks;
         let rows_of_a_task = nx.div_ceil(self.tasks);
-        let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
-            for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
-                values.copy_from_slice(&scratch.real[..ny]);
-            }
-        };
-        let chunk = ny * rows_of_a_task;
-        self.over_rows(threads, output, chunk, tasks, rows_of_a_task, inverse);
+        for (k, output) in outputs.iter_mut().enumerate() {
+            let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
+                for (row, values) in output.chunks_exact_mut(ny).enumerate() {
+                    let blocks = blocks.chunks_exact(size);
+                    let parts = blocks.map(|block| &block[k * nx * BLOCK..(k + 1) * nx * BLOCK]);
+                    self.row_from_parts(parts, first + row, scratch);
+                    values.copy_from_slice(&scratch.real[..ny]);
+                }
+            };
+            let chunk = ny * rows_of_a_task;
+            self.over_rows(threads, output, chunk, tasks, rows_of_a_task, inverse);
+        }
+    }
+}
+
+/// Columns of `length` points, one after another, to rows of [`BLOCK`] columns: as many as there
+/// are rows. A cache line of a row is written at once.
+fn scatter(columns: &[Complex64], length: usize, rows: &mut [Complex64]) {
+    let mut start = 0;
+    let mut rest = columns.chunks_exact(4 * length);
+    for four in &mut rest {
+        let (a, b) = four.split_at(2 * length);
+        let ((a, b), (c, d)) = (a.split_at(length), b.split_at(length));
+        let values = a.iter().zip(b).zip(c.iter().zip(d));
+        for (row, ((a, b), (c, d))) in rows.chunks_exact_mut(BLOCK).zip(values) {
+            row[start..start + 4].copy_from_slice(&[*a, *b, *c, *d]);
+        }
+        start += 4;
+    }
+    for column in rest.remainder().chunks_exact(length) {
+        for (row, value) in rows.chunks_exact_mut(BLOCK).zip(column) {
+            row[start] = *value;
+        }
+        start += 1;
     }
 }
 
@@ -205,7 +235,7 @@ mod tests {
                 };
                 let odd = parities[2 * seed..][..2].to_vec();
                 let mut rows = transform.kernel_rows([nx, ny], odd.clone());
-                let source = |rows: std::ops::Range<usize>, keep: &mut Keep| {
+                let source = |rows: Range<usize>, keep: &mut Keep| {
                     for i in rows {
                         (0..2).for_each(|k| keep(i, k, &kernel(k)[i * ny..(i + 1) * ny]));
                     }
@@ -234,16 +264,14 @@ mod tests {
             }
             let sets: Vec<_> = sets.iter().map(|(weight, rows)| (*weight, rows)).collect();
             let mut outputs = [vec![0.0; nx * ny], vec![0.0; nx * ny]];
-            for (number, output) in outputs.iter_mut().enumerate() {
-                transform.convolve_parities(
-                    &transformed,
-                    (&quarter, &sets),
-                    number,
-                    output,
-                    &mut workspace,
-                    &threads,
-                );
-            }
+            transform.convolve_parities(
+                &transformed,
+                (&quarter, &sets),
+                0..2,
+                &mut outputs.each_mut().map(Vec::as_mut_slice),
+                &mut workspace,
+                &threads,
+            );
             for ((a, b), exact) in outputs[0].iter().zip(&outputs[1]).zip(&exact) {
                 let value = a + b;
                 // Sums of some hundred numbers of at most 4 · 24.

@@ -16,6 +16,10 @@ use crate::grid::Grid;
 use crate::response::interior::Place;
 use crate::threads::Threads;
 
+/// Components that are convolved together: the more, the less often the load is read; the fewer, the
+/// less memory is written and read in between.
+const TOGETHER: usize = 3;
+
 /// A body under a load, of which planes are evaluated.
 #[derive(Debug)]
 pub(super) struct Loaded {
@@ -270,15 +274,18 @@ impl Loaded {
         let Scratch { loads, workspace } = scratch;
         let sets: Vec<_> = loads.iter().map(|load| (load.factor, &load.rows)).collect();
         let count = outputs.len();
-        for (k, output) in outputs.iter_mut().enumerate() {
-            if !go_on(k as f64 / count as f64) {
+        let mut done = 0;
+        for outputs in outputs.chunks_mut(TOGETHER) {
+            if !go_on(done as f64 / count as f64) {
                 return false;
             }
+            let numbers = done..done + outputs.len();
+            done = numbers.end;
             self.transform.convolve_parities(
                 &self.pressure,
                 (&self.quarter, &sets),
-                k,
-                output,
+                numbers,
+                outputs,
                 workspace,
                 &self.threads,
             );
