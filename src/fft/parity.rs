@@ -220,10 +220,25 @@ mod tests {
     fn convolutions_of_every_parity_equal_the_double_sum() -> crate::Result<()> {
         let threads = Threads::new(Some(1))?;
         let parities = [[false, false], [true, false], [false, true], [true, true]];
-        for [nx, ny] in [[5, 4], [1, 7], [6, 1], [3, 8]] {
-            let transform = PaddedTransform::plan_even([nx, ny], [nx, ny], &threads);
+        // Shapes, and how many offsets lie between a loaded cell and another.
+        let cases = [
+            ([5, 4], [5, 4]),
+            ([1, 7], [1, 7]),
+            ([6, 1], [6, 1]),
+            ([3, 8], [3, 8]),
+            ([9, 40], [9, 40]),
+            ([8, 40], [6, 24]),
+        ];
+        for ([nx, ny], offsets) in cases {
+            let transform = PaddedTransform::plan_even([nx, ny], offsets, &threads);
             let mut workspace = transform.workspace();
-            let input: Vec<f64> = (0..nx * ny).map(|k| ((k * k + 3) % 7) as f64).collect();
+            let loaded = |at: usize, n: usize, offsets: usize| (n - offsets..offsets).contains(&at);
+            let input: Vec<f64> = (0..nx * ny)
+                .map(|k| {
+                    let inside = loaded(k / ny, nx, offsets[0]) && loaded(k % ny, ny, offsets[1]);
+                    f64::from(u8::from(inside)) * ((k * k + 3) % 7) as f64
+                })
+                .collect();
             let transformed = transform.transform(&input, &mut workspace, &threads);
             let quarter = transform.quarter_transform();
             let mut exact = vec![0.0; nx * ny];
@@ -234,7 +249,7 @@ mod tests {
                     values.collect::<Vec<_>>()
                 };
                 let odd = parities[2 * seed..][..2].to_vec();
-                let mut rows = transform.kernel_rows([nx, ny], odd.clone());
+                let mut rows = transform.kernel_rows(offsets, odd.clone());
                 let source = |rows: Range<usize>, keep: &mut Keep| {
                     for i in rows {
                         (0..2).for_each(|k| keep(i, k, &kernel(k)[i * ny..(i + 1) * ny]));

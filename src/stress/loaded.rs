@@ -98,9 +98,13 @@ impl Loaded {
         } else {
             let [lx, ly] = grid.size();
             let plan = threads.run(|| Plan::new(body, spacing, 1.01 * lx.hypot(ly)));
+            let traction = match friction {
+                [0.0, 0.0] => Vec::new(),
+                _ => plan.multipliers::<9, components::Traction>(),
+            };
             Kernels::Plane {
                 pressure: plan.multipliers::<6, components::Pressure>(),
-                traction: plan.multipliers::<9, components::Traction>(),
+                traction,
                 plan: Box::new(plan),
             }
         };
@@ -131,8 +135,11 @@ impl Loaded {
         let [nx, ny] = grid.shape().map(|n| n as u64);
         let loads = if options.friction == 0.0 { 1 } else { 3 };
         let fields = if options.displacement { 9 } else { 6 };
-        // Coefficients and spectra of each load; the transforms of planes, and of the pressure.
-        (nx + 1) * (ny + 1) * 8 * (loads * 3 * fields + 2 * fields + 16)
+        // Coefficients of each load; the transform of the pressure and what it is made from, 8; of
+        // components, 2 for each. Transforms come by blocks of columns, and in lengths that are
+        // products of small primes: half a block, and a tenth, more.
+        let cells = (nx + 1) * (ny + 8) * 8;
+        cells * (loads * fields + 8 + 2 * TOGETHER as u64) * 6 / 5
     }
 
     /// Memory for `fields` components.
@@ -234,8 +241,13 @@ impl Loaded {
             let odd: [[bool; 2]; C] = std::array::from_fn(|k| odd[k]);
             let rows = &mut load.rows;
             let mut transform = |source: &(dyn Fn(Range<usize>, &mut Keep) + Sync)| {
-                self.transform
-                    .transform_rows(&self.quarter, rows, source, workspace, &self.threads);
+                self.transform.transform_rows(
+                    &self.quarter,
+                    rows,
+                    source,
+                    workspace,
+                    &self.threads,
+                );
             };
             if load.axis == Some(1) {
                 // Traction along y is traction along x with both exchanged.
