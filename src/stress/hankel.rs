@@ -17,6 +17,8 @@
 
 use std::f64::consts::{LN_2, PI};
 
+use rayon::prelude::*;
+
 use crate::fft::{fast_length, fourier_coefficients};
 
 /// What is transformed: order ν of the Bessel function, and kind.
@@ -157,7 +159,7 @@ pub(super) struct Series<const N: usize> {
 
 impl<const N: usize> Series<N> {
     /// Of the functions of which `samples[k]` are α^b D at the mesh's wavenumbers; they fall off as
-    /// e^{−α depth}, or faster.
+    /// e^{−α depth}, or faster. On the threads of the caller.
     pub(super) fn new(
         mesh: &LogMesh,
         orders: &[Order; N],
@@ -168,13 +170,21 @@ impl<const N: usize> Series<N> {
         let step = mesh.step();
         let mut terms = vec![[[0.0; N]; 2]; mesh.points / 2 + 1];
         let mut means = terms.clone();
-        let powers = std::array::from_fn(|k| powers(mesh, orders[k], &samples[k], depth));
+        let transformed: Vec<_> = samples
+            .into_par_iter()
+            .enumerate()
+            .map(|(k, mut samples)| {
+                let powers = powers(mesh, orders[k], &samples, depth);
+                let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+                samples.resize(mesh.points, 0.0);
+                (powers, largest, fourier_coefficients(samples))
+            })
+            .collect();
+        let powers = std::array::from_fn(|k| transformed[k].0);
         let mut kept = 0;
-        for (k, mut samples) in samples.into_iter().enumerate() {
-            let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-            samples.resize(mesh.points, 0.0);
+        for (k, (_, largest, coefficients)) in transformed.into_iter().enumerate() {
             let power = orders[k].kind.power();
-            for (m, (re, im)) in fourier_coefficients(samples).into_iter().enumerate() {
+            for (m, (re, im)) in coefficients.into_iter().enumerate() {
                 if re.hypot(im) * mesh.points as f64 > 1e-15 * largest {
                     kept = kept.max(m + 1);
                 }

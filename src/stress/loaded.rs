@@ -164,34 +164,36 @@ impl Loaded {
 
     /// Computes the coefficients at `place`.
     pub(super) fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
-        let (plan, pressure, traction) = match &self.kind {
-            Kernels::Line(plan) => {
-                self.line(plan, place, scratch);
-                return;
-            }
+        self.threads.run(|| match &self.kind {
+            Kernels::Line(plan) => self.line(plan, place, scratch),
             Kernels::Plane {
                 plan,
                 pressure,
                 traction,
-            } => (plan, pressure, traction),
-        };
+            } => self.plane_coefficients(plan, [pressure, traction], place, scratch),
+        });
+    }
+
+    fn plane_coefficients(
+        &self,
+        plan: &Plan,
+        [pressure, traction]: [&[Vec<(f64, f64)>]; 2],
+        place: &Place,
+        scratch: &mut Scratch,
+    ) {
         // Stresses alone need fewer radial functions.
         if self.displacement {
-            let normal = || Kernel::new::<components::Pressure>(plan, pressure, place);
-            let normal = self.threads.run(normal);
+            let normal = Kernel::new::<components::Pressure>(plan, pressure, place);
             self.fill::<6, COMPONENTS, components::Pressure>(&normal, scratch, place, false);
             if self.slides() {
-                let lateral = || Kernel::new::<components::Traction>(plan, traction, place);
-                let lateral = self.threads.run(lateral);
+                let lateral = Kernel::new::<components::Traction>(plan, traction, place);
                 self.fill::<9, COMPONENTS, components::Traction>(&lateral, scratch, place, true);
             }
         } else {
-            let normal = || Kernel::new::<PressureStress>(plan, pressure, place);
-            let normal = self.threads.run(normal);
+            let normal = Kernel::new::<PressureStress>(plan, pressure, place);
             self.fill::<4, 6, PressureStress>(&normal, scratch, place, false);
             if self.slides() {
-                let lateral = || Kernel::new::<TractionStress>(plan, traction, place);
-                let lateral = self.threads.run(lateral);
+                let lateral = Kernel::new::<TractionStress>(plan, traction, place);
                 self.fill::<6, 6, TractionStress>(&lateral, scratch, place, true);
             }
         }
@@ -293,14 +295,16 @@ impl Loaded {
             }
             let numbers = done..done + outputs.len();
             done = numbers.end;
-            self.transform.convolve_parities(
-                &self.pressure,
-                (&self.quarter, &sets),
-                numbers,
-                outputs,
-                workspace,
-                &self.threads,
-            );
+            self.threads.run(|| {
+                self.transform.convolve_parities(
+                    &self.pressure,
+                    (&self.quarter, &sets),
+                    numbers,
+                    outputs,
+                    workspace,
+                    &self.threads,
+                );
+            });
         }
         true
     }
