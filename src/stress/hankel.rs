@@ -213,41 +213,52 @@ impl<const N: usize> Series<N> {
         }
     }
 
-    /// H/r^ν at r ≥ 0. Nearer than a fifth of the depth the series' rounding would grow by r^{−ν},
-    /// and the powers of r² take its place.
-    pub(super) fn reduced(&self, r: f64) -> [f64; N] {
-        if r < 0.2 * self.depth {
-            let s = (r / self.depth).powi(2);
-            let horner = |sum: f64, c: &f64| sum * s + c;
-            return self.powers.map(|c| c.iter().rev().fold(0.0, horner));
-        }
-        let mut values = self.sum(&self.terms, r);
-        for (value, order) in values.iter_mut().zip(&self.orders) {
-            *value *= order.kind.scale(r) / r.powi(order.nu as i32);
-        }
-        values
-    }
-
-    /// η at r > 0.
-    pub(super) fn mean(&self, r: f64) -> [f64; N] {
-        let mut values = self.sum(&self.means, r);
-        for (value, order) in values.iter_mut().zip(&self.orders) {
-            *value *= order.kind.scale(r) * r;
+    /// H/r^ν at R distances r ≥ 0. Nearer than a fifth of the depth the series' rounding would grow by
+    /// r^{−ν}, and the powers of r² take its place.
+    pub(super) fn reduced<const R: usize>(&self, distances: [f64; R]) -> [[f64; N]; R] {
+        let mut values = self.sum(&self.terms, distances);
+        for (values, r) in values.iter_mut().zip(distances) {
+            if r < 0.2 * self.depth {
+                let s = (r / self.depth).powi(2);
+                let horner = |sum: f64, c: &f64| sum * s + c;
+                *values = self.powers.map(|c| c.iter().rev().fold(0.0, horner));
+                continue;
+            }
+            for (value, order) in values.iter_mut().zip(&self.orders) {
+                *value *= order.kind.scale(r) / r.powi(order.nu as i32);
+            }
         }
         values
     }
 
-    fn sum(&self, terms: &[[[f64; N]; 2]], r: f64) -> [f64; N] {
-        let (sin, cos) = (-self.step * (r.ln() + self.low)).sin_cos();
-        let (mut re, mut im) = (1.0, 0.0);
-        let mut sums = [0.0; N];
+    /// η at R distances r > 0.
+    pub(super) fn mean<const R: usize>(&self, distances: [f64; R]) -> [[f64; N]; R] {
+        let mut values = self.sum(&self.means, distances);
+        for (values, r) in values.iter_mut().zip(distances) {
+            for (value, order) in values.iter_mut().zip(&self.orders) {
+                *value *= order.kind.scale(r) * r;
+            }
+        }
+        values
+    }
+
+    /// Several at once, so that one recurrence does not wait for itself.
+    fn sum<const R: usize>(&self, terms: &[[[f64; N]; 2]], distances: [f64; R]) -> [[f64; N]; R] {
+        let turns = distances.map(|r| (-self.step * (r.ln() + self.low)).sin_cos());
+        let (mut re, mut im) = ([1.0; R], [0.0; R]);
+        let mut sums = [[0.0; R]; N];
         for [real, imaginary] in terms {
             for k in 0..N {
-                sums[k] += real[k] * re - imaginary[k] * im;
+                for p in 0..R {
+                    sums[k][p] += real[k] * re[p] - imaginary[k] * im[p];
+                }
             }
-            (re, im) = (re * cos - im * sin, re * sin + im * cos);
+            for p in 0..R {
+                let (sin, cos) = turns[p];
+                (re[p], im[p]) = (re[p] * cos - im[p] * sin, re[p] * sin + im[p] * cos);
+            }
         }
-        sums
+        std::array::from_fn(|p| std::array::from_fn(|k| sums[k][p]))
     }
 }
 
@@ -341,7 +352,7 @@ mod tests {
             for r in [1e-3_f64, 0.1, 0.7, 5.0, 300.0, 1e4] {
                 let root = r.hypot(z);
                 let t = (r / (root + z)).powf(nu);
-                let values = series.sum(&series.terms, r);
+                let [values] = series.sum(&series.terms, [r]);
                 let [stress, displacement] = [0, 1].map(|k| values[k] * orders[k].kind.scale(r));
                 let exact = [
                     (z + nu * root) * t / root.powi(3) / (2.0 * PI),

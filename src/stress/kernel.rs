@@ -134,10 +134,11 @@ impl<'a, const N: usize> Kernel<'a, N> {
             NEAREST * least
         };
         let whole = Coarse::new([nearest, plan.reach], depth * depth, |r| {
-            let mut h = point.at(r * r);
+            let mut h = r.map(|r| point.at(r * r));
             if let Some(series) = &series {
                 let rest = series.reduced(r);
-                h.iter_mut().zip(rest).for_each(|(h, d)| *h += d);
+                let pairs = h.iter_mut().flatten().zip(rest.iter().flatten());
+                pairs.for_each(|(h, d)| *h += d);
             }
             h
         });
@@ -148,7 +149,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let far = 2.0 * (FAR - 2.0) * most;
         let start = (far * far - depth * depth).max(0.0).sqrt();
         let far = Fine::new([start.min(plan.reach), plan.reach], depth * depth, |r| {
-            whole.at(r * r)
+            r.map(|r| whole.at(r * r))
         });
         Self {
             plan,

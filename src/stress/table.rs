@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 use crate::influence::powers_of_lagrange;
 
-/// N functions of s = r² ≥ 0, smooth in ln(s + shift): polynomials of `TERMS` terms over the pieces
-/// of octaves of v = (s + shift)/unit ≥ 1 that are numbered by the first `BITS` bits of the mantissa.
+/// N functions of s = r² ≥ 0, smooth in ln(s + shift): polynomials over the pieces of octaves of
+/// v = (s + shift)/unit ≥ 1 that are numbered by the first `BITS` bits of the mantissa. They have
+/// `TERMS` terms, a multiple of four.
 #[derive(Debug)]
 pub(super) struct Table<const N: usize, const TERMS: usize, const BITS: u32> {
     shift: f64,
@@ -25,8 +26,12 @@ pub(super) type Coarse<const N: usize> = Table<N, 8, 2>;
 pub(super) type Fine<const N: usize> = Table<N, 4, 7>;
 
 impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> {
-    /// Of `f(r)` for r in `range`, on the threads of the caller.
-    pub(super) fn new(range: [f64; 2], shift: f64, f: impl Fn(f64) -> [f64; N] + Sync) -> Self {
+    /// Of `f`, which is given four distances r in `range` at a time, on the threads of the caller.
+    pub(super) fn new(
+        range: [f64; 2],
+        shift: f64,
+        f: impl Fn([f64; 4]) -> [[f64; N]; 4] + Sync,
+    ) -> Self {
         let unit = range[0] * range[0] + shift;
         let last = (range[1] * range[1] + shift) / unit;
         let piece = |v: f64| (v.to_bits() >> (52 - BITS)) as usize;
@@ -41,10 +46,14 @@ impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> 
                     f64::from_bits(bits),
                     f64::from_bits(bits + (1 << (52 - BITS))),
                 );
-                let mut polynomials = [[0.0; N]; TERMS];
-                for (node, lagrange) in nodes.iter().zip(&powers) {
+                let distance = |node: f64| {
                     let v = start + 0.5 * (1.0 + node) * (end - start);
-                    let values = f((v * unit - shift).max(0.0).sqrt());
+                    (v * unit - shift).max(0.0).sqrt()
+                };
+                let (fours, _) = nodes.as_chunks::<4>();
+                let values = fours.iter().flat_map(|four| f(four.map(distance)));
+                let mut polynomials = [[0.0; N]; TERMS];
+                for (values, lagrange) in values.zip(&powers) {
                     for (polynomial, l) in polynomials.iter_mut().zip(lagrange) {
                         for (c, value) in polynomial.iter_mut().zip(&values) {
                             *c += value * l;
