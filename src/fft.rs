@@ -18,9 +18,11 @@ use crate::threads::Threads;
 
 mod cosine;
 mod parity;
+mod quarter;
 mod series;
 
-pub(crate) use parity::{Blocks, KernelTransform, ParitySpectrum, Transformed};
+pub(crate) use parity::Transformed;
+pub(crate) use quarter::{Keep, KernelRows, QuarterTransform};
 pub(crate) use series::{fourier_coefficients, inverse_even};
 
 /// Columns that are transformed together: four complex numbers fill a cache line, and sixteen

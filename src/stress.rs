@@ -216,11 +216,13 @@ pub fn stress_watched(
     let residual = residual(body, &options.residual)?;
     let loaded = Loaded::new(body, grid, pressure, options)?;
     let cells = ox * oy;
-    let mut kept: Vec<Vec<f64>> = vec![vec![0.0; depths.len() * cells]; fields];
+    // Each by itself: a copy would touch its memory, here and on one thread.
+    let zeros = |length: usize| (0..fields).map(|_| vec![0.0; length]).collect::<Vec<_>>();
+    let mut kept = zeros(depths.len() * cells);
     // Planes go where they are kept, sections by way of a plane.
     let mut planes = match lines.whole() {
         true => Vec::new(),
-        false => vec![vec![0.0; pressure.len()]; fields],
+        false => zeros(pressure.len()),
     };
     let mut scratch = loaded.scratch(fields);
     let mut done = 0;
@@ -245,8 +247,11 @@ pub fn stress_watched(
         for (plane, kept) in planes.iter().zip(&mut here) {
             lines.keep(plane, grid.shape(), kept);
         }
-        for kept in &mut here[..2] {
-            kept.iter_mut().for_each(|s| *s += residual[place.layer]);
+        let residual = residual[place.layer];
+        if residual != 0.0 {
+            for kept in &mut here[..2] {
+                kept.iter_mut().for_each(|s| *s += residual);
+            }
         }
         done += 1;
     }

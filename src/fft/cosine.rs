@@ -57,6 +57,58 @@ where
     first
 }
 
+/// [`fold`] of W columns at once, of which `line(j)` are the entries j: two of them make one complex
+/// sequence, and as many pairs are made as `y` has room for.
+pub(super) fn fold_lines<'a, const W: usize>(
+    line: impl Fn(usize) -> &'a [f64; W],
+    odd: bool,
+    angles: &Angles,
+    y: &mut [Complex64],
+) -> [f64; W] {
+    let length = angles.sin.len() + 1;
+    let mut write = |j: usize, values: [f64; W]| {
+        let (pairs, _) = values.as_chunks::<2>();
+        for (y, [one, other]) in y[j..].iter_mut().step_by(length).zip(pairs) {
+            *y = Complex64::new(*one, *other);
+        }
+    };
+    let top = line(0);
+    let mut first = [0.0; W];
+    for j in 1..length.div_ceil(2) {
+        let (a, b) = (line(j), line(length - j));
+        let (sin, cos) = (angles.sin[j - 1], angles.cos[j - 1]);
+        let (mut low, mut high) = ([0.0; W], [0.0; W]);
+        if odd {
+            for k in 0..W {
+                let (half, sum) = (0.5 * (a[k] - b[k]), (a[k] + b[k]) * sin);
+                (low[k], high[k]) = (sum + half, sum - half);
+            }
+        } else {
+            for k in 0..W {
+                let (half, difference) = (0.5 * (a[k] + b[k]), a[k] - b[k]);
+                let turned = difference * sin;
+                (low[k], high[k]) = (half - turned, half + turned);
+                first[k] += difference * cos;
+            }
+        }
+        write(j, low);
+        write(length - j, high);
+    }
+    if length.is_multiple_of(2) {
+        let middle = if odd { 2.0 } else { 1.0 };
+        write(length / 2, line(length / 2).map(|value| middle * value));
+    }
+    if odd {
+        write(0, [0.0; W]);
+    } else {
+        write(0, top.map(|value| 0.5 * value));
+        for (first, top) in first.iter_mut().zip(top) {
+            *first += 0.5 * top;
+        }
+    }
+    first
+}
+
 /// The transform of the whole, less −i where it is odd, from Y at 0 … N/2.
 pub(super) fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64]) {
     if odd {

@@ -1,55 +1,18 @@
 //! Convolution of one input with many kernels, each even or odd along x and along y.
-//!
-//! Of such a kernel only offsets ≥ 0 are given and transformed: along each direction a cosine or
-//! sine transform of half the length, see [`super::cosine`].
 
-use std::f64::consts::PI;
-use std::fmt;
-use std::sync::Arc;
+use std::ops::Range;
 
-use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 
-use super::cosine::{Angles, fold, unfold, unfold_pair};
+use super::cosine::unfold_pair;
+use super::quarter::{KernelRows, QuarterTransform};
 use super::{BLOCK, PaddedTransform, TaskScratch, Workspace, ZERO};
 use crate::threads::Threads;
 
-/// Columns of real numbers that are gathered together: those of a cache line.
-const GROUP: usize = 8;
-
-/// The transform of padded data: columns of the half spectrum, one after another.
+/// The transform of padded data: columns of the half spectrum, one after another. Scaled by
+/// 1/(mx my).
 #[derive(Debug)]
 pub(crate) struct Transformed(Vec<Complex64>);
-
-/// Memory for planes whose columns are transformed back, by blocks of columns.
-#[derive(Debug)]
-pub(crate) struct Blocks(Vec<Complex64>);
-
-/// The transform of a kernel that is even or odd along x and along y: a quarter of it, less the
-/// factor i for each direction in which it is odd. Scaled by 1/(mx my), by columns.
-#[derive(Debug, Clone)]
-pub(crate) struct ParitySpectrum {
-    odd: [bool; 2],
-    values: Vec<f64>,
-}
-
-/// Cosine and sine transforms of kernels, and memory for one at a time.
-pub(crate) struct KernelTransform {
-    row: Arc<dyn RealToComplex<f64>>,
-    column: Arc<dyn Fft<f64>>,
-    /// Along x and along y.
-    angles: [Angles; 2],
-    /// Transformed along y.
-    rows: Vec<f64>,
-}
-
-impl fmt::Debug for KernelTransform {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [nx, ny] = self.angles.each_ref().map(|angles| angles.sin.len() + 1);
-        write!(f, "KernelTransform({nx} x {ny})")
-    }
-}
 
 impl PaddedTransform {
     /// Of data (nx, ny) in C order.
@@ -65,11 +28,12 @@ impl PaddedTransform {
         let rows = &mut rows[..nx * columns];
         self.rows_forward(input, 0..nx, rows, tasks, threads);
         let rows = &*rows;
+        let scale = 1.0 / (mx as f64 * self.padded[1] as f64);
         let mut spectrum = vec![ZERO; columns * mx];
         let along = |first: usize, part: &mut [Complex64], scratch: &mut TaskScratch| {
             for (l, column) in part.chunks_exact_mut(mx).enumerate() {
                 for (i, value) in column[..nx].iter_mut().enumerate() {
-                    *value = rows[i * columns + first + l];
+                    *value = rows[i * columns + first + l] * scale;
                 }
                 self.column_forward
                     .process_with_scratch(column, &mut scratch.fft);
@@ -87,8 +51,9 @@ impl PaddedTransform {
         Transformed(spectrum)
     }
 
-    /// Lengths are even, as kernels of either parity need.
-    pub(crate) fn plan_even(shape: [usize; 2], threads: &Threads) -> Self {
+    /// For kernels of either parity, at `offsets` along x and y: as many as there are cells at
+    /// most, fewer where the input is zero near the edges.
+    pub(crate) fn plan_even(shape: [usize; 2], offsets: [usize; 2], threads: &Threads) -> Self {
         let even = |n: usize| {
             let mut half = n.max(2);
             while super::fast_length(half) != half {
@@ -96,163 +61,66 @@ impl PaddedTransform {
             }
             2 * half
         };
-        Self::on(shape, shape.map(even), threads)
+        Self::on(shape, offsets.map(even), threads)
     }
 
-    pub(crate) fn kernel_transform(&self) -> KernelTransform {
-        let half = self.padded.map(|m| m / 2);
-        let angles = half.map(|n| {
-            let angles = (1..n).map(|j| (PI * j as f64 / n as f64).sin_cos());
-            let (sin, cos) = angles.unzip();
-            Angles { sin, cos }
-        });
-        KernelTransform {
-            row: RealFftPlanner::new().plan_fft_forward(half[1]),
-            column: FftPlanner::new().plan_fft_forward(half[0]),
-            angles,
-            rows: vec![0.0; self.shape[0] * self.columns()],
-        }
-    }
-
-    /// Room for the transform of a kernel.
-    pub(crate) fn empty_spectrum(&self) -> ParitySpectrum {
-        ParitySpectrum {
-            odd: [false; 2],
-            values: vec![0.0; self.columns() * self.quarter_rows()],
-        }
-    }
-
-    /// Transform of the kernel of which `row(i)` are the values at offsets (i, j) ≥ 0, i < nx and
-    /// j < ny.
-    pub(crate) fn parity_spectrum_into<'a>(
-        &self,
-        odd: [bool; 2],
-        row: impl Fn(usize) -> &'a [f64] + Sync,
-        spectrum: &mut ParitySpectrum,
-        kernel: &mut KernelTransform,
-        workspace: &mut Workspace,
-        threads: &Threads,
-    ) {
-        let ([nx, ny], columns, quarter_rows) = (self.shape, self.columns(), self.quarter_rows());
-        let KernelTransform {
-            row: row_plan,
-            column: column_plan,
-            angles,
-            rows,
-        } = kernel;
-        let tasks = &mut workspace.tasks;
-        let [odd_x, odd_y] = odd;
-        let rows_of_a_task = nx.div_ceil(self.tasks);
-        let along_y = |first: usize, rows: &mut [f64], scratch: &mut TaskScratch| {
-            let (length, fft) = (columns - 1, &mut scratch.fft);
-            fft.resize(fft.len().max(row_plan.get_scratch_len()), ZERO);
-            let half = &mut scratch.spectrum[..length / 2 + 1];
-            let (values, folded) = scratch.real[..2 * length].split_at_mut(length);
-            for (i, kept) in rows.chunks_exact_mut(columns).enumerate() {
-                values[..ny].copy_from_slice(&row(first + i)[..ny]);
-                values[ny..].fill(0.0);
-                let start = fold(values, odd_y, &angles[1], folded);
-                let fft = &mut fft[..row_plan.get_scratch_len()];
-                let done = row_plan.process_with_scratch(folded, half, fft);
-                debug_assert!(done.is_ok(), "lengths are the plan's own");
-                unfold(half, odd_y, start, kept);
-            }
-        };
-        self.over_rows(
-            threads,
-            rows,
-            columns * rows_of_a_task,
-            tasks,
-            rows_of_a_task,
-            along_y,
-        );
-        let rows = &*rows;
-        let scale = 1.0 / (self.padded[0] as f64 * self.padded[1] as f64);
-        // Two columns, which are real, make one complex transform.
-        let along_x = |first: usize, part: &mut [f64], scratch: &mut TaskScratch| {
-            let length = quarter_rows - 1;
-            let fft = &mut scratch.fft;
-            fft.resize(fft.len().max(column_plan.get_inplace_scratch_len()), ZERO);
-            let (values, folded) = scratch.columns.split_at_mut(GROUP / 2 * length);
-            let folded = &mut folded[..length];
-            let mut spare = vec![0.0; quarter_rows];
-            for (k, group) in part.chunks_mut(GROUP * quarter_rows).enumerate() {
-                let l = first + GROUP * k;
-                let width = group.len() / quarter_rows;
-                for (i, row) in rows.chunks_exact(columns).enumerate() {
-                    for (pair, two) in row[l..l + width].chunks(2).enumerate() {
-                        let second = two.get(1).copied().unwrap_or(0.0);
-                        values[pair * length + i] = Complex64::new(two[0], second) * scale;
-                    }
-                }
-                let pairs = group.chunks_mut(2 * quarter_rows);
-                for (pair, values) in pairs.zip(values.chunks_exact_mut(length)) {
-                    values[nx..].fill(ZERO);
-                    let start = fold(values, odd_x, &angles[0], folded);
-                    column_plan.process_with_scratch(folded, fft);
-                    let two = pair.len() > quarter_rows;
-                    let (one, other) = pair.split_at_mut(quarter_rows);
-                    let other = if two { other } else { &mut spare };
-                    unfold_pair(folded, odd_x, start, one, other);
-                }
-            }
-        };
-        let columns_of_a_task = GROUP * columns.div_ceil(GROUP * self.tasks);
-        self.over_rows(
-            threads,
-            &mut spectrum.values,
-            columns_of_a_task * quarter_rows,
-            tasks,
-            columns_of_a_task,
-            along_x,
-        );
-        spectrum.odd = odd;
-    }
-
-    /// Memory for [`Self::convolve_parities`] with `count` outputs.
-    pub(crate) fn block_memory(&self, count: usize) -> Blocks {
-        Blocks(vec![ZERO; self.blocks() * count * self.shape[0] * BLOCK])
-    }
-
-    /// Each output, (nx, ny) in C order, = Σ weight · kernel ∗ input over its kernels.
+    /// Each output, (nx, ny) in C order, = Σ weight · kernel ∗ input, of the kernels of these
+    /// `numbers` of all sets.
     ///
     /// All at once, so that the input passes through the caches once.
     pub(crate) fn convolve_parities(
         &self,
         input: &Transformed,
-        kernels: &[Vec<(f64, &ParitySpectrum)>],
+        (transform, sets): (&QuarterTransform, &[(f64, &KernelRows)]),
+        numbers: Range<usize>,
         outputs: &mut [&mut [f64]],
-        blocks: &mut Blocks,
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        let blocks = blocks.0.as_mut_slice();
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let tasks = &mut workspace.tasks;
-        let size = kernels.len() * nx * BLOCK;
+        let Workspace { blocks, tasks, .. } = workspace;
+        let size = numbers.len() * nx * BLOCK;
+        blocks.resize(blocks.len().max(self.blocks() * size), ZERO);
+        let blocks = &mut blocks[..self.blocks() * size];
         let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
+            let TaskScratch {
+                real,
+                columns: memory,
+                fft,
+                ..
+            } = scratch;
+            let length = quarter_rows - 1;
+            memory.resize(memory.len().max(BLOCK * mx + BLOCK / 2 * length), ZERO);
+            real.resize(real.len().max(2 * quarter_rows), 0.0);
+            let (memory, folded) = memory.split_at_mut(BLOCK * mx);
+            let (one, other) = real[..2 * quarter_rows].split_at_mut(quarter_rows);
             for (block, parts) in blocks.chunks_exact_mut(size).enumerate() {
-                let start = (first + block) * BLOCK;
+                let block = first + block;
+                let start = block * BLOCK;
                 let width = BLOCK.min(columns - start);
-                let buffer = &mut scratch.columns[..width * mx];
-                for (kernels, kept) in kernels.iter().zip(parts.chunks_exact_mut(nx * BLOCK)) {
-                    for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                        let l = start + b;
-                        let data = &input.0[l * mx..(l + 1) * mx];
-                        for (k, (weight, kernel)) in kernels.iter().enumerate() {
-                            let values = &kernel.values[l * quarter_rows..(l + 1) * quarter_rows];
-                            multiply_add(column, data, values, kernel.odd, *weight, k > 0);
+                let pairs = width.div_ceil(2);
+                let buffer = &mut memory[..width * mx];
+                for (number, kept) in numbers.clone().zip(parts.chunks_exact_mut(nx * BLOCK)) {
+                    for (set, (weight, kernels)) in sets.iter().enumerate() {
+                        let odd = kernels.odd(number);
+                        let terms = transform.columns(kernels, [block, number], pairs, folded, fft);
+                        let (terms, _) = terms.as_chunks::<2>();
+                        let folded = folded.chunks_exact(length).zip(terms);
+                        let data = input.0[start * mx..].chunks(2 * mx);
+                        let columns = buffer.chunks_mut(2 * mx).zip(data);
+                        for ((columns, data), (y, term)) in columns.zip(folded) {
+                            let term = Complex64::new(term[0], term[1]);
+                            unfold_pair(y, odd[0], term, one, other);
+                            let pairs = columns.chunks_exact_mut(mx).zip(data.chunks_exact(mx));
+                            for ((column, data), values) in pairs.zip([&*one, &*other]) {
+                                multiply_add(column, data, values, odd, *weight, set > 0);
+                            }
                         }
                     }
-                    self.column_inverse
-                        .process_with_scratch(buffer, &mut scratch.fft);
-                    for (b, column) in buffer.chunks_exact(mx).enumerate() {
-                        for (i, value) in column[..nx].iter().enumerate() {
-                            kept[i * BLOCK + b] = *value;
-                        }
-                    }
+                    self.column_inverse.process_with_scratch(buffer, fft);
+                    scatter(buffer, mx, kept);
                 }
             }
         };
@@ -271,15 +139,31 @@ impl PaddedTransform {
                     values.copy_from_slice(&scratch.real[..ny]);
                 }
             };
-            self.over_rows(
-                threads,
-                output,
-                ny * rows_of_a_task,
-                tasks,
-                rows_of_a_task,
-                inverse,
-            );
+            let chunk = ny * rows_of_a_task;
+            self.over_rows(threads, output, chunk, tasks, rows_of_a_task, inverse);
         }
+    }
+}
+
+/// Columns of `length` points, one after another, to rows of [`BLOCK`] columns: as many as there
+/// are rows. A cache line of a row is written at once.
+fn scatter(columns: &[Complex64], length: usize, rows: &mut [Complex64]) {
+    let mut start = 0;
+    let mut rest = columns.chunks_exact(4 * length);
+    for four in &mut rest {
+        let (a, b) = four.split_at(2 * length);
+        let ((a, b), (c, d)) = (a.split_at(length), b.split_at(length));
+        let values = a.iter().zip(b).zip(c.iter().zip(d));
+        for (row, ((a, b), (c, d))) in rows.chunks_exact_mut(BLOCK).zip(values) {
+            row[start..start + 4].copy_from_slice(&[*a, *b, *c, *d]);
+        }
+        start += 4;
+    }
+    for column in rest.remainder().chunks_exact(length) {
+        for (row, value) in rows.chunks_exact_mut(BLOCK).zip(column) {
+            row[start] = *value;
+        }
+        start += 1;
     }
 }
 
@@ -328,6 +212,7 @@ fn accumulate<'a>(
 
 #[cfg(test)]
 mod tests {
+    use super::super::quarter::Keep;
     use super::*;
 
     /// Against the double sum, for each parity and for their sum, on odd and even lengths.
@@ -335,26 +220,44 @@ mod tests {
     fn convolutions_of_every_parity_equal_the_double_sum() -> crate::Result<()> {
         let threads = Threads::new(Some(1))?;
         let parities = [[false, false], [true, false], [false, true], [true, true]];
-        for [nx, ny] in [[5, 4], [1, 7], [6, 1], [3, 8]] {
-            let transform = PaddedTransform::plan_even([nx, ny], &threads);
-            let (mut workspace, mut rows) = (transform.workspace(), transform.kernel_transform());
-            let input: Vec<f64> = (0..nx * ny).map(|k| ((k * k + 3) % 7) as f64).collect();
+        // Shapes, and how many offsets lie between a loaded cell and another.
+        let cases = [
+            ([5, 4], [5, 4]),
+            ([1, 7], [1, 7]),
+            ([6, 1], [6, 1]),
+            ([3, 8], [3, 8]),
+            ([9, 40], [9, 40]),
+            ([8, 40], [6, 24]),
+        ];
+        for ([nx, ny], offsets) in cases {
+            let transform = PaddedTransform::plan_even([nx, ny], offsets, &threads);
+            let mut workspace = transform.workspace();
+            let loaded = |at: usize, n: usize, offsets: usize| (n - offsets..offsets).contains(&at);
+            let input: Vec<f64> = (0..nx * ny)
+                .map(|k| {
+                    let inside = loaded(k / ny, nx, offsets[0]) && loaded(k % ny, ny, offsets[1]);
+                    f64::from(u8::from(inside)) * ((k * k + 3) % 7) as f64
+                })
+                .collect();
             let transformed = transform.transform(&input, &mut workspace, &threads);
+            let quarter = transform.quarter_transform();
             let mut exact = vec![0.0; nx * ny];
-            let mut spectra = Vec::new();
-            for (seed, odd) in parities.into_iter().enumerate() {
-                let quarter: Vec<f64> = (0..nx * ny).map(|k| ((k + seed) % 5) as f64).collect();
-                let mut spectrum = transform.empty_spectrum();
-                let row = |i: usize| &quarter[i * ny..(i + 1) * ny];
-                transform.parity_spectrum_into(
-                    odd,
-                    row,
-                    &mut spectrum,
-                    &mut rows,
-                    &mut workspace,
-                    &threads,
-                );
-                spectra.push((1.0 + seed as f64, spectrum));
+            let mut sets = Vec::new();
+            for seed in 0..2 {
+                let kernel = |k: usize| {
+                    let values = (0..nx * ny).map(move |at| ((at + 2 * seed + k) % 5) as f64);
+                    values.collect::<Vec<_>>()
+                };
+                let odd = parities[2 * seed..][..2].to_vec();
+                let mut rows = transform.kernel_rows(offsets, odd.clone());
+                let source = |rows: Range<usize>, keep: &mut Keep| {
+                    for i in rows {
+                        (0..2).for_each(|k| keep(i, k, &kernel(k)[i * ny..(i + 1) * ny]));
+                    }
+                };
+                transform.transform_rows(&quarter, &mut rows, source, &mut workspace, &threads);
+                let weight = 1.0 + seed as f64;
+                sets.push((weight, rows));
                 let side = |a: usize, b: usize, odd: bool| {
                     let sign = if !odd {
                         1.0
@@ -363,22 +266,24 @@ mod tests {
                     };
                     (a.abs_diff(b), sign)
                 };
-                for (at, sum) in exact.iter_mut().enumerate() {
-                    for (from, value) in input.iter().enumerate() {
-                        let (i, sx) = side(at / ny, from / ny, odd[0]);
-                        let (j, sy) = side(at % ny, from % ny, odd[1]);
-                        *sum += (1.0 + seed as f64) * sx * sy * quarter[i * ny + j] * value;
+                for (k, odd) in odd.into_iter().enumerate() {
+                    let values = kernel(k);
+                    for (at, sum) in exact.iter_mut().enumerate() {
+                        for (from, value) in input.iter().enumerate() {
+                            let (i, sx) = side(at / ny, from / ny, odd[0]);
+                            let (j, sy) = side(at % ny, from % ny, odd[1]);
+                            *sum += weight * sx * sy * values[i * ny + j] * value;
+                        }
                     }
                 }
             }
-            let kernels: Vec<_> = spectra.iter().map(|(w, s)| (*w, s)).collect();
-            let (first, last) = (kernels[..3].to_vec(), kernels[3..].to_vec());
+            let sets: Vec<_> = sets.iter().map(|(weight, rows)| (*weight, rows)).collect();
             let mut outputs = [vec![0.0; nx * ny], vec![0.0; nx * ny]];
             transform.convolve_parities(
                 &transformed,
-                &[first, last],
+                (&quarter, &sets),
+                0..2,
                 &mut outputs.each_mut().map(Vec::as_mut_slice),
-                &mut transform.block_memory(2),
                 &mut workspace,
                 &threads,
             );

@@ -10,134 +10,126 @@
 //! of which the error, 17/5760 δ⁴ K, is below 1e-7 of K from [`FAR`] cells on, and 1e-8 of the
 //! pressure in a sum over any number of cells. Nearer it is integrated ([`super::kernel`]).
 
-use rayon::prelude::*;
+use std::ops::Range;
 
-use super::components::{COMPONENTS, ODD};
+use super::components::COMPONENTS;
+use crate::fft::Keep;
 
 /// Distance, in longer sides of a cell, from which differences are used.
-const FAR: f64 = 60.0;
+pub(super) const FAR: f64 = 60.0;
 
-/// Coefficients at offsets (i, j) ≥ 0: in each row i, the components one after another.
-#[derive(Debug)]
-pub(super) struct Cells {
-    shape: [usize; 2],
-    /// How many components are kept.
-    count: usize,
-    values: Vec<f64>,
-    /// Values at centres, one row and one column more.
-    points: Vec<f64>,
-}
-
-/// What makes coefficients.
-pub(super) struct Source<M, P> {
+/// What makes the coefficients of C components.
+pub(super) struct Source<M, P, const C: usize> {
+    /// How many offsets along x and y.
+    pub(super) offsets: [usize; 2],
     pub(super) spacing: [f64; 2],
     pub(super) depth: f64,
-    /// Whether parities of the components are turned, in x and in y.
-    pub(super) flipped: [bool; 2],
-    /// Mean over a cell at an offset.
+    /// Of each component, whether it is odd in x and in y.
+    pub(super) odd: [[bool; 2]; C],
+    /// Mean over a cell at an offset, times its area.
     pub(super) mean: M,
-    /// Value at a point.
+    /// Value at a point that is far.
     pub(super) point: P,
 }
 
-impl Cells {
-    pub(super) fn new([nx, ny]: [usize; 2], count: usize) -> Self {
-        Self {
-            shape: [nx, ny],
-            count,
-            values: vec![0.0; nx * ny * count],
-            points: vec![0.0; (nx + 1) * (ny + 1) * count],
-        }
-    }
+/// Values at the centres of a row, of one component after another.
+type Points = Vec<f64>;
 
-    /// Component `k` in row i.
-    pub(super) fn row(&self, i: usize, k: usize) -> &[f64] {
-        let ny = self.shape[1];
-        let start = (i * self.count + k) * ny;
-        &self.values[start..start + ny]
-    }
-
-    /// Coefficients from given values, of line contact.
-    pub(super) fn fill_line(&mut self, values: &[[f64; COMPONENTS]]) {
-        for (k, row) in self.values.chunks_exact_mut(self.shape[1]).enumerate() {
-            row.iter_mut().zip(values).for_each(|(c, v)| *c = v[k]);
-        }
-    }
-
-    /// Computes all, on the threads of the caller.
-    pub(super) fn fill<M, P>(&mut self, source: &Source<M, P>)
-    where
-        M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-        P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-    {
-        let ([_, ny], [dx, dy], count) = (self.shape, source.spacing, self.count);
-        let far = FAR * dx.max(dy);
-        // The first offset in a row that is far.
-        let first = |i: usize| {
-            let rest = far * far - source.depth * source.depth - (i as f64 * dx).powi(2);
-            if rest <= 0.0 {
-                0
-            } else {
-                ((rest.sqrt() / dy).ceil() as usize).min(ny)
-            }
-        };
+impl<M, P, const C: usize> Source<M, P, C>
+where
+    M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
+    P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
+{
+    /// Gives `keep` the coefficients of `rows`.
+    pub(super) fn rows(&self, rows: Range<usize>, keep: &mut Keep) {
+        let ny = self.offsets[1];
         let width = ny + 1;
-        self.points
-            .par_chunks_exact_mut(count * width)
-            .enumerate()
-            .for_each(|(i, row)| {
-                let start = first(i + 1).min(first(i).saturating_sub(1));
-                for j in start..width {
-                    let values = (source.point)(i as f64 * dx, j as f64 * dy);
-                    for (k, value) in values[..count].iter().enumerate() {
-                        row[k * width + j] = *value;
+        let memory = || vec![0.0; C * width];
+        let (mut before, mut here, mut after) = (memory(), memory(), memory());
+        let mut means = vec![0.0; C * ny];
+        self.points(rows.start, &mut here);
+        match rows.start {
+            // The row before the first mirrors the row after it.
+            0 => {
+                self.points(1, &mut before);
+                for (row, [odd, _]) in before.chunks_exact_mut(width).zip(self.odd) {
+                    if odd {
+                        row.iter_mut().for_each(|value| *value = -*value);
                     }
                 }
-            });
-        let points = &self.points;
+            }
+            first => self.points(first - 1, &mut before),
+        }
+        for i in rows {
+            self.points(i + 1, &mut after);
+            self.means(i, [&before, &here, &after], &mut means);
+            for (k, row) in means.chunks_exact(ny).enumerate() {
+                keep(i, k, row);
+            }
+            std::mem::swap(&mut before, &mut here);
+            std::mem::swap(&mut here, &mut after);
+        }
+    }
+
+    /// The first offset in row i that is far.
+    fn first(&self, i: usize) -> usize {
+        let [dx, dy] = self.spacing;
+        let far = FAR * dx.max(dy);
+        let rest = far * far - self.depth * self.depth - (i as f64 * dx).powi(2);
+        if rest <= 0.0 {
+            0
+        } else {
+            ((rest.sqrt() / dy).ceil() as usize).min(self.offsets[1])
+        }
+    }
+
+    /// Values at the points of row i that differences need.
+    fn points(&self, i: usize, row: &mut Points) {
+        let width = self.offsets[1] + 1;
+        let [dx, dy] = self.spacing;
+        let start = self.first(i + 1).min(self.first(i).saturating_sub(1));
+        let x = i as f64 * dx;
+        for j in start..width {
+            let values = (self.point)(x, j as f64 * dy);
+            for k in 0..C {
+                row[k * width + j] = values[k];
+            }
+        }
+    }
+
+    /// Coefficients of row i, from the points of three rows.
+    fn means(&self, i: usize, [before, here, after]: [&Points; 3], means: &mut [f64]) {
+        let ny = self.offsets[1];
+        let width = ny + 1;
+        let [dx, dy] = self.spacing;
         let area = dx * dy;
-        self.values
-            .par_chunks_exact_mut(count * ny)
-            .enumerate()
-            .for_each(|(i, row)| {
-                let start = first(i);
-                for j in 0..start {
-                    let values = (source.mean)(i as f64 * dx, j as f64 * dy);
-                    for (k, value) in values[..count].iter().enumerate() {
-                        row[k * ny + j] = *value;
-                    }
-                }
-                if start == ny {
-                    return;
-                }
-                for (k, out) in row.chunks_exact_mut(ny).enumerate() {
-                    let [odd_x, odd_y] = [0, 1].map(|axis| ODD[k][axis] != source.flipped[axis]);
-                    let line = |i: usize| {
-                        let start = (i * count + k) * width;
-                        &points[start..start + width]
-                    };
-                    let (mirror, before) = match i {
-                        0 => (if odd_x { -1.0 } else { 1.0 }, line(1)),
-                        _ => (1.0, line(i - 1)),
-                    };
-                    let (here, after) = (line(i), line(i + 1));
-                    let mean = |j: usize, left: f64| {
-                        let sum = mirror * before[j] + after[j] + left + here[j + 1];
-                        area * (here[j] + (sum - 4.0 * here[j]) / 24.0)
-                    };
-                    let begin = if start == 0 {
-                        out[0] = mean(0, if odd_y { -here[1] } else { here[1] });
-                        1
-                    } else {
-                        start
-                    };
-                    let windows = here[begin - 1..].windows(3);
-                    let across = before[begin..].iter().zip(&after[begin..]);
-                    for ((c, near), (b, a)) in out[begin..].iter_mut().zip(windows).zip(across) {
-                        let sum = mirror * b + a + near[0] + near[2];
-                        *c = area * (near[1] + (sum - 4.0 * near[1]) / 24.0);
-                    }
-                }
-            });
+        let start = self.first(i);
+        for j in 0..start {
+            let values = (self.mean)(i as f64 * dx, j as f64 * dy);
+            for k in 0..C {
+                means[k * ny + j] = values[k];
+            }
+        }
+        if start == ny {
+            return;
+        }
+        // K + (Σ − 4 K)/24, with the sum Σ over the neighbours.
+        let (of_sum, of_here) = (area / 24.0, area * 20.0 / 24.0);
+        for (k, out) in means.chunks_exact_mut(ny).enumerate() {
+            let [before, here, after] =
+                [before, here, after].map(|row| &row[k * width..(k + 1) * width]);
+            let begin = start.max(1);
+            if start == 0 {
+                let left = if self.odd[k][1] { -here[1] } else { here[1] };
+                let sum = before[0] + after[0] + left + here[1];
+                out[0] = of_here * here[0] + of_sum * sum;
+            }
+            let across = before[begin..ny].iter().zip(&after[begin..ny]);
+            let along = here[begin - 1..ny - 1].iter().zip(&here[begin + 1..]);
+            let middle = out[begin..].iter_mut().zip(&here[begin..ny]);
+            for (((out, here), (a, b)), (c, d)) in middle.zip(across).zip(along) {
+                *out = of_here * here + of_sum * ((a + b) + (c + d));
+            }
+        }
     }
 }

@@ -17,6 +17,8 @@
 
 use std::f64::consts::{LN_2, PI};
 
+use rayon::prelude::*;
+
 use crate::fft::{fast_length, fourier_coefficients};
 
 /// What is transformed: order ν of the Bessel function, and kind.
@@ -157,7 +159,7 @@ pub(super) struct Series<const N: usize> {
 
 impl<const N: usize> Series<N> {
     /// Of the functions of which `samples[k]` are α^b D at the mesh's wavenumbers; they fall off as
-    /// e^{−α depth}, or faster.
+    /// e^{−α depth}, or faster. On the threads of the caller.
     pub(super) fn new(
         mesh: &LogMesh,
         orders: &[Order; N],
@@ -168,13 +170,21 @@ impl<const N: usize> Series<N> {
         let step = mesh.step();
         let mut terms = vec![[[0.0; N]; 2]; mesh.points / 2 + 1];
         let mut means = terms.clone();
-        let powers = std::array::from_fn(|k| powers(mesh, orders[k], &samples[k], depth));
+        let transformed: Vec<_> = samples
+            .into_par_iter()
+            .enumerate()
+            .map(|(k, mut samples)| {
+                let powers = powers(mesh, orders[k], &samples, depth);
+                let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+                samples.resize(mesh.points, 0.0);
+                (powers, largest, fourier_coefficients(samples))
+            })
+            .collect();
+        let powers = std::array::from_fn(|k| transformed[k].0);
         let mut kept = 0;
-        for (k, mut samples) in samples.into_iter().enumerate() {
-            let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-            samples.resize(mesh.points, 0.0);
+        for (k, (_, largest, coefficients)) in transformed.into_iter().enumerate() {
             let power = orders[k].kind.power();
-            for (m, (re, im)) in fourier_coefficients(samples).into_iter().enumerate() {
+            for (m, (re, im)) in coefficients.into_iter().enumerate() {
                 if re.hypot(im) * mesh.points as f64 > 1e-15 * largest {
                     kept = kept.max(m + 1);
                 }
@@ -203,41 +213,52 @@ impl<const N: usize> Series<N> {
         }
     }
 
-    /// H/r^ν at r ≥ 0. Nearer than a fifth of the depth the series' rounding would grow by r^{−ν},
-    /// and the powers of r² take its place.
-    pub(super) fn reduced(&self, r: f64) -> [f64; N] {
-        if r < 0.2 * self.depth {
-            let s = (r / self.depth).powi(2);
-            let horner = |sum: f64, c: &f64| sum * s + c;
-            return self.powers.map(|c| c.iter().rev().fold(0.0, horner));
-        }
-        let mut values = self.sum(&self.terms, r);
-        for (value, order) in values.iter_mut().zip(&self.orders) {
-            *value *= order.kind.scale(r) / r.powi(order.nu as i32);
-        }
-        values
-    }
-
-    /// η at r > 0.
-    pub(super) fn mean(&self, r: f64) -> [f64; N] {
-        let mut values = self.sum(&self.means, r);
-        for (value, order) in values.iter_mut().zip(&self.orders) {
-            *value *= order.kind.scale(r) * r;
+    /// H/r^ν at R distances r ≥ 0. Nearer than a fifth of the depth the series' rounding would grow by
+    /// r^{−ν}, and the powers of r² take its place.
+    pub(super) fn reduced<const R: usize>(&self, distances: [f64; R]) -> [[f64; N]; R] {
+        let mut values = self.sum(&self.terms, distances);
+        for (values, r) in values.iter_mut().zip(distances) {
+            if r < 0.2 * self.depth {
+                let s = (r / self.depth).powi(2);
+                let horner = |sum: f64, c: &f64| sum * s + c;
+                *values = self.powers.map(|c| c.iter().rev().fold(0.0, horner));
+                continue;
+            }
+            for (value, order) in values.iter_mut().zip(&self.orders) {
+                *value *= order.kind.scale(r) / r.powi(order.nu as i32);
+            }
         }
         values
     }
 
-    fn sum(&self, terms: &[[[f64; N]; 2]], r: f64) -> [f64; N] {
-        let (sin, cos) = (-self.step * (r.ln() + self.low)).sin_cos();
-        let (mut re, mut im) = (1.0, 0.0);
-        let mut sums = [0.0; N];
+    /// η at R distances r > 0.
+    pub(super) fn mean<const R: usize>(&self, distances: [f64; R]) -> [[f64; N]; R] {
+        let mut values = self.sum(&self.means, distances);
+        for (values, r) in values.iter_mut().zip(distances) {
+            for (value, order) in values.iter_mut().zip(&self.orders) {
+                *value *= order.kind.scale(r) * r;
+            }
+        }
+        values
+    }
+
+    /// Several at once, so that one recurrence does not wait for itself.
+    fn sum<const R: usize>(&self, terms: &[[[f64; N]; 2]], distances: [f64; R]) -> [[f64; N]; R] {
+        let turns = distances.map(|r| (-self.step * (r.ln() + self.low)).sin_cos());
+        let (mut re, mut im) = ([1.0; R], [0.0; R]);
+        let mut sums = [[0.0; R]; N];
         for [real, imaginary] in terms {
             for k in 0..N {
-                sums[k] += real[k] * re - imaginary[k] * im;
+                for p in 0..R {
+                    sums[k][p] += real[k] * re[p] - imaginary[k] * im[p];
+                }
             }
-            (re, im) = (re * cos - im * sin, re * sin + im * cos);
+            for p in 0..R {
+                let (sin, cos) = turns[p];
+                (re[p], im[p]) = (re[p] * cos - im[p] * sin, re[p] * sin + im[p] * cos);
+            }
         }
-        sums
+        std::array::from_fn(|p| std::array::from_fn(|k| sums[k][p]))
     }
 }
 
@@ -331,7 +352,7 @@ mod tests {
             for r in [1e-3_f64, 0.1, 0.7, 5.0, 300.0, 1e4] {
                 let root = r.hypot(z);
                 let t = (r / (root + z)).powf(nu);
-                let values = series.sum(&series.terms, r);
+                let [values] = series.sum(&series.terms, [r]);
                 let [stress, displacement] = [0, 1].map(|k| values[k] * orders[k].kind.scale(r));
                 let exact = [
                     (z + nu * root) * t / root.powi(3) / (2.0 * PI),

@@ -13,13 +13,16 @@
 //!   with tan φ = sinh u, and its inverse in the second; this holds however thin a layer is.
 //! - Farther off, or deeper: both together from one table, by Gauss quadrature over the cell.
 
+use rayon::prelude::*;
+
+use super::cells::FAR;
 use super::components::{COMPONENTS, Load, PointLoad};
 use super::hankel::{LogMesh, Series};
-use super::table::Table;
+use super::table::{Coarse, Fine};
 use crate::body::HalfSpace;
 use crate::influence::quadrature::{Rule, Rules};
 use crate::material::Elastic;
-use crate::response::interior::{Column, Place};
+use crate::response::interior::{Column, Fields, Place};
 
 /// Singularities of the kernels lie in a sector beside the imaginary axis: to the rules they are
 /// nearer than they are.
@@ -89,9 +92,11 @@ pub(super) struct Kernel<'a, const N: usize> {
     material: Elastic,
     depth: f64,
     /// h_ν, of the layered body.
-    whole: Table<N>,
+    whole: Coarse<N>,
+    /// The same, far off.
+    far: Fine<N>,
     /// η_ν of the difference, where there is one and cells are not small against the depth.
-    mean: Option<Table<N>>,
+    mean: Option<Coarse<N>>,
 }
 
 impl<'a, const N: usize> Kernel<'a, N> {
@@ -104,18 +109,20 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let (material, depth) = (place.material, place.depth);
         let point = PointLoad::new::<L>(material, depth);
         let series = plan.spectrum.as_ref().map(|spectrum| {
-            let mut samples: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
-            for (alpha, column) in &spectrum.columns {
-                let fields = column.at(&plan.body, place);
-                let layered = L::radial(&fields, material);
-                let homogeneous =
-                    crate::response::interior::Fields::homogeneous(material, alpha * depth);
+            let sample = |(alpha, column): &(f64, Column)| -> [f64; N] {
+                let layered = L::radial(&column.at(&plan.body, place), material);
+                let homogeneous = Fields::homogeneous(material, alpha * depth);
                 let homogeneous = L::radial(&homogeneous, material);
-                for k in 0..N {
-                    let bias = alpha.powf(L::ORDERS[k].kind.bias());
-                    samples[k].push(bias * (layered[k] - homogeneous[k]));
-                }
-            }
+                std::array::from_fn(|k| layered[k] - homogeneous[k])
+            };
+            let differences: Vec<_> = spectrum.columns.par_iter().map(sample).collect();
+            let samples = std::array::from_fn(|k| {
+                let bias = L::ORDERS[k].kind.bias();
+                let columns = spectrum.columns.iter().zip(&differences);
+                columns
+                    .map(|((alpha, _), difference)| alpha.powf(bias) * difference[k])
+                    .collect()
+            });
             Series::new(&spectrum.mesh, &L::ORDERS, multipliers, samples, depth)
         });
         let half = plan.spacing.map(|d| 0.5 * d);
@@ -126,22 +133,30 @@ impl<'a, const N: usize> Kernel<'a, N> {
         } else {
             NEAREST * least
         };
-        let whole = Table::new([nearest, plan.reach], depth * depth, |r| {
-            let mut h = point.at(r * r);
+        let whole = Coarse::new([nearest, plan.reach], depth * depth, |r| {
+            let mut h = r.map(|r| point.at(r * r));
             if let Some(series) = &series {
                 let rest = series.reduced(r);
-                h.iter_mut().zip(rest).for_each(|(h, d)| *h += d);
+                let pairs = h.iter_mut().flatten().zip(rest.iter().flatten());
+                pairs.for_each(|(h, d)| *h += d);
             }
             h
         });
         let mean = series
             .filter(|_| nearest > 0.0)
-            .map(|series| Table::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r)));
+            .map(|series| Coarse::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r)));
+        // Differences reach one cell further in.
+        let far = 2.0 * (FAR - 2.0) * most;
+        let start = (far * far - depth * depth).max(0.0).sqrt();
+        let far = Fine::new([start.min(plan.reach), plan.reach], depth * depth, |r| {
+            r.map(|r| whole.at(r * r))
+        });
         Self {
             plan,
             material,
             depth,
             whole,
+            far,
             mean,
         }
     }
@@ -197,8 +212,14 @@ impl<'a, const N: usize> Kernel<'a, N> {
         sum
     }
 
-    /// Components of a unit load on a point, at (x, y) from it.
-    pub(super) fn point<L: Load<N>>(&self, x: f64, y: f64) -> [f64; COMPONENTS] {
+    /// Components of a unit load on a point, at (x, y) from it, where that is far.
+    #[inline]
+    pub(super) fn far<L: Load<N>>(&self, x: f64, y: f64) -> [f64; COMPONENTS] {
+        L::components(&self.far.at(x * x + y * y), x, y)
+    }
+
+    /// The same anywhere.
+    fn point<L: Load<N>>(&self, x: f64, y: f64) -> [f64; COMPONENTS] {
         L::components(&self.whole.at(x * x + y * y), x, y)
     }
 
@@ -221,7 +242,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
     /// Integral of the difference over the rectangle from the origin to (x, y).
     fn corner<L: Load<N>>(
         &self,
-        mean: &Table<N>,
+        mean: &Coarse<N>,
         x: f64,
         y: f64,
         mut add: impl FnMut(f64, [f64; COMPONENTS]),

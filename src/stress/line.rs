@@ -152,7 +152,7 @@ impl LinePlan {
             let mut sums: [f64; N] =
                 std::array::from_fn(|k| closed[k].integral(L::PARTS[k], y, self.datum));
             if let Some((series, images)) = &rest {
-                let mean = series.mean(y.abs());
+                let [mean] = series.mean([y.abs()]);
                 for (k, sum) in sums.iter_mut().enumerate() {
                     let sign = if L::PARTS[k].sine { 1.0 } else { y.signum() };
                     *sum += sign * mean[k] + images[k].integral(L::PARTS[k], y, self.datum);

@@ -1,31 +1,37 @@
 //! A body under pressure and friction: one component on one plane is one convolution.
 
+use std::ops::Range;
+
 use ndarray::ArrayRef2;
 
 use super::StressOptions;
-use super::cells::{Cells, Source};
+use super::cells::Source;
 use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
 use super::kernel::{Kernel, Plan};
 use super::line::{self, LinePlan};
 use crate::body::{HalfSpace, Interface};
 use crate::error::{Error, Result, finite};
-use crate::fft::{
-    Blocks, KernelTransform, PaddedTransform, ParitySpectrum, Transformed, Workspace,
-};
+use crate::fft::{Keep, KernelRows, PaddedTransform, QuarterTransform, Transformed, Workspace};
 use crate::grid::Grid;
 use crate::response::interior::Place;
 use crate::threads::Threads;
 
+/// Components that are convolved together: the more, the less often the load is read; the fewer, the
+/// less memory is written and read in between.
+const TOGETHER: usize = 3;
+
 /// A body under a load, of which planes are evaluated.
 #[derive(Debug)]
 pub(super) struct Loaded {
-    shape: [usize; 2],
     spacing: [f64; 2],
     kind: Kernels,
     displacement: bool,
     /// μ times the unit vector of the traction.
     friction: [f64; 2],
+    /// How many offsets along x and y there are from a loaded cell.
+    offsets: [usize; 2],
     transform: PaddedTransform,
+    quarter: QuarterTransform,
     pressure: Transformed,
     threads: Threads,
 }
@@ -44,26 +50,22 @@ enum Kernels {
 /// Memory that all depths use.
 #[derive(Debug)]
 pub(super) struct Scratch {
-    loads: Vec<LoadCells>,
-    kernel: KernelTransform,
-    blocks: Blocks,
+    loads: Vec<LoadRows>,
     workspace: Workspace,
 }
 
 /// Coefficients of one load at one depth.
 #[derive(Debug)]
-struct LoadCells {
+struct LoadRows {
     factor: f64,
     /// The axis along which it acts, and of which it turns the parities; none for pressure.
     axis: Option<usize>,
-    cells: Cells,
-    spectra: Vec<ParitySpectrum>,
+    rows: KernelRows,
 }
 
-impl LoadCells {
-    fn flipped(&self) -> [bool; 2] {
-        [0, 1].map(|axis| self.axis == Some(axis))
-    }
+/// Whether each component is odd in x and in y, under a load along `axis`.
+fn odd(axis: Option<usize>) -> [[bool; 2]; COMPONENTS] {
+    ODD.map(|odd| [0, 1].map(|along| odd[along] != (axis == Some(along))))
 }
 
 impl Loaded {
@@ -96,21 +98,27 @@ impl Loaded {
         } else {
             let [lx, ly] = grid.size();
             let plan = threads.run(|| Plan::new(body, spacing, 1.01 * lx.hypot(ly)));
+            let traction = match friction {
+                [0.0, 0.0] => Vec::new(),
+                _ => plan.multipliers::<9, components::Traction>(),
+            };
             Kernels::Plane {
                 pressure: plan.multipliers::<6, components::Pressure>(),
-                traction: plan.multipliers::<9, components::Traction>(),
+                traction,
                 plan: Box::new(plan),
             }
         };
-        let transform = PaddedTransform::plan_even(shape, &threads);
+        let offsets = offsets(pressure);
+        let transform = PaddedTransform::plan_even(shape, offsets, &threads);
         let input: Vec<f64> = pressure.iter().copied().collect();
         let pressure = transform.transform(&input, &mut transform.workspace(), &threads);
         Ok(Self {
-            shape,
             spacing,
             kind,
             displacement: options.displacement,
             friction,
+            offsets,
+            quarter: transform.quarter_transform(),
             transform,
             pressure,
             threads,
@@ -127,8 +135,11 @@ impl Loaded {
         let [nx, ny] = grid.shape().map(|n| n as u64);
         let loads = if options.friction == 0.0 { 1 } else { 3 };
         let fields = if options.displacement { 9 } else { 6 };
-        // Coefficients and spectra of each load; the transforms of planes, and of the pressure.
-        (nx + 1) * (ny + 1) * 8 * (loads * 3 * fields + 2 * fields + 16)
+        // Coefficients of each load; the transform of the pressure and what it is made from, 8; of
+        // components, 2 for each. Transforms come by blocks of columns, and in lengths that are
+        // products of small primes: half a block, and a tenth, more.
+        let cells = (nx + 1) * (ny + 8) * 8;
+        cells * (loads * fields + 8 + 2 * TOGETHER as u64) * 6 / 5
     }
 
     /// Memory for `fields` components.
@@ -139,66 +150,84 @@ impl Loaded {
             loads: loads
                 .into_iter()
                 .filter(|(factor, _)| *factor != 0.0)
-                .map(|(factor, axis)| LoadCells {
+                .map(|(factor, axis)| LoadRows {
                     factor,
                     axis,
-                    cells: Cells::new(self.shape, fields),
-                    spectra: (0..fields)
-                        .map(|_| self.transform.empty_spectrum())
-                        .collect(),
+                    rows: self
+                        .transform
+                        .kernel_rows(self.offsets, odd(axis)[..fields].to_vec()),
                 })
                 .collect(),
-            kernel: self.transform.kernel_transform(),
-            blocks: self.transform.block_memory(fields),
             workspace: self.transform.workspace(),
         }
     }
 
     /// Computes the coefficients at `place`.
     pub(super) fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
-        let (plan, pressure, traction) = match &self.kind {
-            Kernels::Line(plan) => {
-                for LoadCells { axis, cells, .. } in &mut scratch.loads {
-                    cells.fill_line(&match axis {
-                        None => plan.coefficients::<6, line::Pressure>(place),
-                        Some(0) => plan.coefficients::<3, line::Along>(place),
-                        Some(_) => plan.coefficients::<6, line::Across>(place),
-                    });
-                }
-                return;
-            }
+        self.threads.run(|| match &self.kind {
+            Kernels::Line(plan) => self.line(plan, place, scratch),
             Kernels::Plane {
                 plan,
                 pressure,
                 traction,
-            } => (plan, pressure, traction),
-        };
-        self.threads.run(|| {
-            // Stresses alone need fewer radial functions.
-            if self.displacement {
-                let normal = Kernel::new::<components::Pressure>(plan, pressure, place);
-                self.fill::<6, components::Pressure>(&normal, scratch, place, false);
-                if self.slides() {
-                    let lateral = Kernel::new::<components::Traction>(plan, traction, place);
-                    self.fill::<9, components::Traction>(&lateral, scratch, place, true);
-                }
-            } else {
-                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
-                self.fill::<4, PressureStress>(&normal, scratch, place, false);
-                if self.slides() {
-                    let lateral = Kernel::new::<TractionStress>(plan, traction, place);
-                    self.fill::<6, TractionStress>(&lateral, scratch, place, true);
-                }
-            }
+            } => self.plane_coefficients(plan, [pressure, traction], place, scratch),
         });
+    }
+
+    fn plane_coefficients(
+        &self,
+        plan: &Plan,
+        [pressure, traction]: [&[Vec<(f64, f64)>]; 2],
+        place: &Place,
+        scratch: &mut Scratch,
+    ) {
+        // Stresses alone need fewer radial functions.
+        if self.displacement {
+            let normal = Kernel::new::<components::Pressure>(plan, pressure, place);
+            self.fill::<6, COMPONENTS, components::Pressure>(&normal, scratch, place, false);
+            if self.slides() {
+                let lateral = Kernel::new::<components::Traction>(plan, traction, place);
+                self.fill::<9, COMPONENTS, components::Traction>(&lateral, scratch, place, true);
+            }
+        } else {
+            let normal = Kernel::new::<PressureStress>(plan, pressure, place);
+            self.fill::<4, 6, PressureStress>(&normal, scratch, place, false);
+            if self.slides() {
+                let lateral = Kernel::new::<TractionStress>(plan, traction, place);
+                self.fill::<6, 6, TractionStress>(&lateral, scratch, place, true);
+            }
+        }
+    }
+
+    /// Computes the coefficients of line contact.
+    fn line(&self, plan: &LinePlan, place: &Place, scratch: &mut Scratch) {
+        let Scratch { loads, workspace } = scratch;
+        for LoadRows { axis, rows, .. } in loads {
+            let values = match axis {
+                None => plan.coefficients::<6, line::Pressure>(place),
+                Some(0) => plan.coefficients::<3, line::Along>(place),
+                Some(_) => plan.coefficients::<6, line::Across>(place),
+            };
+            let components = rows.count();
+            let source = |rows: Range<usize>, keep: &mut Keep| {
+                for i in rows {
+                    for k in 0..components {
+                        let row: Vec<f64> = values.iter().map(|values| values[k]).collect();
+                        keep(i, k, &row);
+                    }
+                }
+            };
+            self.transform
+                .transform_rows(&self.quarter, rows, source, workspace, &self.threads);
+        }
     }
 
     fn slides(&self) -> bool {
         self.friction.iter().any(|factor| *factor != 0.0)
     }
 
-    /// Computes the coefficients of pressure, or those of traction along x and along y.
-    fn fill<const N: usize, L: Load<N>>(
+    /// Computes C coefficients of pressure, or those of traction along x and along y.
+    fn fill<const N: usize, const C: usize, L: Load<N>>(
         &self,
         kernel: &Kernel<N>,
         scratch: &mut Scratch,
@@ -206,27 +235,44 @@ impl Loaded {
         lateral: bool,
     ) {
         let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
-        let loads = scratch.loads.iter_mut();
+        let Scratch { loads, workspace } = scratch;
+        let loads = loads.iter_mut();
         for load in loads.filter(|load| load.axis.is_some() == lateral) {
-            let (spacing, depth, flipped) = (self.spacing, place.depth, load.flipped());
+            let odd = odd(load.axis);
+            let (offsets, spacing, depth) = (self.offsets, self.spacing, place.depth);
+            let odd: [[bool; 2]; C] = std::array::from_fn(|k| odd[k]);
+            let rows = &mut load.rows;
+            let mut transform = |source: &(dyn Fn(Range<usize>, &mut Keep) + Sync)| {
+                self.transform.transform_rows(
+                    &self.quarter,
+                    rows,
+                    source,
+                    workspace,
+                    &self.threads,
+                );
+            };
             if load.axis == Some(1) {
                 // Traction along y is traction along x with both exchanged.
                 let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
-                load.cells.fill(&Source {
+                let source = Source {
+                    offsets,
                     spacing,
                     depth,
-                    flipped,
+                    odd,
                     mean: |x, y| exchanged(kernel.at::<L>([y, x], [b, a])),
-                    point: |x, y| exchanged(kernel.point::<L>(y, x)),
-                });
+                    point: |x, y| exchanged(kernel.far::<L>(y, x)),
+                };
+                transform(&|rows, keep| source.rows(rows, keep));
             } else {
-                load.cells.fill(&Source {
+                let source = Source {
+                    offsets,
                     spacing,
                     depth,
-                    flipped,
+                    odd,
                     mean: |x, y| kernel.at::<L>([x, y], half),
-                    point: |x, y| kernel.point::<L>(x, y),
-                });
+                    point: |x, y| kernel.far::<L>(x, y),
+                };
+                transform(&|rows, keep| source.rows(rows, keep));
             }
         }
     }
@@ -239,49 +285,47 @@ impl Loaded {
         scratch: &mut Scratch,
         go_on: &mut dyn FnMut(f64) -> bool,
     ) -> bool {
-        let Scratch {
-            loads,
-            kernel,
-            blocks,
-            workspace,
-        } = scratch;
+        let Scratch { loads, workspace } = scratch;
+        let sets: Vec<_> = loads.iter().map(|load| (load.factor, &load.rows)).collect();
         let count = outputs.len();
-        for (k, parity) in ODD[..count].iter().enumerate() {
-            if !go_on(k as f64 / count as f64) {
+        let mut done = 0;
+        for outputs in outputs.chunks_mut(TOGETHER) {
+            if !go_on(done as f64 / count as f64) {
                 return false;
             }
-            for load in loads.iter_mut() {
-                let flipped = load.flipped();
-                let odd = [0, 1].map(|axis| parity[axis] != flipped[axis]);
-                let cells = &load.cells;
-                self.transform.parity_spectrum_into(
-                    odd,
-                    |i| cells.row(i, k),
-                    &mut load.spectra[k],
-                    kernel,
+            let numbers = done..done + outputs.len();
+            done = numbers.end;
+            self.threads.run(|| {
+                self.transform.convolve_parities(
+                    &self.pressure,
+                    (&self.quarter, &sets),
+                    numbers,
+                    outputs,
                     workspace,
                     &self.threads,
                 );
-            }
+            });
         }
-        let kernels: Vec<Vec<(f64, &ParitySpectrum)>> = (0..count)
-            .map(|k| {
-                loads
-                    .iter()
-                    .map(|load| (load.factor, &load.spectra[k]))
-                    .collect()
-            })
-            .collect();
-        self.transform.convolve_parities(
-            &self.pressure,
-            &kernels,
-            outputs,
-            blocks,
-            workspace,
-            &self.threads,
-        );
         true
     }
+}
+
+/// How many offsets along x and y, 0 included, lie between a cell and a loaded one.
+fn offsets(pressure: &ArrayRef2<f64>) -> [usize; 2] {
+    let shape = [pressure.nrows(), pressure.ncols()];
+    let mut ends = shape.map(|n| [n, 0]);
+    for ((i, j), p) in pressure.indexed_iter() {
+        if *p != 0.0 {
+            for (end, at) in ends.iter_mut().zip([i, j]) {
+                *end = [end[0].min(at), end[1].max(at)];
+            }
+        }
+    }
+    // From the first loaded cell to the last cell, from the first cell to the last loaded one.
+    [0, 1].map(|axis| {
+        let ([first, last], n) = (ends[axis], shape[axis]);
+        (n - first.min(n - 1)).max(last + 1)
+    })
 }
 
 /// μ times the unit vector of the traction on the body.

@@ -120,7 +120,7 @@ pub fn stress_summary(
         residual: residual(body, &options.residual)?,
         scratch: loaded.scratch(6),
         loaded,
-        fields: vec![vec![0.0; pressure.len()]; 6],
+        fields: (0..6).map(|_| vec![0.0; pressure.len()]).collect(),
         progress,
         done: 0,
         planned: 0,

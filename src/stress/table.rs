@@ -6,32 +6,37 @@ use rayon::prelude::*;
 
 use crate::influence::powers_of_lagrange;
 
-/// Points of a piece.
-const NODES: usize = 8;
-
-/// Leading bits of the mantissa that number the pieces within an octave.
-const BITS: u32 = 2;
-
-/// N functions of s = r² ≥ 0, smooth in ln(s + shift): polynomials of degree 7 over quarters of
-/// octaves of v = (s + shift)/unit ≥ 1, found by its leading bits. A singularity at v ≤ 0 leaves a
-/// relative error of 1e-10.
+/// N functions of s = r² ≥ 0, smooth in ln(s + shift): polynomials over the pieces of octaves of
+/// v = (s + shift)/unit ≥ 1 that are numbered by the first `BITS` bits of the mantissa. They have
+/// `TERMS` terms, a multiple of four.
 #[derive(Debug)]
-pub(super) struct Table<const N: usize> {
+pub(super) struct Table<const N: usize, const TERMS: usize, const BITS: u32> {
     shift: f64,
     inverse_unit: f64,
     last: f64,
     /// Powers of the position in the piece, from −1 to 1.
-    pieces: Vec<[[f64; N]; NODES]>,
+    pieces: Vec<[[f64; N]; TERMS]>,
 }
 
-impl<const N: usize> Table<N> {
-    /// Of `f(r)` for r in `range`, on the threads of the caller.
-    pub(super) fn new(range: [f64; 2], shift: f64, f: impl Fn(f64) -> [f64; N] + Sync) -> Self {
+/// Of few pieces, for functions that are costly: a singularity at v ≤ 0 leaves a relative error of
+/// 1e-10.
+pub(super) type Coarse<const N: usize> = Table<N, 8, 2>;
+
+/// Of few terms, for many arguments; the relative error is the same.
+pub(super) type Fine<const N: usize> = Table<N, 4, 7>;
+
+impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> {
+    /// Of `f`, which is given four distances r in `range` at a time, on the threads of the caller.
+    pub(super) fn new(
+        range: [f64; 2],
+        shift: f64,
+        f: impl Fn([f64; 4]) -> [[f64; N]; 4] + Sync,
+    ) -> Self {
         let unit = range[0] * range[0] + shift;
         let last = (range[1] * range[1] + shift) / unit;
         let piece = |v: f64| (v.to_bits() >> (52 - BITS)) as usize;
-        let nodes: [f64; NODES] =
-            std::array::from_fn(|k| (PI * (k as f64 + 0.5) / NODES as f64).cos());
+        let nodes: [f64; TERMS] =
+            std::array::from_fn(|k| (PI * (k as f64 + 0.5) / TERMS as f64).cos());
         let powers = powers_of_lagrange(&nodes);
         let pieces = (piece(1.0)..=piece(last))
             .into_par_iter()
@@ -41,10 +46,14 @@ impl<const N: usize> Table<N> {
                     f64::from_bits(bits),
                     f64::from_bits(bits + (1 << (52 - BITS))),
                 );
-                let mut polynomials = [[0.0; N]; NODES];
-                for (node, lagrange) in nodes.iter().zip(&powers) {
+                let distance = |node: f64| {
                     let v = start + 0.5 * (1.0 + node) * (end - start);
-                    let values = f((v * unit - shift).max(0.0).sqrt());
+                    (v * unit - shift).max(0.0).sqrt()
+                };
+                let (fours, _) = nodes.as_chunks::<4>();
+                let values = fours.iter().flat_map(|four| f(four.map(distance)));
+                let mut polynomials = [[0.0; N]; TERMS];
+                for (values, lagrange) in values.zip(&powers) {
                     for (polynomial, l) in polynomials.iter_mut().zip(lagrange) {
                         for (c, value) in polynomial.iter_mut().zip(&values) {
                             *c += value * l;
@@ -63,6 +72,7 @@ impl<const N: usize> Table<N> {
     }
 
     /// The functions at s, or at the nearer end of the table.
+    #[inline]
     pub(super) fn at(&self, s: f64) -> [f64; N] {
         let v = ((s + self.shift) * self.inverse_unit).clamp(1.0, self.last);
         let bits = v.to_bits();
@@ -71,8 +81,8 @@ impl<const N: usize> Table<N> {
         // The bits that are left are the position in the piece, from 1 to 2 under this exponent.
         let left = (bits << BITS) & ((1 << 52) - 1);
         let position = 2.0 * f64::from_bits(1.0_f64.to_bits() | left) - 3.0;
-        let mut sums = polynomials[NODES - 1];
-        for coefficients in polynomials[..NODES - 1].iter().rev() {
+        let mut sums = polynomials[TERMS - 1];
+        for coefficients in polynomials[..TERMS - 1].iter().rev() {
             for (sum, c) in sums.iter_mut().zip(coefficients) {
                 *sum = *sum * position + c;
             }
