@@ -26,22 +26,26 @@ use crate::memory::check_memory;
 
 mod cells;
 mod components;
+mod cut;
 mod depths;
 mod derived;
+mod edge;
 mod hankel;
 mod kernel;
 mod line;
 mod loaded;
+mod near;
+mod reconstruction;
 mod rectangle;
 mod section;
 mod summary;
 mod table;
 
 pub use derived::Peak;
-pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary, stress_summary};
+pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary};
 
 use components::COMPONENTS;
-use loaded::Loaded;
+use loaded::{Form, Loaded};
 use section::{Lines, place};
 
 /// Which side of an interface a depth is on.
@@ -202,6 +206,19 @@ pub fn stress_watched(
     options: &StressOptions,
     progress: &mut StressProgress,
 ) -> Result<Stress> {
+    watched(body, grid, pressure, Form::Uniform, depths, options, progress)
+}
+
+/// [`stress_watched`] under a pressure of either form.
+fn watched(
+    body: &HalfSpace,
+    grid: &Grid,
+    pressure: &ArrayRef2<f64>,
+    form: Form,
+    depths: &[f64],
+    options: &StressOptions,
+    progress: &mut StressProgress,
+) -> Result<Stress> {
     let places = depths
         .iter()
         .map(|&z| place(body, z, options.side))
@@ -214,7 +231,7 @@ pub fn stress_watched(
         8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, options),
     )?;
     let residual = residual(body, &options.residual)?;
-    let loaded = Loaded::new(body, grid, pressure, options)?;
+    let loaded = Loaded::new(body, grid, pressure, form, options)?;
     let cells = ox * oy;
     let mut kept: Vec<Vec<f64>> = vec![vec![0.0; depths.len() * cells]; fields];
     // Planes go where they are kept, sections by way of a plane.
@@ -342,10 +359,11 @@ impl Solution {
         progress: &mut StressProgress,
     ) -> Result<Stress> {
         let (body, options) = self.loaded_member(member, options)?;
-        stress_watched(
+        watched(
             body,
             self.grid(),
             &self.pressure,
+            Form::Solved,
             depths,
             &options,
             progress,

@@ -30,6 +30,8 @@ const SECTOR: f64 = 0.7;
 pub(super) struct Plan {
     pub(super) body: HalfSpace,
     spacing: [f64; 2],
+    /// Nearest distance to a corner of a cell, or of a piece of one.
+    nearest: f64,
     reach: f64,
     rules: Rules,
     panel: Rule,
@@ -45,12 +47,12 @@ struct Spectrum {
 }
 
 impl Plan {
-    /// For cells of sides `spacing`, at offsets up to `reach`.
-    pub(super) fn new(body: &HalfSpace, spacing: [f64; 2], reach: f64) -> Self {
+    /// For cells of sides `spacing`, and pieces down to `finest` of them, at offsets up to `reach`.
+    pub(super) fn new(body: &HalfSpace, spacing: [f64; 2], finest: f64, reach: f64) -> Self {
+        let nearest = NEAREST * finest * 0.5 * spacing[0].min(spacing[1]);
         let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
         let spectrum = body.layers().first().map(|top| {
-            let half = 0.5 * spacing[0].min(spacing[1]);
-            let mesh = LogMesh::new(top.thickness(), thickness, [NEAREST * half, reach]);
+            let mesh = LogMesh::new(top.thickness(), thickness, [nearest, reach]);
             let columns = mesh
                 .wavenumbers()
                 .map(|alpha| (alpha, Column::new(body, alpha)))
@@ -60,6 +62,7 @@ impl Plan {
         Self {
             body: body.clone(),
             spacing,
+            nearest,
             reach,
             rules: Rules::coarse(),
             panel: Rule::gauss_legendre(10),
@@ -124,7 +127,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let nearest = if plan.rules.at(SECTOR * depth / least).is_some() {
             0.0
         } else {
-            NEAREST * least
+            plan.nearest
         };
         let whole = Table::new([nearest, plan.reach], depth * depth, |r| {
             let mut h = point.at(r * r);
@@ -136,7 +139,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
         });
         let mean = series
             .filter(|_| nearest > 0.0)
-            .map(|series| Table::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r)));
+            .map(|series| Table::new([nearest, 12.0 * most], 0.0, |r| series.mean(r)));
         Self {
             plan,
             material,

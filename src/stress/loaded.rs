@@ -7,6 +7,7 @@ use super::cells::{Cells, Source};
 use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
 use super::kernel::{Kernel, Plan};
 use super::line::{self, LinePlan};
+use super::near::{Near, NearPlan};
 use crate::body::{HalfSpace, Interface};
 use crate::error::{Error, Result, finite};
 use crate::fft::{
@@ -15,6 +16,18 @@ use crate::fft::{
 use crate::grid::Grid;
 use crate::response::interior::Place;
 use crate::threads::Threads;
+
+/// How pressure is distributed over a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// It is uniform.
+    Uniform,
+    /// It is that of a solved contact.
+    Solved,
+}
+
+/// Smallest pieces of a cell.
+const FINEST: f64 = 1.0 / 135.0;
 
 /// A body under a load, of which planes are evaluated.
 #[derive(Debug)]
@@ -27,7 +40,19 @@ pub(super) struct Loaded {
     friction: [f64; 2],
     transform: PaddedTransform,
     pressure: Transformed,
+    /// Where pressure is not uniform over cells.
+    within: Option<Within>,
     threads: Threads,
+}
+
+/// What is not uniform over cells.
+#[derive(Debug)]
+struct Within {
+    plan: NearPlan,
+    /// The cells' pressure, which displacements and the tractions at the surface are of.
+    given: Vec<f64>,
+    /// Of that; [`Loaded::pressure`] is what stresses are the convolution of.
+    transformed: Transformed,
 }
 
 /// What makes the coefficients.
@@ -48,6 +73,8 @@ pub(super) struct Scratch {
     kernel: KernelTransform,
     blocks: Blocks,
     workspace: Workspace,
+    near: Near,
+    depth: f64,
 }
 
 /// Coefficients of one load at one depth.
@@ -71,6 +98,7 @@ impl Loaded {
         body: &HalfSpace,
         grid: &Grid,
         pressure: &ArrayRef2<f64>,
+        form: Form,
         options: &StressOptions,
     ) -> Result<Self> {
         let shape = grid.shape();
@@ -91,11 +119,16 @@ impl Loaded {
         let friction = friction(body, options)?;
         let threads = Threads::new(options.threads)?;
         let spacing = grid.spacing();
+        // Pieces of cells come nearer to a target than cells.
+        let finest = match form {
+            Form::Uniform => 1.0,
+            Form::Solved => FINEST,
+        };
         let kind = if grid.is_line() {
-            Kernels::Line(LinePlan::new(body, grid))
+            Kernels::Line(LinePlan::new(body, grid, finest))
         } else {
             let [lx, ly] = grid.size();
-            let plan = threads.run(|| Plan::new(body, spacing, 1.01 * lx.hypot(ly)));
+            let plan = threads.run(|| Plan::new(body, spacing, finest, 1.01 * lx.hypot(ly)));
             Kernels::Plane {
                 pressure: plan.multipliers::<6, components::Pressure>(),
                 traction: plan.multipliers::<9, components::Traction>(),
@@ -104,7 +137,21 @@ impl Loaded {
         };
         let transform = PaddedTransform::plan_even(shape, &threads);
         let input: Vec<f64> = pressure.iter().copied().collect();
-        let pressure = transform.transform(&input, &mut transform.workspace(), &threads);
+        let transformed =
+            |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
+        let line = grid.is_line();
+        let within = (form == Form::Solved).then(|| {
+            let plan = threads.run(|| NearPlan::new(&input, shape, spacing, line));
+            Within {
+                transformed: transformed(&input),
+                given: input.clone(),
+                plan,
+            }
+        });
+        let pressure = match &within {
+            Some(within) => transformed(&within.plan.reconstruction.uniform),
+            None => transformed(&input),
+        };
         Ok(Self {
             shape,
             spacing,
@@ -113,6 +160,7 @@ impl Loaded {
             friction,
             transform,
             pressure,
+            within,
             threads,
         })
     }
@@ -151,11 +199,17 @@ impl Loaded {
             kernel: self.transform.kernel_transform(),
             blocks: self.transform.block_memory(fields),
             workspace: self.transform.workspace(),
+            near: Near::default(),
+            depth: 0.0,
         }
     }
 
     /// Computes the coefficients at `place`.
     pub(super) fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
+        scratch.depth = place.depth;
+        if let Some(within) = &self.within {
+            scratch.near = self.near(&within.plan, place);
+        }
         let (plan, pressure, traction) = match &self.kind {
             Kernels::Line(plan) => {
                 for LoadCells { axis, cells, .. } in &mut scratch.loads {
@@ -231,6 +285,49 @@ impl Loaded {
         }
     }
 
+    /// Stresses of parts of cells at `place`.
+    fn near(&self, near: &NearPlan, place: &Place) -> Near {
+        if !near.reaches(place.depth) {
+            return Near::default();
+        }
+        let [fx, fy] = self.friction;
+        let sum = |normal: [f64; COMPONENTS], x: [f64; COMPONENTS], y: [f64; COMPONENTS]| {
+            std::array::from_fn(|k| normal[k] + fx * x[k] + fy * y[k])
+        };
+        let none = [0.0; COMPONENTS];
+        self.threads.run(|| match &self.kind {
+            Kernels::Line(plan) => {
+                let normal = plan.strips::<6, line::Pressure>(place);
+                let along = (fx != 0.0).then(|| plan.strips::<3, line::Along>(place));
+                let across = (fy != 0.0).then(|| plan.strips::<6, line::Across>(place));
+                near.table(place.depth, |[_, y], [_, b]| {
+                    let x = along.as_ref().map_or(none, |strips| strips.at(y, b));
+                    let y_ = across.as_ref().map_or(none, |strips| strips.at(y, b));
+                    sum(normal.at(y, b), x, y_)
+                })
+            }
+            Kernels::Plane {
+                plan,
+                pressure,
+                traction,
+            } => {
+                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
+                let lateral = self
+                    .slides()
+                    .then(|| Kernel::new::<TractionStress>(plan, traction, place));
+                near.table(place.depth, |[x, y], [a, b]| {
+                    let pressed = normal.at::<PressureStress>([x, y], [a, b]);
+                    let Some(lateral) = &lateral else {
+                        return sum(pressed, none, none);
+                    };
+                    let along = lateral.at::<TractionStress>([x, y], [a, b]);
+                    let across = lateral.at::<TractionStress>([y, x], [b, a]);
+                    sum(pressed, along, EXCHANGED.map(|k| across[k]))
+                })
+            }
+        })
+    }
+
     /// Components on the plane of the coefficients, as many as there are `outputs`. Asks `go_on`
     /// with the part that is done, and ends where it is false; returns whether it did all.
     pub(super) fn plane(
@@ -244,6 +341,8 @@ impl Loaded {
             kernel,
             blocks,
             workspace,
+            near,
+            depth,
         } = scratch;
         let count = outputs.len();
         for (k, parity) in ODD[..count].iter().enumerate() {
@@ -272,14 +371,33 @@ impl Loaded {
                     .collect()
             })
             .collect();
-        self.transform.convolve_parities(
-            &self.pressure,
-            &kernels,
-            outputs,
-            blocks,
-            workspace,
-            &self.threads,
-        );
+        let mut convolve = |pressure, kernels: &[_], outputs: &mut [&mut [f64]]| {
+            self.transform.convolve_parities(
+                pressure,
+                kernels,
+                outputs,
+                blocks,
+                workspace,
+                &self.threads,
+            );
+        };
+        let Some(within) = &self.within else {
+            convolve(&self.pressure, &kernels, outputs);
+            return true;
+        };
+        let (stresses, displacements) = outputs.split_at_mut(6);
+        convolve(&self.pressure, &kernels[..6], stresses);
+        if !displacements.is_empty() {
+            convolve(&within.transformed, &kernels[6..], displacements);
+        }
+        self.threads.run(|| within.plan.add(near, stresses));
+        if *depth == 0.0 {
+            let [fx, fy] = self.friction;
+            for (k, factor) in [(2, 1.0), (4, fy), (5, fx)] {
+                let tractions = stresses[k].iter_mut().zip(&within.given);
+                tractions.for_each(|(stress, p)| *stress = -factor * p);
+            }
+        }
         true
     }
 }

@@ -1,0 +1,270 @@
+//! What pressure within cells adds to the stress nearby.
+//!
+//! The load of a cell less its mean and the shares of its first moment
+//! ([`super::reconstruction`]) has neither force nor moment: its stresses fall off as the fourth
+//! power of the distance. They are summed over some cells around each, at shallow depths, from the
+//! stresses of pieces of a cell ([`super::cut`]).
+
+use rayon::prelude::*;
+
+use super::cut::{Cuts, Piece};
+use super::reconstruction::{INERTIA, Reconstruction, RootCell, root};
+
+/// Stresses, as there are no displacements here.
+const STRESSES: usize = 6;
+
+/// How far the load of a cell is followed, in cells of the longer side.
+const REACH: f64 = 4.0;
+
+/// The most cells of the shorter side.
+const MOST: usize = 10;
+
+/// Depth, in shorter sides of a cell, below which the edge's loads are not felt.
+const EDGES: f64 = 5.0;
+
+/// The same of slopes inside, which fall off as e^{−2πz/dx}.
+const SLOPES: f64 = 1.5;
+
+/// Cells at a time.
+const BLOCK: usize = 512;
+
+/// How cells are cut and followed.
+#[derive(Debug)]
+pub(super) struct NearPlan {
+    pub(super) reconstruction: Reconstruction,
+    shape: [usize; 2],
+    spacing: [f64; 2],
+    line: bool,
+    reach: [usize; 2],
+    cuts: Cuts,
+}
+
+/// A target, seen from a cell.
+#[derive(Debug)]
+struct Offset {
+    by: [isize; 2],
+    /// Of the pieces that it sees; 0 those of its own cell.
+    cut: usize,
+    /// Of uniform pressure, of unit slopes, and of shares of a unit first moment.
+    uniform: [f64; STRESSES],
+    slopes: [[f64; STRESSES]; 2],
+    shares: [[f64; STRESSES]; 2],
+    /// Of unit pressure on each piece, one component after another.
+    pieces: [Vec<f64>; STRESSES],
+}
+
+/// Stresses of the parts of one cell at one depth.
+#[derive(Debug, Default)]
+pub(super) struct Near {
+    offsets: Vec<Offset>,
+    slopes: bool,
+}
+
+impl NearPlan {
+    pub(super) fn new(pressure: &[f64], shape: [usize; 2], spacing: [f64; 2], line: bool) -> Self {
+        let longer = if line {
+            spacing[1]
+        } else {
+            spacing[0].max(spacing[1])
+        };
+        let reach = |side: f64| ((REACH * longer / side).ceil() as usize).min(MOST);
+        Self {
+            reconstruction: Reconstruction::new(pressure, shape),
+            shape,
+            spacing,
+            line,
+            reach: [if line { 0 } else { reach(spacing[0]) }, reach(spacing[1])],
+            cuts: Cuts::new(line),
+        }
+    }
+
+    /// Whether anything is felt at a depth.
+    pub(super) fn reaches(&self, depth: f64) -> bool {
+        depth < EDGES * self.shorter()
+    }
+
+    fn shorter(&self) -> f64 {
+        if self.line {
+            self.spacing[1]
+        } else {
+            self.spacing[0].min(self.spacing[1])
+        }
+    }
+
+    /// The table at a depth, of the stresses at (x, y) from the centre of a unit load of half sides
+    /// (a, b). On the threads of the caller.
+    pub(super) fn table(
+        &self,
+        depth: f64,
+        load: impl Fn([f64; 2], [f64; 2]) -> [f64; STRESSES] + Sync,
+    ) -> Near {
+        let [rx, ry] = self.reach.map(|reach| reach as isize);
+        // One more, for the shares.
+        let ends = [if self.line { 0 } else { rx + 1 }, ry + 1];
+        let range = |end: isize| -end..=end;
+        let all: Vec<[isize; 2]> = range(ends[0])
+            .flat_map(|i| range(ends[1]).map(move |j| [i, j]))
+            .collect();
+        let [dx, dy] = self.spacing;
+        let mut offsets: Vec<Offset> = all
+            .into_par_iter()
+            .map(|by @ [i, j]| {
+                let cut = self.cuts.seen_from(by);
+                let pieces = &self.cuts.all[cut];
+                let values: Vec<[f64; STRESSES]> = pieces
+                    .iter()
+                    .map(|Piece { centre, half }| {
+                        let at = [(i as f64 - centre[0]) * dx, (j as f64 - centre[1]) * dy];
+                        load(at, [half[0] * dx, half[1] * dy])
+                    })
+                    .collect();
+                let mut uniform = [0.0; STRESSES];
+                let mut slopes = [[0.0; STRESSES]; 2];
+                let [norm_x, norm_y] = self.cuts.norms[cut];
+                for (value, Piece { centre, .. }) in values.iter().zip(pieces) {
+                    for k in 0..STRESSES {
+                        uniform[k] += value[k];
+                        slopes[0][k] += norm_x * centre[0] * value[k];
+                        slopes[1][k] += norm_y * centre[1] * value[k];
+                    }
+                }
+                Offset {
+                    by,
+                    cut,
+                    uniform,
+                    slopes,
+                    shares: [[0.0; STRESSES]; 2],
+                    pieces: std::array::from_fn(|k| values.iter().map(|v| v[k]).collect()),
+                }
+            })
+            .collect();
+        let width = 2 * ends[1] + 1;
+        let place = |[i, j]: [isize; 2]| ((i + ends[0]) * width + j + ends[1]) as usize;
+        let uniform: Vec<[f64; STRESSES]> = offsets.iter().map(|o| o.uniform).collect();
+        offsets.retain(|o| o.by[0].abs() <= rx && o.by[1].abs() <= ry);
+        for offset in &mut offsets {
+            let [i, j] = offset.by;
+            for axis in 0..2 {
+                if self.line && axis == 0 {
+                    continue;
+                }
+                let [ax, ay] = [[1, 0], [0, 1]][axis];
+                // From the cell on the right the target is one less off.
+                let (right, left) = (
+                    uniform[place([i - ax, j - ay])],
+                    uniform[place([i + ax, j + ay])],
+                );
+                for k in 0..STRESSES {
+                    offset.shares[axis][k] = 0.5 * (right[k] - left[k]);
+                    offset.slopes[axis][k] -= INERTIA * offset.shares[axis][k];
+                }
+            }
+        }
+        Near {
+            offsets,
+            slopes: depth < SLOPES * self.shorter(),
+        }
+    }
+
+    /// Adds the stresses of pressure within cells to those on a plane. On the threads of the caller.
+    pub(super) fn add(&self, near: &Near, outputs: &mut [&mut [f64]]) {
+        if near.offsets.is_empty() {
+            return;
+        }
+        for block in self.reconstruction.roots.chunks(BLOCK) {
+            let loads: Vec<[Vec<f64>; 3]> = block.par_iter().map(|cell| self.loads(cell)).collect();
+            outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
+                for (cell, loads) in block.iter().zip(&loads) {
+                    self.add_root(near, k, cell, loads, output);
+                }
+            });
+        }
+        if near.slopes {
+            outputs
+                .par_iter_mut()
+                .enumerate()
+                .for_each(|(k, output)| self.add_slopes(near, k, output));
+        }
+    }
+
+    /// Pressure on the pieces of each cut, less the mean, with the same first moments in all.
+    fn loads(&self, cell: &RootCell) -> [Vec<f64>; 3] {
+        // The points of the mean, three cells to a piece or five.
+        const POINTS: [usize; 3] = [1, 3, 5];
+        std::array::from_fn(|cut| {
+            let pieces = &self.cuts.all[cut];
+            let mut values: Vec<f64> = pieces
+                .iter()
+                .map(|piece| root(&cell.square, piece, POINTS[cut], self.line) - cell.mean)
+                .collect();
+            let mut missing = cell.moments;
+            for (value, piece) in values.iter().zip(pieces) {
+                for axis in 0..2 {
+                    missing[axis] -= value * piece.area() * piece.centre[axis];
+                }
+            }
+            let norms = self.cuts.norms[cut];
+            let lever = [0, 1].map(|axis| missing[axis] * norms[axis] / INERTIA);
+            for (value, piece) in values.iter_mut().zip(pieces) {
+                *value += lever[0] * piece.centre[0] + lever[1] * piece.centre[1];
+            }
+            values
+        })
+    }
+
+    /// Adds component `k` of the load of one cell near the edge.
+    fn add_root(
+        &self,
+        near: &Near,
+        k: usize,
+        cell: &RootCell,
+        loads: &[Vec<f64>; 3],
+        output: &mut [f64],
+    ) {
+        let [nx, ny] = self.shape;
+        for offset in &near.offsets {
+            let target = [0, 1].map(|axis| cell.cell[axis].checked_add_signed(offset.by[axis]));
+            let [Some(i), Some(j)] = target else { continue };
+            if i >= nx || j >= ny {
+                continue;
+            }
+            let pieces = offset.pieces[k].iter().zip(&loads[offset.cut]);
+            let sum: f64 = pieces.map(|(c, p)| c * p).sum();
+            let [mx, my] = cell.moments;
+            output[i * ny + j] += sum - mx * offset.shares[0][k] - my * offset.shares[1][k];
+        }
+    }
+
+    /// Adds component `k` of the loads of cells with slopes.
+    fn add_slopes(&self, near: &Near, k: usize, output: &mut [f64]) {
+        let [nx, ny] = self.shape;
+        let [along, across] = &self.reconstruction.slopes;
+        for i in 0..nx {
+            let row = i * ny..(i + 1) * ny;
+            let (along, across) = (&along[row.clone()], &across[row]);
+            let sloped = |j: usize| along[j] != 0.0 || across[j] != 0.0;
+            let Some(first) = (0..ny).find(|j| sloped(*j)) else {
+                continue;
+            };
+            let end = (0..ny).rfind(|j| sloped(*j)).map_or(first, |j| j + 1);
+            for offset in &near.offsets {
+                let Some(target) = i.checked_add_signed(offset.by[0]).filter(|i| *i < nx) else {
+                    continue;
+                };
+                let by = offset.by[1];
+                let start = first.max(by.min(0).unsigned_abs());
+                let end = end.min((ny as isize - by.max(0)) as usize);
+                if start >= end {
+                    continue;
+                }
+                let (cx, cy) = (offset.slopes[0][k], offset.slopes[1][k]);
+                let begin = (target * ny + start).saturating_add_signed(by);
+                let targets = &mut output[begin..begin + end - start];
+                let slopes = along[start..end].iter().zip(&across[start..end]);
+                for (output, (gx, gy)) in targets.iter_mut().zip(slopes) {
+                    *output += cx * gx + cy * gy;
+                }
+            }
+        }
+    }
+}
