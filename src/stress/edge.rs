@@ -37,6 +37,10 @@ impl Square {
         c + u * (cu + u * cuu + v * cuv) + v * (cv + v * cvv)
     }
 
+    pub(super) fn raise(&mut self, by: f64) {
+        self.0[0] += by;
+    }
+
     /// How much it changes from the centre to the corners of a piece of half sides (a, b), at the
     /// slope of the cell's centre.
     pub(super) fn varies(&self, [a, b]: [f64; 2]) -> f64 {
