@@ -40,6 +40,7 @@ mod rectangle;
 mod section;
 mod summary;
 mod table;
+mod within;
 
 pub use derived::Peak;
 pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary};
@@ -206,7 +207,15 @@ pub fn stress_watched(
     options: &StressOptions,
     progress: &mut StressProgress,
 ) -> Result<Stress> {
-    watched(body, grid, pressure, Form::Uniform, depths, options, progress)
+    watched(
+        body,
+        grid,
+        pressure,
+        Form::Uniform,
+        depths,
+        options,
+        progress,
+    )
 }
 
 /// [`stress_watched`] under a pressure of either form.
@@ -228,7 +237,7 @@ fn watched(
     let [ox, oy] = lines.shape;
     check_memory(
         grid.shape(),
-        8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, options),
+        8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, form, options),
     )?;
     let residual = residual(body, &options.residual)?;
     let loaded = Loaded::new(body, grid, pressure, form, options)?;

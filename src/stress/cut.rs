@@ -12,6 +12,11 @@ impl Piece {
     pub(super) fn area(&self) -> f64 {
         4.0 * self.half[0] * self.half[1]
     }
+
+    /// Mean of the squared distance from the cell's centre along one axis.
+    pub(super) fn mean_square(&self, axis: usize) -> f64 {
+        self.centre[axis].powi(2) + self.half[axis].powi(2) / 3.0
+    }
 }
 
 impl Piece {

@@ -16,10 +16,13 @@ use rayon::prelude::*;
 pub(super) const BAND: u8 = 3;
 
 /// Cells to each side that a fit looks at.
-const WINDOW: isize = 8;
+const WINDOW: usize = 8;
 
-/// Fewest cells that are fitted, in two dimensions and in one.
-const FEWEST: [usize; 2] = [16, 5];
+/// Degrees of the polynomials that are tried.
+const DEGREES: [u8; 2] = [2, 3];
+
+/// How far, in cells, all that are near the edge must have been fitted.
+const TOGETHER: usize = 3;
 
 /// Uncertainty of the place of the edge, in cells.
 const SURE: f64 = 0.05;
@@ -27,14 +30,32 @@ const SURE: f64 = 0.05;
 /// Distance between the edge and the outer cells of the contact, in cells.
 const NEAR: f64 = 0.6;
 
-/// A polynomial of second degree in the distances u, v from a cell's centre, in cells.
+/// Terms of a polynomial of third degree: powers of u and of v.
+const POWERS: [[u8; 2]; TERMS] = [
+    [0, 0],
+    [1, 0],
+    [0, 1],
+    [2, 0],
+    [1, 1],
+    [0, 2],
+    [3, 0],
+    [2, 1],
+    [1, 2],
+    [0, 3],
+];
+
+const TERMS: usize = 10;
+
+/// A polynomial in the distances u, v from a cell's centre, in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Square([f64; 6]);
+pub(super) struct Square([f64; TERMS]);
 
 impl Square {
     pub(super) fn at(&self, u: f64, v: f64) -> f64 {
-        let [c, cu, cv, cuu, cuv, cvv] = self.0;
-        c + u * (cu + u * cuu + v * cuv) + v * (cv + v * cvv)
+        let [c, cu, cv, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
+        let along = cu + u * (cuu + u * cuuu);
+        let across = cv + v * (cvv + v * cvvv);
+        c + u * along + v * across + u * v * (cuv + u * cuuv + v * cuvv)
     }
 
     pub(super) fn raise(&mut self, by: f64) {
@@ -58,6 +79,14 @@ impl Square {
 pub(super) struct EdgeCell {
     pub(super) cell: [usize; 2],
     pub(super) square: Square,
+}
+
+impl EdgeCell {
+    /// With p² raised; none where that moves the edge by more than `farthest`, in cells.
+    pub(super) fn moved(mut self, by: f64, farthest: f64) -> Option<Self> {
+        self.square.raise(by);
+        (by.abs() <= farthest * self.square.slope()).then_some(self)
+    }
 }
 
 /// How many cells each is from the nearest that does not touch, diagonally too; up to `most`.
@@ -91,9 +120,8 @@ pub(super) fn edge_cells(
 ) -> Vec<EdgeCell> {
     let squares = squares(pressure, distances, shape);
     // The band, with the cells beside it that do not touch.
-    let beside = |i: usize, j: usize| {
-        around(shape, [i, j], 1).any(|[i, j]| distances[i * ny + j] > 0)
-    };
+    let beside =
+        |i: usize, j: usize| around(shape, [i, j], 1).any(|[i, j]| distances[i * ny + j] > 0);
     let band: Vec<[usize; 2]> = (0..nx * ny)
         .map(|cell| [cell / ny, cell % ny])
         .filter(|&[i, j]| match distances[i * ny + j] {
@@ -110,7 +138,7 @@ pub(super) fn edge_cells(
         refused[i * ny + j] = fit.is_none();
     }
     // What one cell's neighbour says of the edge, the cell must know too.
-    let known = |cell: [usize; 2]| !around(shape, cell, 1).any(|[i, j]| refused[i * ny + j]);
+    let known = |cell: [usize; 2]| !around(shape, cell, TOGETHER).any(|[i, j]| refused[i * ny + j]);
     let cells = band.into_iter().zip(fits).filter_map(|(cell, fit)| {
         let square = fit.filter(|_| known(cell))?;
         Some(EdgeCell { cell, square })
@@ -125,9 +153,7 @@ pub(super) fn around(
     reach: usize,
 ) -> impl Iterator<Item = [usize; 2]> {
     let rows = i.saturating_sub(reach)..(i + reach + 1).min(nx);
-    rows.flat_map(move |i| {
-        (j.saturating_sub(reach)..(j + reach + 1).min(ny)).map(move |j| [i, j])
-    })
+    rows.flat_map(move |i| (j.saturating_sub(reach)..(j + reach + 1).min(ny)).map(move |j| [i, j]))
 }
 
 /// p² at the centres of cells that are inside, where it is fitted. A solver's pressure stands for
@@ -146,37 +172,59 @@ fn squares(pressure: &[f64], distances: &[u8], [nx, ny]: [usize; 2]) -> Vec<Opti
     distances.iter().enumerate().map(inside).collect()
 }
 
-/// Least squares around one cell, nearer cells counting more; none where it is not sure.
+/// The surest of the fits around one cell, if it is sure, and agrees with the solver's cells.
 fn fit(
     squares: &[Option<f64>],
     pressure: &[f64],
+    shape: [usize; 2],
+    cell @ [i, j]: [usize; 2],
+) -> Option<Square> {
+    let fits = DEGREES
+        .into_iter()
+        .filter_map(|degree| least_squares(squares, shape, cell, degree));
+    let (square, uncertain) = fits.reduce(|a, b| if b.1 < a.1 { b } else { a })?;
+    let slope = square.slope();
+    let place = square.0[0] / slope;
+    let agrees = if pressure[i * shape[1] + j] > 0.0 {
+        place > -NEAR
+    } else {
+        place < NEAR
+    };
+    (uncertain <= SURE && agrees).then_some(square)
+}
+/// The polynomial of some degree that fits cells within `window` best, nearer ones counting more,
+/// and how uncertain the edge is by it, in cells; none where there are too few.
+fn least_squares(
+    squares: &[Option<f64>],
     [nx, ny]: [usize; 2],
     [i, j]: [usize; 2],
-) -> Option<Square> {
+    degree: u8,
+) -> Option<(Square, f64)> {
     let line = nx == 1;
-    let terms = if line { 3 } else { 6 };
-    let scale = WINDOW as f64;
-    let basis = |u: f64, v: f64| {
-        if line {
-            [1.0, v, v * v, 0.0, 0.0, 0.0]
-        } else {
-            [1.0, u, v, u * u, u * v, v * v]
-        }
-    };
-    let (mut normal, mut right) = ([[0.0; 6]; 6], [0.0; 6]);
+    let used = |[a, b]: [u8; 2]| a + b <= degree && !(line && a > 0);
+    let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
+    let terms = powers.len();
+    let scale = 1.0 / WINDOW as f64;
+    let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
     let (mut total, mut weights, mut count) = (0.0, 0.0, 0);
-    for [k, l] in around([nx, ny], [i, j], WINDOW as usize) {
+    for [k, l] in around([nx, ny], [i, j], WINDOW) {
         let Some(square) = squares[k * ny + l] else {
             continue;
         };
-        let u = (k as f64 - i as f64) / scale;
-        let v = (l as f64 - j as f64) / scale;
+        let u = (k as f64 - i as f64) * scale;
+        let v = (l as f64 - j as f64) * scale;
         let rest = 1.1 - (u * u + v * v);
         if rest <= 0.0 {
             continue;
         }
         let weight = rest * rest;
-        let basis = basis(u, v);
+        let (uu, vv) = (u * u, v * v);
+        let all = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
+        let mut basis = [0.0; TERMS];
+        basis
+            .iter_mut()
+            .zip(&powers)
+            .for_each(|(b, k)| *b = all[*k]);
         for a in 0..terms {
             for b in 0..=a {
                 normal[a][b] += weight * basis[a] * basis[b];
@@ -187,36 +235,28 @@ fn fit(
         weights += weight;
         count += 1;
     }
-    if count < FEWEST[usize::from(line)] {
+    if count < if line { terms + 2 } else { 2 * terms } {
         return None;
     }
     cholesky(&mut normal, terms)?;
-    let explained = right;
     let solution = solved(&normal, right, terms);
-    let spread = solved(&normal, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], terms)[0];
-    let [c, a, b, aa, ab, bb] = solution;
-    let (s, t) = (1.0 / scale, 1.0 / (scale * scale));
-    let square = Square(if line {
-        [c, 0.0, a * s, 0.0, 0.0, b * t]
-    } else {
-        [c, a * s, b * s, aa * t, ab * t, bb * t]
-    });
-    let product: f64 = solution.iter().zip(&explained).map(|(c, r)| c * r).sum();
-    let variance = ((total - product) / weights).max(0.0);
-    // In the units in which the edge is one cell off.
-    let slope = square.slope();
-    let sure = (variance * spread * weights / count as f64).sqrt() <= SURE * slope;
-    let place = solution[0] / slope;
-    let agrees = if pressure[i * ny + j] > 0.0 {
-        place > -NEAR
-    } else {
-        place < NEAR
-    };
-    (slope > 0.0 && sure && agrees).then_some(square)
+    let mut first = [0.0; TERMS];
+    first[0] = 1.0;
+    let spread = solved(&normal, first, terms)[0];
+    let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
+    let free = count as f64 / (count - terms) as f64;
+    let variance = ((total - product) / weights * free).max(0.0);
+    let mut square = Square([0.0; TERMS]);
+    for (value, k) in solution.iter().zip(&powers) {
+        let [a, b] = POWERS[*k];
+        square.0[*k] = value * scale.powi(i32::from(a + b));
+    }
+    let uncertain = (variance * spread * weights / count as f64).sqrt() / square.slope();
+    uncertain.is_finite().then_some((square, uncertain))
 }
 
 /// The factor of Cholesky in the lower triangle, in place; none where a pivot is lost.
-fn cholesky(matrix: &mut [[f64; 6]; 6], terms: usize) -> Option<()> {
+fn cholesky(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
     for a in 0..terms {
         let scale = matrix[a][a];
         for b in 0..=a {
@@ -236,7 +276,7 @@ fn cholesky(matrix: &mut [[f64; 6]; 6], terms: usize) -> Option<()> {
 }
 
 /// Solution with that factor.
-fn solved(factor: &[[f64; 6]; 6], mut right: [f64; 6], terms: usize) -> [f64; 6] {
+fn solved(factor: &[[f64; TERMS]; TERMS], mut right: [f64; TERMS], terms: usize) -> [f64; TERMS] {
     for a in 0..terms {
         let sum: f64 = (0..a).map(|k| factor[a][k] * right[k]).sum();
         right[a] = (right[a] - sum) / factor[a][a];

@@ -116,7 +116,11 @@ impl LinePlan {
         let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
         let (width, datum) = (grid.spacing()[1], grid.size()[1]);
         let spectrum = body.layers().first().map(|top| {
-            let mesh = LogMesh::new(top.thickness(), thickness, [0.4 * finest * width, 2.0 * datum]);
+            let mesh = LogMesh::new(
+                top.thickness(),
+                thickness,
+                [0.4 * finest * width, 2.0 * datum],
+            );
             let columns = mesh
                 .wavenumbers()
                 .map(|alpha| (alpha, Column::new(body, alpha)))

@@ -7,7 +7,8 @@ use super::cells::{Cells, Source};
 use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
 use super::kernel::{Kernel, Plan};
 use super::line::{self, LinePlan};
-use super::near::{Near, NearPlan};
+use super::near::Near;
+use super::within::Within;
 use crate::body::{HalfSpace, Interface};
 use crate::error::{Error, Result, finite};
 use crate::fft::{
@@ -26,9 +27,6 @@ pub(super) enum Form {
     Solved,
 }
 
-/// Smallest pieces of a cell.
-const FINEST: f64 = 1.0 / 135.0;
-
 /// A body under a load, of which planes are evaluated.
 #[derive(Debug)]
 pub(super) struct Loaded {
@@ -40,19 +38,10 @@ pub(super) struct Loaded {
     friction: [f64; 2],
     transform: PaddedTransform,
     pressure: Transformed,
-    /// Where pressure is not uniform over cells.
-    within: Option<Within>,
+    /// Where pressure is not uniform over cells, and the transform of the cells' pressure, of which
+    /// displacements are; stresses are the convolution of [`Loaded::pressure`].
+    within: Option<(Within, Transformed)>,
     threads: Threads,
-}
-
-/// What is not uniform over cells.
-#[derive(Debug)]
-struct Within {
-    plan: NearPlan,
-    /// The cells' pressure, which displacements and the tractions at the surface are of.
-    given: Vec<f64>,
-    /// Of that; [`Loaded::pressure`] is what stresses are the convolution of.
-    transformed: Transformed,
 }
 
 /// What makes the coefficients.
@@ -74,7 +63,6 @@ pub(super) struct Scratch {
     blocks: Blocks,
     workspace: Workspace,
     near: Near,
-    depth: f64,
 }
 
 /// Coefficients of one load at one depth.
@@ -119,16 +107,11 @@ impl Loaded {
         let friction = friction(body, options)?;
         let threads = Threads::new(options.threads)?;
         let spacing = grid.spacing();
-        // Pieces of cells come nearer to a target than cells.
-        let finest = match form {
-            Form::Uniform => 1.0,
-            Form::Solved => FINEST,
-        };
         let kind = if grid.is_line() {
-            Kernels::Line(LinePlan::new(body, grid, finest))
+            Kernels::Line(LinePlan::new(body, grid, 1.0))
         } else {
             let [lx, ly] = grid.size();
-            let plan = threads.run(|| Plan::new(body, spacing, finest, 1.01 * lx.hypot(ly)));
+            let plan = threads.run(|| Plan::new(body, spacing, 1.0, 1.01 * lx.hypot(ly)));
             Kernels::Plane {
                 pressure: plan.multipliers::<6, components::Pressure>(),
                 traction: plan.multipliers::<9, components::Traction>(),
@@ -139,17 +122,11 @@ impl Loaded {
         let input: Vec<f64> = pressure.iter().copied().collect();
         let transformed =
             |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
-        let line = grid.is_line();
-        let within = (form == Form::Solved).then(|| {
-            let plan = threads.run(|| NearPlan::new(&input, shape, spacing, line));
-            Within {
-                transformed: transformed(&input),
-                given: input.clone(),
-                plan,
-            }
-        });
+        let within = (form == Form::Solved)
+            .then(|| threads.run(|| Within::new(body, grid, &input, friction)))
+            .map(|within| (within, transformed(&input)));
         let pressure = match &within {
-            Some(within) => transformed(&within.plan.reconstruction.uniform),
+            Some((within, _)) => transformed(within.uniform()),
             None => transformed(&input),
         };
         Ok(Self {
@@ -171,12 +148,14 @@ impl Loaded {
     }
 
     /// Bytes that it takes, with the coefficients of one depth.
-    pub(super) fn memory(grid: &Grid, options: &StressOptions) -> u64 {
+    pub(super) fn memory(grid: &Grid, form: Form, options: &StressOptions) -> u64 {
         let [nx, ny] = grid.shape().map(|n| n as u64);
         let loads = if options.friction == 0.0 { 1 } else { 3 };
         let fields = if options.displacement { 9 } else { 6 };
-        // Coefficients and spectra of each load; the transforms of planes, and of the pressure.
-        (nx + 1) * (ny + 1) * 8 * (loads * 3 * fields + 2 * fields + 16)
+        let within = if form == Form::Solved { 24 } else { 0 };
+        // Coefficients and spectra of each load; the transforms of planes, and of the pressure;
+        // what is not uniform in it, and its transform.
+        (nx + 1) * (ny + 1) * 8 * (loads * 3 * fields + 2 * fields + 16 + within)
     }
 
     /// Memory for `fields` components.
@@ -200,15 +179,13 @@ impl Loaded {
             blocks: self.transform.block_memory(fields),
             workspace: self.transform.workspace(),
             near: Near::default(),
-            depth: 0.0,
         }
     }
 
     /// Computes the coefficients at `place`.
     pub(super) fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
-        scratch.depth = place.depth;
-        if let Some(within) = &self.within {
-            scratch.near = self.near(&within.plan, place);
+        if let Some((within, _)) = &self.within {
+            scratch.near = self.threads.run(|| within.at(place));
         }
         let (plan, pressure, traction) = match &self.kind {
             Kernels::Line(plan) => {
@@ -285,49 +262,6 @@ impl Loaded {
         }
     }
 
-    /// Stresses of parts of cells at `place`.
-    fn near(&self, near: &NearPlan, place: &Place) -> Near {
-        if !near.reaches(place.depth) {
-            return Near::default();
-        }
-        let [fx, fy] = self.friction;
-        let sum = |normal: [f64; COMPONENTS], x: [f64; COMPONENTS], y: [f64; COMPONENTS]| {
-            std::array::from_fn(|k| normal[k] + fx * x[k] + fy * y[k])
-        };
-        let none = [0.0; COMPONENTS];
-        self.threads.run(|| match &self.kind {
-            Kernels::Line(plan) => {
-                let normal = plan.strips::<6, line::Pressure>(place);
-                let along = (fx != 0.0).then(|| plan.strips::<3, line::Along>(place));
-                let across = (fy != 0.0).then(|| plan.strips::<6, line::Across>(place));
-                near.table(place.depth, |[_, y], [_, b]| {
-                    let x = along.as_ref().map_or(none, |strips| strips.at(y, b));
-                    let y_ = across.as_ref().map_or(none, |strips| strips.at(y, b));
-                    sum(normal.at(y, b), x, y_)
-                })
-            }
-            Kernels::Plane {
-                plan,
-                pressure,
-                traction,
-            } => {
-                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
-                let lateral = self
-                    .slides()
-                    .then(|| Kernel::new::<TractionStress>(plan, traction, place));
-                near.table(place.depth, |[x, y], [a, b]| {
-                    let pressed = normal.at::<PressureStress>([x, y], [a, b]);
-                    let Some(lateral) = &lateral else {
-                        return sum(pressed, none, none);
-                    };
-                    let along = lateral.at::<TractionStress>([x, y], [a, b]);
-                    let across = lateral.at::<TractionStress>([y, x], [b, a]);
-                    sum(pressed, along, EXCHANGED.map(|k| across[k]))
-                })
-            }
-        })
-    }
-
     /// Components on the plane of the coefficients, as many as there are `outputs`. Asks `go_on`
     /// with the part that is done, and ends where it is false; returns whether it did all.
     pub(super) fn plane(
@@ -342,7 +276,6 @@ impl Loaded {
             blocks,
             workspace,
             near,
-            depth,
         } = scratch;
         let count = outputs.len();
         for (k, parity) in ODD[..count].iter().enumerate() {
@@ -381,23 +314,16 @@ impl Loaded {
                 &self.threads,
             );
         };
-        let Some(within) = &self.within else {
+        let Some((within, given)) = &self.within else {
             convolve(&self.pressure, &kernels, outputs);
             return true;
         };
         let (stresses, displacements) = outputs.split_at_mut(6);
         convolve(&self.pressure, &kernels[..6], stresses);
         if !displacements.is_empty() {
-            convolve(&within.transformed, &kernels[6..], displacements);
+            convolve(given, &kernels[6..], displacements);
         }
-        self.threads.run(|| within.plan.add(near, stresses));
-        if *depth == 0.0 {
-            let [fx, fy] = self.friction;
-            for (k, factor) in [(2, 1.0), (4, fy), (5, fx)] {
-                let tractions = stresses[k].iter_mut().zip(&within.given);
-                tractions.for_each(|(stress, p)| *stress = -factor * p);
-            }
-        }
+        self.threads.run(|| within.add(near, stresses));
         true
     }
 }

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 
 use super::cut::{Cuts, Piece};
 use super::reconstruction::{INERTIA, Reconstruction, RootCell, root};
+use crate::grid::Grid;
 
 /// Stresses, as there are no displacements here.
-const STRESSES: usize = 6;
+pub(super) const STRESSES: usize = 6;
 
 /// How far the load of a cell is followed, in cells of the longer side.
 const REACH: f64 = 4.0;
@@ -23,7 +24,7 @@ const MOST: usize = 10;
 const EDGES: f64 = 5.0;
 
 /// The same of slopes inside, which fall off as e^{−2πz/dx}.
-const SLOPES: f64 = 1.5;
+const BENDS: f64 = 1.5;
 
 /// Cells at a time.
 const BLOCK: usize = 512;
@@ -33,7 +34,8 @@ const BLOCK: usize = 512;
 pub(super) struct NearPlan {
     pub(super) reconstruction: Reconstruction,
     shape: [usize; 2],
-    spacing: [f64; 2],
+    /// Of a cell; a strip's width, twice.
+    sides: [f64; 2],
     line: bool,
     reach: [usize; 2],
     cuts: Cuts,
@@ -45,9 +47,9 @@ struct Offset {
     by: [isize; 2],
     /// Of the pieces that it sees; 0 those of its own cell.
     cut: usize,
-    /// Of uniform pressure, of unit slopes, and of shares of a unit first moment.
+    /// Of uniform pressure, of unit slopes and curvatures, and of shares of a unit first moment.
     uniform: [f64; STRESSES],
-    slopes: [[f64; STRESSES]; 2],
+    bends: [[f64; STRESSES]; 4],
     shares: [[f64; STRESSES]; 2],
     /// Of unit pressure on each piece, one component after another.
     pieces: [Vec<f64>; STRESSES],
@@ -57,25 +59,42 @@ struct Offset {
 #[derive(Debug, Default)]
 pub(super) struct Near {
     offsets: Vec<Offset>,
-    slopes: bool,
+    bends: bool,
+    surface: bool,
+}
+
+impl Near {
+    /// Whether it is the surface's.
+    pub(super) fn at_surface(&self) -> bool {
+        self.surface
+    }
 }
 
 impl NearPlan {
-    pub(super) fn new(pressure: &[f64], shape: [usize; 2], spacing: [f64; 2], line: bool) -> Self {
-        let longer = if line {
-            spacing[1]
+    /// On the threads of the caller.
+    pub(super) fn new(pressure: &[f64], grid: &Grid) -> Self {
+        let (shape, line) = (grid.shape(), grid.is_line());
+        let sides = if line {
+            [grid.spacing()[1]; 2]
         } else {
-            spacing[0].max(spacing[1])
+            grid.spacing()
         };
+        let longer = sides[0].max(sides[1]);
         let reach = |side: f64| ((REACH * longer / side).ceil() as usize).min(MOST);
         Self {
             reconstruction: Reconstruction::new(pressure, shape),
             shape,
-            spacing,
+            sides,
             line,
-            reach: [if line { 0 } else { reach(spacing[0]) }, reach(spacing[1])],
+            reach: [if line { 0 } else { reach(sides[0]) }, reach(sides[1])],
             cuts: Cuts::new(line),
         }
+    }
+
+    /// How far a piece of a cell is from a target, at most.
+    pub(super) fn farthest(&self) -> f64 {
+        let [along, across] = [0, 1].map(|axis| (self.reach[axis] + 2) as f64 * self.sides[axis]);
+        along.hypot(across)
     }
 
     /// Whether anything is felt at a depth.
@@ -84,11 +103,7 @@ impl NearPlan {
     }
 
     fn shorter(&self) -> f64 {
-        if self.line {
-            self.spacing[1]
-        } else {
-            self.spacing[0].min(self.spacing[1])
-        }
+        self.sides[0].min(self.sides[1])
     }
 
     /// The table at a depth, of the stresses at (x, y) from the centre of a unit load of half sides
@@ -105,7 +120,7 @@ impl NearPlan {
         let all: Vec<[isize; 2]> = range(ends[0])
             .flat_map(|i| range(ends[1]).map(move |j| [i, j]))
             .collect();
-        let [dx, dy] = self.spacing;
+        let [dx, dy] = self.sides;
         let mut offsets: Vec<Offset> = all
             .into_par_iter()
             .map(|by @ [i, j]| {
@@ -119,20 +134,23 @@ impl NearPlan {
                     })
                     .collect();
                 let mut uniform = [0.0; STRESSES];
-                let mut slopes = [[0.0; STRESSES]; 2];
-                let [norm_x, norm_y] = self.cuts.norms[cut];
-                for (value, Piece { centre, .. }) in values.iter().zip(pieces) {
+                let mut bends = [[0.0; STRESSES]; 4];
+                let norms = self.cuts.norms[cut];
+                for (value, piece) in values.iter().zip(pieces) {
+                    let means = [0, 1].map(|axis| piece.mean_square(axis));
                     for k in 0..STRESSES {
                         uniform[k] += value[k];
-                        slopes[0][k] += norm_x * centre[0] * value[k];
-                        slopes[1][k] += norm_y * centre[1] * value[k];
+                        for axis in 0..2 {
+                            bends[axis][k] += norms[axis] * piece.centre[axis] * value[k];
+                            bends[axis + 2][k] += 0.5 * (means[axis] - INERTIA) * value[k];
+                        }
                     }
                 }
                 Offset {
                     by,
                     cut,
                     uniform,
-                    slopes,
+                    bends,
                     shares: [[0.0; STRESSES]; 2],
                     pieces: std::array::from_fn(|k| values.iter().map(|v| v[k]).collect()),
                 }
@@ -156,13 +174,14 @@ impl NearPlan {
                 );
                 for k in 0..STRESSES {
                     offset.shares[axis][k] = 0.5 * (right[k] - left[k]);
-                    offset.slopes[axis][k] -= INERTIA * offset.shares[axis][k];
+                    offset.bends[axis][k] -= INERTIA * offset.shares[axis][k];
                 }
             }
         }
         Near {
             offsets,
-            slopes: depth < SLOPES * self.shorter(),
+            bends: depth < BENDS * self.shorter(),
+            surface: depth == 0.0,
         }
     }
 
@@ -179,11 +198,11 @@ impl NearPlan {
                 }
             });
         }
-        if near.slopes {
+        if near.bends {
             outputs
                 .par_iter_mut()
                 .enumerate()
-                .for_each(|(k, output)| self.add_slopes(near, k, output));
+                .for_each(|(k, output)| self.add_bends(near, k, output));
         }
     }
 
@@ -236,13 +255,13 @@ impl NearPlan {
     }
 
     /// Adds component `k` of the loads of cells with slopes.
-    fn add_slopes(&self, near: &Near, k: usize, output: &mut [f64]) {
+    fn add_bends(&self, near: &Near, k: usize, output: &mut [f64]) {
         let [nx, ny] = self.shape;
-        let [along, across] = &self.reconstruction.slopes;
+        let bends = &self.reconstruction.bends;
         for i in 0..nx {
             let row = i * ny..(i + 1) * ny;
-            let (along, across) = (&along[row.clone()], &across[row]);
-            let sloped = |j: usize| along[j] != 0.0 || across[j] != 0.0;
+            let [ax, ay, bx, by] = bends.each_ref().map(|bend| &bend[row.clone()]);
+            let sloped = |j: usize| ax[j] != 0.0 || ay[j] != 0.0;
             let Some(first) = (0..ny).find(|j| sloped(*j)) else {
                 continue;
             };
@@ -251,18 +270,20 @@ impl NearPlan {
                 let Some(target) = i.checked_add_signed(offset.by[0]).filter(|i| *i < nx) else {
                     continue;
                 };
-                let by = offset.by[1];
-                let start = first.max(by.min(0).unsigned_abs());
-                let end = end.min((ny as isize - by.max(0)) as usize);
+                let off = offset.by[1];
+                let start = first.max(off.min(0).unsigned_abs());
+                let end = end.min((ny as isize - off.max(0)) as usize);
                 if start >= end {
                     continue;
                 }
-                let (cx, cy) = (offset.slopes[0][k], offset.slopes[1][k]);
-                let begin = (target * ny + start).saturating_add_signed(by);
+                let [cax, cay, cbx, cby] = offset.bends.map(|bend| bend[k]);
+                let begin = (target * ny + start).saturating_add_signed(off);
                 let targets = &mut output[begin..begin + end - start];
-                let slopes = along[start..end].iter().zip(&across[start..end]);
-                for (output, (gx, gy)) in targets.iter_mut().zip(slopes) {
-                    *output += cx * gx + cy * gy;
+                let slopes = ax[start..end].iter().zip(&ay[start..end]);
+                let curvatures = bx[start..end].iter().zip(&by[start..end]);
+                let sources = slopes.zip(curvatures);
+                for (output, ((ax, ay), (bx, by))) in targets.iter_mut().zip(sources) {
+                    *output += cax * ax + cay * ay + cbx * bx + cby * by;
                 }
             }
         }

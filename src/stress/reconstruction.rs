@@ -15,15 +15,16 @@
 use rayon::prelude::*;
 
 use super::cut::{Piece, pieces};
-use super::edge::{BAND, EdgeCell, Square, around, distances, edge_cells};
+use super::edge::{BAND, EdgeCell, Square, distances, edge_cells};
 
 /// The pressure of a solved contact, in cells and within them.
 #[derive(Debug)]
 pub(super) struct Reconstruction {
     /// What is to be taken as uniform over cells, at all depths.
     pub(super) uniform: Vec<f64>,
-    /// Slopes within cells, per cell, along x and y; 0 where p is not linear.
-    pub(super) slopes: [Vec<f64>; 2],
+    /// Slopes within cells, per cell, and curvatures, per cell squared, along x and along y; 0
+    /// outside of the inside.
+    pub(super) bends: [Vec<f64>; 4],
     /// Where p is the root of a polynomial.
     pub(super) roots: Vec<RootCell>,
 }
@@ -49,8 +50,11 @@ const FINE: usize = 15;
 /// Steps that move the edge until it bears the force of the solver's cells.
 const STEPS: usize = 3;
 
-/// Cells to each side that bear it together.
-const TOGETHER: usize = 5;
+/// Cells to each side that bear it together: some runs of the staircase.
+const TOGETHER: usize = 12;
+
+/// By how many cells the edge may be moved.
+const FARTHEST: f64 = 0.1;
 
 impl Reconstruction {
     pub(super) fn new(pressure: &[f64], shape @ [nx, ny]: [usize; 2]) -> Self {
@@ -58,27 +62,31 @@ impl Reconstruction {
         let distances = distances(pressure, shape, BAND + 1);
         let fine = pieces(Piece::WHOLE, FINE, line);
         let inside = |cell: usize| distances[cell] > BAND;
-        let mut slopes = [vec![0.0; pressure.len()], vec![0.0; pressure.len()]];
+        let mut bends: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; pressure.len()]);
         for cell in (0..pressure.len()).filter(|cell| inside(*cell)) {
-            slopes[1][cell] = 0.5 * (pressure[cell + 1] - pressure[cell - 1]);
-            if !line {
-                slopes[0][cell] = 0.5 * (pressure[cell + ny] - pressure[cell - ny]);
+            let steps = if line { [0, 1] } else { [ny, 1] };
+            for axis in 0..2 {
+                let [left, here, right] = [cell - steps[axis], cell, cell + steps[axis]];
+                let [left, here, right] = [left, here, right].map(|cell| pressure[cell]);
+                bends[axis][cell] = 0.5 * (right - left);
+                bends[axis + 2][cell] = right - 2.0 * here + left;
             }
         }
         let mut edges = edge_cells(pressure, &distances, shape);
         let mut roots = root_cells(&edges, &fine, line);
-        let mut uniform = convolved(pressure, &inside, &slopes, &roots, shape);
+        let mut uniform = convolved(pressure, &bends, &roots, shape);
         for _ in 0..STEPS {
             let moves = moves(pressure, &uniform, &roots, shape);
-            for (edge, by) in edges.iter_mut().zip(moves) {
-                edge.square.raise(by);
-            }
+            let moved = edges.into_iter().zip(moves);
+            edges = moved
+                .filter_map(|(edge, by)| edge.moved(by, FARTHEST))
+                .collect();
             roots = root_cells(&edges, &fine, line);
-            uniform = convolved(pressure, &inside, &slopes, &roots, shape);
+            uniform = convolved(pressure, &bends, &roots, shape);
         }
         Self {
             uniform,
-            slopes,
+            bends,
             roots,
         }
     }
@@ -87,42 +95,37 @@ impl Reconstruction {
 /// What is to be taken as uniform over cells: means and shares.
 fn convolved(
     pressure: &[f64],
-    inside: &impl Fn(usize) -> bool,
-    slopes: &[Vec<f64>; 2],
+    bends: &[Vec<f64>; 4],
     roots: &[RootCell],
     [nx, ny]: [usize; 2],
 ) -> Vec<f64> {
     let mut means = pressure.to_vec();
-    // First moments, where p is known within the cell.
-    let moment = |cell: usize| [0, 1].map(|axis| INERTIA * slopes[axis][cell]);
-    let known = |cell: usize| inside(cell).then(|| moment(cell));
-    let mut moments: Vec<Option<[f64; 2]>> = (0..pressure.len()).map(known).collect();
+    let moment = |cell: usize| [0, 1].map(|axis| INERTIA * bends[axis][cell]);
+    let mut moments: Vec<[f64; 2]> = (0..pressure.len()).map(moment).collect();
+    let mut is_root = vec![false; pressure.len()];
     for root in roots {
         let cell = root.cell[0] * ny + root.cell[1];
         means[cell] = root.mean;
-        moments[cell] = Some(root.moments);
+        moments[cell] = root.moments;
+        is_root[cell] = true;
     }
+    // The solver's pressure holds shares already; those at the edge have gone with it.
+    let takes = |cell: usize, neighbour: usize| {
+        is_root[cell] || is_root[neighbour] && pressure[cell] == 0.0
+    };
     let mut uniform = means.clone();
     for (cell, uniform) in uniform.iter_mut().enumerate() {
-        let (i, j) = (cell / ny, cell % ny);
-        let (mut shares, mut held) = (0.0, inside(cell));
         let mut share = |within: bool, neighbour: usize, axis: usize, half: f64| {
-            let moment = Some(neighbour)
-                .filter(|_| within)
-                .and_then(|cell| moments[cell]);
-            match moment {
-                Some(moment) => shares += half * moment[axis],
-                None => held = false,
+            if within && takes(cell, neighbour) {
+                *uniform += half * moments[neighbour][axis];
             }
         };
+        let (i, j) = (cell / ny, cell % ny);
         share(j > 0, cell.wrapping_sub(1), 1, 0.5);
         share(j + 1 < ny, cell + 1, 1, -0.5);
         if nx > 1 {
             share(i > 0, cell.wrapping_sub(ny), 0, 0.5);
             share(i + 1 < nx, cell + ny, 0, -0.5);
-        }
-        if !held {
-            *uniform += shares;
         }
     }
     uniform
@@ -131,20 +134,50 @@ fn convolved(
 /// By how much p² is to be raised, for the cells around each to bear the force that they are given.
 fn moves(pressure: &[f64], uniform: &[f64], roots: &[RootCell], shape: [usize; 2]) -> Vec<f64> {
     let ny = shape[1];
+    let missing: Vec<f64> = pressure.iter().zip(uniform).map(|(p, u)| p - u).collect();
     let mut rates = vec![0.0; pressure.len()];
     for root in roots {
         rates[root.cell[0] * ny + root.cell[1]] = root.rate;
     }
+    let (missing, rates) = (Sums::new(&missing, shape), Sums::new(&rates, shape));
     let move_of = |root: &RootCell| {
-        let (mut force, mut rate) = (0.0, 0.0);
-        for [i, j] in around(shape, root.cell, TOGETHER) {
-            let cell = i * ny + j;
-            force += pressure[cell] - uniform[cell];
-            rate += rates[cell];
+        let rate = rates.around(root.cell, TOGETHER);
+        if rate > 0.0 {
+            missing.around(root.cell, TOGETHER) / rate
+        } else {
+            0.0
         }
-        if rate > 0.0 { force / rate } else { 0.0 }
     };
-    roots.par_iter().map(move_of).collect()
+    roots.iter().map(move_of).collect()
+}
+
+/// Sums over rectangles of cells, from those over all that begin at the first.
+struct Sums {
+    shape: [usize; 2],
+    sums: Vec<f64>,
+}
+
+impl Sums {
+    fn new(values: &[f64], shape @ [nx, ny]: [usize; 2]) -> Self {
+        let width = ny + 1;
+        let mut sums = vec![0.0; (nx + 1) * width];
+        for i in 0..nx {
+            let mut row = 0.0;
+            for j in 0..ny {
+                row += values[i * ny + j];
+                sums[(i + 1) * width + j + 1] = sums[i * width + j + 1] + row;
+            }
+        }
+        Self { shape, sums }
+    }
+
+    fn around(&self, [i, j]: [usize; 2], reach: usize) -> f64 {
+        let [nx, ny] = self.shape;
+        let at = |i: usize, j: usize| self.sums[i * (ny + 1) + j];
+        let (top, left) = (i.saturating_sub(reach), j.saturating_sub(reach));
+        let (bottom, right) = ((i + reach + 1).min(nx), (j + reach + 1).min(ny));
+        at(bottom, right) - at(top, right) - at(bottom, left) + at(top, left)
+    }
 }
 
 fn root_cells(edges: &[EdgeCell], fine: &[Piece], line: bool) -> Vec<RootCell> {

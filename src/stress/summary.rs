@@ -107,7 +107,7 @@ pub(super) fn stress_summary(
     }
     check_memory(
         grid.shape(),
-        8 * 7 * pressure.len() as u64 + Loaded::memory(grid, options),
+        8 * 7 * pressure.len() as u64 + Loaded::memory(grid, Form::Solved, options),
     )?;
     let options = &StressOptions {
         displacement: false,
