@@ -58,12 +58,25 @@ impl Cuts {
         Self { all, norms }
     }
 
-    /// Which one a target sees that is so many cells off.
-    pub(super) fn seen_from(&self, offset: [isize; 2]) -> usize {
-        match offset.map(isize::unsigned_abs) {
+    /// Which one a target sees that is so many cells off, at a depth in cells: what is left out of
+    /// pieces of side s falls off as e^{−2πz/s}.
+    pub(super) fn seen_from(&self, offset: [isize; 2], depth: f64) -> usize {
+        let near = match offset.map(isize::unsigned_abs) {
             [0, 0] => 0,
             [0 | 1, 0 | 1] => 1,
             _ => 2,
+        };
+        near.max(Self::finest(depth))
+    }
+
+    /// The first cut that is used at a depth.
+    pub(super) fn finest(depth: f64) -> usize {
+        if depth < 0.4 {
+            0
+        } else if depth < 0.8 {
+            1
+        } else {
+            2
         }
     }
 }

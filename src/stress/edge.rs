@@ -58,8 +58,9 @@ impl Square {
         c + u * along + v * across + u * v * (cuv + u * cuuv + v * cuvv)
     }
 
-    pub(super) fn raise(&mut self, by: f64) {
+    pub(super) fn raised(mut self, by: f64) -> Self {
         self.0[0] += by;
+        self
     }
 
     /// How much it changes from the centre to the corners of a piece of half sides (a, b), at the
@@ -69,7 +70,7 @@ impl Square {
     }
 
     /// Its slope at the centre.
-    fn slope(&self) -> f64 {
+    pub(super) fn slope(&self) -> f64 {
         self.0[1].hypot(self.0[2])
     }
 }
@@ -79,14 +80,6 @@ impl Square {
 pub(super) struct EdgeCell {
     pub(super) cell: [usize; 2],
     pub(super) square: Square,
-}
-
-impl EdgeCell {
-    /// With p² raised; none where that moves the edge by more than `farthest`, in cells.
-    pub(super) fn moved(mut self, by: f64, farthest: f64) -> Option<Self> {
-        self.square.raise(by);
-        (by.abs() <= farthest * self.square.slope()).then_some(self)
-    }
 }
 
 /// How many cells each is from the nearest that does not touch, diagonally too; up to `most`.
@@ -179,12 +172,10 @@ fn fit(
     shape: [usize; 2],
     cell @ [i, j]: [usize; 2],
 ) -> Option<Square> {
-    let fits = DEGREES
-        .into_iter()
-        .filter_map(|degree| least_squares(squares, shape, cell, degree));
+    let samples = Samples::around(squares, shape, cell);
+    let fits = DEGREES.into_iter().filter_map(|degree| samples.fit(degree));
     let (square, uncertain) = fits.reduce(|a, b| if b.1 < a.1 { b } else { a })?;
-    let slope = square.slope();
-    let place = square.0[0] / slope;
+    let place = square.0[0] / square.slope();
     let agrees = if pressure[i * shape[1] + j] > 0.0 {
         place > -NEAR
     } else {
@@ -192,67 +183,90 @@ fn fit(
     };
     (uncertain <= SURE && agrees).then_some(square)
 }
-/// The polynomial of some degree that fits cells within `window` best, nearer ones counting more,
-/// and how uncertain the edge is by it, in cells; none where there are too few.
-fn least_squares(
-    squares: &[Option<f64>],
-    [nx, ny]: [usize; 2],
-    [i, j]: [usize; 2],
-    degree: u8,
-) -> Option<(Square, f64)> {
-    let line = nx == 1;
-    let used = |[a, b]: [u8; 2]| a + b <= degree && !(line && a > 0);
-    let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
-    let terms = powers.len();
-    let scale = 1.0 / WINDOW as f64;
-    let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
-    let (mut total, mut weights, mut count) = (0.0, 0.0, 0);
-    for [k, l] in around([nx, ny], [i, j], WINDOW) {
-        let Some(square) = squares[k * ny + l] else {
-            continue;
+
+/// Sums over the cells around one, nearer ones counting more, for least squares.
+struct Samples {
+    line: bool,
+    normal: [[f64; TERMS]; TERMS],
+    right: [f64; TERMS],
+    squares: f64,
+    weights: f64,
+    count: usize,
+}
+
+impl Samples {
+    fn around(squares: &[Option<f64>], shape: [usize; 2], cell @ [i, j]: [usize; 2]) -> Self {
+        let scale = 1.0 / WINDOW as f64;
+        let mut samples = Self {
+            line: shape[0] == 1,
+            normal: [[0.0; TERMS]; TERMS],
+            right: [0.0; TERMS],
+            squares: 0.0,
+            weights: 0.0,
+            count: 0,
         };
-        let u = (k as f64 - i as f64) * scale;
-        let v = (l as f64 - j as f64) * scale;
-        let rest = 1.1 - (u * u + v * v);
-        if rest <= 0.0 {
-            continue;
-        }
-        let weight = rest * rest;
-        let (uu, vv) = (u * u, v * v);
-        let all = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
-        let mut basis = [0.0; TERMS];
-        basis
-            .iter_mut()
-            .zip(&powers)
-            .for_each(|(b, k)| *b = all[*k]);
-        for a in 0..terms {
-            for b in 0..=a {
-                normal[a][b] += weight * basis[a] * basis[b];
+        for [k, l] in around(shape, cell, WINDOW) {
+            let Some(square) = squares[k * shape[1] + l] else {
+                continue;
+            };
+            let u = (k as f64 - i as f64) * scale;
+            let v = (l as f64 - j as f64) * scale;
+            let (uu, vv) = (u * u, v * v);
+            let rest = 1.1 - (uu + vv);
+            if rest > 0.0 {
+                let basis = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
+                samples.add(rest * rest, basis, square);
             }
-            right[a] += weight * basis[a] * square;
         }
-        total += weight * square * square;
-        weights += weight;
-        count += 1;
+        samples
     }
-    if count < if line { terms + 2 } else { 2 * terms } {
-        return None;
+
+    fn add(&mut self, weight: f64, basis: [f64; TERMS], square: f64) {
+        for (a, row) in self.normal.iter_mut().enumerate() {
+            let along = weight * basis[a];
+            for (sum, across) in row[..=a].iter_mut().zip(&basis) {
+                *sum += along * across;
+            }
+            self.right[a] += along * square;
+        }
+        self.squares += weight * square * square;
+        self.weights += weight;
+        self.count += 1;
     }
-    cholesky(&mut normal, terms)?;
-    let solution = solved(&normal, right, terms);
-    let mut first = [0.0; TERMS];
-    first[0] = 1.0;
-    let spread = solved(&normal, first, terms)[0];
-    let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
-    let free = count as f64 / (count - terms) as f64;
-    let variance = ((total - product) / weights * free).max(0.0);
-    let mut square = Square([0.0; TERMS]);
-    for (value, k) in solution.iter().zip(&powers) {
-        let [a, b] = POWERS[*k];
-        square.0[*k] = value * scale.powi(i32::from(a + b));
+
+    /// The polynomial of some degree that fits best, and how uncertain the edge is by it, in cells;
+    /// none where there are too few cells.
+    fn fit(&self, degree: u8) -> Option<(Square, f64)> {
+        let used = |[a, b]: [u8; 2]| a + b <= degree && !(self.line && a > 0);
+        let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
+        let terms = powers.len();
+        if self.count < if self.line { terms + 2 } else { 2 * terms } {
+            return None;
+        }
+        let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+        for (a, row) in powers.iter().enumerate() {
+            for (b, column) in powers[..=a].iter().enumerate() {
+                normal[a][b] = self.normal[*row][*column];
+            }
+            right[a] = self.right[*row];
+        }
+        cholesky(&mut normal, terms)?;
+        let solution = solved(&normal, right, terms);
+        let mut first = [0.0; TERMS];
+        first[0] = 1.0;
+        let spread = solved(&normal, first, terms)[0];
+        let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
+        let count = self.count as f64;
+        let free = count / (count - terms as f64);
+        let variance = ((self.squares - product) / self.weights * free).max(0.0);
+        let mut square = Square([0.0; TERMS]);
+        for (value, k) in solution.iter().zip(&powers) {
+            let [a, b] = POWERS[*k];
+            square.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
+        }
+        let uncertain = (variance * spread * self.weights / count).sqrt() / square.slope();
+        uncertain.is_finite().then_some((square, uncertain))
     }
-    let uncertain = (variance * spread * weights / count as f64).sqrt() / square.slope();
-    uncertain.is_finite().then_some((square, uncertain))
 }
 
 /// The factor of Cholesky in the lower triangle, in place; none where a pivot is lost.

@@ -26,6 +26,9 @@ const EDGES: f64 = 5.0;
 /// The same of slopes inside, which fall off as e^{−2πz/dx}.
 const BENDS: f64 = 1.5;
 
+/// How far they are followed, in cells.
+const CLOSE: usize = 2;
+
 /// Cells at a time.
 const BLOCK: usize = 512;
 
@@ -55,10 +58,19 @@ struct Offset {
     pieces: [Vec<f64>; STRESSES],
 }
 
+impl Offset {
+    /// Whether bends are felt.
+    fn is_close(&self) -> bool {
+        self.by.iter().all(|by| by.unsigned_abs() <= CLOSE)
+    }
+}
+
 /// Stresses of the parts of one cell at one depth.
 #[derive(Debug, Default)]
 pub(super) struct Near {
     offsets: Vec<Offset>,
+    /// The first cut that is used.
+    finest: usize,
     bends: bool,
     surface: bool,
 }
@@ -124,7 +136,7 @@ impl NearPlan {
         let mut offsets: Vec<Offset> = all
             .into_par_iter()
             .map(|by @ [i, j]| {
-                let cut = self.cuts.seen_from(by);
+                let cut = self.cuts.seen_from(by, depth / self.shorter());
                 let pieces = &self.cuts.all[cut];
                 let values: Vec<[f64; STRESSES]> = pieces
                     .iter()
@@ -180,6 +192,7 @@ impl NearPlan {
         }
         Near {
             offsets,
+            finest: Cuts::finest(depth / self.shorter()),
             bends: depth < BENDS * self.shorter(),
             surface: depth == 0.0,
         }
@@ -191,7 +204,11 @@ impl NearPlan {
             return;
         }
         for block in self.reconstruction.roots.chunks(BLOCK) {
-            let loads: Vec<[Vec<f64>; 3]> = block.par_iter().map(|cell| self.loads(cell)).collect();
+            let loads = |cell| {
+                let used = |cut: usize| cut >= near.finest;
+                [0, 1, 2].map(|cut| used(cut).then(|| self.loads(cell, cut)).unwrap_or_default())
+            };
+            let loads: Vec<[Vec<f64>; 3]> = block.par_iter().map(loads).collect();
             outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
                 for (cell, loads) in block.iter().zip(&loads) {
                     self.add_root(near, k, cell, loads, output);
@@ -206,29 +223,27 @@ impl NearPlan {
         }
     }
 
-    /// Pressure on the pieces of each cut, less the mean, with the same first moments in all.
-    fn loads(&self, cell: &RootCell) -> [Vec<f64>; 3] {
-        // The points of the mean, three cells to a piece or five.
-        const POINTS: [usize; 3] = [1, 3, 5];
-        std::array::from_fn(|cut| {
-            let pieces = &self.cuts.all[cut];
-            let mut values: Vec<f64> = pieces
-                .iter()
-                .map(|piece| root(&cell.square, piece, POINTS[cut], self.line) - cell.mean)
-                .collect();
-            let mut missing = cell.moments;
-            for (value, piece) in values.iter().zip(pieces) {
-                for axis in 0..2 {
-                    missing[axis] -= value * piece.area() * piece.centre[axis];
-                }
-            }
-            let norms = self.cuts.norms[cut];
-            let lever = [0, 1].map(|axis| missing[axis] * norms[axis] / INERTIA);
-            for (value, piece) in values.iter_mut().zip(pieces) {
-                *value += lever[0] * piece.centre[0] + lever[1] * piece.centre[1];
-            }
-            values
-        })
+    /// Pressure on the pieces of a cut, less the mean, with the moments that are left to the
+    /// convolution.
+    fn loads(&self, cell: &RootCell, cut: usize) -> Vec<f64> {
+        // Points along a side of a piece.
+        const POINTS: [usize; 3] = [1, 2, 2];
+        let pieces = &self.cuts.all[cut];
+        let value = |piece| root(&cell.square, piece, POINTS[cut], self.line);
+        let mut values: Vec<f64> = pieces.iter().map(value).collect();
+        let (mut mean, mut missing) = (0.0, cell.moments);
+        for (value, piece) in values.iter().zip(pieces) {
+            let load = value * piece.area();
+            mean += load;
+            missing[0] -= load * piece.centre[0];
+            missing[1] -= load * piece.centre[1];
+        }
+        let norms = self.cuts.norms[cut];
+        let [along, across] = [0, 1].map(|axis| missing[axis] * norms[axis] / INERTIA);
+        for (value, piece) in values.iter_mut().zip(pieces) {
+            *value += along * piece.centre[0] + across * piece.centre[1] - mean;
+        }
+        values
     }
 
     /// Adds component `k` of the load of one cell near the edge.
@@ -266,7 +281,7 @@ impl NearPlan {
                 continue;
             };
             let end = (0..ny).rfind(|j| sloped(*j)).map_or(first, |j| j + 1);
-            for offset in &near.offsets {
+            for offset in near.offsets.iter().filter(|offset| offset.is_close()) {
                 let Some(target) = i.checked_add_signed(offset.by[0]).filter(|i| *i < nx) else {
                     continue;
                 };

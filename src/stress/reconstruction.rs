@@ -45,10 +45,10 @@ pub(super) struct RootCell {
 pub(super) const INERTIA: f64 = 1.0 / 12.0;
 
 /// Pieces along each side of a cell for its mean.
-const FINE: usize = 15;
+const FINE: usize = 6;
 
 /// Steps that move the edge until it bears the force of the solver's cells.
-const STEPS: usize = 3;
+const STEPS: usize = 2;
 
 /// Cells to each side that bear it together: some runs of the staircase.
 const TOGETHER: usize = 12;
@@ -72,16 +72,18 @@ impl Reconstruction {
                 bends[axis + 2][cell] = right - 2.0 * here + left;
             }
         }
-        let mut edges = edge_cells(pressure, &distances, shape);
-        let mut roots = root_cells(&edges, &fine, line);
+        let edges = edge_cells(pressure, &distances, shape);
+        let mut roots: Vec<RootCell> = edges
+            .into_par_iter()
+            .map(|edge| RootCell::new(edge, &fine, line))
+            .collect();
         let mut uniform = convolved(pressure, &bends, &roots, shape);
         for _ in 0..STEPS {
             let moves = moves(pressure, &uniform, &roots, shape);
-            let moved = edges.into_iter().zip(moves);
-            edges = moved
-                .filter_map(|(edge, by)| edge.moved(by, FARTHEST))
+            let moved = roots.into_par_iter().zip(moves);
+            roots = moved
+                .filter_map(|(root, by)| root.moved(by, &fine, line))
                 .collect();
-            roots = root_cells(&edges, &fine, line);
             uniform = convolved(pressure, &bends, &roots, shape);
         }
         Self {
@@ -180,37 +182,48 @@ impl Sums {
     }
 }
 
-fn root_cells(edges: &[EdgeCell], fine: &[Piece], line: bool) -> Vec<RootCell> {
-    edges
-        .par_iter()
-        .map(|edge| root_cell(*edge, fine, line))
-        .collect()
+impl RootCell {
+    fn new(edge: EdgeCell, fine: &[Piece], line: bool) -> Self {
+        let EdgeCell { cell, square } = edge;
+        let (mean, moments) = moments(&square, fine, line);
+        // A hundredth of a cell.
+        let step = 0.01 * square.varies([1.0, 1.0]);
+        let (higher, _) = self::moments(&square.raised(step), fine, line);
+        Self {
+            cell,
+            square,
+            mean,
+            moments,
+            rate: (higher - mean) / step,
+        }
+    }
+
+    /// With p² raised; none where that moves the edge too far.
+    fn moved(self, by: f64, fine: &[Piece], line: bool) -> Option<Self> {
+        if by.abs() > FARTHEST * self.square.slope() {
+            return None;
+        }
+        let square = self.square.raised(by);
+        let (mean, moments) = moments(&square, fine, line);
+        Some(Self {
+            square,
+            mean,
+            moments,
+            ..self
+        })
+    }
 }
 
-fn root_cell(edge: EdgeCell, fine: &[Piece], line: bool) -> RootCell {
-    let EdgeCell { cell, square } = edge;
-    // A hundredth of a cell.
-    let step = 0.01 * square.varies([1.0, 1.0]);
-    let mut raised = square;
-    raised.raise(step);
+/// Mean and first moments over the cell.
+fn moments(square: &Square, fine: &[Piece], line: bool) -> (f64, [f64; 2]) {
     let (mut mean, mut moments) = (0.0, [0.0; 2]);
     for piece in fine {
-        let p = piece.area() * root(&square, piece, 1, line);
+        let p = piece.area() * root(square, piece, 1, line);
         mean += p;
         moments[0] += p * piece.centre[0];
         moments[1] += p * piece.centre[1];
     }
-    let higher: f64 = fine
-        .iter()
-        .map(|piece| piece.area() * root(&raised, piece, 1, line))
-        .sum();
-    RootCell {
-        cell,
-        square,
-        mean,
-        moments,
-        rate: (higher - mean) / step,
-    }
+    (mean, moments)
 }
 
 /// Mean of √max(p², 0) over a piece, of `count` points along each side; four times as many where the
