@@ -209,7 +209,7 @@ impl PaddedTransform {
         spectrum.odd = odd;
     }
 
-    /// Memory for [`Self::convolve_parities`] with `count` outputs.
+    /// Memory for [`Self::convolve_parities`] with up to `count` outputs.
     pub(crate) fn block_memory(&self, count: usize) -> Blocks {
         Blocks(vec![ZERO; self.blocks() * count * self.shape[0] * BLOCK])
     }
@@ -226,12 +226,12 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        let blocks = blocks.0.as_mut_slice();
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let tasks = &mut workspace.tasks;
         let size = kernels.len() * nx * BLOCK;
+        let blocks = &mut blocks.0[..self.blocks() * size];
         let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
             for (block, parts) in blocks.chunks_exact_mut(size).enumerate() {
                 let start = (first + block) * BLOCK;
