@@ -8,6 +8,12 @@ pub(super) struct Piece {
 }
 
 impl Piece {
+    /// All of the cell.
+    pub(super) const WHOLE: Self = Self {
+        centre: [0.0; 2],
+        half: [0.5; 2],
+    };
+
     /// Part of the cell that it covers.
     pub(super) fn area(&self) -> f64 {
         4.0 * self.half[0] * self.half[1]
@@ -17,14 +23,6 @@ impl Piece {
     pub(super) fn mean_square(&self, axis: usize) -> f64 {
         self.centre[axis].powi(2) + self.half[axis].powi(2) / 3.0
     }
-}
-
-impl Piece {
-    /// All of the cell.
-    pub(super) const WHOLE: Self = Self {
-        centre: [0.0; 2],
-        half: [0.5; 2],
-    };
 }
 
 /// The cuts that are used, the finer the nearer.
@@ -108,20 +106,48 @@ pub(super) fn pieces(whole: Piece, count: usize, line: bool) -> Vec<Piece> {
 }
 
 /// Cuts those of `pieces`, of side `side`, that touch the middle one, `levels` times.
-fn grade(pieces_: Vec<Piece>, side: f64, levels: usize, line: bool, graded: &mut Vec<Piece>) {
+fn grade(coarse: Vec<Piece>, side: f64, levels: usize, line: bool, graded: &mut Vec<Piece>) {
     if levels == 0 {
-        graded.extend(pieces_);
+        graded.extend(coarse);
         return;
     }
     let inner = |piece: &Piece| {
         let near = |u: f64| u.abs() < 1.5 * side;
         (line || near(piece.centre[0])) && near(piece.centre[1])
     };
-    let (middle, outer): (Vec<Piece>, Vec<Piece>) = pieces_.into_iter().partition(inner);
+    let (middle, outer): (Vec<Piece>, Vec<Piece>) = coarse.into_iter().partition(inner);
     graded.extend(outer);
     let finer = middle
         .into_iter()
         .flat_map(|piece| pieces(piece, 3, line))
         .collect();
     grade(finer, side / 3.0, levels - 1, line, graded);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_make_up_the_cell() {
+        for line in [false, true] {
+            let cuts = Cuts::new(line);
+            for pieces in &cuts.all {
+                let area: f64 = pieces.iter().map(Piece::area).sum();
+                assert!((area - 1.0).abs() < 1e-14);
+                for axis in 0..2 {
+                    let second = |piece: &Piece| piece.area() * piece.mean_square(axis);
+                    let inertia: f64 = pieces.iter().map(second).sum();
+                    assert!((inertia - 1.0 / 12.0).abs() < 1e-14);
+                }
+            }
+            // 5 × 5 less 9, four times 81 less 9, and the last 81; in one dimension 5, 9, 9, 9.
+            let count = if line {
+                2 + 6 + 6 + 9
+            } else {
+                16 + 72 + 72 + 81
+            };
+            assert_eq!(cuts.all[0].len(), count);
+        }
+    }
 }

@@ -54,8 +54,8 @@ struct Offset {
     uniform: [f64; STRESSES],
     bends: [[f64; STRESSES]; 4],
     shares: [[f64; STRESSES]; 2],
-    /// Of unit pressure on each piece, one component after another.
-    pieces: [Vec<f64>; STRESSES],
+    /// Of unit pressure on each piece.
+    pieces: Vec<[f64; STRESSES]>,
 }
 
 impl Offset {
@@ -164,7 +164,7 @@ impl NearPlan {
                     uniform,
                     bends,
                     shares: [[0.0; STRESSES]; 2],
-                    pieces: std::array::from_fn(|k| values.iter().map(|v| v[k]).collect()),
+                    pieces: values,
                 }
             })
             .collect();
@@ -204,14 +204,17 @@ impl NearPlan {
             return;
         }
         for block in self.reconstruction.roots.chunks(BLOCK) {
-            let loads = |cell| {
-                let used = |cut: usize| cut >= near.finest;
-                [0, 1, 2].map(|cut| used(cut).then(|| self.loads(cell, cut)).unwrap_or_default())
-            };
-            let loads: Vec<[Vec<f64>; 3]> = block.par_iter().map(loads).collect();
+            let stresses: Vec<_> = block
+                .par_iter()
+                .map(|cell| self.stresses(near, cell))
+                .collect();
             outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
-                for (cell, loads) in block.iter().zip(&loads) {
-                    self.add_root(near, k, cell, loads, output);
+                for (cell, stresses) in block.iter().zip(&stresses) {
+                    for (offset, stress) in near.offsets.iter().zip(stresses) {
+                        if let Some(target) = self.target(cell, offset) {
+                            output[target] += stress[k];
+                        }
+                    }
                 }
             });
         }
@@ -246,27 +249,35 @@ impl NearPlan {
         values
     }
 
-    /// Adds component `k` of the load of one cell near the edge.
-    fn add_root(
-        &self,
-        near: &Near,
-        k: usize,
-        cell: &RootCell,
-        loads: &[Vec<f64>; 3],
-        output: &mut [f64],
-    ) {
-        let [nx, ny] = self.shape;
-        for offset in &near.offsets {
-            let target = [0, 1].map(|axis| cell.cell[axis].checked_add_signed(offset.by[axis]));
-            let [Some(i), Some(j)] = target else { continue };
-            if i >= nx || j >= ny {
-                continue;
+    /// Stresses of the load of one cell near the edge, at all offsets.
+    fn stresses(&self, near: &Near, cell: &RootCell) -> Vec<[f64; STRESSES]> {
+        let loads = [0, 1, 2].map(|cut| {
+            if cut < near.finest {
+                Vec::new()
+            } else {
+                self.loads(cell, cut)
             }
-            let pieces = offset.pieces[k].iter().zip(&loads[offset.cut]);
-            let sum: f64 = pieces.map(|(c, p)| c * p).sum();
-            let [mx, my] = cell.moments;
-            output[i * ny + j] += sum - mx * offset.shares[0][k] - my * offset.shares[1][k];
-        }
+        });
+        let [mx, my] = cell.moments;
+        let stress = |offset: &Offset| {
+            let [along, across] = &offset.shares;
+            let mut sum = std::array::from_fn(|k| -mx * along[k] - my * across[k]);
+            for (coefficients, load) in offset.pieces.iter().zip(&loads[offset.cut]) {
+                for (sum, coefficient) in sum.iter_mut().zip(coefficients) {
+                    *sum += coefficient * load;
+                }
+            }
+            sum
+        };
+        near.offsets.iter().map(stress).collect()
+    }
+
+    /// The cell at an offset from another, if it is on the grid.
+    fn target(&self, cell: &RootCell, offset: &Offset) -> Option<usize> {
+        let [nx, ny] = self.shape;
+        let [i, j] = [0, 1].map(|axis| cell.cell[axis].checked_add_signed(offset.by[axis]));
+        let (i, j) = (i.filter(|i| *i < nx)?, j.filter(|j| *j < ny)?);
+        Some(i * ny + j)
     }
 
     /// Adds component `k` of the loads of cells with slopes.
