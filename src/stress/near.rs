@@ -15,19 +15,19 @@ use crate::grid::Grid;
 pub(super) const STRESSES: usize = 6;
 
 /// How far the load of a cell is followed, in cells of the longer side.
-const REACH: f64 = 4.0;
+const REACH: f64 = 3.0;
 
 /// The most cells of the shorter side.
 const MOST: usize = 10;
 
 /// Depth, in shorter sides of a cell, below which the edge's loads are not felt.
-const EDGES: f64 = 5.0;
+const EDGES: f64 = 3.0;
 
 /// The same of slopes inside, which fall off as e^{−2πz/dx}.
 const BENDS: f64 = 1.5;
 
 /// How far they are followed, in cells.
-const CLOSE: usize = 2;
+const CLOSE: usize = 1;
 
 /// Cells at a time.
 const BLOCK: usize = 512;

@@ -87,6 +87,8 @@ impl Reconstruction {
                 .collect();
             uniform = convolved(pressure, &bends, &roots, shape);
         }
+        // Those beyond the edge hold nothing.
+        roots.retain(|root| root.mean > 0.0);
         Self {
             uniform,
             bends,
