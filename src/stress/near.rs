@@ -21,13 +21,13 @@ const REACH: f64 = 3.0;
 const MOST: usize = 10;
 
 /// Depth, in shorter sides of a cell, below which the edge's loads are not felt.
-const EDGES: f64 = 3.0;
+const EDGES: f64 = 4.0;
 
 /// The same of slopes inside, which fall off as e^{−2πz/dx}.
 const BENDS: f64 = 1.5;
 
 /// How far they are followed, in cells.
-const CLOSE: usize = 1;
+const CLOSE: usize = 2;
 
 /// Cells at a time.
 const BLOCK: usize = 512;
