@@ -172,7 +172,7 @@ fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;
     assert!((tension.value / peak / exact - 1.0).abs() < 1e-2);
     assert!((tension.position[0] + 1.0).abs() < 1.5 / 128.0);
-    assert_eq!(tension.position[2], 0.0);
+    assert!(tension.position[2].abs() < f64::EPSILON);
     Ok(())
 }
 
@@ -282,6 +282,38 @@ fn smooth_contacts_gain() -> Result<()> {
             solved < 0.4 * uniform,
             "{depth}: {uniform:.1e} {solved:.1e}"
         );
+    }
+    Ok(())
+}
+
+/// Seen along the grid's axes from cells that are long against their width, the loads of pieces are
+/// as those of short ones: a coated ellipse on cells of 1 : 12 is that on cells of 1 : 4, of which
+/// three make one. What is long is not resolved by either.
+#[test]
+fn long_cells_are_evaluated() -> Result<()> {
+    let coating = nacre::Layer::new(Elastic::new(3.0, NU)?, 0.4)?;
+    let body = HalfSpace::new(steel()?, [coating])?;
+    let shape = Paraboloid::new(1e6, 1e3)?;
+    let solved = |n: usize| -> Result<[ndarray::Array3<f64>; 6]> {
+        let grid = Grid::new([n, 65], [12.96, 2.6])?;
+        let contact = Contact::plan(&body, grid, Setup::default())?;
+        let solution = contact.solve(&shape, &Motion::load(1e-2), &Options::default())?;
+        let options = StressOptions {
+            friction: 0.3,
+            ..StressOptions::default()
+        };
+        let field = solution.stress(&[0.0, 0.02], Member::Body, &options)?;
+        let peak = solution.peak_pressure();
+        Ok(field.components.map(|component| component / peak))
+    };
+    let (long, short) = (solved(27)?, solved(81)?);
+    for (long, short) in long.iter().zip(&short) {
+        for k in 0..2 {
+            for j in 0..65 {
+                let error = long[[k, 13, j]] - short[[k, 40, j]];
+                assert!(error.abs() < 1e-2, "{k} {j}: {error:.1e}");
+            }
+        }
     }
     Ok(())
 }

@@ -213,6 +213,11 @@ impl<'a, const N: usize> Kernel<'a, N> {
                 let x = v.exp();
                 node(x, x * weight);
             }
+        } else if x2 < -scale {
+            for (v, weight) in self.plan.panel.panels((-x2).ln(), (-x1).ln()) {
+                let x = v.exp();
+                node(-x, x * weight);
+            }
         } else {
             let ends = [x1, x2].map(|x| (x / scale).asinh());
             for (u, weight) in self.plan.panel.panels(ends[0], ends[1]) {
