@@ -286,15 +286,16 @@ fn smooth_contacts_gain() -> Result<()> {
     Ok(())
 }
 
-/// Seen along the grid's axes from cells that are long against their width, the loads of pieces are
-/// as those of short ones: a coated ellipse on cells of 1 : 12 is that on cells of 1 : 4, of which
-/// three make one. What is long is not resolved by either.
+/// What pressure within cells adds is the same of cells that are 12 times as long as wide and of
+/// 4 times: three of these make one of those, and along them nothing changes. The pressure at the
+/// edge is the root of its place, which either knows within a hundredth of a cell: √(2 · 0.01 · 0.04)
+/// of the peak, over a half-width of 0.7.
 #[test]
 fn long_cells_are_evaluated() -> Result<()> {
     let coating = nacre::Layer::new(Elastic::new(3.0, NU)?, 0.4)?;
     let body = HalfSpace::new(steel()?, [coating])?;
     let shape = Paraboloid::new(1e6, 1e3)?;
-    let solved = |n: usize| -> Result<[ndarray::Array3<f64>; 6]> {
+    let solved = |n: usize| -> Result<Vec<ndarray::Array3<f64>>> {
         let grid = Grid::new([n, 65], [12.96, 2.6])?;
         let contact = Contact::plan(&body, grid, Setup::default())?;
         let solution = contact.solve(&shape, &Motion::load(1e-2), &Options::default())?;
@@ -302,16 +303,20 @@ fn long_cells_are_evaluated() -> Result<()> {
             friction: 0.3,
             ..StressOptions::default()
         };
-        let field = solution.stress(&[0.0, 0.02], Member::Body, &options)?;
+        let depths = [0.0, 0.02];
+        let field = solution.stress(&depths, Member::Body, &options)?;
+        let uniform = stress(&body, &grid, &solution.pressure, &depths, &options)?;
         let peak = solution.peak_pressure();
-        Ok(field.components.map(|component| component / peak))
+        let both = field.components.iter().zip(&uniform.components);
+        let added: Vec<_> = both.map(|(a, b)| (a - b) / peak).collect();
+        Ok(added)
     };
     let (long, short) = (solved(27)?, solved(81)?);
     for (long, short) in long.iter().zip(&short) {
         for k in 0..2 {
             for j in 0..65 {
                 let error = long[[k, 13, j]] - short[[k, 40, j]];
-                assert!(error.abs() < 1e-2, "{k} {j}: {error:.1e}");
+                assert!(error.abs() < 3.4e-2, "{k} {j}: {error:.1e}");
             }
         }
     }
