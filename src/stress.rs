@@ -8,7 +8,11 @@
 //! the material at that depth, and exact transforms of what the layers add. Both fall off as they
 //! do in an endless body, so that a larger domain changes nothing, and the error does not depend on
 //! how deep or how thick a layer is: it is below 1e-8 of the pressure (`tests/stress_*.rs`). What is
-//! left is that the pressure is uniform over a cell.
+//! left is what pressure is within a cell. [`stress`] takes it as uniform. In a solved contact
+//! ([`Solution::stress`](crate::Solution::stress)) it is parabolic inside, and near a smooth edge
+//! the root of a polynomial, which cells farther inside tell; where they do not, it stays uniform.
+//! Tractions at the surface stay those of the solution's pressure, and displacements are of uniform
+//! cells.
 //!
 //! Sliding adds the traction q = μ p along a direction; it does not act back on the pressure. That
 //! holds where the bodies are alike (the same elastic constants), where ν = ½, or where μ is small:
@@ -19,29 +23,35 @@ use std::ops::ControlFlow;
 use ndarray::{Array1, Array3, ArrayRef2};
 
 use crate::body::HalfSpace;
-use crate::contact::Solution;
 use crate::error::{Error, Result, finite};
 use crate::grid::Grid;
 use crate::memory::check_memory;
 
 mod cells;
 mod components;
+mod cut;
 mod depths;
 mod derived;
+mod edge;
 mod hankel;
 mod kernel;
 mod line;
 mod loaded;
+mod member;
+mod near;
+mod reconstruction;
 mod rectangle;
 mod section;
 mod summary;
 mod table;
+mod within;
 
 pub use derived::Peak;
-pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary, stress_summary};
+pub use member::Member;
+pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary};
 
 use components::COMPONENTS;
-use loaded::Loaded;
+use loaded::{Form, Loaded};
 use section::{Lines, place};
 
 /// Which side of an interface a depth is on.
@@ -202,6 +212,27 @@ pub fn stress_watched(
     options: &StressOptions,
     progress: &mut StressProgress,
 ) -> Result<Stress> {
+    watched(
+        body,
+        grid,
+        pressure,
+        Form::Uniform,
+        depths,
+        options,
+        progress,
+    )
+}
+
+/// [`stress_watched`] under a pressure of either form.
+fn watched(
+    body: &HalfSpace,
+    grid: &Grid,
+    pressure: &ArrayRef2<f64>,
+    form: Form,
+    depths: &[f64],
+    options: &StressOptions,
+    progress: &mut StressProgress,
+) -> Result<Stress> {
     let places = depths
         .iter()
         .map(|&z| place(body, z, options.side))
@@ -211,10 +242,10 @@ pub fn stress_watched(
     let [ox, oy] = lines.shape;
     check_memory(
         grid.shape(),
-        8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, options),
+        8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, form, options),
     )?;
     let residual = residual(body, &options.residual)?;
-    let loaded = Loaded::new(body, grid, pressure, options)?;
+    let loaded = Loaded::new(body, grid, pressure, form, options)?;
     let cells = ox * oy;
     // Each by itself: a copy would touch its memory, here and on one thread.
     let zeros = |length: usize| (0..fields).map(|_| vec![0.0; length]).collect::<Vec<_>>();
@@ -295,116 +326,4 @@ fn residual(body: &HalfSpace, given: &[f64]) -> Result<Vec<f64>> {
         *value = finite("residual", *given)?;
     }
     Ok(values)
-}
-
-/// One of the two bodies of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Member {
-    /// The body that the shape is pressed into.
-    #[default]
-    Body,
-    /// The body that carries the shape: z points into it, x and y are the same.
-    Counterbody,
-}
-
-impl Solution {
-    /// Stress at `depths` in one of the bodies. The traction of friction is that on the body; the
-    /// counterbody gets the opposite.
-    ///
-    /// # Errors
-    /// Bad input, a counterbody that is rigid, too little memory.
-    ///
-    /// ```
-    /// use nacre::{Elastic, Member, Motion, Sphere, StressOptions, solve};
-    /// let steel = Elastic::new(210e9, 0.3)?;
-    /// let solution = solve(&Sphere::new(5e-3)?, &steel.into(), &Motion::load(10.0))?;
-    /// let a = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus()).cbrt();
-    /// let field = solution.stress(&[0.48 * a], Member::Body, &StressOptions::default())?;
-    /// let shear = field.max_shear().fold(0.0_f64, |m, s| m.max(*s));
-    /// assert!((shear / solution.peak_pressure() / 0.31 - 1.0).abs() < 5e-3);
-    /// # Ok::<(), nacre::Error>(())
-    /// ```
-    pub fn stress(
-        &self,
-        depths: &[f64],
-        member: Member,
-        options: &StressOptions,
-    ) -> Result<Stress> {
-        let mut go_on = |_| ControlFlow::Continue(());
-        self.stress_watched(depths, member, options, &mut go_on)
-    }
-
-    /// [`Solution::stress`], telling `progress` how far it is; its break ends with the depths that
-    /// are done.
-    ///
-    /// # Errors
-    /// As [`Solution::stress`].
-    pub fn stress_watched(
-        &self,
-        depths: &[f64],
-        member: Member,
-        options: &StressOptions,
-        progress: &mut StressProgress,
-    ) -> Result<Stress> {
-        let (body, options) = self.loaded_member(member, options)?;
-        stress_watched(
-            body,
-            self.grid(),
-            &self.pressure,
-            depths,
-            &options,
-            progress,
-        )
-    }
-
-    /// What is worth knowing of the stress in one of the bodies: peaks in each layer, tractions at
-    /// each interface, margins.
-    ///
-    /// # Errors
-    /// As [`Solution::stress`], and where a limit is not finite and above 0.
-    pub fn stress_summary(
-        &self,
-        member: Member,
-        limits: &Limits,
-        options: &StressOptions,
-        progress: &mut StressProgress,
-    ) -> Result<StressSummary> {
-        let (body, options) = self.loaded_member(member, options)?;
-        summary::stress_summary(
-            body,
-            self.grid(),
-            &self.pressure,
-            limits,
-            &options,
-            progress,
-        )
-    }
-
-    /// That body.
-    ///
-    /// # Errors
-    /// Where it is rigid.
-    pub fn member(&self, member: Member) -> Result<&HalfSpace> {
-        match (member, &self.report.counterbody) {
-            (Member::Body, _) => Ok(&self.report.body),
-            (Member::Counterbody, Some(counterbody)) => Ok(counterbody),
-            (Member::Counterbody, None) => Err(Error::Inconsistent(
-                "body must be \"body\" where the counterbody is rigid",
-            )),
-        }
-    }
-
-    /// That body, and the options with the traction that acts on it.
-    fn loaded_member(
-        &self,
-        member: Member,
-        options: &StressOptions,
-    ) -> Result<(&HalfSpace, StressOptions)> {
-        let body = self.member(member)?;
-        let mut options = options.clone();
-        if member == Member::Counterbody {
-            options.direction = options.direction.map(|d| -d);
-        }
-        Ok((body, options))
-    }
 }

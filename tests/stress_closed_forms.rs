@@ -1,8 +1,13 @@
 //! Stress in a bare half-space against closed forms: a uniformly loaded rectangle, Hertz contacts,
-//! sliding line contact; equilibrium and Hooke's law on a coated one.
+//! sliding line contact, all of pressure that is uniform over cells; equilibrium and Hooke's law on a
+//! coated one.
+
+#[path = "support/huber.rs"]
+mod huber;
 
 use std::f64::consts::PI;
 
+use huber::huber;
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, stress};
 use ndarray::{Array2, Array3};
 
@@ -176,37 +181,6 @@ fn hertz_pressure(grid: &Grid) -> Array2<f64> {
     })
 }
 
-/// xx, yy, zz, xy, yz, xz below Hertz' pressure on the unit disc; Huber (1904), after Hills, Nowell
-/// & Sackfield, Mechanics of Elastic Contacts (1993).
-fn huber(x: f64, y: f64, z: f64) -> [f64; 6] {
-    let r2 = x * x + y * y;
-    let s = r2 + z * z - 1.0;
-    let u = 0.5 * (s + (s * s + 4.0 * z * z).sqrt());
-    let root = u.sqrt();
-    let cubed = (z / root).powi(3);
-    let deep = u / (u * u + z * z);
-    let angle = (1.0 / root).atan();
-    let zz = -cubed * deep;
-    if r2 < 1e-18 {
-        let lateral = -(1.0 + NU) * (1.0 - z * (1.0 / z).atan()) + 0.5 / (1.0 + z * z);
-        return [lateral, lateral, zz, 0.0, 0.0, 0.0];
-    }
-    let spread = (1.0 - 2.0 * NU) / (3.0 * r2) * (1.0 - cubed);
-    let stretch = u * (1.0 - NU) / (1.0 + u);
-    let radial = spread + cubed * deep + z / root * (stretch + (1.0 + NU) * root * angle - 2.0);
-    let hoop = -(spread + z / root * (2.0 * NU + stretch - (1.0 + NU) * root * angle));
-    let shear = -z * z / (u * u + z * z) * root / (1.0 + u);
-    let (c2, s2, cs) = (x * x / r2, y * y / r2, x * y / r2);
-    [
-        radial * c2 + hoop * s2,
-        radial * s2 + hoop * c2,
-        zz,
-        (radial - hoop) * cs,
-        shear * y,
-        shear * x,
-    ]
-}
-
 /// Largest errors below Hertz' pressure on cells of 1/`count`, at depths in cells: everywhere,
 /// farther than three cells from the edge, and on the axis.
 fn hertz_errors(count: usize, depth: f64) -> Result<[f64; 3]> {
@@ -225,7 +199,7 @@ fn hertz_errors(count: usize, depth: f64) -> Result<[f64; 3]> {
     let mut worst = [0.0_f64; 3];
     for i in 0..n {
         for j in 0..n {
-            let exact = huber(x[i], y[j], z);
+            let exact = huber(NU, x[i], y[j], z);
             for (k, exact) in exact.into_iter().enumerate() {
                 let error = (field.components[k][[0, i, j]] - exact).abs();
                 worst[0] = worst[0].max(error);

@@ -72,6 +72,14 @@ fn at(field: &Array3<f64>, x: &Array1<f64>, at: f64) -> f64 {
         .sum()
 }
 
+/// At `edge`, by the cubic through the four cells beyond it, where the field is smooth.
+fn outside(field: &Array3<f64>, x: &Array1<f64>, edge: f64) -> f64 {
+    let first = x.iter().position(|x| *x > edge).unwrap_or(0);
+    let places = x.iter().skip(first).take(4).copied().collect();
+    let values = Array3::from_shape_fn((1, 4, 1), |(_, k, _)| field[[0, first + k, 0]]);
+    at(&values, &places, edge)
+}
+
 /// Errors of one case of the sphere on a square of n cells: axis, interface shear and its place,
 /// surface tension beyond 1.05 a, and the cusp at a.
 fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
@@ -118,35 +126,27 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
             errors[3] = errors[3].max(error.abs() / number(case, "p0_over_pH"));
         }
     }
-    let cusp = radial.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)) / hertz;
-    errors[4] = (cusp / number(case, "surface_max_tensile_srr_over_pH") - 1.0).abs();
+    let cusp = outside(radial, &surface.x, a) / hertz;
+    errors[4] = (cusp / number(case, "srr_at_edge_over_pH") - 1.0).abs();
     Ok(errors)
 }
 
-/// On 65 and 257 cells over 3.4 contact radii. Errors are of second order inside, those of the cusp
-/// at the edge of the contact of order √dx: there cells of uniform pressure miss 2.5 % of the peak
-/// pressure, which is half of the tension that is left beside a coating of four times the modulus,
-/// and less than 2 % of it in the other cases.
+/// On 65 and 257 cells over 3.4 contact radii. Errors are of second order inside, that of the cusp
+/// at the edge of the contact of the place of the edge, some thousandths of a cell: 1e-4 of the peak
+/// pressure, which is half a per cent of the tension that is left beside a coating of four times the
+/// modulus.
 #[test]
 fn sphere_on_a_coating() -> Result<()> {
     for case in cases("stress_sphere.json") {
         let (coarse, fine) = (sphere_errors(&case, 65)?, sphere_errors(&case, 257)?);
-        let hard = number(&case, "E1_over_E2") > 3.0;
-        let bars = [
-            2e-5,
-            2e-4,
-            3.4 / 257.0,
-            2e-5,
-            if hard { 0.55 } else { 0.02 },
-        ];
+        let bars = [2e-5, 2e-4, 3.4 / 257.0, 2e-5, 5e-3];
         for (k, bar) in bars.into_iter().enumerate() {
             assert!(fine[k] < bar, "{case}: {fine:?}");
         }
-        for (k, falls) in [(0, 0.1), (3, 0.05), (4, 0.8)] {
+        for (k, falls) in [(0, 0.1), (3, 0.05)] {
             assert!(fine[k] < falls * coarse[k], "{case}: {coarse:?} {fine:?}");
         }
-        let reference = number(&case, "surface_max_tensile_srr_over_pH");
-        assert!(fine[4] * reference / number(&case, "p0_over_pH") < 0.025);
+        assert!(coarse[4] < 2e-2, "{case}: {coarse:?}");
     }
     Ok(())
 }

@@ -75,7 +75,7 @@ def coating_chart(
            [1.36, 1.82]])
     >>> (chart.coating_tension / 1e9).round(2).values
     array([[0.13, 0.34],
-           [0.15, 0.26]])
+           [0.16, 0.26]])
     """
     asked, study = _parted(options)
 

@@ -33,6 +33,8 @@ const SECTOR: f64 = 0.7;
 pub(super) struct Plan {
     pub(super) body: HalfSpace,
     spacing: [f64; 2],
+    /// Nearest distance to a corner of a cell, or of a piece of one.
+    nearest: f64,
     reach: f64,
     rules: Rules,
     panel: Rule,
@@ -48,12 +50,12 @@ struct Spectrum {
 }
 
 impl Plan {
-    /// For cells of sides `spacing`, at offsets up to `reach`.
-    pub(super) fn new(body: &HalfSpace, spacing: [f64; 2], reach: f64) -> Self {
+    /// For cells of sides `spacing`, and pieces down to `finest` of them, at offsets up to `reach`.
+    pub(super) fn new(body: &HalfSpace, spacing: [f64; 2], finest: f64, reach: f64) -> Self {
+        let nearest = NEAREST * finest * 0.5 * spacing[0].min(spacing[1]);
         let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
         let spectrum = body.layers().first().map(|top| {
-            let half = 0.5 * spacing[0].min(spacing[1]);
-            let mesh = LogMesh::new(top.thickness(), thickness, [NEAREST * half, reach]);
+            let mesh = LogMesh::new(top.thickness(), thickness, [nearest, reach]);
             let columns = mesh
                 .wavenumbers()
                 .map(|alpha| (alpha, Column::new(body, alpha)))
@@ -63,6 +65,7 @@ impl Plan {
         Self {
             body: body.clone(),
             spacing,
+            nearest,
             reach,
             rules: Rules::coarse(),
             panel: Rule::gauss_legendre(10),
@@ -131,7 +134,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let nearest = if plan.rules.at(SECTOR * depth / least).is_some() {
             0.0
         } else {
-            NEAREST * least
+            plan.nearest
         };
         let whole = Coarse::new([nearest, plan.reach], depth * depth, |r| {
             let mut h = r.map(|r| point.at(r * r));
@@ -144,7 +147,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
         });
         let mean = series
             .filter(|_| nearest > 0.0)
-            .map(|series| Coarse::new([NEAREST * least, 12.0 * most], 0.0, |r| series.mean(r)));
+            .map(|series| Coarse::new([nearest, 12.0 * most], 0.0, |r| series.mean(r)));
         // Differences reach one cell further in.
         let far = 2.0 * (FAR - 2.0) * most;
         let start = (far * far - depth * depth).max(0.0).sqrt();
@@ -230,6 +233,11 @@ impl<'a, const N: usize> Kernel<'a, N> {
             for (v, weight) in self.plan.panel.panels(x1.ln(), x2.ln()) {
                 let x = v.exp();
                 node(x, x * weight);
+            }
+        } else if x2 < -scale {
+            for (v, weight) in self.plan.panel.panels((-x2).ln(), (-x1).ln()) {
+                let x = v.exp();
+                node(-x, x * weight);
             }
         } else {
             let ends = [x1, x2].map(|x| (x / scale).asinh());

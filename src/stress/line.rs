@@ -111,11 +111,16 @@ pub(super) struct LinePlan {
 }
 
 impl LinePlan {
-    pub(super) fn new(body: &HalfSpace, grid: &Grid) -> Self {
+    /// For the grid's strips, and pieces down to `finest` of them.
+    pub(super) fn new(body: &HalfSpace, grid: &Grid, finest: f64) -> Self {
         let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
         let (width, datum) = (grid.spacing()[1], grid.size()[1]);
         let spectrum = body.layers().first().map(|top| {
-            let mesh = LogMesh::new(top.thickness(), thickness, [0.4 * width, 2.0 * datum]);
+            let mesh = LogMesh::new(
+                top.thickness(),
+                thickness,
+                [0.4 * finest * width, 2.0 * datum],
+            );
             let columns = mesh
                 .wavenumbers()
                 .map(|alpha| (alpha, Column::new(body, alpha)))
@@ -137,41 +142,34 @@ impl LinePlan {
         &self,
         place: &Place,
     ) -> Vec<[f64; COMPONENTS]> {
-        let (material, depth) = (place.material, place.depth);
-        let unit = |y: f64| L::functions(&Fields::homogeneous(material, y), material);
-        let (zero, one) = (unit(0.0), unit(1.0));
-        let closed: [Closed; N] = std::array::from_fn(|k| Closed {
-            c0: zero[k],
-            c1: one[k] * std::f64::consts::E - zero[k],
-            depth,
-        });
-        let image_depth = self.thickness + depth;
-        let rest = self.rest::<N, L>(place, image_depth);
+        let strips = self.strips::<N, L>(place);
         // S at the edges of the cells, (j ± ½) dy.
-        let at = |y: f64| -> [f64; N] {
-            let mut sums: [f64; N] =
-                std::array::from_fn(|k| closed[k].integral(L::PARTS[k], y, self.datum));
-            if let Some((series, images)) = &rest {
-                let [mean] = series.mean([y.abs()]);
-                for (k, sum) in sums.iter_mut().enumerate() {
-                    let sign = if L::PARTS[k].sine { 1.0 } else { y.signum() };
-                    *sum += sign * mean[k] + images[k].integral(L::PARTS[k], y, self.datum);
-                }
-            }
-            sums
-        };
-        let mut before = at(-0.5 * self.width);
+        let mut before = strips.integral(-0.5 * self.width);
         (0..self.cells)
             .map(|j| {
-                let next = at((j as f64 + 0.5) * self.width);
-                let mut values = [0.0; COMPONENTS];
-                for (k, part) in L::PARTS.iter().enumerate() {
-                    values[part.component] = part.sign * (next[k] - before[k]);
-                }
+                let next = strips.integral((j as f64 + 0.5) * self.width);
+                let values = strips.components(&before, &next);
                 before = next;
                 values
             })
             .collect()
+    }
+
+    /// Components of strips of any width at one place.
+    pub(super) fn strips<const N: usize, L: StripLoad<N>>(&self, place: &Place) -> Strips<N> {
+        let (material, depth) = (place.material, place.depth);
+        let unit = |y: f64| L::functions(&Fields::homogeneous(material, y), material);
+        let (zero, one) = (unit(0.0), unit(1.0));
+        Strips {
+            parts: L::PARTS,
+            closed: std::array::from_fn(|k| Closed {
+                c0: zero[k],
+                c1: one[k] * std::f64::consts::E - zero[k],
+                depth,
+            }),
+            rest: self.rest::<N, L>(place, self.thickness + depth),
+            datum: self.datum,
+        }
     }
 
     /// Of the difference between the body and a half-space of what is at `place`.
@@ -224,6 +222,44 @@ impl LinePlan {
             Series::new(mesh, &orders, &multipliers, samples, 0.0),
             images,
         ))
+    }
+}
+
+/// A load at one depth, on strips of any width.
+pub(super) struct Strips<const N: usize> {
+    parts: [Part; N],
+    closed: [Closed; N],
+    rest: Option<(Series<N>, [Closed; N])>,
+    datum: f64,
+}
+
+impl<const N: usize> Strips<N> {
+    /// Components at y from the middle of a strip of half width `half` under a unit load.
+    pub(super) fn at(&self, y: f64, half: f64) -> [f64; COMPONENTS] {
+        self.components(&self.integral(y - half), &self.integral(y + half))
+    }
+
+    /// S(y).
+    fn integral(&self, y: f64) -> [f64; N] {
+        let mut sums: [f64; N] =
+            std::array::from_fn(|k| self.closed[k].integral(self.parts[k], y, self.datum));
+        if let Some((series, images)) = &self.rest {
+            let [mean] = series.mean([y.abs()]);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                let sign = if self.parts[k].sine { 1.0 } else { y.signum() };
+                *sum += sign * mean[k] + images[k].integral(self.parts[k], y, self.datum);
+            }
+        }
+        sums
+    }
+
+    /// Between two places.
+    fn components(&self, before: &[f64; N], next: &[f64; N]) -> [f64; COMPONENTS] {
+        let mut values = [0.0; COMPONENTS];
+        for (k, part) in self.parts.iter().enumerate() {
+            values[part.component] = part.sign * (next[k] - before[k]);
+        }
+        values
     }
 }
 

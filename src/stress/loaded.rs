@@ -9,6 +9,8 @@ use super::cells::Source;
 use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
 use super::kernel::{Kernel, Plan};
 use super::line::{self, LinePlan};
+use super::near::Near;
+use super::within::Within;
 use crate::body::{HalfSpace, Interface};
 use crate::error::{Error, Result, finite};
 use crate::fft::{Keep, KernelRows, PaddedTransform, QuarterTransform, Transformed, Workspace};
@@ -19,6 +21,15 @@ use crate::threads::Threads;
 /// Components that are convolved together: the more, the less often the load is read; the fewer, the
 /// less memory is written and read in between.
 const TOGETHER: usize = 3;
+
+/// How pressure is distributed over a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// It is uniform.
+    Uniform,
+    /// It is that of a solved contact.
+    Solved,
+}
 
 /// A body under a load, of which planes are evaluated.
 #[derive(Debug)]
@@ -33,6 +44,9 @@ pub(super) struct Loaded {
     transform: PaddedTransform,
     quarter: QuarterTransform,
     pressure: Transformed,
+    /// Where pressure is not uniform over cells, and the transform of the cells' pressure, of which
+    /// displacements are; stresses are the convolution of [`Loaded::pressure`].
+    within: Option<(Within, Transformed)>,
     threads: Threads,
 }
 
@@ -52,6 +66,7 @@ enum Kernels {
 pub(super) struct Scratch {
     loads: Vec<LoadRows>,
     workspace: Workspace,
+    near: Near,
 }
 
 /// Coefficients of one load at one depth.
@@ -73,6 +88,7 @@ impl Loaded {
         body: &HalfSpace,
         grid: &Grid,
         pressure: &ArrayRef2<f64>,
+        form: Form,
         options: &StressOptions,
     ) -> Result<Self> {
         let shape = grid.shape();
@@ -94,10 +110,10 @@ impl Loaded {
         let threads = Threads::new(options.threads)?;
         let spacing = grid.spacing();
         let kind = if grid.is_line() {
-            Kernels::Line(LinePlan::new(body, grid))
+            Kernels::Line(LinePlan::new(body, grid, 1.0))
         } else {
             let [lx, ly] = grid.size();
-            let plan = threads.run(|| Plan::new(body, spacing, 1.01 * lx.hypot(ly)));
+            let plan = threads.run(|| Plan::new(body, spacing, 1.0, 1.01 * lx.hypot(ly)));
             let traction = match friction {
                 [0.0, 0.0] => Vec::new(),
                 _ => plan.multipliers::<9, components::Traction>(),
@@ -108,10 +124,16 @@ impl Loaded {
                 plan: Box::new(plan),
             }
         };
-        let offsets = offsets(pressure);
-        let transform = PaddedTransform::plan_even(shape, offsets, &threads);
         let input: Vec<f64> = pressure.iter().copied().collect();
-        let pressure = transform.transform(&input, &mut transform.workspace(), &threads);
+        let within = (form == Form::Solved)
+            .then(|| threads.run(|| Within::new(body, grid, &input, friction)));
+        let uniform = within.as_ref().map_or(input.as_slice(), Within::uniform);
+        let offsets = offsets(shape, [&input, uniform]);
+        let transform = PaddedTransform::plan_even(shape, offsets, &threads);
+        let transformed =
+            |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
+        let pressure = transformed(uniform);
+        let within = within.map(|within| (within, transformed(&input)));
         Ok(Self {
             spacing,
             kind,
@@ -121,6 +143,7 @@ impl Loaded {
             quarter: transform.quarter_transform(),
             transform,
             pressure,
+            within,
             threads,
         })
     }
@@ -131,15 +154,17 @@ impl Loaded {
     }
 
     /// Bytes that it takes, with the coefficients of one depth.
-    pub(super) fn memory(grid: &Grid, options: &StressOptions) -> u64 {
+    pub(super) fn memory(grid: &Grid, form: Form, options: &StressOptions) -> u64 {
         let [nx, ny] = grid.shape().map(|n| n as u64);
         let loads = if options.friction == 0.0 { 1 } else { 3 };
         let fields = if options.displacement { 9 } else { 6 };
+        let within = if form == Form::Solved { 24 } else { 0 };
         // Coefficients of each load; the transform of the pressure and what it is made from, 8; of
-        // components, 2 for each. Transforms come by blocks of columns, and in lengths that are
-        // products of small primes: half a block, and a tenth, more.
+        // components, 2 for each; what is not uniform in the pressure, and its transform. Transforms
+        // come by blocks of columns, and in lengths that are products of small primes: half a block,
+        // and a tenth, more.
         let cells = (nx + 1) * (ny + 8) * 8;
-        cells * (loads * fields + 8 + 2 * TOGETHER as u64) * 6 / 5
+        cells * (loads * fields + 8 + 2 * TOGETHER as u64 + within) * 6 / 5
     }
 
     /// Memory for `fields` components.
@@ -159,11 +184,15 @@ impl Loaded {
                 })
                 .collect(),
             workspace: self.transform.workspace(),
+            near: Near::default(),
         }
     }
 
     /// Computes the coefficients at `place`.
     pub(super) fn coefficients(&self, place: &Place, scratch: &mut Scratch) {
+        if let Some((within, _)) = &self.within {
+            scratch.near = self.threads.run(|| within.at(place));
+        }
         self.threads.run(|| match &self.kind {
             Kernels::Line(plan) => self.line(plan, place, scratch),
             Kernels::Plane {
@@ -201,7 +230,9 @@ impl Loaded {
 
     /// Computes the coefficients of line contact.
     fn line(&self, plan: &LinePlan, place: &Place, scratch: &mut Scratch) {
-        let Scratch { loads, workspace } = scratch;
+        let Scratch {
+            loads, workspace, ..
+        } = scratch;
         for LoadRows { axis, rows, .. } in loads {
             let values = match axis {
                 None => plan.coefficients::<6, line::Pressure>(place),
@@ -235,7 +266,9 @@ impl Loaded {
         lateral: bool,
     ) {
         let half @ [a, b] = self.spacing.map(|d| 0.5 * d);
-        let Scratch { loads, workspace } = scratch;
+        let Scratch {
+            loads, workspace, ..
+        } = scratch;
         let loads = loads.iter_mut();
         for load in loads.filter(|load| load.axis.is_some() == lateral) {
             let odd = odd(load.axis);
@@ -285,7 +318,11 @@ impl Loaded {
         scratch: &mut Scratch,
         go_on: &mut dyn FnMut(f64) -> bool,
     ) -> bool {
-        let Scratch { loads, workspace } = scratch;
+        let Scratch {
+            loads,
+            workspace,
+            near,
+        } = scratch;
         let sets: Vec<_> = loads.iter().map(|load| (load.factor, &load.rows)).collect();
         let count = outputs.len();
         let mut done = 0;
@@ -295,9 +332,13 @@ impl Loaded {
             }
             let numbers = done..done + outputs.len();
             done = numbers.end;
+            let pressure = match &self.within {
+                Some((_, given)) if numbers.start >= 6 => given,
+                _ => &self.pressure,
+            };
             self.threads.run(|| {
                 self.transform.convolve_parities(
-                    &self.pressure,
+                    pressure,
                     (&self.quarter, &sets),
                     numbers,
                     outputs,
@@ -306,17 +347,19 @@ impl Loaded {
                 );
             });
         }
+        if let Some((within, _)) = &self.within {
+            self.threads.run(|| within.add(near, &mut outputs[..6]));
+        }
         true
     }
 }
 
-/// How many offsets along x and y, 0 included, lie between a cell and a loaded one.
-fn offsets(pressure: &ArrayRef2<f64>) -> [usize; 2] {
-    let shape = [pressure.nrows(), pressure.ncols()];
+/// How many offsets along x and y, 0 included, lie between a cell and one that any of `loads` is on.
+fn offsets(shape: [usize; 2], loads: [&[f64]; 2]) -> [usize; 2] {
     let mut ends = shape.map(|n| [n, 0]);
-    for ((i, j), p) in pressure.indexed_iter() {
-        if *p != 0.0 {
-            for (end, at) in ends.iter_mut().zip([i, j]) {
+    for load in loads {
+        for (k, _) in load.iter().enumerate().filter(|(_, p)| **p != 0.0) {
+            for (end, at) in ends.iter_mut().zip([k / shape[1], k % shape[1]]) {
                 *end = [end[0].min(at), end[1].max(at)];
             }
         }

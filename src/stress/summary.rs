@@ -6,7 +6,7 @@ use ndarray::ArrayRef2;
 
 use super::depths::{between, half_width, regions};
 use super::derived::{Peak, Tensor, principal, von_mises};
-use super::loaded::{Loaded, Scratch};
+use super::loaded::{Form, Loaded, Scratch};
 use super::section::place;
 use super::{Side, StressOptions, StressProgress, residual};
 use crate::body::HalfSpace;
@@ -76,7 +76,7 @@ pub struct StressSummary {
 /// How often the neighbourhood of a peak is looked at again.
 const REFINEMENTS: usize = 3;
 
-/// The summary of `body` under `pressure` (nx, ny) on `grid`; `section` and `displacement` of the
+/// The summary of `body` under the `pressure` (nx, ny) of a contact on `grid`; `section` and `displacement` of the
 /// options are not used.
 ///
 /// Depths are the faces of layers, and inside them some 18 that are spread over its thickness and
@@ -85,7 +85,7 @@ const REFINEMENTS: usize = 3;
 ///
 /// # Errors
 /// Bad input, or too little memory.
-pub fn stress_summary(
+pub(super) fn stress_summary(
     body: &HalfSpace,
     grid: &Grid,
     pressure: &ArrayRef2<f64>,
@@ -107,13 +107,13 @@ pub fn stress_summary(
     }
     check_memory(
         grid.shape(),
-        8 * 7 * pressure.len() as u64 + Loaded::memory(grid, options),
+        8 * 7 * pressure.len() as u64 + Loaded::memory(grid, Form::Solved, options),
     )?;
     let options = &StressOptions {
         displacement: false,
         ..options.clone()
     };
-    let loaded = Loaded::new(body, grid, pressure, options)?;
+    let loaded = Loaded::new(body, grid, pressure, Form::Solved, options)?;
     let mut planes = Planes {
         body,
         grid,
