@@ -2,7 +2,7 @@
 
 use super::fit::{add_gram, add_moments, symmetric};
 use super::freedoms::Freedoms;
-use super::sums::sum;
+use super::sums::{all, sum, where_positive};
 
 /// Mismatch of force and scaled moments, over the force, that rounding leaves in large sums.
 const BALANCED: f64 = 2e-13;
@@ -41,8 +41,8 @@ impl Freedoms {
             for (x, row) in self.rows() {
                 let along = 1.0 + mu[0] + mu[1] * x;
                 let row = sum([&p[row], &self.columns[1]], |[p, y]| {
-                    let factor = along + mu[2] * y;
-                    let p = if factor > 0.0 { p * factor } else { 0.0 };
+                    let factor = all(along) + all(mu[2]) * y;
+                    let p = where_positive(factor, p * factor);
                     [p, p * y]
                 });
                 add_moments(&mut sums, x, row);
@@ -61,7 +61,7 @@ impl Freedoms {
             for (x, row) in self.rows() {
                 let along = 1.0 + mu[0] + mu[1] * x;
                 let row = sum([&p[row], &self.columns[1]], |[p, y]| {
-                    let p = if along + mu[2] * y > 0.0 { p } else { 0.0 };
+                    let p = where_positive(all(along) + all(mu[2]) * y, p);
                     [p, p * y, p * y * y]
                 });
                 add_gram(&mut gram, x, row);

@@ -5,7 +5,7 @@ use ndarray::Array2;
 use super::passes::{Passes, add};
 use super::patch::{Patch, Window};
 use super::problem::{Near, Problem, Quality};
-use super::sums::sum;
+use super::sums::{ZERO, sum};
 
 /// Pressure and displacement of a problem, and how good they are, once that was seen.
 pub(super) struct Fields {
@@ -61,7 +61,8 @@ impl Fields {
             |row, [u], [g]| {
                 let h = g.to_vec();
                 self.motion.gap(row, [u, &h], g);
-                sum([u], |[u]| [if u.is_finite() { 0.0 } else { 1.0 }])
+                // 0, unless one is not finite.
+                sum([u], |[u]| [u * ZERO])
             },
         );
         lost <= 0.0

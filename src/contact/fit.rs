@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::freedoms::Freedoms;
 use super::passes::Row;
-use super::sums::{sum, update};
+use super::sums::{ONE, all, sum, update, where_positive};
 
 /// Sums over rows of which [`Freedoms::fitted`] makes a motion: Bᵀv, and the upper half of BᵀB.
 pub(super) type FitSums = [f64; 9];
@@ -53,14 +53,13 @@ impl Freedoms {
 
     /// The same over the cells of which `member` is 1.
     pub(super) fn moments_on(&self, row: Row, member: &[f64], values: &[f64]) -> [f64; 3] {
-        let on = |member: f64, value: f64| if member > 0.0 { value } else { 0.0 };
         let [s, sy] = if self.loaded[2] {
             sum([member, values, row.y], |[member, v, y]| {
-                let v = on(member, v);
+                let v = where_positive(member, v);
                 [v, v * y]
             })
         } else {
-            let [s] = sum([member, values], |[member, v]| [on(member, v)]);
+            let [s] = sum([member, values], |[member, v]| [where_positive(member, v)]);
             [s, 0.0]
         };
         [s, s * row.x, sy]
@@ -68,16 +67,17 @@ impl Freedoms {
 
     /// What one row adds to the fit of u + h − Bλ over the cells with pressure, where λ is `near`.
     pub(super) fn fit_of(&self, row: Row, [p, u, h]: [&[f64]; 3], near: [f64; 3]) -> FitSums {
-        let (base, slope) = (near[0] + near[1] * row.x, near[2]);
-        let on = |p: f64, value: f64| if p > 0.0 { value } else { 0.0 };
+        let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
         let [s, sy, syy, f, fy] = if self.loaded[2] {
             sum([p, u, h, row.y], |[p, u, h, y]| {
-                let (weight, value) = (on(p, 1.0), on(p, (h - (base + slope * y)) + u));
+                let weight = where_positive(p, ONE);
+                let value = where_positive(p, (h - (base + slope * y)) + u);
                 [weight, weight * y, weight * y * y, value, value * y]
             })
         } else {
             let [s, f] = sum([p, u, h, row.y], |[p, u, h, y]| {
-                [on(p, 1.0), on(p, (h - (base + slope * y)) + u)]
+                let value = where_positive(p, (h - (base + slope * y)) + u);
+                [where_positive(p, ONE), value]
             });
             [s, 0.0, 0.0, f, 0.0]
         };

@@ -149,7 +149,7 @@ impl<'a> Passes<'a> {
 #[cfg(test)]
 mod tests {
     use super::{Passes, add};
-    use crate::contact::sums::update;
+    use crate::contact::sums::{all, update};
     use crate::error::Result;
     use crate::threads::Threads;
 
@@ -167,7 +167,7 @@ mod tests {
                 let mut out = vec![0.0; nx * ny];
                 let sums = passes.each([&values], [&mut out], add, |row, [v], [out]| {
                     update([v, row.y], [out], |[v, y], [old]| {
-                        ([old + v * row.x], [v * row.x * y])
+                        ([old + v * all(row.x)], [v * all(row.x) * y])
                     })
                 });
                 for (k, (out, v)) in out.iter().zip(&values).enumerate() {

@@ -18,7 +18,7 @@ use super::passes::{Passes, add};
 use super::problem::{
     Limits, Near, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
 };
-use super::sums::{dot, update};
+use super::sums::{ONE, ZERO, all, dot, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
 use crate::pool::Lease;
 pub(super) use arrays::Arrays;
@@ -65,11 +65,6 @@ enum Step {
     Truncated,
     /// Rounding is all that is left.
     None,
-}
-
-/// 1 where there is a pressure, 0 elsewhere.
-fn indicator(p: f64) -> f64 {
-    if p > 0.0 { 1.0 } else { 0.0 }
 }
 
 impl<'a> Preconditioned<'a> {
@@ -141,7 +136,7 @@ impl<'a> Preconditioned<'a> {
     fn start(&mut self, p: &[f64]) {
         let contact = &mut self.arrays.contact;
         self.passes.each([p], [contact], add, |_, [p], [contact]| {
-            update([p], [contact], |[p], _| ([indicator(p)], []))
+            update([p], [contact], |[p], _| ([where_positive(p, ONE)], []))
         });
         self.invert_freedoms();
         self.displace(p);
@@ -158,7 +153,7 @@ impl<'a> Preconditioned<'a> {
             self.passes
                 .each([contact], [z], add, |row, [contact], [z]| {
                     update([contact, row.y], [z], |[inside, y], _| {
-                        ([inside * [1.0, row.x, y][freedom]], [])
+                        ([inside * [ONE, all(row.x), y][freedom]], [])
                     })
                 });
             inverse.apply_slices(z, image, &mut self.workspace);
@@ -189,7 +184,7 @@ impl<'a> Preconditioned<'a> {
             ..
         } = &mut *self.arrays;
         std::mem::swap(r, r_before);
-        let pending = std::mem::take(&mut self.pending);
+        let pending = all(std::mem::take(&mut self.pending));
         let [left, fit @ ..] = self.passes.each(
             [p, problem.gap, response],
             [u, contact],
@@ -199,12 +194,8 @@ impl<'a> Preconditioned<'a> {
                     [p, response],
                     [&mut *u, contact],
                     |[p, response], [u, before]| {
-                        let now = indicator(p);
-                        let u = if pending > 0.0 {
-                            u + pending * response
-                        } else {
-                            u
-                        };
+                        let now = where_positive(p, ONE);
+                        let u = u + where_positive(pending, pending * response);
                         ([u, now], [(now - before).abs()])
                     },
                 );
@@ -225,9 +216,9 @@ impl<'a> Preconditioned<'a> {
                 let [deepest, most] = overlap_of([u, r]);
                 let [a, b, c, d, e] = problem.carried_of(row, [p, u, r]);
                 let [joined, members] = update([], [r, contact], |[], [g, before]| {
-                    let inside = before > 0.0 || g < 0.0;
-                    let now = if inside { 1.0 } else { 0.0 };
-                    ([if inside { -g } else { 0.0 }, now], [now - before, before])
+                    let inside = before.simd_gt(ZERO) | g.simd_lt(ZERO);
+                    let now = inside & ONE;
+                    ([inside & -g, now], [now - before, before])
                 });
                 [deepest, most, a, b, c, d, e, joined, members]
             },
@@ -276,17 +267,15 @@ impl<'a> Preconditioned<'a> {
         };
         self.descent = descent;
         self.conjugate = true;
+        let beta = all(beta);
         let [slope] = self.passes.each(
             [contact, z, r],
             [direction],
             add,
             |_, [contact, z, r], [direction]| {
                 update([contact, z, r], [direction], |[inside, z, r], [d]| {
-                    let d = if inside > 0.0 && beta > 0.0 {
-                        z + beta * d
-                    } else {
-                        z
-                    };
+                    // What the direction was before it was ever one is not read.
+                    let d = z + where_positive(inside * beta, beta * d);
                     ([d], [r * d])
                 })
             },
@@ -320,7 +309,6 @@ impl<'a> Preconditioned<'a> {
             true => images[k].as_slice(),
             false => contact.as_slice(),
         });
-        let masked = |[inside, z]: [f64; 2]| if inside > 0.0 { z } else { 0.0 };
         let mut factors = [0.0; 3];
         if freedoms.any_loaded() {
             let [i0, i1, i2] = images;
@@ -343,7 +331,7 @@ impl<'a> Preconditioned<'a> {
             let matrix = [0, 1, 2].map(|row| [0, 1, 2].map(|column| sums[3 * column + row]));
             factors = freedoms.solve(&matrix, [sums[9], sums[10], sums[11]]);
         }
-        let [f0, f1, f2] = factors;
+        let [f0, f1, f2] = factors.map(all);
         let [i0, i1, i2] = images;
         if freedoms.loaded[1] || freedoms.loaded[2] {
             return self.passes.each(
@@ -352,7 +340,7 @@ impl<'a> Preconditioned<'a> {
                 add,
                 |_, inputs, [z]| {
                     update(inputs, [z], |[inside, r, last, a, b, c], [z]| {
-                        let z = masked([inside, z - f0 * a - f1 * b - f2 * c]);
+                        let z = where_positive(inside, z - f0 * a - f1 * b - f2 * c);
                         ([z], [r * z, last * z])
                     })
                 },
@@ -361,7 +349,7 @@ impl<'a> Preconditioned<'a> {
         self.passes
             .each([contact, r, r_before, i0], [z], add, |_, inputs, [z]| {
                 update(inputs, [z], |[inside, r, last, a], [z]| {
-                    let z = masked([inside, z - f0 * a]);
+                    let z = where_positive(inside, z - f0 * a);
                     ([z], [r * z, last * z])
                 })
             })

@@ -3,7 +3,7 @@
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
 use super::patch::Window;
-use super::sums::{largest, sum, update};
+use super::sums::{all, largest, sum, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -117,8 +117,7 @@ impl Problem<'_> {
     pub(super) fn carried_of(&self, row: Row, [p, u, g]: [&[f64]; 3]) -> [f64; 5] {
         let [work, mismatch] = sum([p, u, g], |[p, u, g]| {
             // The gap is infinite only where there is no pressure.
-            let mismatch = if p > 0.0 { p * g.abs() } else { 0.0 };
-            [p * u, mismatch]
+            [p * u, where_positive(p, p * g.abs())]
         });
         let [f, fx, fy] = self.freedoms.moments_of(row, p);
         [work, mismatch, f, fx, fy]
@@ -157,8 +156,8 @@ pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
 /// The deepest overlap of one row, and the largest displacement where it can touch.
 pub(super) fn overlap_of(fields: [&[f64]; 2]) -> [f64; 2] {
     largest(fields, |[u, g]| {
-        let touches = g < f64::INFINITY;
-        [-g, if touches { u.abs() } else { 0.0 }]
+        let touches = g.simd_lt(all(f64::INFINITY));
+        [-g, touches & u.abs()]
     })
 }
 
@@ -178,7 +177,7 @@ impl Near {
     /// One row of the gap g = u + h − Bλ.
     pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
         let [[a, b], [c, d]] =
-            [self.near, self.change].map(|lambda| [lambda[0] + lambda[1] * row.x, lambda[2]]);
+            [self.near, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
         update([u, h, row.y], [g], |[u, h, y], _| {
             ([(h - (a + b * y)) + u - (c + d * y)], [])
         });

@@ -1,57 +1,66 @@
-//! Sums in a fixed order, eight at a time: one after the other they would take longer than what they
-//! add up.
+//! Passes over arrays, four elements at a time, with sums in a fixed order: one after the other they
+//! would take longer than what they add up.
 
-const LANES: usize = 8;
+pub(super) use wide::f64x4 as Lanes;
+
+const LANES: usize = 4;
+
+/// Zero in all lanes.
+pub(super) const ZERO: Lanes = Lanes::ZERO;
+
+/// One in all lanes.
+pub(super) const ONE: Lanes = Lanes::ONE;
+
+/// The same number in all lanes.
+pub(super) fn all(value: f64) -> Lanes {
+    Lanes::splat(value)
+}
+
+/// `value` where `p` is above 0, and 0 elsewhere, whatever `value` is there.
+pub(super) fn where_positive(p: Lanes, value: Lanes) -> Lanes {
+    p.simd_gt(ZERO) & value
+}
 
 /// Σ `term` over the elements of `inputs`, which are equally long.
 pub(super) fn sum<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
-    term: impl Fn([f64; M]) -> [f64; N],
+    term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [f64; N] {
-    fold(inputs, [0.0; N], |sum, value| sum + value, term)
+    let lanes = fold(inputs, |sum, value| sum + value, term);
+    lanes.map(total)
 }
 
 /// The largest of `term` and 0 over the elements of `inputs`, which are equally long.
 pub(super) fn largest<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
-    term: impl Fn([f64; M]) -> [f64; N],
+    term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [f64; N] {
-    // Not f64::max, which looks for NaN: there are none.
-    let larger = |a: f64, b: f64| if b > a { b } else { a };
-    fold(inputs, [0.0; N], larger, term)
+    // Not max, which looks for NaN: there are none.
+    let lanes = fold(inputs, Lanes::fast_max, term);
+    lanes.map(|lanes| lanes.to_array().into_iter().fold(0.0, f64::max))
 }
 
 fn fold<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
-    start: [f64; N],
-    join: impl Fn(f64, f64) -> f64,
-    term: impl Fn([f64; M]) -> [f64; N],
-) -> [f64; N] {
-    let mut lanes = start.map(|start| [start; LANES]);
-    let parts = inputs.map(|input| input.as_chunks::<LANES>());
-    let count = parts.iter().map(|(chunks, _)| chunks.len()).min();
-    for chunk in 0..count.unwrap_or(0) {
-        let block = parts.map(|(chunks, _)| chunks[chunk]);
-        for lane in 0..LANES {
-            let values = term(block.map(|block| block[lane]));
-            for (lanes, value) in lanes.iter_mut().zip(values) {
-                lanes[lane] = join(lanes[lane], value);
-            }
+    join: impl Fn(Lanes, Lanes) -> Lanes,
+    term: impl Fn([Lanes; M]) -> [Lanes; N],
+) -> [Lanes; N] {
+    let mut joined = [ZERO; N];
+    let chunks = inputs.map(|input| input.as_chunks::<LANES>().0);
+    let count = chunks.iter().map(|chunks| chunks.len()).min();
+    for k in 0..count.unwrap_or(0) {
+        let values = term(chunks.map(|chunks| Lanes::new(chunks[k])));
+        for (joined, value) in joined.iter_mut().zip(values) {
+            *joined = join(*joined, value);
         }
     }
-    let rest = parts.iter().map(|(_, rest)| rest.len()).min();
-    for lane in 0..rest.unwrap_or(0) {
-        let values = term(parts.map(|(_, rest)| rest[lane]));
-        for (lanes, value) in lanes.iter_mut().zip(values) {
-            lanes[lane] = join(lanes[lane], value);
-        }
+    let rest = inputs.map(|input| input.as_chunks::<LANES>().1);
+    let keep = first(rest.iter().map(|rest| rest.len()).min().unwrap_or(0));
+    let values = term(rest.map(padded));
+    for (joined, value) in joined.iter_mut().zip(values) {
+        *joined = join(*joined, keep & value);
     }
-    lanes.map(|lanes| joined(lanes, &join))
-}
-
-fn joined(l: [f64; LANES], join: impl Fn(f64, f64) -> f64) -> f64 {
-    let even = join(join(l[0], l[4]), join(l[2], l[6]));
-    join(even, join(join(l[1], l[5]), join(l[3], l[7])))
+    joined
 }
 
 /// Replaces the elements of `outputs` by the first of what `step` makes of those of `inputs` and of
@@ -59,32 +68,23 @@ fn joined(l: [f64; LANES], join: impl Fn(f64, f64) -> f64) -> f64 {
 pub(super) fn update<const M: usize, const N: usize, const S: usize>(
     inputs: [&[f64]; M],
     mut outputs: [&mut [f64]; N],
-    step: impl Fn([f64; M], [f64; N]) -> ([f64; N], [f64; S]),
+    step: impl Fn([Lanes; M], [Lanes; N]) -> ([Lanes; N], [Lanes; S]),
 ) -> [f64; S] {
-    let mut lanes = [[0.0; LANES]; S];
+    let mut sums = [ZERO; S];
     let from = inputs.map(|input| input.as_chunks::<LANES>().0);
     let mut to = outputs
         .each_mut()
         .map(|output| output.as_chunks_mut::<LANES>().0);
     let ends = from.iter().map(|chunks| chunks.len());
     let count = ends.chain(to.iter().map(|chunks| chunks.len())).min();
-    for chunk in 0..count.unwrap_or(0) {
-        let read = from.map(|chunks| chunks[chunk]);
-        let mut block = to.each_ref().map(|chunks| chunks[chunk]);
-        for lane in 0..LANES {
-            let (new, values) = step(
-                read.map(|read| read[lane]),
-                block.each_ref().map(|block| block[lane]),
-            );
-            for (block, new) in block.iter_mut().zip(new) {
-                block[lane] = new;
-            }
-            for (lanes, value) in lanes.iter_mut().zip(values) {
-                lanes[lane] += value;
-            }
+    for k in 0..count.unwrap_or(0) {
+        let old = to.each_ref().map(|chunks| Lanes::new(chunks[k]));
+        let (new, values) = step(from.map(|chunks| Lanes::new(chunks[k])), old);
+        for (chunks, new) in to.iter_mut().zip(new) {
+            chunks[k] = new.to_array();
         }
-        for (chunks, block) in to.iter_mut().zip(block) {
-            chunks[chunk] = block;
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += value;
         }
     }
     let from = inputs.map(|input| input.as_chunks::<LANES>().1);
@@ -93,17 +93,36 @@ pub(super) fn update<const M: usize, const N: usize, const S: usize>(
         .map(|output| output.as_chunks_mut::<LANES>().1);
     let ends = from.iter().map(|rest| rest.len());
     let rest = ends.chain(to.iter().map(|rest| rest.len())).min();
-    for lane in 0..rest.unwrap_or(0) {
-        let old = to.each_ref().map(|rest| rest[lane]);
-        let (new, values) = step(from.map(|rest| rest[lane]), old);
-        for (rest, new) in to.iter_mut().zip(new) {
-            rest[lane] = new;
-        }
-        for (lanes, value) in lanes.iter_mut().zip(values) {
-            lanes[lane] += value;
-        }
+    let old = to.each_ref().map(|rest| padded(rest));
+    let (new, values) = step(from.map(padded), old);
+    for (rest, new) in to.iter_mut().zip(new) {
+        let length = rest.len();
+        rest.copy_from_slice(&new.to_array()[..length]);
     }
-    lanes.map(|lanes| joined(lanes, |a, b| a + b))
+    let keep = first(rest.unwrap_or(0));
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += keep & value;
+    }
+    sums.map(total)
+}
+
+/// Fewer elements than lanes.
+fn padded(rest: &[f64]) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    lanes[..rest.len()].copy_from_slice(rest);
+    Lanes::new(lanes)
+}
+
+/// Keeps so many lanes, and makes the others 0.
+fn first(count: usize) -> Lanes {
+    let number = Lanes::new([0.0, 1.0, 2.0, 3.0]);
+    number.simd_lt(all(count as f64))
+}
+
+/// The sum of the lanes, in an order that all machines share.
+fn total(lanes: Lanes) -> f64 {
+    let [a, b, c, d] = lanes.to_array();
+    (a + c) + (b + d)
 }
 
 /// Σ a b
@@ -114,7 +133,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{dot, largest, sum, update};
+    use super::{ONE, all, dot, largest, sum, update};
 
     #[test]
     fn sums_and_largest_of_any_length() {
@@ -133,7 +152,7 @@ mod tests {
                 second.to_bits(),
                 a.iter().fold(0.0, |s: f64, a| s + a * a).to_bits()
             );
-            let [top] = largest([&a, &b], |[a, b]| [a + 3.0 * b]);
+            let [top] = largest([&a, &b], |[a, b]| [a + all(3.0) * b]);
             let expected = a
                 .iter()
                 .zip(&b)
@@ -148,7 +167,7 @@ mod tests {
             let a: Vec<f64> = (0..n).map(f64::from).collect();
             let (mut b, mut c) = (a.clone(), a.clone());
             let sums = update([&a], [&mut b, &mut c], |[a], [b, c]| {
-                ([a - 3.0 * b, c + 1.0], [c, a * b])
+                ([a - all(3.0) * b, c + ONE], [c, a * b])
             });
             for (k, a) in a.iter().enumerate() {
                 assert_eq!((b[k] + 2.0 * a).abs().to_bits(), 0);

@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::arrays::Arrays;
 use super::{Preconditioned, Step};
 use crate::contact::passes::add;
-use crate::contact::sums::update;
+use crate::contact::sums::{ONE, all, update, where_positive};
 
 impl Preconditioned<'_> {
     /// Moves `p` by `step` times the direction as far as it stays ≥ 0, and restores balance. Returns
@@ -26,9 +26,9 @@ impl Preconditioned<'_> {
             add,
             |row, [direction], [p, before]| {
                 let [truncated] = update([direction], [&mut *p, before], |[d], [p, _]| {
-                    let moved = p + step * d;
-                    let kept = if moved > 0.0 { moved } else { 0.0 };
-                    ([kept, p], [if moved < 0.0 { 1.0 } else { 0.0 }])
+                    let moved = p + all(step) * d;
+                    let kept = where_positive(moved, moved);
+                    ([kept, p], [where_positive(-moved, ONE)])
                 });
                 let [f, fx, fy] = freedoms.moments_of(row, p);
                 [truncated, f, fx, fy]
