@@ -374,3 +374,32 @@ fn axes_can_be_exchanged() -> Result<()> {
     }
     Ok(())
 }
+
+/// Where nothing presses there is nothing, and next to a single loaded cell there is no more than it
+/// carries.
+#[test]
+fn nothing_and_one_cell_loaded() -> Result<()> {
+    let planes = Grid::new([9, 6], [9.0, 6.0])?;
+    for (grid, last) in [(planes, [8, 5]), (Grid::line(7, 7.0)?, [0, 6])] {
+        let shape = grid.shape();
+        let mut pressure = Array2::zeros(shape);
+        for (name, body) in bodies()? {
+            let at =
+                |pressure: &Array2<f64>| stress(&body, &grid, pressure, &[0.0, 0.5], &options(0.0));
+            let none = at(&pressure)?;
+            for field in all(&none) {
+                assert!(field.iter().all(|s| s.abs() <= 0.0), "{name}");
+            }
+            pressure[last] = 2.0;
+            let one = at(&pressure)?;
+            assert!(
+                (one.components[2][[0, last[0], last[1]]] + 2.0).abs() < 1e-12,
+                "{name}"
+            );
+            assert!(one.components[2][[0, 0, 0]].abs() < 1e-12, "{name}");
+            assert!(one.components[2][[1, 0, 0]].abs() < 2.0, "{name}");
+            pressure[last] = 0.0;
+        }
+    }
+    Ok(())
+}

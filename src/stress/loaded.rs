@@ -365,9 +365,9 @@ fn offsets(shape: [usize; 2], loads: [&[f64]; 2]) -> [usize; 2] {
         }
     }
     // From the first loaded cell to the last cell, from the first cell to the last loaded one.
-    [0, 1].map(|axis| {
-        let ([first, last], n) = (ends[axis], shape[axis]);
-        (n - first.min(n - 1)).max(last + 1)
+    [0, 1].map(|axis| match (ends[axis], shape[axis]) {
+        ([first, last], n) if first <= last => (n - first).max(last + 1),
+        (_, n) => n,
     })
 }
 
