@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 use ndarray::{Array2, ArrayRef2};
 
@@ -34,8 +36,23 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
-    /// Shared with its parts.
+    /// Shared with its parts, as is the clock.
     idle: Pool<FftWorkspace>,
+    clock: Arc<Clock>,
+}
+
+/// Time that was spent [ns].
+#[derive(Debug, Default)]
+struct Clock(AtomicU64);
+
+impl Clock {
+    fn during<R>(&self, work: impl FnOnce() -> R) -> R {
+        let start = Instant::now();
+        let result = work();
+        let spent = start.elapsed().as_nanos() as u64;
+        self.0.fetch_add(spent, Ordering::Relaxed);
+        result
+    }
 }
 
 /// Memory for one application at a time, of a convolution or a part of it. When dropped, it is kept
@@ -74,6 +91,7 @@ impl Convolution {
             transform,
             &threads,
             Pool::default(),
+            Arc::default(),
         ))
     }
 
@@ -82,9 +100,11 @@ impl Convolution {
         transform: PaddedTransform,
         threads: &Arc<Threads>,
         idle: Pool<FftWorkspace>,
+        clock: Arc<Clock>,
     ) -> Self {
         let mut workspace = lease(&idle, &transform);
-        let spectrum = transform.even_spectrum(coefficients, &mut workspace.0, threads);
+        let spectrum =
+            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.0, threads));
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
@@ -92,6 +112,7 @@ impl Convolution {
             spectrum: Arc::new(spectrum),
             threads: Arc::clone(threads),
             idle,
+            clock,
         }
     }
 
@@ -102,6 +123,7 @@ impl Convolution {
             spectrum: Arc::clone(&self.spectrum),
             threads: Arc::clone(threads),
             idle: Pool::default(),
+            clock: Arc::default(),
             ..*self
         }
     }
@@ -110,7 +132,13 @@ impl Convolution {
     pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan(shape, &self.threads);
-        Self::with(coefficients, transform, &self.threads, self.idle.clone())
+        Self::with(
+            coefficients,
+            transform,
+            &self.threads,
+            self.idle.clone(),
+            Arc::clone(&self.clock),
+        )
     }
 
     /// The periodic convolution with `coefficients`, on a mesh that is not padded, at a fifth of the
@@ -121,7 +149,13 @@ impl Convolution {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan_periodic(shape, &self.threads);
         let idle = self.idle.clone();
-        let periodic = Self::with(coefficients, transform, &self.threads, idle);
+        let periodic = Self::with(
+            coefficients,
+            transform,
+            &self.threads,
+            idle,
+            Arc::clone(&self.clock),
+        );
         let inverse = periodic
             .transform
             .inverse_spectrum(&periodic.spectrum, FLOOR);
@@ -130,6 +164,7 @@ impl Convolution {
             transform: periodic.transform.clone(),
             threads: Arc::clone(&self.threads),
             idle: periodic.idle.clone(),
+            clock: Arc::clone(&periodic.clock),
             ..periodic
         };
         [periodic, inverse]
@@ -163,6 +198,12 @@ impl Convolution {
     /// Threads that it uses.
     pub fn threads(&self) -> usize {
         self.threads.count()
+    }
+
+    /// Time that it took so far, with that of parts of it that solves make \[s\]: kernels, transforms
+    /// and products. Of several at once it is the sum.
+    pub fn seconds(&self) -> f64 {
+        1e-9 * self.clock.0.load(Ordering::Relaxed) as f64
     }
 
     /// Memory for [`Convolution::apply_into`].
@@ -240,8 +281,10 @@ impl Convolution {
         let memory = &mut workspace.0;
         self.transform.fit(memory);
         let input = (input, occupied);
-        self.transform
-            .convolve_into(&self.spectrum, input, output, memory, &self.threads);
+        self.clock.during(|| {
+            self.transform
+                .convolve_into(&self.spectrum, input, output, memory, &self.threads);
+        });
     }
 }
 

@@ -91,7 +91,8 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     coarse = value(bench.find("hertz", 256, "nacre", 1), "iterations")
     more = None if fine is None or coarse is None else fine - coarse
     yield Figure("hertz: fine-grid iterations, 2048² less 256²", 3, 1, more)
-    yield Figure("hertz 1024², 1 thread: time outside transforms", 0.20, 0.10, outside(bench))
+    outside = value(bench.find("convolution", 1024, "nacre", 1), "outside")
+    yield Figure("hertz 1024², 1 thread: time outside transforms", 0.20, 0.10, outside)
     large = bench.find("hertz", 4096, "nacre", 2)
     extra = value(large, "bytes_per_cell")
     yield Figure("hertz 4096² solves: extra memory", 200, 120, extra, "bytes a cell")
@@ -100,15 +101,6 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     busy = {row.threads: row for row in bench.rows if row.note == BUSY and row.cells == 1024}
     measured = ratio(busy.get(2), busy.get(1))
     yield Figure("hertz 1024²: two threads over one, machine busy", 1.1, None, measured)
-
-
-def outside(bench: Bench) -> float | None:
-    """Return the share of the solve that is not convolutions, taking these by work and time."""
-    solve = bench.find("hertz", 1024, "nacre", 1)
-    one = bench.find("convolution", 1024, "nacre", 1)
-    if solve is None or one is None or not (solve.seconds and solve.work and one.seconds):
-        return None
-    return 1 - solve.work * one.seconds / solve.seconds
 
 
 def rough(bench: Bench) -> Iterator[Figure]:
