@@ -60,6 +60,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
 /// A plan and a solve take up to 184 bytes a cell: what does not fit is refused before it starts.
+/// Between solves a plan keeps the memory that they worked in: up to 130 bytes a cell.
 ///
 /// ```
 /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
@@ -109,12 +110,13 @@ impl Contact {
 
     /// The same plan on other threads; it shares all that is large.
     fn on_threads(&self, threads: &Arc<Threads>) -> Self {
+        let convolution = self.convolution.on_threads(threads);
         Self {
             body: self.body.clone(),
             grid: self.grid,
             setup: self.setup.clone(),
-            convolution: self.convolution.on_threads(threads),
-            levels: self.levels.on_threads(threads),
+            levels: self.levels.beside(&convolution),
+            convolution,
         }
     }
 

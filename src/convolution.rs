@@ -128,6 +128,15 @@ impl Convolution {
         }
     }
 
+    /// The same convolution with threads, memory and clock of `whole`, as its parts have them.
+    pub(crate) fn beside(&self, whole: &Self) -> Self {
+        Self {
+            idle: whole.idle.clone(),
+            clock: Arc::clone(&whole.clock),
+            ..self.on_threads(&whole.threads)
+        }
+    }
+
     /// Convolution with part of the coefficients of this one, for a part of its grid.
     pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];

@@ -271,8 +271,8 @@ impl PaddedTransform {
         EvenSpectrum(spectrum.0.iter().map(inverse).collect())
     }
 
-    /// `output` = kernel ∗ `input`, both (nx, ny) in C order; `input` is read in the rows of `occupied`, and
-    /// zero elsewhere. Allocates nothing.
+    /// `output` = kernel ∗ `input`, both (nx, ny) in C order; `input` is read in the rows of
+    /// `occupied`, and zero elsewhere. Allocates nothing.
     pub(crate) fn convolve_into(
         &self,
         spectrum: &EvenSpectrum,

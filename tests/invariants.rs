@@ -304,27 +304,50 @@ fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
     Ok(())
 }
 
+/// In a window of some cells, and on all of so many that every pass is divided.
 #[test]
 fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {
-    let grid = Grid::new([150, 128], [4.5e-4, 4.8e-4])?;
-    let bits = |threads: usize| -> Result<Vec<u64>> {
-        let setup = Setup {
-            threads: Some(threads),
-            ..Setup::default()
+    let small = (Grid::new([150, 128], [4.5e-4, 4.8e-4])?, 60.0);
+    let large = (Grid::new([290, 270], [2e-4, 2e-4])?, 600.0);
+    for (grid, load) in [small, large] {
+        let solve = |threads: usize| -> Result<Solution> {
+            let setup = Setup {
+                threads: Some(threads),
+                ..Setup::default()
+            };
+            let contact = Contact::plan(&stack()?, grid, setup)?;
+            let motion = Motion {
+                eccentricity: [Some(1e-6), None],
+                ..Motion::load(load)
+            };
+            contact.solve(&paraboloid()?, &motion, &Options::default())
         };
-        let contact = Contact::plan(&stack()?, grid, setup)?;
-        let solution = contact.solve(&paraboloid()?, &Motion::load(60.0), &Options::default())?;
-        let values = solution
-            .pressure
-            .iter()
-            .chain(&solution.gap)
-            .chain([&solution.approach]);
-        Ok(values.map(|x| x.to_bits()).collect())
-    };
-    let one = bits(1)?;
-    for threads in [2, 4] {
-        assert!(bits(threads)? == one, "{threads} threads");
+        let bits = |solution: &Solution| -> Vec<u64> {
+            let fields = solution.pressure.iter().chain(&solution.gap);
+            let values = fields.chain([&solution.approach, &solution.tilt[0]]);
+            values.map(|x| x.to_bits()).collect()
+        };
+        let one = solve(1)?;
+        let touching = one.in_contact().iter().filter(|inside| **inside).count();
+        assert_eq!(touching > 1 << 16, load > 100.0, "{touching} cells");
+        for threads in [2, 5] {
+            assert!(bits(&solve(threads)?) == bits(&one), "{threads} threads");
+        }
     }
+    Ok(())
+}
+
+/// Memory that a plan keeps, whatever is left in it.
+#[test]
+fn a_solve_that_failed_leaves_no_trace() -> Result<()> {
+    let contact = plan(&stack()?)?;
+    let solve = |contact: &Contact, load: f64| {
+        contact.solve(&paraboloid()?, &Motion::load(load), &Options::default())
+    };
+    assert!(solve(&contact, 1e307).is_err(), "products overflow");
+    let (again, fresh) = (solve(&contact, 30.0)?, solve(&plan(&stack()?)?, 30.0)?);
+    assert_eq!(again.pressure, fresh.pressure);
+    assert_eq!(again.gap, fresh.gap);
     Ok(())
 }
 

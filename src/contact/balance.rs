@@ -30,6 +30,10 @@ impl Freedoms {
                 return false;
             }
             let factor = self.target[0] / force;
+            // A sum may overflow, or vanish.
+            if !(factor > 0.0 && factor.is_finite()) {
+                return false;
+            }
             pressure.iter_mut().for_each(|p| *p *= factor);
             if self.loaded == [true, false, false] {
                 return true;

@@ -23,7 +23,6 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::pool::Pool;
 use crate::surface::Surface;
-use crate::threads::Threads;
 
 /// A direction with fewer cells is not halved.
 const COARSEST: usize = 32;
@@ -97,12 +96,12 @@ impl Levels {
         })
     }
 
-    /// The same levels on other threads; they share all that is large.
-    pub(super) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
+    /// The same levels on the threads of `finest`; they share all that is large.
+    pub(super) fn beside(&self, finest: &Convolution) -> Self {
         let convolutions = self.convolutions.iter();
         Self {
             coefficients: Arc::clone(&self.coefficients),
-            convolutions: convolutions.map(|c| c.on_threads(threads)).collect(),
+            convolutions: convolutions.map(|c| c.beside(finest)).collect(),
             grids: self.grids.clone(),
             arrays: Pool::default(),
         }
@@ -384,8 +383,8 @@ impl<'a> Cascade<'a> {
         outcome
     }
 
-    /// Opens the window around the cells of which the gap is negative. False where there is none outside
-    /// it.
+    /// Opens the window around the cells of which the gap is negative. False where there is none
+    /// outside it.
     pub(super) fn open(&mut self, problem: &Problem, fields: &Fields) -> bool {
         let shape = self.finest.shape();
         let [x, y] = self.patch.window.clone();

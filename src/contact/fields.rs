@@ -4,8 +4,8 @@ use ndarray::Array2;
 
 use super::passes::{Passes, add};
 use super::patch::{Patch, Window};
-use super::problem::{Near, Problem, Quality};
-use super::sums::{ZERO, sum};
+use super::problem::{Multipliers, Problem, Quality};
+use super::sums::{ZERO, update};
 
 /// Pressure and displacement of a problem, and how good they are, once that was seen.
 pub(super) struct Fields {
@@ -13,7 +13,7 @@ pub(super) struct Fields {
     /// The pressure is zero outside it.
     pub(super) window: Window,
     pub(super) displacement: Array2<f64>,
-    pub(super) motion: Near,
+    pub(super) motion: Multipliers,
     pub(super) quality: Option<Quality>,
 }
 
@@ -23,7 +23,7 @@ impl Fields {
             pressure: Array2::zeros(shape),
             window: [0..0, 0..0],
             displacement: Array2::zeros(shape),
-            motion: Near::default(),
+            motion: Multipliers::default(),
             quality: None,
         }
     }
@@ -34,8 +34,8 @@ impl Fields {
         self.window = patch.window.clone();
     }
 
-    /// Computes displacement, rigid motion and quality of the pressure afresh. Where the contact does not
-    /// determine a freedom, it stays as in `near`.
+    /// Computes displacement, rigid motion and quality of the pressure afresh. Where the contact
+    /// does not determine a freedom, it stays as in `near`.
     pub(super) fn certify(&mut self, problem: &Problem, near: [f64; 3]) -> Quality {
         let (p, window) = (slice(&self.pressure), &self.window);
         let workspace = &mut problem.convolution.workspace();
@@ -59,10 +59,9 @@ impl Fields {
             [slice_mut(gap)],
             add,
             |row, [u], [g]| {
-                let h = g.to_vec();
-                self.motion.gap(row, [u, &h], g);
-                // 0, unless one is not finite.
-                sum([u], |[u]| [u * ZERO])
+                let gap = self.motion.on(row);
+                // The sum is 0, unless one is not finite.
+                update([u, row.y], [g], |[u, y], [h]| ([gap(u, h, y)], [u * ZERO]))
             },
         );
         lost <= 0.0

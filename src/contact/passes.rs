@@ -6,10 +6,10 @@ use super::patch::Window;
 use super::sums::sum;
 use crate::threads::Threads;
 
-/// Cells that are not divided among threads.
+/// Cells that are not divided among threads: a few microseconds' work, in the first caches.
 const LEAF: usize = 1 << 13;
 
-/// Below this number of cells threads cost more than they save.
+/// Below this number of cells a pass takes less than to wake a thread: some tens of microseconds.
 const WORTH_THREADS: usize = 1 << 16;
 
 /// A row of the grid.
@@ -63,8 +63,8 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Calls `work` on one of the threads, where passes and convolutions within it need not get there
-    /// first.
+    /// Calls `work` on one of the threads. What it calls need not wait for one again: each time that
+    /// takes some ten microseconds.
     pub(super) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         if self.divided {
             self.threads.run(work)

@@ -7,8 +7,8 @@
 //! (2014) 931, doi:10.1007/s10957-013-0499-x, restarts it when cells join). FFT preconditioner and
 //! deflation: Vollebregt, J. Comput. Phys. 257 (2014) 333, doi:10.1016/j.jcp.2013.10.005.
 //!
-//! The passes over the arrays of an iteration would take as long as its transforms: what can be done in
-//! one pass is.
+//! Passes over arrays would take as long as the transforms, were each operation a pass of its own:
+//! those that can share a pass do.
 
 mod arrays;
 mod steps;
@@ -16,7 +16,7 @@ mod steps;
 use super::direct;
 use super::passes::{Passes, add};
 use super::problem::{
-    Limits, Near, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
+    Limits, Multipliers, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
 };
 use super::sums::{ONE, ZERO, all, dot, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
@@ -63,7 +63,7 @@ enum Step {
     Whole,
     /// Cells left on the way.
     Truncated,
-    /// Rounding is all that is left.
+    /// None: nothing descends any more, and the pressure is what it was.
     None,
 }
 
@@ -203,9 +203,9 @@ impl<'a> Preconditioned<'a> {
                 [left, a, b, c, d, e, f, g, h, i]
             },
         );
-        let motion = Near {
+        let motion = Multipliers {
             change: freedoms.fitted(fit),
-            ..Near::default()
+            ..Multipliers::default()
         };
         let sums = self.passes.each(
             [p, u, problem.gap],

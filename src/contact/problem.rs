@@ -3,7 +3,7 @@
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
 use super::patch::Window;
-use super::sums::{all, largest, sum, update, where_positive};
+use super::sums::{Lanes, all, largest, sum, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -66,15 +66,15 @@ impl Problem<'_> {
         window: &Window,
         u: &[f64],
         near: [f64; 3],
-    ) -> (Near, Quality) {
+    ) -> (Multipliers, Quality) {
         let (passes, fields) = (self.passes(), [p, u, self.gap]);
         let sums = passes.each(fields, [], add, |row, fields, []| {
             row.part(window, fields).map_or([0.0; 9], |(row, fields)| {
                 self.freedoms.fit_of(row, fields, near)
             })
         });
-        let motion = Near {
-            near,
+        let motion = Multipliers {
+            base: near,
             change: self.freedoms.fitted(sums),
         };
         let sums = passes.each(fields, [], join, |row, [p, u, h], []| {
@@ -90,7 +90,7 @@ impl Problem<'_> {
     }
 
     /// g = u + h − Bλ
-    pub(super) fn gap_into(&self, u: &[f64], motion: Near, g: &mut [f64]) {
+    pub(super) fn gap_into(&self, u: &[f64], motion: Multipliers, g: &mut [f64]) {
         let fields = [u, self.gap];
         self.passes().each(fields, [g], add, |row, fields, [g]| {
             motion.gap(row, fields, g);
@@ -163,24 +163,28 @@ pub(super) fn overlap_of(fields: [&[f64]; 2]) -> [f64; 2] {
 
 /// λ in two parts: where loads are small, h − Bλ is far less than either.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Near {
-    pub(super) near: [f64; 3],
+pub(super) struct Multipliers {
+    pub(super) base: [f64; 3],
     pub(super) change: [f64; 3],
 }
 
-impl Near {
+impl Multipliers {
     /// λ
     pub(super) fn lambda(self) -> [f64; 3] {
-        [0, 1, 2].map(|k| self.near[k] + self.change[k])
+        [0, 1, 2].map(|k| self.base[k] + self.change[k])
     }
 
-    /// One row of the gap g = u + h − Bλ.
-    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
+    /// The gap g = u + h − Bλ in a row, of u, h and y.
+    pub(super) fn on(self, row: Row) -> impl Fn(Lanes, Lanes, Lanes) -> Lanes {
         let [[a, b], [c, d]] =
-            [self.near, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
-        update([u, h, row.y], [g], |[u, h, y], _| {
-            ([(h - (a + b * y)) + u - (c + d * y)], [])
-        });
+            [self.base, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
+        move |u, h, y| (h - (a + b * y)) + u - (c + d * y)
+    }
+
+    /// The same of all its cells.
+    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
+        let gap = self.on(row);
+        update([u, h, row.y], [g], |[u, h, y], _| ([gap(u, h, y)], []));
     }
 }
 

@@ -1,5 +1,5 @@
-//! Passes over arrays, four elements at a time, with sums in a fixed order: one after the other they
-//! would take longer than what they add up.
+//! Passes over the elements of arrays, four at a time: element by element they would take twice as
+//! long. Sums are made in a fixed order.
 
 pub(super) use wide::f64x4 as Lanes;
 
@@ -35,7 +35,7 @@ pub(super) fn largest<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
     term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [f64; N] {
-    // Not max, which looks for NaN: there are none.
+    // Not max, which looks for NaN: a field with NaN shows in the sums.
     let lanes = fold(inputs, Lanes::fast_max, term);
     lanes.map(|lanes| lanes.to_array().into_iter().fold(0.0, f64::max))
 }

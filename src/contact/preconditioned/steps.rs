@@ -14,7 +14,7 @@ use crate::contact::sums::{ONE, all, update, where_positive};
 
 impl Preconditioned<'_> {
     /// Moves `p` by `step` times the direction as far as it stays ≥ 0, and restores balance. Returns
-    /// whether it was moved so alone.
+    /// [`Step::Whole`] where neither was needed.
     fn advance(&mut self, p: &mut [f64], step: f64) -> Step {
         let freedoms = self.problem.freedoms;
         let Arrays {
@@ -66,8 +66,8 @@ impl Preconditioned<'_> {
         done
     }
 
-    /// A step of approximate length, exactly displaced however many cells leave. None, with nothing
-    /// done, where it would not descend.
+    /// A step of approximate length, exactly displaced however many cells leave. None,
+    /// with the pressure as it was, where it would not descend.
     pub(super) fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
         // Where the best length along the change is further from the planned one, so many cells have
         // left that the plan was worth little. Beyond twice the best length the energy would rise.
