@@ -18,7 +18,8 @@ use rayon::prelude::*;
 use super::fit::{Samples, Square, may_fit};
 use crate::threads::Threads;
 
-/// Cells nearer to the edge than this are not fitted; those up to here are replaced.
+/// How far from the edge, in cells, pressure is fitted: from here on inwards. Cells up to here take
+/// what was fitted.
 pub(super) const BAND: u8 = 3;
 
 /// Degrees of the polynomials that are tried.
@@ -34,7 +35,8 @@ const BLOCK: usize = 4096;
 /// missed in the pressure there. Rough contacts are told apart by a tenth.
 const SURE: f64 = 0.05;
 
-/// Distance between the edge and the outer cells of the contact, in cells.
+/// Distance between the edge and the centres of the outer cells of the contact, in cells: half a
+/// cell where the solver's contact ends with the pressure, and a tenth for the fit.
 const NEAR: f64 = 0.6;
 
 /// A cell near the edge, and p² in it.

@@ -8,10 +8,10 @@
 //!   thousandths of a cell, until the cells around bear the force that the solver's do;
 //! - where neither is known it stays uniform.
 //!
-//! What p in a cell differs from its mean has a first moment, m per cell, which is felt far off. It
-//! is left to the convolution, as ±m/2 on the neighbours: what remains is a load without force and
-//! moment, which is felt within a few cells only ([`super::near`]). Inside the contact the solver's
-//! pressure holds those shares already, so that deep planes know the edge alone.
+//! Within a cell, p less its mean has a first moment m, which is felt far off. The convolution takes
+//! it, as ±m/2 on the two neighbours. What remains has neither force nor moment, and is felt within a
+//! few cells only ([`super::near`]). Inside the contact the solver's pressure holds those shares
+//! already: deep planes change by the edge alone.
 
 use rayon::prelude::*;
 
@@ -47,16 +47,19 @@ pub(super) struct RootCell {
 /// Second moment of a cell.
 pub(super) const INERTIA: f64 = 1.0 / 12.0;
 
-/// Pieces along each side of a cell for its mean.
+/// Pieces along each side of a cell for its mean. Where the edge is in reach each is cut by four
+/// again, so that a root is missed in 1/24 of a cell.
 const FINE: usize = 6;
 
-/// Steps that move the edge until it bears the force of the solver's cells.
+/// Steps that move the edge until it bears the force of the solver's cells. As Newton's they leave
+/// the square of what the one before left: the first moves by thousandths of a cell.
 const STEPS: usize = 2;
 
-/// Cells to each side that bear it together: some runs of the staircase.
+/// Cells to each side that bear it together: some runs of the staircase. Chosen by trial.
 const BEARERS: usize = 12;
 
-/// By how many cells the edge may be moved.
+/// By how many cells the edge may be moved: twice as far as a fit may be uncertain of it
+/// ([`super::edge`]).
 const FARTHEST: f64 = 0.1;
 
 impl Reconstruction {
