@@ -344,8 +344,8 @@ impl PySolution {
     ///
     /// Notes
     /// -----
-    /// As in `stress`, pressure is taken within cells too, near a smooth edge as a root; `nacre.stress`
-    /// takes it as uniform over a cell.
+    /// As in `stress`, pressure is taken within cells too, near a smooth edge as a root;
+    /// `nacre.stress` takes it as uniform over a cell.
     ///
     /// Examples
     /// --------
