@@ -72,6 +72,9 @@ impl Reconstruction {
     ) -> Option<Self> {
         let line = nx == 1;
         let distances = distances(pressure, shape, BAND + 1);
+        if !go_on() {
+            return None;
+        }
         let fine = pieces(Piece::WHOLE, FINE, line);
         let inside = |cell: usize| distances[cell] > BAND;
         let mut bends: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; pressure.len()]);
@@ -96,6 +99,9 @@ impl Reconstruction {
                 return None;
             }
             let moves = moves(pressure, &uniform, &roots, shape);
+            if !go_on() {
+                return None;
+            }
             let moved = roots.into_par_iter().zip(moves);
             let root = |(root, by): (RootCell, f64)| root.moved(by, &fine, line);
             roots = threads.run(|| moved.filter_map(root).collect());
