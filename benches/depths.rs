@@ -67,10 +67,16 @@ fn measure(name: &str, pressure: &Array2<f64>, depths: usize, threads: usize) ->
 
 fn main() -> Result<()> {
     // Cargo adds options of its own.
-    let numbers: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    let given = given.iter().filter(|word| !word.starts_with("--"));
+    let numbers: Vec<Option<usize>> = given.map(|word| word.parse().ok()).collect();
     let (cells, depths) = match numbers[..] {
-        [cells, depths] => (cells, depths),
-        _ => (512, 64),
+        [] => (512, 64),
+        [Some(cells), Some(depths)] if cells > 0 && depths > 0 => (cells, depths),
+        _ => {
+            eprintln!("usage: depths [CELLS DEPTHS], both at least 1");
+            std::process::exit(2);
+        }
     };
     let whole = Array2::ones((cells, cells));
     for threads in [1, 2] {

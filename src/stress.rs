@@ -26,6 +26,7 @@ use crate::body::HalfSpace;
 use crate::error::{Error, Result, finite};
 use crate::grid::Grid;
 use crate::memory::check_memory;
+use crate::response::interior::Place;
 
 mod cells;
 mod components;
@@ -33,8 +34,11 @@ mod cut;
 mod depths;
 mod derived;
 mod edge;
+mod fit;
+mod friction;
 mod hankel;
 mod kernel;
+mod kernels;
 mod line;
 mod loaded;
 mod member;
@@ -51,6 +55,7 @@ pub use member::Member;
 pub use summary::{InterfaceSummary, LayerSummary, Limits, StressSummary};
 
 use components::COMPONENTS;
+use friction::friction;
 use loaded::{Form, Loaded};
 use section::{Lines, place};
 
@@ -172,7 +177,8 @@ impl Stress {
     }
 }
 
-/// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`.
+/// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over a cell;
+/// [`Solution::stress`](crate::Solution::stress) knows that of a contact within cells.
 ///
 /// # Errors
 /// Bad input, or too little memory.
@@ -245,51 +251,18 @@ fn watched(
         8 * (depths.len() * ox * oy * fields) as u64 + Loaded::memory(grid, form, options),
     )?;
     let residual = residual(body, &options.residual)?;
-    let loaded = Loaded::new(body, grid, pressure, form, options)?;
+    let friction = friction(body, options)?;
+    let mut go_on = || progress(0.0) == ControlFlow::Continue(());
+    let loaded = Loaded::new(body, grid, pressure, form, options, &mut go_on)?;
     let cells = ox * oy;
-    // Each by itself: a copy would touch its memory, here and on one thread.
-    let zeros = |length: usize| (0..fields).map(|_| vec![0.0; length]).collect::<Vec<_>>();
-    let mut kept = zeros(depths.len() * cells);
-    // Planes go where they are kept, sections by way of a plane.
-    let mut planes = match lines.whole() {
-        true => Vec::new(),
-        false => zeros(pressure.len()),
+    let mut kept = zeros(fields, depths.len() * cells);
+    let done = match &loaded {
+        Some(loaded) => evaluate(
+            loaded, grid, &lines, &places, &residual, &mut kept, progress,
+        ),
+        // It was stopped.
+        None => 0,
     };
-    let mut scratch = loaded.scratch(fields);
-    let mut done = 0;
-    for place in &places {
-        loaded.coefficients(place, &mut scratch);
-        let mut go_on = |part: f64| {
-            progress((done as f64 + part) / places.len() as f64) == ControlFlow::Continue(())
-        };
-        let mut here: Vec<&mut [f64]> = kept
-            .iter_mut()
-            .map(|kept| &mut kept[done * cells..(done + 1) * cells])
-            .collect();
-        let whole = if planes.is_empty() {
-            loaded.plane(&mut here, &mut scratch, &mut go_on)
-        } else {
-            let mut outputs: Vec<_> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-            loaded.plane(&mut outputs, &mut scratch, &mut go_on)
-        };
-        if !whole {
-            break;
-        }
-        for (plane, kept) in planes.iter().zip(&mut here) {
-            lines.keep(plane, grid.shape(), kept);
-        }
-        let residual = residual[place.layer];
-        if residual != 0.0 {
-            for kept in &mut here[..2] {
-                kept.iter_mut().for_each(|s| *s += residual);
-            }
-        }
-        done += 1;
-    }
-    if done == places.len() {
-        // The last word; there is nothing left to stop.
-        let _ = progress(1.0);
-    }
     let mut arrays = kept.into_iter().map(|mut values| {
         values.truncate(done * cells);
         Array3::from_shape_vec((done, ox, oy), values).unwrap_or_else(|_| Array3::zeros((0, 0, 0)))
@@ -305,10 +278,67 @@ fn watched(
         y: lines.y,
         body: body.clone(),
         side: options.side,
-        friction: loaded.friction(),
+        friction,
         components,
         displacement,
     })
+}
+
+/// Fields of zeros. Each by itself: a copy would touch its memory, here and on one thread.
+fn zeros(fields: usize, length: usize) -> Vec<Vec<f64>> {
+    (0..fields).map(|_| vec![0.0; length]).collect()
+}
+
+/// Evaluates places one after another into `kept`; returns how many were done.
+fn evaluate(
+    loaded: &Loaded,
+    grid: &Grid,
+    lines: &Lines,
+    places: &[Place],
+    residual: &[f64],
+    kept: &mut [Vec<f64>],
+    progress: &mut StressProgress,
+) -> usize {
+    let shape @ [nx, ny] = grid.shape();
+    let [ox, oy] = lines.shape;
+    let cells = ox * oy;
+    // Planes go where they are kept, sections by way of a plane.
+    let mut planes = match lines.whole() {
+        true => Vec::new(),
+        false => zeros(kept.len(), nx * ny),
+    };
+    let mut scratch = loaded.scratch(kept.len());
+    for (done, place) in places.iter().enumerate() {
+        loaded.coefficients(place, &mut scratch);
+        let mut go_on = |part: f64| {
+            progress((done as f64 + part) / places.len() as f64) == ControlFlow::Continue(())
+        };
+        let mut here: Vec<&mut [f64]> = kept
+            .iter_mut()
+            .map(|kept| &mut kept[done * cells..(done + 1) * cells])
+            .collect();
+        let whole = if planes.is_empty() {
+            loaded.plane(&mut here, &mut scratch, &mut go_on)
+        } else {
+            let mut outputs: Vec<_> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+            loaded.plane(&mut outputs, &mut scratch, &mut go_on)
+        };
+        if !whole {
+            return done;
+        }
+        for (plane, kept) in planes.iter().zip(&mut here) {
+            lines.keep(plane, shape, kept);
+        }
+        let residual = residual[place.layer];
+        if residual != 0.0 {
+            for kept in &mut here[..2] {
+                kept.iter_mut().for_each(|s| *s += residual);
+            }
+        }
+    }
+    // The last word; there is nothing left to stop.
+    let _ = progress(1.0);
+    places.len()
 }
 
 /// Residual stress of every layer and of the substrate.

@@ -131,10 +131,10 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
     Ok(errors)
 }
 
-/// On 65 and 257 cells over 3.4 contact radii. Errors are of second order inside, that of the cusp
-/// at the edge of the contact of the place of the edge, some thousandths of a cell: 1e-4 of the peak
-/// pressure, which is half a per cent of the tension that is left beside a coating of four times the
-/// modulus.
+/// On 65 and 257 cells over 3.4 contact radii. Inside, errors are of second order in the cell. The
+/// tension has a cusp at the edge of the contact, and is wrong there by where the edge is taken to
+/// be: by some thousandths of a cell, or 1e-4 of the peak pressure. Beside a coating of four times
+/// the modulus that is half a per cent of the tension.
 #[test]
 fn sphere_on_a_coating() -> Result<()> {
     for case in cases("stress_sphere.json") {

@@ -91,6 +91,11 @@ fn mcewen(y: f64, z: f64) -> [f64; 6] {
 /// Cells do not see the staircase of the solver's contact: they keep what it is wrong by in the
 /// place of the edge, of which pressure has the root. Uniform over cells it misses 4e-3 one cell
 /// deep, and 2.4e-3 a tenth of a cell deep farther than three cells from the edge.
+///
+/// Measured: 7.1e-4 one cell deep, less below; at 0.1 of a cell 1.2e-3, and 3.3e-4 farther off. Bars
+/// are 1.4 to 1.7 times that. The edge is missed by some thousandths of a cell, which pressure feels
+/// by the root of the cell: from 32 cells to 128 errors should halve at least. They fall to 0.34 and
+/// 0.46; the bar is a half and a fifth of it.
 #[test]
 fn hertz_point_contact() -> Result<()> {
     const BAR: f64 = 1e-3;
@@ -110,7 +115,9 @@ fn hertz_point_contact() -> Result<()> {
     Ok(())
 }
 
-/// There is no staircase along a line: its edge is known better.
+/// There is no staircase along a line: its edge is known better. Measured at 0.1, 1 and 3 cells:
+/// 5.0e-4, 4.0e-4 and 5.4e-5 everywhere, 1.1e-4, 2.3e-5 and 2.3e-5 farther from the edge; bars are 1.2
+/// to 1.8 times that. Errors go as the root of the cell (above): to 0.51 to 0.53, the bar as above.
 #[test]
 fn hertz_line_contact() -> Result<()> {
     let errors = |count: usize, depth: f64| -> Result<[f64; 2]> {
@@ -133,7 +140,7 @@ fn hertz_line_contact() -> Result<()> {
 
 /// Sliding along y, the surface is pressed by 2 μ p0 (y − √(y² − 1)) more at its leading side, and
 /// drawn by as much at the trailing one: Johnson, §7.2. An edge that is e cells off is drawn by
-/// 2 μ p0 √(2 e dx) less or more: 1e-2 where it is a hundredth of a cell.
+/// 2 μ p0 √(2 e dx) less or more: 1e-2 where it is a hundredth of a cell. Measured: 7.2e-3.
 #[test]
 fn surface_of_a_sliding_cylinder() -> Result<()> {
     const FRICTION: f64 = 0.4;
@@ -156,7 +163,9 @@ fn surface_of_a_sliding_cylinder() -> Result<()> {
 }
 
 /// Behind a sliding sphere, (1 − 2ν)/3 + μ π (4 + ν)/8 of p0: Hamilton, Proc. Instn Mech. Engrs
-/// 197C (1983) 53. A cell's centre lies at the very edge.
+/// 197C (1983) 53. A cell's centre lies at the very edge. Measured: 7e-3 less, of which the place of
+/// the edge explains the order, as below the cylinder; the bar is 1.4 times that. The place is that
+/// of the cell at the edge, or of the one beside it.
 #[test]
 fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     const FRICTION: f64 = 0.5;
@@ -271,7 +280,8 @@ fn against_finer(coarse: Grid, shape: &dyn Surface, load: f64, depth: f64) -> Re
     Ok([error(&uniform), error(&solved)])
 }
 
-/// An elliptical contact of oblong cells, 36 and 17 to its half-widths.
+/// An elliptical contact of oblong cells, 36 and 17 to its half-widths. Measured: 0.26, 0.06, 0.15 and
+/// 0.34 of the errors of uniform cells; the bar is 1.2 times the largest.
 #[test]
 fn smooth_contacts_gain() -> Result<()> {
     let grid = Grid::new([96, 64], [5.0, 2.6])?;

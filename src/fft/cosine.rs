@@ -1,8 +1,11 @@
-//! Cosine and sine transforms of half the length of what is even or odd. With f_j, 0 ≤ j ≤ N, f_N = 0 and M = 2N points in all,
+//! Cosine and sine transforms of half the length of what is even or odd. With f_j, 0 ≤ j ≤ N,
+//! f_N = 0 and M = 2N points in all,
 //!
 //! ```text
-//! even: y_j = ½ (f_j + f_{N−j}) − sin(πj/N) (f_j − f_{N−j})      C_2k = Re Y_k   C_{2k+1} = C_{2k−1} − Im Y_k
-//! odd:  y_j = ½ (f_j − f_{N−j}) + sin(πj/N) (f_j + f_{N−j})      S_2k = −Im Y_k  S_{2k+1} = S_{2k−1} + Re Y_k
+//! even: y_j = ½ (f_j + f_{N−j}) − sin(πj/N) (f_j − f_{N−j})
+//!       C_2k = Re Y_k    C_{2k+1} = C_{2k−1} − Im Y_k
+//! odd:  y_j = ½ (f_j − f_{N−j}) + sin(πj/N) (f_j + f_{N−j})
+//!       S_2k = −Im Y_k   S_{2k+1} = S_{2k−1} + Re Y_k
 //! ```
 //!
 //! where Y is the transform of y over N points, C_1 = ½ f_0 + Σ f_j cos(πj/N) and S_1 = ½ Y_0; the

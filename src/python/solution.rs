@@ -246,6 +246,10 @@ impl PySolution {
     ///
     /// Notes
     /// -----
+    /// Pressure is taken within cells too: inside with the slopes and curvatures that neighbours
+    /// tell, near a smooth edge as a root. `nacre.stress` takes it as uniform over a cell: within
+    /// some cells of the surface the two differ.
+    ///
     /// Friction does not act back on the pressure. That is exact where the bodies are alike or
     /// incompressible, and good where friction is small: what is left out is of the order of
     /// ``friction * (1 - 2 nu) / (2 - 2 nu)`` of the pressure.
@@ -337,6 +341,11 @@ impl PySolution {
     ///     If an argument is out of range, or the counterbody is rigid.
     /// MemoryError
     ///     If the grid does not fit.
+    ///
+    /// Notes
+    /// -----
+    /// As in `stress`, pressure is taken within cells too, near a smooth edge as a root;
+    /// `nacre.stress` takes it as uniform over a cell.
     ///
     /// Examples
     /// --------

@@ -387,6 +387,9 @@ pub(super) fn field(stress: Stress, one_depth: bool, keywords: &Keywords) -> PyS
 ///
 /// Notes
 /// -----
+/// The pressure is uniform over a cell. `Solution.stress` knows that of a solved contact within
+/// cells, and is better within some cells of the surface.
+///
 /// The pressure is not coupled to friction. That is exact where the bodies are alike or
 /// incompressible, and good where the friction is small: what is left out is of the order of
 /// ``friction * (1 - 2 nu) / (2 - 2 nu)`` of the pressure.

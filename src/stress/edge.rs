@@ -10,73 +10,34 @@
 //! - where it does not tell the edge within [`SURE`] cells, from how well it fits: rough surfaces;
 //! - where its edge is farther than [`NEAR`] cells from that of the solver's cells: sharp edges, at
 //!   which p grows;
-//! - within [`TOGETHER`] cells of where it is not taken.
+//! - where the grid's border cuts the contact, which is no edge of it;
+//! - within [`NEIGHBOURS`] cells of where it is not taken.
 
 use rayon::prelude::*;
 
-/// Cells nearer to the edge than this are not fitted; those up to here are replaced.
-pub(super) const BAND: u8 = 3;
+use super::fit::{Samples, Square, may_fit};
+use crate::threads::Threads;
 
-/// Cells to each side that a fit looks at.
-const WINDOW: usize = 8;
+/// How far from the edge, in cells, pressure is fitted: from here on inwards. Cells up to here take
+/// what was fitted.
+pub(super) const BAND: u8 = 3;
 
 /// Degrees of the polynomials that are tried.
 const DEGREES: [u8; 2] = [2, 3];
 
 /// How far, in cells, all must have been fitted that are near the edge.
-const TOGETHER: usize = 3;
+const NEIGHBOURS: usize = 3;
+
+/// Cells that are fitted between two questions whether to go on: some hundredths of a second.
+const BLOCK: usize = 4096;
 
 /// Uncertainty of the place of the edge that is allowed, in cells: a root of it, times the slope, is
 /// missed in the pressure there. Rough contacts are told apart by a tenth.
 const SURE: f64 = 0.05;
 
-/// Distance between the edge and the outer cells of the contact, in cells.
+/// Distance between the edge and the centres of the outer cells of the contact, in cells: half a
+/// cell where the solver's contact ends with the pressure, and a tenth for the fit.
 const NEAR: f64 = 0.6;
-
-/// Terms of a polynomial of third degree: powers of u and of v.
-const POWERS: [[u8; 2]; TERMS] = [
-    [0, 0],
-    [1, 0],
-    [0, 1],
-    [2, 0],
-    [1, 1],
-    [0, 2],
-    [3, 0],
-    [2, 1],
-    [1, 2],
-    [0, 3],
-];
-
-const TERMS: usize = 10;
-
-/// A polynomial in the distances u, v from a cell's centre, in cells.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Square([f64; TERMS]);
-
-impl Square {
-    pub(super) fn at(&self, u: f64, v: f64) -> f64 {
-        let [c, cu, cv, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
-        let along = cu + u * (cuu + u * cuuu);
-        let across = cv + v * (cvv + v * cvvv);
-        c + u * along + v * across + u * v * (cuv + u * cuuv + v * cuvv)
-    }
-
-    pub(super) fn raised(mut self, by: f64) -> Self {
-        self.0[0] += by;
-        self
-    }
-
-    /// How much it changes from the centre to the corners of a piece of half sides (a, b), at the
-    /// slope of the cell's centre.
-    pub(super) fn varies(&self, [a, b]: [f64; 2]) -> f64 {
-        self.0[1].abs() * a + self.0[2].abs() * b
-    }
-
-    /// Its slope at the centre.
-    pub(super) fn slope(&self) -> f64 {
-        self.0[1].hypot(self.0[2])
-    }
-}
 
 /// A cell near the edge, and p² in it.
 #[derive(Debug, Clone, Copy)]
@@ -108,13 +69,19 @@ pub(super) fn distances(pressure: &[f64], [nx, ny]: [usize; 2], most: u8) -> Vec
     distances
 }
 
-/// The cells in which p² is known from within the contact, by rows.
+/// The cells in which p² is known from within the contact, by rows; none where `go_on`, which is
+/// asked before every block of them, stops it.
 pub(super) fn edge_cells(
     pressure: &[f64],
     distances: &[u8],
     shape @ [nx, ny]: [usize; 2],
-) -> Vec<EdgeCell> {
+    threads: &Threads,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Vec<EdgeCell>> {
     let squares = squares(pressure, distances, shape);
+    if !go_on() {
+        return None;
+    }
     // The band, with the cells beside it that do not touch.
     let beside =
         |i: usize, j: usize| around(shape, [i, j], 1).any(|[i, j]| distances[i * ny + j] > 0);
@@ -125,21 +92,55 @@ pub(super) fn edge_cells(
             distance => distance <= BAND,
         })
         .collect();
-    let fits: Vec<Option<Square>> = band
-        .par_iter()
-        .map(|cell| fit(&squares, pressure, shape, *cell))
-        .collect();
-    let mut refused = vec![false; pressure.len()];
-    for ([i, j], fit) in band.iter().zip(&fits) {
-        refused[i * ny + j] = fit.is_none();
+    if !go_on() {
+        return None;
     }
-    // Where a fit is sure among others that are not, it is so by chance.
-    let known = |cell: [usize; 2]| !around(shape, cell, TOGETHER).any(|[i, j]| refused[i * ny + j]);
+    // Those that may still be taken: a fit that is sure among others that are not is so by chance.
+    let mut open = vec![false; pressure.len()];
+    for [i, j] in &band {
+        open[i * ny + j] = true;
+    }
+    let close = |open: &mut [bool], cell: [usize; 2], reach: usize| {
+        around(shape, cell, reach).for_each(|[i, j]| open[i * ny + j] = false);
+    };
+    for cell in band.iter().filter(|cell| is_outermost(shape, **cell)) {
+        close(&mut open, *cell, usize::from(BAND) - 1 + NEIGHBOURS);
+    }
+    // Every third cell along x and y first: where those are refused, none of the others are fitted.
+    let (first, others): (Vec<usize>, Vec<usize>) =
+        (0..band.len()).partition(|k| band[*k].iter().all(|at| at % NEIGHBOURS == 0));
+    let mut fits: Vec<Option<Square>> = vec![None; band.len()];
+    for block in first.chunks(BLOCK).chain(others.chunks(BLOCK)) {
+        if !go_on() {
+            return None;
+        }
+        // A fit matters only to the open cells around it.
+        let needed: Vec<usize> = block
+            .iter()
+            .copied()
+            .filter(|k| around(shape, band[*k], NEIGHBOURS).any(|[i, j]| open[i * ny + j]))
+            .collect();
+        let of = |k: &usize| fit(&squares, pressure, shape, band[*k]);
+        let found: Vec<_> = threads.run(|| needed.par_iter().map(of).collect());
+        for (k, fit) in needed.into_iter().zip(found) {
+            if fit.is_none() {
+                close(&mut open, band[k], NEIGHBOURS);
+            }
+            fits[k] = fit;
+        }
+    }
     let cells = band.into_iter().zip(fits).filter_map(|(cell, fit)| {
-        let square = fit.filter(|_| known(cell))?;
+        let square = fit.filter(|_| open[cell[0] * ny + cell[1]])?;
         Some(EdgeCell { cell, square })
     });
-    cells.collect()
+    Some(cells.collect())
+}
+
+/// Whether a cell is at the border of the grid. A contact that goes on to there is cut, which is no
+/// edge of it; a row of line contact is endless.
+fn is_outermost([nx, ny]: [usize; 2], [i, j]: [usize; 2]) -> bool {
+    let ends = |at: usize, count: usize| at == 0 || at + 1 == count;
+    ends(j, ny) || nx > 1 && ends(i, nx)
 }
 
 /// The cells of the grid within `reach` of one, itself too.
@@ -175,134 +176,19 @@ fn fit(
     shape: [usize; 2],
     cell @ [i, j]: [usize; 2],
 ) -> Option<Square> {
+    if !may_fit(squares, shape, cell) {
+        return None;
+    }
     let samples = Samples::around(squares, shape, cell);
     let fits = DEGREES.into_iter().filter_map(|degree| samples.fit(degree));
     let (square, uncertain) = fits.reduce(|a, b| if b.1 < a.1 { b } else { a })?;
-    let place = square.0[0] / square.slope();
+    let place = square.at(0.0, 0.0) / square.slope();
     let agrees = if pressure[i * shape[1] + j] > 0.0 {
         place > -NEAR
     } else {
         place < NEAR
     };
     (uncertain <= SURE && agrees).then_some(square)
-}
-
-/// Sums over the cells around one, nearer ones counting more, for least squares.
-struct Samples {
-    line: bool,
-    normal: [[f64; TERMS]; TERMS],
-    right: [f64; TERMS],
-    squares: f64,
-    weights: f64,
-    count: usize,
-}
-
-impl Samples {
-    fn around(squares: &[Option<f64>], shape: [usize; 2], cell @ [i, j]: [usize; 2]) -> Self {
-        let scale = 1.0 / WINDOW as f64;
-        let mut samples = Self {
-            line: shape[0] == 1,
-            normal: [[0.0; TERMS]; TERMS],
-            right: [0.0; TERMS],
-            squares: 0.0,
-            weights: 0.0,
-            count: 0,
-        };
-        for [k, l] in around(shape, cell, WINDOW) {
-            let Some(square) = squares[k * shape[1] + l] else {
-                continue;
-            };
-            let u = (k as f64 - i as f64) * scale;
-            let v = (l as f64 - j as f64) * scale;
-            let (uu, vv) = (u * u, v * v);
-            let rest = 1.1 - (uu + vv);
-            if rest > 0.0 {
-                let basis = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
-                samples.add(rest * rest, basis, square);
-            }
-        }
-        samples
-    }
-
-    fn add(&mut self, weight: f64, basis: [f64; TERMS], square: f64) {
-        for (a, row) in self.normal.iter_mut().enumerate() {
-            let along = weight * basis[a];
-            for (sum, across) in row[..=a].iter_mut().zip(&basis) {
-                *sum += along * across;
-            }
-            self.right[a] += along * square;
-        }
-        self.squares += weight * square * square;
-        self.weights += weight;
-        self.count += 1;
-    }
-
-    /// The polynomial of some degree that fits best, and how uncertain the edge is by it, in cells;
-    /// none where there are too few cells.
-    fn fit(&self, degree: u8) -> Option<(Square, f64)> {
-        let used = |[a, b]: [u8; 2]| a + b <= degree && !(self.line && a > 0);
-        let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
-        let terms = powers.len();
-        if self.count < if self.line { terms + 2 } else { 2 * terms } {
-            return None;
-        }
-        let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
-        for (a, row) in powers.iter().enumerate() {
-            for (b, column) in powers[..=a].iter().enumerate() {
-                normal[a][b] = self.normal[*row][*column];
-            }
-            right[a] = self.right[*row];
-        }
-        cholesky(&mut normal, terms)?;
-        let solution = solved(&normal, right, terms);
-        let mut first = [0.0; TERMS];
-        first[0] = 1.0;
-        let spread = solved(&normal, first, terms)[0];
-        let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
-        let count = self.count as f64;
-        let free = count / (count - terms as f64);
-        let variance = ((self.squares - product) / self.weights * free).max(0.0);
-        let mut square = Square([0.0; TERMS]);
-        for (value, k) in solution.iter().zip(&powers) {
-            let [a, b] = POWERS[*k];
-            square.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
-        }
-        let uncertain = (variance * spread * self.weights / count).sqrt() / square.slope();
-        uncertain.is_finite().then_some((square, uncertain))
-    }
-}
-
-/// The factor of Cholesky in the lower triangle, in place; none where a pivot is lost.
-fn cholesky(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
-    for a in 0..terms {
-        let scale = matrix[a][a];
-        for b in 0..=a {
-            let sum: f64 = (0..b).map(|k| matrix[a][k] * matrix[b][k]).sum();
-            let rest = matrix[a][b] - sum;
-            if a == b {
-                if rest <= 1e-9 * scale {
-                    return None;
-                }
-                matrix[a][a] = rest.sqrt();
-            } else {
-                matrix[a][b] = rest / matrix[b][b];
-            }
-        }
-    }
-    Some(())
-}
-
-/// Solution with that factor.
-fn solved(factor: &[[f64; TERMS]; TERMS], mut right: [f64; TERMS], terms: usize) -> [f64; TERMS] {
-    for a in 0..terms {
-        let sum: f64 = (0..a).map(|k| factor[a][k] * right[k]).sum();
-        right[a] = (right[a] - sum) / factor[a][a];
-    }
-    for a in (0..terms).rev() {
-        let sum: f64 = (a + 1..terms).map(|k| factor[k][a] * right[k]).sum();
-        right[a] = (right[a] - sum) / factor[a][a];
-    }
-    right
 }
 
 #[cfg(test)]
@@ -364,7 +250,8 @@ mod tests {
         let hertz = field(|x, y| (1.0 - (x * x + y * y) / 225.0).max(0.0).sqrt());
         let found = |pressure: &[f64]| {
             let distances = distances(pressure, SHAPE, BAND + 1);
-            edge_cells(pressure, &distances, SHAPE)
+            let threads = Threads::new(Some(2)).expect("two threads");
+            edge_cells(pressure, &distances, SHAPE, &threads, &mut || true).expect("not stopped")
         };
         let edges = found(&hertz);
         assert!(edges.len() > 300);

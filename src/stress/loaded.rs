@@ -7,12 +7,14 @@ use ndarray::ArrayRef2;
 use super::StressOptions;
 use super::cells::Source;
 use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
+use super::friction::friction;
 use super::kernel::{Kernel, Plan};
+use super::kernels::Kernels;
 use super::line::{self, LinePlan};
-use super::near::Near;
+use super::near::{NearTable, STRESSES};
 use super::within::Within;
-use crate::body::{HalfSpace, Interface};
-use crate::error::{Error, Result, finite};
+use crate::body::HalfSpace;
+use crate::error::{Error, Result};
 use crate::fft::{Keep, KernelRows, PaddedTransform, QuarterTransform, Transformed, Workspace};
 use crate::grid::Grid;
 use crate::response::interior::Place;
@@ -21,6 +23,9 @@ use crate::threads::Threads;
 /// Components that are convolved together: the more, the less often the load is read; the fewer, the
 /// less memory is written and read in between.
 const TOGETHER: usize = 3;
+
+// Stresses and displacements are of different pressures: no three are of both.
+const _: () = assert!(STRESSES.is_multiple_of(TOGETHER));
 
 /// How pressure is distributed over a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,23 +55,12 @@ pub(super) struct Loaded {
     threads: Threads,
 }
 
-/// What makes the coefficients.
-#[derive(Debug)]
-enum Kernels {
-    Plane {
-        plan: Box<Plan>,
-        pressure: Vec<Vec<(f64, f64)>>,
-        traction: Vec<Vec<(f64, f64)>>,
-    },
-    Line(LinePlan),
-}
-
 /// Memory that all depths use.
 #[derive(Debug)]
 pub(super) struct Scratch {
     loads: Vec<LoadRows>,
     workspace: Workspace,
-    near: Near,
+    near: NearTable,
 }
 
 /// Coefficients of one load at one depth.
@@ -84,13 +78,15 @@ fn odd(axis: Option<usize>) -> [[bool; 2]; COMPONENTS] {
 }
 
 impl Loaded {
+    /// None where `go_on` stops it, which is asked many times where pressure is of a solved contact.
     pub(super) fn new(
         body: &HalfSpace,
         grid: &Grid,
         pressure: &ArrayRef2<f64>,
         form: Form,
         options: &StressOptions,
-    ) -> Result<Self> {
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Self>> {
         let shape = grid.shape();
         let found = [pressure.nrows(), pressure.ncols()];
         if found != shape {
@@ -108,25 +104,21 @@ impl Loaded {
         }
         let friction = friction(body, options)?;
         let threads = Threads::new(options.threads)?;
-        let spacing = grid.spacing();
-        let kind = if grid.is_line() {
-            Kernels::Line(LinePlan::new(body, grid, 1.0))
-        } else {
-            let [lx, ly] = grid.size();
-            let plan = threads.run(|| Plan::new(body, spacing, 1.0, 1.01 * lx.hypot(ly)));
-            let traction = match friction {
-                [0.0, 0.0] => Vec::new(),
-                _ => plan.multipliers::<9, components::Traction>(),
-            };
-            Kernels::Plane {
-                pressure: plan.multipliers::<6, components::Pressure>(),
-                traction,
-                plan: Box::new(plan),
-            }
-        };
         let input: Vec<f64> = pressure.iter().copied().collect();
-        let within = (form == Form::Solved)
-            .then(|| threads.run(|| Within::new(body, grid, &input, friction)));
+        let within = match form {
+            Form::Uniform => None,
+            Form::Solved => match Within::new(body, grid, &input, friction, &threads, go_on) {
+                None => return Ok(None),
+                within => within,
+            },
+        };
+        let [lx, ly] = grid.size();
+        let (reach, slides) = (1.01 * lx.hypot(ly), friction != [0.0, 0.0]);
+        let kind = threads.run(|| {
+            Kernels::new::<6, 9, components::Pressure, components::Traction>(
+                body, grid, 1.0, reach, slides,
+            )
+        });
         let uniform = within.as_ref().map_or(input.as_slice(), Within::uniform);
         let offsets = offsets(shape, [&input, uniform]);
         let transform = PaddedTransform::plan_even(shape, offsets, &threads);
@@ -134,8 +126,8 @@ impl Loaded {
             |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
         let pressure = transformed(uniform);
         let within = within.map(|within| (within, transformed(&input)));
-        Ok(Self {
-            spacing,
+        Ok(Some(Self {
+            spacing: grid.spacing(),
             kind,
             displacement: options.displacement,
             friction,
@@ -145,12 +137,7 @@ impl Loaded {
             pressure,
             within,
             threads,
-        })
-    }
-
-    /// μ times the unit vector of the traction on the body.
-    pub(super) fn friction(&self) -> [f64; 2] {
-        self.friction
+        }))
     }
 
     /// Bytes that it takes, with the coefficients of one depth.
@@ -184,7 +171,7 @@ impl Loaded {
                 })
                 .collect(),
             workspace: self.transform.workspace(),
-            near: Near::default(),
+            near: NearTable::default(),
         }
     }
 
@@ -333,7 +320,7 @@ impl Loaded {
             let numbers = done..done + outputs.len();
             done = numbers.end;
             let pressure = match &self.within {
-                Some((_, given)) if numbers.start >= 6 => given,
+                Some((_, given)) if numbers.start >= STRESSES => given,
                 _ => &self.pressure,
             };
             self.threads.run(|| {
@@ -348,7 +335,8 @@ impl Loaded {
             });
         }
         if let Some((within, _)) = &self.within {
-            self.threads.run(|| within.add(near, &mut outputs[..6]));
+            self.threads
+                .run(|| within.add(near, &mut outputs[..STRESSES]));
         }
         true
     }
@@ -369,33 +357,4 @@ fn offsets(shape: [usize; 2], loads: [&[f64]; 2]) -> [usize; 2] {
         ([first, last], n) if first <= last => (n - first).max(last + 1),
         (_, n) => n,
     })
-}
-
-/// μ times the unit vector of the traction on the body.
-fn friction(body: &HalfSpace, options: &StressOptions) -> Result<[f64; 2]> {
-    let friction = finite("friction", options.friction)?;
-    if friction < 0.0 {
-        return Err(Error::Parameter {
-            name: "friction",
-            requirement: "at least 0 (turn the direction)",
-            value: friction,
-        });
-    }
-    let [x, y] = options.direction;
-    let length = x.hypot(y);
-    if !(length > 0.0 && length.is_finite()) {
-        return Err(Error::Parameter {
-            name: "direction",
-            requirement: "a vector of finite length above 0",
-            value: length,
-        });
-    }
-    let slips = |layer: &crate::Layer| layer.interface() == Interface::Frictionless;
-    if friction > 0.0 && body.layers().iter().any(slips) {
-        return Err(Error::Inconsistent(
-            "friction must be 0 on a body with a frictionless interface: nothing holds the layers \
-             above it",
-        ));
-    }
-    Ok([friction * x / length, friction * y / length])
 }

@@ -23,6 +23,9 @@ impl Solution {
     /// Stress at `depths` in one of the bodies. The traction of friction is that on the body; the
     /// counterbody gets the opposite.
     ///
+    /// Pressure is taken within cells too, near a smooth edge as a root;
+    /// [`stress`](crate::stress()) takes it as uniform over a cell.
+    ///
     /// # Errors
     /// Bad input, a counterbody that is rigid, too little memory.
     ///
@@ -71,7 +74,7 @@ impl Solution {
     }
 
     /// What is worth knowing of the stress in one of the bodies: peaks in each layer, tractions at
-    /// each interface, margins.
+    /// each interface, margins. Pressure is taken within cells, as in [`Solution::stress`].
     ///
     /// # Errors
     /// As [`Solution::stress`], and where a limit is not finite and above 0.

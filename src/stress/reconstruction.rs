@@ -8,15 +8,17 @@
 //!   thousandths of a cell, until the cells around bear the force that the solver's do;
 //! - where neither is known it stays uniform.
 //!
-//! What p in a cell differs from its mean has a first moment, m per cell, which is felt far off. It
-//! is left to the convolution, as ±m/2 on the neighbours: what remains is a load without force and
-//! moment, which is felt within a few cells only ([`super::near`]). Inside the contact the solver's
-//! pressure holds those shares already, so that deep planes know the edge alone.
+//! Within a cell, p less its mean has a first moment m, which is felt far off. The convolution takes
+//! it, as ±m/2 on the two neighbours. What remains has neither force nor moment, and is felt within a
+//! few cells only ([`super::near`]). Inside the contact the solver's pressure holds those shares
+//! already: deep planes change by the edge alone.
 
 use rayon::prelude::*;
 
 use super::cut::{Piece, pieces};
-use super::edge::{BAND, EdgeCell, Square, distances, edge_cells};
+use super::edge::{BAND, EdgeCell, distances, edge_cells};
+use super::fit::Square;
+use crate::threads::Threads;
 
 /// The pressure of a solved contact, in cells and within them.
 #[derive(Debug)]
@@ -45,22 +47,34 @@ pub(super) struct RootCell {
 /// Second moment of a cell.
 pub(super) const INERTIA: f64 = 1.0 / 12.0;
 
-/// Pieces along each side of a cell for its mean.
+/// Pieces along each side of a cell for its mean. Where the edge is in reach each is cut by four
+/// again, so that a root is missed in 1/24 of a cell.
 const FINE: usize = 6;
 
-/// Steps that move the edge until it bears the force of the solver's cells.
+/// Steps that move the edge until it bears the force of the solver's cells. As Newton's they leave
+/// the square of what the one before left: the first moves by thousandths of a cell.
 const STEPS: usize = 2;
 
-/// Cells to each side that bear it together: some runs of the staircase.
-const TOGETHER: usize = 12;
+/// Cells to each side that bear it together: some runs of the staircase. Chosen by trial.
+const BEARERS: usize = 12;
 
-/// By how many cells the edge may be moved.
+/// By how many cells the edge may be moved: twice as far as a fit may be uncertain of it
+/// ([`super::edge`]).
 const FARTHEST: f64 = 0.1;
 
 impl Reconstruction {
-    pub(super) fn new(pressure: &[f64], shape @ [nx, ny]: [usize; 2]) -> Self {
+    /// None where `go_on`, which is asked many times, stops it.
+    pub(super) fn new(
+        pressure: &[f64],
+        shape @ [nx, ny]: [usize; 2],
+        threads: &Threads,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Self> {
         let line = nx == 1;
         let distances = distances(pressure, shape, BAND + 1);
+        if !go_on() {
+            return None;
+        }
         let fine = pieces(Piece::WHOLE, FINE, line);
         let inside = |cell: usize| distances[cell] > BAND;
         let mut bends: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; pressure.len()]);
@@ -73,32 +87,38 @@ impl Reconstruction {
                 bends[axis + 2][cell] = right - 2.0 * here + left;
             }
         }
-        let edges = edge_cells(pressure, &distances, shape);
-        let mut roots: Vec<RootCell> = edges
-            .into_par_iter()
-            .map(|edge| RootCell::new(edge, &fine, line))
-            .collect();
-        let mut uniform = convolved(pressure, &bends, &roots, shape);
+        if !go_on() {
+            return None;
+        }
+        let edges = edge_cells(pressure, &distances, shape, threads, go_on)?;
+        let root = |edge| RootCell::new(edge, &fine, line);
+        let mut roots: Vec<RootCell> = threads.run(|| edges.into_par_iter().map(root).collect());
+        let mut uniform = uniform_part(pressure, &bends, &roots, shape);
         for _ in 0..STEPS {
+            if !go_on() {
+                return None;
+            }
             let moves = moves(pressure, &uniform, &roots, shape);
+            if !go_on() {
+                return None;
+            }
             let moved = roots.into_par_iter().zip(moves);
-            roots = moved
-                .filter_map(|(root, by)| root.moved(by, &fine, line))
-                .collect();
-            uniform = convolved(pressure, &bends, &roots, shape);
+            let root = |(root, by): (RootCell, f64)| root.moved(by, &fine, line);
+            roots = threads.run(|| moved.filter_map(root).collect());
+            uniform = uniform_part(pressure, &bends, &roots, shape);
         }
         // Those beyond the edge hold nothing.
         roots.retain(|root| root.mean > 0.0);
-        Self {
+        Some(Self {
             uniform,
             bends,
             roots,
-        }
+        })
     }
 }
 
 /// What is to be taken as uniform over cells: means and shares.
-fn convolved(
+fn uniform_part(
     pressure: &[f64],
     bends: &[Vec<f64>; 4],
     roots: &[RootCell],
@@ -146,9 +166,9 @@ fn moves(pressure: &[f64], uniform: &[f64], roots: &[RootCell], shape: [usize; 2
     }
     let (missing, rates) = (Sums::new(&missing, shape), Sums::new(&rates, shape));
     let move_of = |root: &RootCell| {
-        let rate = rates.around(root.cell, TOGETHER);
+        let rate = rates.around(root.cell, BEARERS);
         if rate > 0.0 {
-            missing.around(root.cell, TOGETHER) / rate
+            missing.around(root.cell, BEARERS) / rate
         } else {
             0.0
         }
@@ -269,6 +289,38 @@ fn finer_root(square: &Square, [u, v]: [f64; 2], [hu, hv]: [f64; 2], line: bool)
 mod tests {
     use super::*;
 
+    fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Reconstruction {
+        let threads = Threads::new(Some(2)).expect("two threads");
+        Reconstruction::new(pressure, shape, &threads, &mut || true).expect("not stopped")
+    }
+
+    /// Where the grid's border cuts a contact, its cells stay as they are, though pressure is smooth
+    /// there, or rises smoothly to the cut; the edges farther off are known.
+    #[test]
+    fn a_cut_is_no_edge() {
+        let shape @ [nx, ny] = [40, 44];
+        let rises: [fn(f64) -> f64; 2] = [|_| 1.0, |x| 1.0 / (x + 3.0).sqrt()];
+        for rise in rises {
+            let pressure: Vec<f64> = (0..nx * ny)
+                .map(|cell| {
+                    let (x, y) = ((cell / ny) as f64, (cell % ny) as f64 - 21.3);
+                    (rise(x) * (1.0 - y * y / 290.0)).max(0.0).sqrt()
+                })
+                .collect();
+            let found = reconstructed(&pressure, shape);
+            let reach = usize::from(BAND);
+            for i in (0..reach).chain(nx - reach..nx) {
+                for cell in i * ny..(i + 1) * ny {
+                    assert_eq!(found.uniform[cell].to_bits(), pressure[cell].to_bits());
+                    assert!(found.bends.iter().all(|bend| bend[cell] == 0.0));
+                }
+            }
+            let is_cut = |root: &RootCell| root.cell[0] < reach || root.cell[0] >= nx - reach;
+            assert!(!found.roots.iter().any(is_cut));
+            assert!(found.roots.len() > 100, "{}", found.roots.len());
+        }
+    }
+
     /// The edge bears what it is given: two steps leave the square of the first move, a tenth of a
     /// cell at most, of what the edge's cells bear, a twentieth of all.
     #[test]
@@ -280,7 +332,7 @@ mod tests {
                 (1.0 - (x * x + y * y) / (radius * radius)).max(0.0).sqrt()
             })
             .collect();
-        let reconstruction = Reconstruction::new(&pressure, [n, n]);
+        let reconstruction = reconstructed(&pressure, [n, n]);
         assert!(reconstruction.roots.len() > 500);
         let force = |pressure: &[f64]| pressure.iter().sum::<f64>();
         let change = force(&reconstruction.uniform) / force(&pressure) - 1.0;

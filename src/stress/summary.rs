@@ -76,8 +76,8 @@ pub struct StressSummary {
 /// How often the neighbourhood of a peak is looked at again.
 const REFINEMENTS: usize = 3;
 
-/// The summary of `body` under the `pressure` (nx, ny) of a contact on `grid`; `section` and `displacement` of the
-/// options are not used.
+/// The summary of `body` under the `pressure` (nx, ny) of a contact on `grid`; `section` and
+/// `displacement` of the options are not used.
 ///
 /// Depths are the faces of layers, and inside them some 18 that are spread over its thickness and
 /// over the width of the contact; a peak inside is then found by parabolas through three depths.
@@ -113,11 +113,21 @@ pub(super) fn stress_summary(
         displacement: false,
         ..options.clone()
     };
-    let loaded = Loaded::new(body, grid, pressure, Form::Solved, options)?;
+    let residual = residual(body, &options.residual)?;
+    let mut summary = StressSummary {
+        layers: Vec::new(),
+        interfaces: Vec::new(),
+        finished: false,
+    };
+    let mut go_on = || progress(0.0) == ControlFlow::Continue(());
+    let loaded = Loaded::new(body, grid, pressure, Form::Solved, options, &mut go_on)?;
+    let Some(loaded) = loaded else {
+        return Ok(summary);
+    };
     let mut planes = Planes {
         body,
         grid,
-        residual: residual(body, &options.residual)?,
+        residual,
         scratch: loaded.scratch(6),
         loaded,
         fields: (0..6).map(|_| vec![0.0; pressure.len()]).collect(),
@@ -131,11 +141,6 @@ pub(super) fn stress_summary(
         .map(|region| region.len() + 3 * REFINEMENTS)
         .sum();
     planes.planned += body.layers().len();
-    let mut summary = StressSummary {
-        layers: Vec::new(),
-        interfaces: Vec::new(),
-        finished: false,
-    };
     let finished = planes.layers(&regions, &bears, &mut summary.layers)
         && planes.interfaces(&mut summary.interfaces);
     if finished {

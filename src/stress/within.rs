@@ -1,12 +1,14 @@
 //! Stresses of what the pressure of a solved contact is within its cells.
 
 use super::components::{COMPONENTS, EXCHANGED, PressureStress, TractionStress};
-use super::kernel::{Kernel, Plan};
-use super::line::{self, LinePlan};
-use super::near::{Near, NearPlan, STRESSES};
+use super::kernel::Kernel;
+use super::kernels::Kernels;
+use super::line;
+use super::near::{NearPlan, NearTable, STRESSES};
 use crate::body::HalfSpace;
 use crate::grid::Grid;
 use crate::response::interior::Place;
+use crate::threads::Threads;
 
 /// A body under the pressure of a contact and its friction, of which only what is within cells is
 /// looked at.
@@ -19,40 +21,30 @@ pub(super) struct Within {
     given: Vec<f64>,
 }
 
-/// What makes the stresses of a piece of a cell.
-#[derive(Debug)]
-enum Kernels {
-    Plane {
-        plan: Box<Plan>,
-        pressure: Vec<Vec<(f64, f64)>>,
-        traction: Vec<Vec<(f64, f64)>>,
-    },
-    Line(LinePlan),
-}
-
 /// Sides of the smallest pieces, in cells.
 const FINEST: f64 = 1.0 / 135.0;
 
 impl Within {
-    /// On the threads of the caller.
-    pub(super) fn new(body: &HalfSpace, grid: &Grid, pressure: &[f64], friction: [f64; 2]) -> Self {
-        let near = NearPlan::new(pressure, grid);
-        let kind = if grid.is_line() {
-            Kernels::Line(LinePlan::new(body, grid, FINEST))
-        } else {
-            let plan = Plan::new(body, grid.spacing(), FINEST, near.farthest());
-            Kernels::Plane {
-                pressure: plan.multipliers::<4, PressureStress>(),
-                traction: plan.multipliers::<6, TractionStress>(),
-                plan: Box::new(plan),
-            }
-        };
-        Self {
+    /// None where `go_on` stops it.
+    pub(super) fn new(
+        body: &HalfSpace,
+        grid: &Grid,
+        pressure: &[f64],
+        friction: [f64; 2],
+        threads: &Threads,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Self> {
+        let near = NearPlan::new(pressure, grid, threads, go_on)?;
+        let (reach, slides) = (near.farthest(), friction != [0.0, 0.0]);
+        let kind = threads.run(|| {
+            Kernels::new::<4, 6, PressureStress, TractionStress>(body, grid, FINEST, reach, slides)
+        });
+        Some(Self {
             kind,
             near,
             friction,
             given: pressure.to_vec(),
-        }
+        })
     }
 
     /// What is to be taken as uniform over cells.
@@ -61,9 +53,9 @@ impl Within {
     }
 
     /// Stresses of pieces of cells at `place`, where they are felt. On the threads of the caller.
-    pub(super) fn at(&self, place: &Place) -> Near {
+    pub(super) fn at(&self, place: &Place) -> NearTable {
         if !self.near.reaches(place.depth) {
-            return Near::default();
+            return NearTable::default();
         }
         let [fx, fy] = self.friction;
         let none = [0.0; COMPONENTS];
@@ -95,17 +87,19 @@ impl Within {
                     let Some(lateral) = &lateral else {
                         return sum(pressed, none, none);
                     };
+                    let stresses = |at, half| lateral.at::<TractionStress>(at, half);
+                    let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
                     // Traction along y is traction along x with both exchanged.
-                    let along = lateral.at::<TractionStress>([x, y], [a, b]);
-                    let across = lateral.at::<TractionStress>([y, x], [b, a]);
-                    sum(pressed, along, EXCHANGED.map(|k| across[k]))
+                    let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
+                    let across = across.map(|values| EXCHANGED.map(|k| values[k]));
+                    sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
                 })
             }
         }
     }
 
     /// Adds them to the stresses of the uniform pressure on a plane. On the threads of the caller.
-    pub(super) fn add(&self, near: &Near, stresses: &mut [&mut [f64]]) {
+    pub(super) fn add(&self, near: &NearTable, stresses: &mut [&mut [f64]]) {
         self.near.add(near, stresses);
         if near.at_surface() {
             let [fx, fy] = self.friction;

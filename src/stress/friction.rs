@@ -1,0 +1,34 @@
+//! The traction of friction.
+
+use super::StressOptions;
+use crate::body::{HalfSpace, Interface};
+use crate::error::{Error, Result, finite};
+
+/// μ times the unit vector of the traction on the body.
+pub(super) fn friction(body: &HalfSpace, options: &StressOptions) -> Result<[f64; 2]> {
+    let friction = finite("friction", options.friction)?;
+    if friction < 0.0 {
+        return Err(Error::Parameter {
+            name: "friction",
+            requirement: "at least 0 (turn the direction)",
+            value: friction,
+        });
+    }
+    let [x, y] = options.direction;
+    let length = x.hypot(y);
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(Error::Parameter {
+            name: "direction",
+            requirement: "a vector of finite length above 0",
+            value: length,
+        });
+    }
+    let slips = |layer: &crate::Layer| layer.interface() == Interface::Frictionless;
+    if friction > 0.0 && body.layers().iter().any(slips) {
+        return Err(Error::Inconsistent(
+            "friction must be 0 on a body with a frictionless interface: nothing holds the layers \
+             above it",
+        ));
+    }
+    Ok([friction * x / length, friction * y / length])
+}

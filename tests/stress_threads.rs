@@ -1,0 +1,92 @@
+//! Stress is the same to the bits for any number of threads, and stops where it is told to.
+
+use std::ops::ControlFlow;
+
+use nacre::stress::Limits;
+use nacre::{
+    Contact, Elastic, Grid, HalfSpace, Layer, Member, Motion, Options, Paraboloid, Result, Setup,
+    Solution, Stress, StressOptions, stress,
+};
+
+/// Of a coated body, on more than the 96² cells from which threads share the work; the edge is
+/// known, as the contact is smooth.
+fn solution() -> Result<Solution> {
+    let coating = Layer::new(Elastic::new(4.0, 0.25)?, 0.2)?;
+    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coating])?;
+    let contact = Contact::plan(&body, Grid::new([150, 130], [3.0, 2.6])?, Setup::default())?;
+    let shape = Paraboloid::new(1.2e3, 1e3)?;
+    contact.solve(&shape, &Motion::load(1e-3), &Options::default())
+}
+
+fn options(threads: usize) -> StressOptions {
+    StressOptions {
+        friction: 0.3,
+        direction: [1.0, 2.0],
+        displacement: true,
+        threads: Some(threads),
+        ..StressOptions::default()
+    }
+}
+
+fn bits(field: &Stress) -> Vec<u64> {
+    let displacement = field.displacement.iter().flatten();
+    let fields = field.components.iter().chain(displacement);
+    fields.flatten().map(|value| value.to_bits()).collect()
+}
+
+/// At the surface and at a tenth of a cell what is within cells is felt, at the interface and in the
+/// substrate it is not.
+#[test]
+fn bits_do_not_depend_on_the_number_of_threads() -> Result<()> {
+    const DEPTHS: [f64; 4] = [0.0, 0.002, 0.2, 0.7];
+    let solution = solution()?;
+    let body = solution.member(Member::Body)?;
+    let both = |threads: usize| -> Result<[Vec<u64>; 2]> {
+        let options = options(threads);
+        let uniform = stress(body, solution.grid(), &solution.pressure, &DEPTHS, &options)?;
+        let solved = solution.stress(&DEPTHS, Member::Body, &options)?;
+        Ok([&uniform, &solved].map(bits))
+    };
+    let one = both(1)?;
+    assert_eq!(one[0].len(), DEPTHS.len() * 9 * 150 * 130);
+    assert!(one[0] != one[1]);
+    for threads in [2, 5] {
+        let [uniform, solved] = both(threads)?;
+        assert!(uniform == one[0], "{threads} threads");
+        assert!(solved == one[1], "of the solution, {threads} threads");
+    }
+    Ok(())
+}
+
+/// While the edge is looked for, progress is asked too: its break leaves no depth.
+#[test]
+fn looking_for_the_edge_stops_when_told() -> Result<()> {
+    let solution = solution()?;
+    let (options, limits) = (options(2), Limits::default());
+    for last in 1..=3 {
+        let mut calls = 0;
+        let mut stop = |part: f64| {
+            assert!(part.abs() < f64::EPSILON);
+            calls += 1;
+            match calls {
+                call if call < last => ControlFlow::Continue(()),
+                _ => ControlFlow::Break(()),
+            }
+        };
+        let field = solution.stress_watched(&[0.0, 0.1], Member::Body, &options, &mut stop)?;
+        assert!(field.z.is_empty() && field.components[0].is_empty());
+        assert_eq!(calls, last);
+        calls = 0;
+        let mut stop = |_| {
+            calls += 1;
+            match calls {
+                call if call < last => ControlFlow::Continue(()),
+                _ => ControlFlow::Break(()),
+            }
+        };
+        let summary = solution.stress_summary(Member::Body, &limits, &options, &mut stop)?;
+        assert!(!summary.finished && summary.layers.is_empty());
+        assert_eq!(calls, last);
+    }
+    Ok(())
+}
