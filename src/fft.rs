@@ -8,7 +8,6 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use ndarray::ArrayRef2;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
@@ -17,6 +16,7 @@ use rustfft::{Fft, FftPlanner};
 use crate::threads::Threads;
 
 mod cosine;
+mod even;
 mod parity;
 mod quarter;
 mod series;
@@ -191,84 +191,6 @@ impl PaddedTransform {
             at_least(&mut task.columns, BLOCK * self.padded[0], ZERO);
             at_least(&mut task.fft, fft, ZERO);
         }
-    }
-
-    /// Transform of the kernel whose values at offsets (i, j) ≥ 0 are `quarter` (nx, ny); on a
-    /// periodic mesh, up to half a period.
-    pub(crate) fn even_spectrum(
-        &self,
-        quarter: &ArrayRef2<f64>,
-        workspace: &mut Workspace,
-        threads: &Threads,
-    ) -> EvenSpectrum {
-        let ([nx, _], [mx, my]) = (self.shape, self.padded);
-        let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace { rows, tasks, .. } = workspace;
-        let rows = &mut rows[..nx * columns];
-        let scale = 1.0 / (mx as f64 * my as f64);
-        let rows_of_a_task = nx.div_ceil(self.tasks);
-        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
-            for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {
-                let real = &mut scratch.real[..my];
-                real.fill(0.0);
-                for (j, &c) in quarter.row(first + row).iter().take(columns).enumerate() {
-                    real[j] = c;
-                    real[(my - j) % my] = c;
-                }
-                self.rows_to_spectrum(real, spectrum, &mut scratch.fft);
-            }
-        };
-        self.over_rows(
-            threads,
-            rows,
-            columns * rows_of_a_task,
-            tasks,
-            rows_of_a_task,
-            forward,
-        );
-        let mut spectrum = vec![0.0; self.blocks() * quarter_rows * BLOCK];
-        let rows = &*rows;
-        let transform = |first: usize, blocks: &mut [f64], scratch: &mut TaskScratch| {
-            for (block, values) in blocks.chunks_exact_mut(quarter_rows * BLOCK).enumerate() {
-                let start = (first + block) * BLOCK;
-                let width = BLOCK.min(columns - start);
-                scratch.columns[..width * mx].fill(ZERO);
-                for i in 0..nx.min(quarter_rows) {
-                    for b in 0..width {
-                        let value = Complex64::new(rows[i * columns + start + b].re, 0.0);
-                        scratch.columns[b * mx + i] = value;
-                        scratch.columns[b * mx + (mx - i) % mx] = value;
-                    }
-                }
-                let columns = &mut scratch.columns[..width * mx];
-                self.column_forward
-                    .process_with_scratch(columns, &mut scratch.fft);
-                for k in 0..quarter_rows {
-                    for b in 0..width {
-                        values[k * BLOCK + b] = columns[b * mx + k].re * scale;
-                    }
-                }
-            }
-        };
-        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * quarter_rows * BLOCK;
-        self.over_rows(
-            threads,
-            &mut spectrum,
-            chunk,
-            tasks,
-            blocks_of_a_task,
-            transform,
-        );
-        EvenSpectrum(spectrum)
-    }
-
-    /// The transform of the inverse, with entries below `floor` times the largest raised to that.
-    pub(crate) fn inverse_spectrum(&self, spectrum: &EvenSpectrum, floor: f64) -> EvenSpectrum {
-        let points = self.padded[0] as f64 * self.padded[1] as f64;
-        let largest = spectrum.0.iter().fold(0.0, |a: f64, &b| a.max(b));
-        let inverse = |c: &f64| 1.0 / (c.max(floor * largest) * points * points);
-        EvenSpectrum(spectrum.0.iter().map(inverse).collect())
     }
 
     /// `output` = kernel ∗ `input`, both (nx, ny) in C order; `input` is read in the rows of

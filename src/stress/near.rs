@@ -16,7 +16,7 @@ use crate::threads::Threads;
 pub(super) const STRESSES: usize = 6;
 
 // These four leave little: with 5, 7, 3 and 4 in their places, errors of Hertz' contacts of 128 cells
-// to the half-width change by 3e-5 of the peak pressure at most, which is less than a tenth of the largest.
+// to the half-width change by 3e-5 of the peak pressure at most, less than a tenth of the largest.
 
 /// How far the load of a cell is followed, in cells of the longer side.
 const REACH: f64 = 3.0;
