@@ -29,9 +29,6 @@ pub(crate) use series::{fourier_coefficients, inverse_even};
 /// columns of a few thousand points stay in the second-level cache.
 const BLOCK: usize = 16;
 
-/// Below this number of cells threads cost more than they save (measured: `benches/README.md`).
-const WORTH_THREADS: usize = 96 * 96;
-
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
 /// The smallest length ≥ `n` of the form 2^a 3^b 5^c.
@@ -88,11 +85,10 @@ struct TaskScratch {
 
 /// Into how many tasks a transform of `shape` is divided.
 fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
-    match threads.count() {
-        1 => 1,
-        _ if shape[0] * shape[1] < WORTH_THREADS => 1,
-        // More than threads, so that one thread that is held up does not hold up the others.
-        count => 4 * count,
+    // More than threads, so that one thread that is held up does not hold up the others.
+    match threads.divide(shape[0] * shape[1]) {
+        true => 4 * threads.count(),
+        false => 1,
     }
 }
 

@@ -10,6 +10,10 @@ use crate::error::{Error, Result};
 /// More threads than that are a mistake: each has a stack and memory of its own.
 const MOST: usize = 256;
 
+/// Below this number of cells a transform, or a pass over a grid, is done before a second thread
+/// is awake: a tenth of a millisecond (measured: `benches/README.md`).
+const WORTH: usize = 1 << 15;
+
 /// A number of threads, and the pool that is made at the first use.
 ///
 /// The pool sleeps when idle. A process that was forked has the plan but not its threads: there
@@ -49,6 +53,11 @@ impl Threads {
 
     pub(crate) fn count(&self) -> usize {
         self.count
+    }
+
+    /// Whether to divide among them what is done with `cells` cells.
+    pub(crate) fn divide(&self, cells: usize) -> bool {
+        self.count > 1 && cells >= WORTH
     }
 
     /// Calls `work` where rayon's parallel iterators use these threads.

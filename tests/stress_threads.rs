@@ -8,12 +8,12 @@ use nacre::{
     Solution, Stress, StressOptions, stress,
 };
 
-/// Of a coated body, on more than the 96² cells from which threads share the work; the edge is
+/// Of a coated body, on more than the 181² cells from which threads share the work; the edge is
 /// known, as the contact is smooth.
 fn solution() -> Result<Solution> {
     let coating = Layer::new(Elastic::new(4.0, 0.25)?, 0.2)?;
     let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coating])?;
-    let contact = Contact::plan(&body, Grid::new([150, 130], [3.0, 2.6])?, Setup::default())?;
+    let contact = Contact::plan(&body, Grid::new([195, 169], [3.0, 2.6])?, Setup::default())?;
     let shape = Paraboloid::new(1.2e3, 1e3)?;
     contact.solve(&shape, &Motion::load(1e-3), &Options::default())
 }
@@ -48,7 +48,7 @@ fn bits_do_not_depend_on_the_number_of_threads() -> Result<()> {
         Ok([&uniform, &solved].map(bits))
     };
     let one = both(1)?;
-    assert_eq!(one[0].len(), DEPTHS.len() * 9 * 150 * 130);
+    assert_eq!(one[0].len(), DEPTHS.len() * 9 * 195 * 169);
     assert!(one[0] != one[1]);
     for threads in [2, 5] {
         let [uniform, solved] = both(threads)?;

@@ -9,9 +9,6 @@ use crate::threads::Threads;
 /// Cells that are not divided among threads: a few microseconds' work, in the first caches.
 const LEAF: usize = 1 << 13;
 
-/// Below this number of cells a pass takes less than to wake a thread: some tens of microseconds.
-const WORTH_THREADS: usize = 1 << 16;
-
 /// A row of the grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row<'a> {
@@ -59,12 +56,12 @@ impl<'a> Passes<'a> {
             columns,
             threads,
             leaf,
-            divided: threads.count() > 1 && nx > leaf && nx * ny >= WORTH_THREADS,
+            divided: threads.divide(nx * ny),
         }
     }
 
     /// Calls `work` on one of the threads. What it calls need not wait for one again: each time that
-    /// takes some ten microseconds.
+    /// takes a tenth of a millisecond.
     pub(super) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         if self.divided {
             self.threads.run(work)

@@ -412,8 +412,8 @@ def test_a_warning_can_be_made_an_error() -> None:
 
 
 # Enough cells, and enough of them in contact, for the work to be shared among threads.
-FINE_GRID = nacre.Grid(shape=(200, 190), size=(4e-4, 4e-4))
-HEAVY = 50.0
+FINE_GRID = nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4))
+HEAVY = 250.0
 
 
 def test_solves_on_one_plan_at_once_give_the_same_bits() -> None:
@@ -499,15 +499,15 @@ def test_a_plan_solves_in_a_forked_child() -> None:
     script = f"""{SCRIPT}
 import os, signal, warnings
 warnings.simplefilter("ignore", DeprecationWarning)  # that there are threads is the point
-contact = nacre.Contact(steel, nacre.Grid(shape=(200, 190), size=(4e-4, 4e-4)), threads=2)
-pressure = contact.solve(sphere, load=50.0).pressure
+contact = nacre.Contact(steel, nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4)), threads=2)
+pressure = contact.solve(sphere, load=250.0).pressure
 child = os.fork()
 if child == 0:
     signal.alarm(20)
-    same = (contact.solve(sphere, load=50.0).pressure == pressure).all()
+    same = (contact.solve(sphere, load=250.0).pressure == pressure).all()
     os._exit(0 if same else 1)
 _, status = os.waitpid(child, 0)
 assert os.waitstatus_to_exitcode(status) == 0, status
-assert (contact.solve(sphere, load=50.0).pressure == pressure).all()
+assert (contact.solve(sphere, load=250.0).pressure == pressure).all()
 """
     subprocess.run([sys.executable, "-c", script], check=True, timeout=60)
