@@ -168,10 +168,10 @@ impl Contact {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let limits = options.limits()?;
-        let mut gap = checked_gaps(shape, &self.grid)?;
+        let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
+        let mut gap = passes.run(|| checked_gaps(shape, &self.grid))?;
         freedoms.check_feasible(&gap)?;
         freedoms.prescribe(&mut gap);
-        let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
         let problem = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,

@@ -5,7 +5,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayViewMut1, Zip};
 
 use crate::error::{Result, finite};
 use crate::grid::Grid;
@@ -73,17 +73,23 @@ pub trait Surface: fmt::Debug + Send + Sync {
     fn gap(&self, x: f64, y: f64) -> f64;
 
     /// Gaps at the cells of `grid`, (nx, ny) \[m\]: at their centres, unless the shape's own
-    /// documentation says otherwise.
+    /// documentation says otherwise. In a pool of rayon's it uses that pool's threads.
     ///
     /// # Errors
     /// Where the grid does not suit the shape.
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
         let (x, y) = (grid.x(), grid.y());
         let mut gaps = Array2::zeros(grid.shape());
-        for (mut row, &x) in gaps.rows_mut().into_iter().zip(&x) {
+        let row = |mut row: ArrayViewMut1<f64>, &x: &f64| {
             row.iter_mut()
                 .zip(&y)
                 .for_each(|(gap, &y)| *gap = self.gap(x, y));
+        };
+        let rows = Zip::from(gaps.rows_mut()).and(&x);
+        // On the threads of whoever asks; rayon's own would not survive a fork.
+        match rayon::current_thread_index() {
+            Some(_) => rows.par_for_each(row),
+            None => rows.for_each(row),
         }
         Ok(gaps)
     }
