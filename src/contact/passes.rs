@@ -88,14 +88,12 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Σ a b of one array with others.
-    pub(super) fn dots<const N: usize>(&self, a: &[f64], others: [&[f64]; N]) -> [f64; N] {
-        others.map(|b| {
-            let [dot] = self.each([a, b], [], add, |_, inputs, []| {
-                sum(inputs, |[a, b]| [a * b])
-            });
-            dot
-        })
+    /// Σ a b
+    pub(super) fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        let [dot] = self.each([a, b], [], add, |_, inputs, []| {
+            sum(inputs, |[a, b]| [a * b])
+        });
+        dot
     }
 
     fn divide<const M: usize, const N: usize, const S: usize>(

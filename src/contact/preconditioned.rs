@@ -185,24 +185,15 @@ impl<'a> Preconditioned<'a> {
         } = &mut *self.arrays;
         std::mem::swap(r, r_before);
         let pending = all(std::mem::take(&mut self.pending));
-        let [left, fit @ ..] = self.passes.each(
-            [p, problem.gap, response],
-            [u, contact],
-            add,
-            |row, [p, h, response], [u, contact]| {
-                let [left] = update(
-                    [p, response],
-                    [&mut *u, contact],
-                    |[p, response], [u, before]| {
-                        let now = where_positive(p, ONE);
-                        let u = u + where_positive(pending, pending * response);
-                        ([u, now], [(now - before).abs()])
-                    },
-                );
-                let [a, b, c, d, e, f, g, h, i] = freedoms.fit_of(row, [p, u, h], [0.0; 3]);
-                [left, a, b, c, d, e, f, g, h, i]
-            },
-        );
+        let fit = self
+            .passes
+            .each([p, problem.gap, response], [u], add, |row, inputs, [u]| {
+                let [p, h, response] = inputs;
+                update([response], [&mut *u], |[response], [u]| {
+                    ([u + where_positive(pending, pending * response)], [])
+                });
+                freedoms.fit_of(row, [p, u, h], [0.0; 3])
+            });
         let motion = Multipliers {
             change: freedoms.fitted(fit),
             ..Multipliers::default()
@@ -215,15 +206,19 @@ impl<'a> Preconditioned<'a> {
                 motion.gap(row, [u, h], r);
                 let [deepest, most] = overlap_of([u, r]);
                 let [a, b, c, d, e] = problem.carried_of(row, [p, u, r]);
-                let [joined, members] = update([], [r, contact], |[], [g, before]| {
-                    let inside = before.simd_gt(ZERO) | g.simd_lt(ZERO);
+                let [left, joined, members] = update([p], [r, contact], |[p], [g, before]| {
+                    let pressed = where_positive(p, ONE);
+                    let inside = pressed.simd_gt(ZERO) | g.simd_lt(ZERO);
                     let now = inside & ONE;
-                    ([inside & -g, now], [now - before, before])
+                    (
+                        [inside & -g, now],
+                        [(pressed - before).abs(), now - pressed, pressed],
+                    )
                 });
-                [deepest, most, a, b, c, d, e, joined, members]
+                [deepest, most, a, b, c, d, e, left, joined, members]
             },
         );
-        let [quality @ .., joined, members] = sums;
+        let [quality @ .., left, joined, members] = sums;
         if MANY * joined > members {
             self.conjugate = false;
         }

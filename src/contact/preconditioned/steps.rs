@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::arrays::Arrays;
 use super::{Preconditioned, Step};
 use crate::contact::passes::add;
-use crate::contact::sums::{ONE, all, update, where_positive};
+use crate::contact::sums::{ONE, all, sum, update, where_positive};
 
 impl Preconditioned<'_> {
     /// Moves `p` by `step` times the direction as far as it stays ≥ 0, and restores balance. Returns
@@ -52,7 +52,7 @@ impl Preconditioned<'_> {
         } = &mut *self.arrays;
         problem.apply(direction, response, &mut self.workspace);
         self.work += problem.convolution.work();
-        let [curvature] = self.passes.dots(response, [direction]);
+        let curvature = self.passes.dot(response, direction);
         if !(curvature > 0.0 && slope > 0.0) {
             return Step::None;
         }
@@ -80,7 +80,7 @@ impl Preconditioned<'_> {
         } = &mut *self.arrays;
         periodic.apply_slices(direction, response, &mut self.workspace);
         self.work += periodic.work();
-        let [curvature] = self.passes.dots(response, [direction]);
+        let curvature = self.passes.dot(response, direction);
         let curvature = curvature * self.curvature_ratio;
         if !(curvature > 0.0 && slope > 0.0) {
             return Step::None;
@@ -101,7 +101,13 @@ impl Preconditioned<'_> {
         problem.apply(change, response, &mut self.workspace);
         self.work += problem.convolution.work();
         // The best length along the change.
-        let [slope, curvature] = self.passes.dots(change, [r, response]);
+        let [slope, curvature] =
+            self.passes
+                .each([change, r, response], [], add, |_, inputs, []| {
+                    sum(inputs, |[change, r, response]| {
+                        [change * r, change * response]
+                    })
+                });
         let best = slope / curvature;
         if !(best > 0.0 && best.is_finite()) {
             p.copy_from_slice(before);
