@@ -295,8 +295,8 @@ impl<'a> Cascade<'a> {
             let fine = &levels[levels.len() - 1];
             let halved = halved(fine.shape());
             let freedoms = fine.freedoms.coarse(halved);
-            // A measured surface has no values for cells that are much larger than its own.
             let passes = Passes::new(&freedoms.columns, convolution.own_threads());
+            // A measured surface has no values for cells that are much larger than its own.
             let gap = match passes.run(|| shape.gaps(grid)) {
                 Ok(mut gap) => {
                     freedoms.prescribe(&mut gap);

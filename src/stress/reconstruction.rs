@@ -288,16 +288,17 @@ fn finer_root(square: &Square, [u, v]: [f64; 2], [hu, hv]: [f64; 2], line: bool)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::{Error, Result};
 
-    fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Reconstruction {
-        let threads = Threads::new(Some(2)).expect("two threads");
-        Reconstruction::new(pressure, shape, &threads, &mut || true).expect("not stopped")
+    fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Result<Reconstruction> {
+        Reconstruction::new(pressure, shape, &Threads::new(Some(2))?, &mut || true)
+            .ok_or(Error::Inconsistent("it was stopped"))
     }
 
     /// Where the grid's border cuts a contact, its cells stay as they are, though pressure is smooth
     /// there, or rises smoothly to the cut; the edges farther off are known.
     #[test]
-    fn a_cut_is_no_edge() {
+    fn a_cut_is_no_edge() -> Result<()> {
         let shape @ [nx, ny] = [40, 44];
         let rises: [fn(f64) -> f64; 2] = [|_| 1.0, |x| 1.0 / (x + 3.0).sqrt()];
         for rise in rises {
@@ -307,7 +308,7 @@ mod tests {
                     (rise(x) * (1.0 - y * y / 290.0)).max(0.0).sqrt()
                 })
                 .collect();
-            let found = reconstructed(&pressure, shape);
+            let found = reconstructed(&pressure, shape)?;
             let reach = usize::from(BAND);
             for i in (0..reach).chain(nx - reach..nx) {
                 for cell in i * ny..(i + 1) * ny {
@@ -319,12 +320,13 @@ mod tests {
             assert!(!found.roots.iter().any(is_cut));
             assert!(found.roots.len() > 100, "{}", found.roots.len());
         }
+        Ok(())
     }
 
     /// The edge bears what it is given: two steps leave the square of the first move, a tenth of a
     /// cell at most, of what the edge's cells bear, a twentieth of all.
     #[test]
-    fn the_force_is_kept() {
+    fn the_force_is_kept() -> Result<()> {
         let (n, radius) = (61, 24.3);
         let pressure: Vec<f64> = (0..n * n)
             .map(|cell| {
@@ -332,7 +334,7 @@ mod tests {
                 (1.0 - (x * x + y * y) / (radius * radius)).max(0.0).sqrt()
             })
             .collect();
-        let reconstruction = reconstructed(&pressure, [n, n]);
+        let reconstruction = reconstructed(&pressure, [n, n])?;
         assert!(reconstruction.roots.len() > 500);
         let force = |pressure: &[f64]| pressure.iter().sum::<f64>();
         let change = force(&reconstruction.uniform) / force(&pressure) - 1.0;
@@ -346,5 +348,6 @@ mod tests {
                 );
             }
         }
+        Ok(())
     }
 }
