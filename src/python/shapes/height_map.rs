@@ -1,0 +1,149 @@
+//! `nacre.HeightMap`: measured surfaces.
+
+use numpy::PyArray2;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::super::arrays::{Repr, read_only, real_matrix};
+use super::{PyShape, Shape, subclass};
+use crate::surface::HeightMap;
+
+/// A measured surface: heights at cell centres, positive towards the other body.
+///
+/// ``h = max(heights) - heights`` at the samples; bilinear on another grid, +inf outside.
+///
+/// Parameters
+/// ----------
+/// heights : array_like
+///     Heights ``(nx, ny)`` [m], finite.
+/// spacing : float or tuple of float
+///     Distances between samples ``(dx, dy)`` [m], or one for both.
+/// center : tuple of float, optional
+///     Centre [m].
+///
+/// Raises
+/// ------
+/// TypeError
+///     If the heights are not real numbers.
+/// ValueError
+///     If a height is not finite, there are fewer than two samples in a direction, or the spacing
+///     is not finite and above 0.
+///
+/// Examples
+/// --------
+/// >>> nacre.HeightMap([[0.0, 1e-6], [2e-6, 3e-6]], spacing=1e-6).spacing
+/// (1e-06, 1e-06)
+#[pyclass(name = "HeightMap", module = "nacre", frozen, extends = PyShape)]
+pub(in crate::python) struct PyHeightMap;
+
+#[pymethods]
+impl PyHeightMap {
+    #[new]
+    #[pyo3(
+        signature = (heights, spacing, center=[0.0, 0.0]),
+        text_signature = "(heights, spacing, center=(0.0, 0.0))"
+    )]
+    fn new(
+        heights: &Bound<'_, PyAny>,
+        spacing: &Bound<'_, PyAny>,
+        center: [f64; 2],
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let both = spacing.extract::<f64>().map(|spacing| [spacing; 2]);
+        let spacing = both
+            .or_else(|_| spacing.extract::<[f64; 2]>())
+            .map_err(|_| {
+                PyTypeError::new_err(format!(
+                    "spacing must be a number or a pair of numbers, got {}",
+                    Repr(spacing)
+                ))
+            })?;
+        let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
+        Ok(subclass(Self, Shape::HeightMap(map.centered_at(center)?)))
+    }
+
+    /// Reads a measured surface from a file.
+    ///
+    /// Instruments' files are read by SurfaceTopography, with ``nacre[surfaces]``. Missing points
+    /// are filled smoothly from around them, and counted in a `nacre.NacreWarning`.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     ``.npy``: a matrix of heights ``(nx, ny)``. ``.csv``: likewise, one line for each x;
+    ///     comments ``# unit: um`` and ``# spacing: 0.5 0.5`` may precede. ``.xyz``: points on a
+    ///     grid. Anything else that SurfaceTopography knows.
+    /// spacing : float or tuple of float, optional
+    ///     Distances between samples [m]; needed where the file does not say.
+    /// unit : str, optional
+    ///     Unit of the numbers in the file ("nm", "um", "mm", ...); the file's by default, metres
+    ///     where it names none.
+    /// detrend : {"plane", "none", "mean", "quadratic"}, optional
+    ///     What is subtracted: the plane, the mean or the paraboloid that fits best.
+    /// channel : str or int, optional
+    ///     Which of an instrument's channels to read.
+    ///
+    /// Returns
+    /// -------
+    /// HeightMap
+    ///     The surface.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the file cannot be understood, or less than half of it was measured.
+    /// OSError
+    ///     If it cannot be read.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import tempfile
+    /// >>> with tempfile.TemporaryDirectory() as folder:
+    /// ...     np.save(f"{folder}/flat.npy", np.zeros((4, 3)))
+    /// ...     nacre.HeightMap.read(f"{folder}/flat.npy", spacing=1e-6, unit="nm").heights.shape
+    /// (4, 3)
+    #[staticmethod]
+    #[pyo3(signature = (path, *, spacing=None, unit=None, detrend="plane", channel=None))]
+    fn read<'py>(
+        py: Python<'py>,
+        path: &Bound<'py, PyAny>,
+        spacing: Option<&Bound<'py, PyAny>>,
+        unit: Option<&str>,
+        detrend: &str,
+        channel: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = PyDict::new(py);
+        options.set_item("spacing", spacing)?;
+        options.set_item("unit", unit)?;
+        options.set_item("detrend", detrend)?;
+        options.set_item("channel", channel)?;
+        let surfaces = py.import("nacre.surfaces")?;
+        surfaces.call_method("read", (path,), Some(&options))
+    }
+
+    /// The heights ``(nx, ny)`` [m].
+    #[getter]
+    fn heights<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let map = height_map(slf);
+        read_only(slf.py(), map.heights().to_owned())
+    }
+
+    /// Distances between samples ``(dx, dy)`` [m].
+    #[getter]
+    fn spacing(slf: &Bound<'_, Self>) -> (f64, f64) {
+        height_map(slf).spacing().into()
+    }
+
+    /// Centre [m].
+    #[getter]
+    fn center(slf: &Bound<'_, Self>) -> (f64, f64) {
+        height_map(slf).center().into()
+    }
+}
+
+fn height_map<'a>(object: &'a Bound<'_, PyHeightMap>) -> &'a HeightMap {
+    match &object.as_super().get().0 {
+        Shape::HeightMap(map) => map,
+        _ => unreachable!("made by its own constructor"),
+    }
+}

@@ -1,0 +1,117 @@
+//! `nacre.Roller`.
+
+use pyo3::prelude::*;
+
+use super::super::profiles;
+use super::{PyShape, Shape, subclass};
+use crate::error::Error;
+use crate::surface::{CrownedProfile, Profile, Roller};
+
+/// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
+///
+/// Crowned: ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
+/// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``. Spinu et al., The normal
+/// contact of finite length coated cylinders, eq. (3). Any other profile is averaged over each cell,
+/// so that the ends do not depend on where a cell's centre falls.
+///
+/// Parameters
+/// ----------
+/// radius : float
+///     Radius R [m], above 0.
+/// flat_length : float, optional
+///     Length of the straight part [m], at least 0.
+/// crown_radius : float, optional
+///     Radius R_a of the rounded ends [m], above 0.
+/// length : float, optional
+///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
+/// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
+///     Another axial profile, in place of `flat_length` and `crown_radius`; a pair is positions and
+///     drops.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If a length is out of range, or there is neither a crown nor a profile, or both.
+///
+/// Examples
+/// --------
+/// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+/// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None)
+#[pyclass(name = "Roller", module = "nacre", frozen, extends = PyShape)]
+pub(in crate::python) struct PyRoller;
+
+#[pymethods]
+impl PyRoller {
+    #[new]
+    #[pyo3(signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None))]
+    fn new(
+        radius: f64,
+        flat_length: Option<f64>,
+        crown_radius: Option<f64>,
+        length: Option<f64>,
+        profile: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let mut roller = match (flat_length, crown_radius, profile) {
+            (Some(flat_length), Some(crown_radius), None) => {
+                Roller::new(radius, flat_length, crown_radius)?
+            }
+            (None, None, Some(profile)) => {
+                Roller::with_profile(radius, profiles::profile(profile)?)?
+            }
+            _ => {
+                return Err(Error::Inconsistent(
+                    "either flat_length and crown_radius or profile must be given",
+                )
+                .into());
+            }
+        };
+        if let Some(length) = length {
+            roller = roller.with_length(length)?;
+        }
+        Ok(subclass(Self, Shape::Roller(roller)))
+    }
+
+    /// Radius [m].
+    #[getter]
+    fn radius(slf: &Bound<'_, Self>) -> f64 {
+        roller(slf).radius()
+    }
+
+    /// Length of the straight part of a crowned roller [m].
+    #[getter]
+    fn flat_length(slf: &Bound<'_, Self>) -> Option<f64> {
+        crown(slf).map(|crown| crown.flat_length())
+    }
+
+    /// Radius of the ends of a crowned roller [m].
+    #[getter]
+    fn crown_radius(slf: &Bound<'_, Self>) -> Option<f64> {
+        crown(slf).map(|crown| crown.crown_radius())
+    }
+
+    /// Whole length [m], where it is cut off.
+    #[getter]
+    fn length(slf: &Bound<'_, Self>) -> Option<f64> {
+        roller(slf).length()
+    }
+
+    /// The axial profile, where it is not a crown.
+    #[getter]
+    fn profile<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        profiles::to_python(slf.py(), roller(slf).profile())
+    }
+}
+
+fn roller<'a>(object: &'a Bound<'_, PyRoller>) -> &'a Roller {
+    match &object.as_super().get().0 {
+        Shape::Roller(roller) => roller,
+        _ => unreachable!("made by its own constructor"),
+    }
+}
+
+fn crown<'a>(object: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
+    match roller(object).profile() {
+        Profile::Crowned(crown) => Some(crown),
+        Profile::Logarithmic(_) | Profile::Sampled(_) => None,
+    }
+}
