@@ -54,8 +54,8 @@ use problem::{Limits, Outcome, Problem, Quality, Watch};
 use review::{Carried, warnings};
 use start::{checked_gaps, given_pressure, uniform_pressure};
 
-/// Is told of each iteration, and breaks to stop.
-pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + 'a;
+/// Is told of each iteration, on one of the plan's threads, and breaks to stop.
+pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
@@ -165,11 +165,26 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
+        let [nx, ny] = self.grid.shape();
+        let threads = self.convolution.own_threads();
+        threads.run_awake(nx * ny, || {
+            self.solve_here(shape, motion, options, progress)
+        })
+    }
+
+    /// The same, on this thread and those that it finds free.
+    fn solve_here(
+        &self,
+        shape: &dyn Surface,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let limits = options.limits()?;
         let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
-        let mut gap = passes.run(|| checked_gaps(shape, &self.grid))?;
+        let mut gap = checked_gaps(shape, &self.grid)?;
         freedoms.check_feasible(&gap)?;
         freedoms.prescribe(&mut gap);
         let problem = Problem {
@@ -188,7 +203,7 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let mut fields = Fields::new(self.grid.shape());
+        let mut fields = Fields::new(&passes);
         let cascade = match options.algorithm {
             Algorithm::Cascade => Cascade::new(
                 &problem,

@@ -8,12 +8,11 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-use crate::threads::Threads;
+use crate::threads::{Threads, each_chunk};
 
 mod cosine;
 mod even;
@@ -333,12 +332,10 @@ impl PaddedTransform {
         if self.tasks == 1 {
             work(0, data, &mut tasks[0]);
         } else {
-            threads.run(|| {
-                data.par_chunks_mut(chunk)
-                    .zip(tasks[..self.tasks].par_iter_mut())
-                    .enumerate()
-                    .for_each(|(task, (part, scratch))| work(task * items, part, scratch));
-            });
+            let work = |task: usize, part: &mut [T], scratch: &mut TaskScratch| {
+                work(task * items, part, scratch);
+            };
+            threads.run(|| each_chunk(data, chunk, tasks, 0, &work));
         }
     }
 

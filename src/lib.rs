@@ -56,6 +56,8 @@ pub mod grid;
 
 pub mod hertz;
 
+mod threads;
+
 pub mod surface;
 
 pub mod response;
@@ -63,8 +65,6 @@ pub mod response;
 mod graded;
 
 mod pool;
-
-mod threads;
 
 mod fft;
 

@@ -5,10 +5,11 @@
 use std::fmt;
 use std::sync::Arc;
 
-use ndarray::{Array2, ArrayViewMut1, Zip};
+use ndarray::{Array2, Zip, indices};
 
 use crate::error::{Result, finite};
 use crate::grid::Grid;
+use crate::threads::worth_dividing;
 
 mod height_map;
 mod profile;
@@ -79,19 +80,13 @@ pub trait Surface: fmt::Debug + Send + Sync {
     /// Where the grid does not suit the shape.
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
         let (x, y) = (grid.x(), grid.y());
-        let mut gaps = Array2::zeros(grid.shape());
-        let row = |mut row: ArrayViewMut1<f64>, &x: &f64| {
-            row.iter_mut()
-                .zip(&y)
-                .for_each(|(gap, &y)| *gap = self.gap(x, y));
-        };
-        let rows = Zip::from(gaps.rows_mut()).and(&x);
+        let cells = Zip::from(indices(grid.shape()));
+        let gap = |(i, j): (usize, usize)| self.gap(x[i], y[j]);
         // On the threads of whoever asks; rayon's own would not survive a fork.
-        match rayon::current_thread_index() {
-            Some(_) => rows.par_for_each(row),
-            None => rows.for_each(row),
-        }
-        Ok(gaps)
+        Ok(match rayon::current_thread_index() {
+            Some(_) if worth_dividing(x.len() * y.len()) => cells.par_map_collect(gap),
+            _ => cells.map_collect(gap),
+        })
     }
 
     /// How far it goes along x and along y.

@@ -1,9 +1,19 @@
 //! A pool of threads that belongs to a plan.
+//!
+//! A solve divides its work thousands of times, for a fraction of a millisecond each. Left to itself, a
+//! thread of rayon's that finds nothing to do gives its core away at once; beside programs that keep
+//! all cores busy it is back milliseconds later. So whoever waits within a solve looks for work
+//! for some 0.1 ms before that, or naps.
 
+use std::cell::Cell;
 use std::fmt;
+use std::hint::spin_loop;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
 use crate::error::{Error, Result};
 
@@ -14,13 +24,36 @@ const MOST: usize = 256;
 /// is awake: a tenth of a millisecond (measured: `benches/README.md`).
 const WORTH: usize = 1 << 15;
 
+/// How often a thread looks for work in vain before it waits in another way, ...
+const LOOKS: usize = 100;
+
+/// ... and how long it pauses in between: one to two microseconds.
+const PAUSES: usize = 50;
+
+/// How long a thread sleeps that found nothing to do in a solve that goes on: about what it takes to
+/// wake one.
+const NAP: Duration = Duration::from_micros(50);
+
+/// Whether what is done with `cells` cells is worth a second thread.
+pub(crate) fn worth_dividing(cells: usize) -> bool {
+    cells >= WORTH
+}
+
 /// A number of threads, and the pool that is made at the first use.
 ///
 /// The pool sleeps when idle. A process that was forked has the plan but not its threads: there
 /// the pool is made anew.
 pub(crate) struct Threads {
     count: usize,
-    pool: Mutex<Option<(u32, Arc<ThreadPool>)>>,
+    pool: Mutex<Option<(u32, Arc<Pool>)>>,
+}
+
+struct Pool {
+    threads: ThreadPool,
+    /// Calls from other threads that are under way.
+    calls: AtomicUsize,
+    /// Whether its threads look for work.
+    awake: Arc<AtomicBool>,
 }
 
 impl fmt::Debug for Threads {
@@ -57,28 +90,39 @@ impl Threads {
 
     /// Whether to divide among them what is done with `cells` cells.
     pub(crate) fn divide(&self, cells: usize) -> bool {
-        self.count > 1 && cells >= WORTH
+        self.count > 1 && worth_dividing(cells)
     }
 
     /// Calls `work` where rayon's parallel iterators use these threads.
     pub(crate) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match self.pool() {
-            Some(pool) => pool.install(work),
+            Some(pool) => pool.run(work),
             None => work(),
         }
     }
 
-    fn pool(&self) -> Option<Arc<ThreadPool>> {
+    /// Calls `work`, which goes over `cells` cells many times and now and then does something else, on
+    /// one of the threads, the others awake, where that pays and none of them does anything yet.
+    /// Elsewhere it is called here, and divides among them what it can.
+    pub(crate) fn run_awake<R: Send>(&self, cells: usize, work: impl FnOnce() -> R + Send) -> R {
+        match self.divide(cells).then(|| self.pool()).flatten() {
+            Some(pool) => pool.run_awake(work),
+            None => work(),
+        }
+    }
+
+    fn pool(&self) -> Option<Arc<Pool>> {
         let process = std::process::id();
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         match &*pool {
             Some((owner, pool)) if *owner == process => Some(Arc::clone(pool)),
             _ => {
-                let new = ThreadPoolBuilder::new()
-                    .num_threads(self.count)
-                    .build()
-                    .ok()?;
-                let new = Arc::new(new);
+                let threads = ThreadPoolBuilder::new().num_threads(self.count);
+                let new = Arc::new(Pool {
+                    threads: threads.build().ok()?,
+                    calls: AtomicUsize::new(0),
+                    awake: Arc::default(),
+                });
                 if let Some((_, forked)) = pool.replace((process, Arc::clone(&new))) {
                     // Its threads do not exist here: there is nothing that could be joined.
                     std::mem::forget(forked);
@@ -86,5 +130,200 @@ impl Threads {
                 Some(new)
             }
         }
+    }
+}
+
+impl Pool {
+    fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        if self.threads.current_thread_index().is_some() {
+            return work();
+        }
+        self.calls.fetch_add(1, Ordering::AcqRel);
+        let _call = Guard(|| _ = self.calls.fetch_sub(1, Ordering::AcqRel));
+        self.threads.install(work)
+    }
+
+    fn run_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        // One at a time, so that a thread of the pool is left whatever `work` waits for.
+        let one = self
+            .calls
+            .compare_exchange(0, 1, Ordering::AcqRel, Ordering::Relaxed);
+        if one.is_err() {
+            return work();
+        }
+        self.awake.store(true, Ordering::Release);
+        let _call = Guard(|| {
+            self.awake.store(false, Ordering::Release);
+            self.calls.fetch_sub(1, Ordering::AcqRel);
+        });
+        let awake = Arc::clone(&self.awake);
+        self.threads.spawn_broadcast(move |_| stay_awake(&awake));
+        self.threads.install(work)
+    }
+}
+
+/// Calls a function when it is dropped, by a panic, too.
+struct Guard<F: FnMut()>(F);
+
+impl<F: FnMut()> Drop for Guard<F> {
+    fn drop(&mut self) {
+        self.0();
+    }
+}
+
+/// Looks for work on a thread of a pool as long as `awake` holds.
+fn stay_awake(awake: &AtomicBool) {
+    thread_local! {
+        static HERE: Cell<bool> = const { Cell::new(false) };
+    }
+    // What it finds may be a call of this function.
+    if HERE.replace(true) {
+        return;
+    }
+    while awake.load(Ordering::Acquire) {
+        if !look_for_work(|| !awake.load(Ordering::Acquire)) {
+            thread::sleep(NAP);
+        }
+    }
+    HERE.set(false);
+}
+
+/// Does what other threads of the pool have to do, until `enough`. False where there was nothing
+/// for a while.
+fn look_for_work(enough: impl Fn() -> bool) -> bool {
+    let mut looks = 0;
+    while !enough() {
+        if rayon::yield_now() == Some(Yield::Executed) {
+            looks = 0;
+            continue;
+        }
+        if looks == LOOKS {
+            return false;
+        }
+        looks += 1;
+        (0..PAUSES).for_each(|_| spin_loop());
+    }
+    true
+}
+
+/// Calls both, at once where another thread of the pool is free for the second.
+pub(crate) fn join<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    let [taken, ended] = [AtomicBool::new(false), AtomicBool::new(false)];
+    rayon::join(
+        || {
+            let done = first();
+            if taken.load(Ordering::Acquire) {
+                look_for_work(|| ended.load(Ordering::Acquire));
+            }
+            done
+        },
+        || {
+            taken.store(true, Ordering::Release);
+            let done = second();
+            ended.store(true, Ordering::Release);
+            done
+        },
+    )
+}
+
+/// Calls `work` with each `length` elements of `data` and a scratch of their own, and how many times
+/// `length` come before them, `first` included. There are as many scratches as calls.
+pub(crate) fn each_chunk<T: Send, S: Send>(
+    data: &mut [T],
+    length: usize,
+    scratches: &mut [S],
+    first: usize,
+    work: &(impl Fn(usize, &mut [T], &mut S) + Sync),
+) {
+    if data.len() <= length {
+        if let ([_, ..], [scratch, ..]) = (&*data, scratches) {
+            work(first, data, scratch);
+        }
+        return;
+    }
+    let half = data.len().div_ceil(length) / 2;
+    let (near, far) = data.split_at_mut(half * length);
+    let (here, there) = scratches.split_at_mut(half);
+    join(
+        || each_chunk(near, length, here, first, work),
+        || each_chunk(far, length, there, first + half, work),
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+    use std::thread;
+    use std::time::Duration;
+
+    use super::{Threads, WORTH, each_chunk, join};
+    use crate::error::Result;
+
+    /// Whether the caller is one of a pool's threads.
+    fn in_pool() -> bool {
+        rayon::current_thread_index().is_some()
+    }
+
+    #[test]
+    fn each_chunk_is_seen_once_with_a_scratch_of_its_own() -> Result<()> {
+        for count in [1, 2, 5] {
+            let threads = Threads::new(Some(count))?;
+            for (elements, length) in [(0, 3), (1, 3), (3, 3), (4, 3), (700, 9), (1000, 1)] {
+                let mut data = vec![0; elements];
+                let mut scratches = vec![Vec::new(); elements.div_ceil(length)];
+                threads.run_awake(WORTH, || {
+                    each_chunk(&mut data, length, &mut scratches, 7, &|k, part, scratch| {
+                        part.fill(k);
+                        scratch.push((k, part.len()));
+                    });
+                });
+                for (element, number) in data.iter().enumerate() {
+                    assert_eq!(*number, 7 + element / length);
+                }
+                for (k, scratch) in scratches.iter().enumerate() {
+                    assert_eq!(*scratch, [(7 + k, length.min(elements - k * length))]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves whose callbacks solve with the same plan: each call waits for another, of another thread.
+    #[test]
+    fn calls_that_wait_for_calls_end() -> Result<()> {
+        fn nested(threads: Arc<Threads>, depth: u32) -> Option<u32> {
+            let (sender, receiver) = channel();
+            let within = Arc::clone(&threads);
+            thread::spawn(move || {
+                let _ = sender.send(threads.run_awake(WORTH, || {
+                    let deeper = match depth {
+                        0 => 0,
+                        _ => nested(within, depth - 1)?,
+                    };
+                    let (one, more) = threads.run(|| join(|| 1, || deeper));
+                    Some(one + more)
+                }));
+            });
+            // Where that does not end, this does, and says so.
+            receiver.recv_timeout(Duration::from_secs(20)).ok()?
+        }
+        assert_eq!(nested(Arc::new(Threads::new(Some(2))?), 5), Some(6));
+        Ok(())
+    }
+
+    #[test]
+    fn a_panic_reaches_the_caller_and_leaves_the_threads_as_they_were() -> Result<()> {
+        let threads = Threads::new(Some(2))?;
+        for cells in [WORTH, WORTH - 1] {
+            let call = || threads.run_awake(cells, || threads.run(|| panic!("on purpose")));
+            assert!(catch_unwind(AssertUnwindSafe(call)).is_err());
+            assert_eq!(threads.run_awake(cells, in_pool), cells == WORTH);
+        }
+        Ok(())
     }
 }

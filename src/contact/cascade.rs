@@ -15,7 +15,6 @@ use super::direct;
 use super::discretisation::Figures;
 use super::fields::{Fields, slice};
 use super::freedoms::Freedoms;
-use super::passes::Passes;
 use super::patch::{Patch, block, bounds, hull, whole, widened};
 use super::preconditioned::{Approximation, Arrays, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
@@ -295,9 +294,8 @@ impl<'a> Cascade<'a> {
             let fine = &levels[levels.len() - 1];
             let halved = halved(fine.shape());
             let freedoms = fine.freedoms.coarse(halved);
-            let passes = Passes::new(&freedoms.columns, convolution.own_threads());
             // A measured surface has no values for cells that are much larger than its own.
-            let gap = match passes.run(|| shape.gaps(grid)) {
+            let gap = match shape.gaps(grid) {
                 Ok(mut gap) => {
                     freedoms.prescribe(&mut gap);
                     gap

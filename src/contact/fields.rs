@@ -18,11 +18,11 @@ pub(super) struct Fields {
 }
 
 impl Fields {
-    pub(super) fn new(shape: [usize; 2]) -> Self {
+    pub(super) fn new(passes: &Passes) -> Self {
         Self {
-            pressure: Array2::zeros(shape),
+            pressure: passes.zeros(),
             window: [0..0, 0..0],
-            displacement: Array2::zeros(shape),
+            displacement: passes.zeros(),
             motion: Multipliers::default(),
             quality: None,
         }
@@ -40,12 +40,10 @@ impl Fields {
         let (p, window) = (slice(&self.pressure), &self.window);
         let workspace = &mut problem.convolution.workspace();
         let u = slice_mut(&mut self.displacement);
-        let (motion, quality) = problem.passes().run(|| {
-            problem
-                .convolution
-                .apply_rows(p, window[0].clone(), u, workspace);
-            problem.judge(p, window, u, near)
-        });
+        problem
+            .convolution
+            .apply_rows(p, window[0].clone(), u, workspace);
+        let (motion, quality) = problem.judge(p, window, u, near);
         self.motion = motion;
         self.quality = Some(quality);
         quality

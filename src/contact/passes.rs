@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use ndarray::{Array2, Zip, indices};
+
 use super::patch::Window;
 use super::sums::sum;
-use crate::threads::Threads;
+use crate::threads::{self, Threads};
 
 /// Cells that are not divided among threads: a few microseconds' work, in the first caches.
 const LEAF: usize = 1 << 13;
@@ -60,13 +62,14 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Calls `work` on one of the threads. What it calls need not wait for one again: each time that
-    /// takes a tenth of a millisecond.
-    pub(super) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    /// An array of zeros: the system hands out its memory as it is written.
+    pub(super) fn zeros(&self) -> Array2<f64> {
+        let shape = self.columns.each_ref().map(Vec::len);
         if self.divided {
-            self.threads.run(work)
+            let zeros = || Zip::from(indices(shape)).par_map_collect(|_| 0.0);
+            self.threads.run(zeros)
         } else {
-            work()
+            Array2::zeros(shape)
         }
     }
 
@@ -133,7 +136,7 @@ impl<'a> Passes<'a> {
         let first = || self.divide(rows.start..middle, near, here, join, row);
         let second = || self.divide(middle..rows.end, far, there, join, row);
         let (a, b) = if self.divided {
-            rayon::join(first, second)
+            threads::join(first, second)
         } else {
             (first(), second())
         };

@@ -94,11 +94,10 @@ impl<'a> Preconditioned<'a> {
     /// [`Termination::IterationLimit`] early where [`direct`] can go on. Its displacement is the sum
     /// of those of the steps: whoever needs it computes it afresh.
     pub(super) fn solve(&mut self, p: &mut [f64], limits: Limits, watch: &mut Watch) -> Outcome {
-        let passes = self.passes;
         let mut last = Step::Truncated;
-        passes.run(|| self.start(p));
+        self.start(p);
         for iterations in 0.. {
-            let (lambda, quality) = passes.run(|| self.assess(p));
+            let (lambda, quality) = self.assess(p);
             let work = self.work;
             let end = |termination| Outcome {
                 termination,
@@ -115,16 +114,14 @@ impl<'a> Preconditioned<'a> {
             if iterations == limits.max_iterations || (iterations >= PATIENCE && direct::few(p)) {
                 return end(Termination::IterationLimit);
             }
-            last = passes.run(|| {
-                let slope = self.direct();
-                match last {
-                    Step::Truncated => match self.step_with_losses(p, slope) {
-                        Step::None => self.step(p, slope),
-                        done => done,
-                    },
-                    _ => self.step(p, slope),
-                }
-            });
+            let slope = self.direct();
+            last = match last {
+                Step::Truncated => match self.step_with_losses(p, slope) {
+                    Step::None => self.step(p, slope),
+                    done => done,
+                },
+                _ => self.step(p, slope),
+            };
             if last == Step::None {
                 return end(Termination::IterationLimit);
             }
