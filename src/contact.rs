@@ -167,7 +167,7 @@ impl Contact {
     ) -> Result<Solution> {
         let [nx, ny] = self.grid.shape();
         let threads = self.convolution.own_threads();
-        threads.run_awake(nx * ny, || {
+        threads.run_whole(nx * ny, || {
             self.solve_here(shape, motion, options, progress)
         })
     }

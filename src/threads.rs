@@ -5,7 +5,7 @@
 //! all cores busy it is back milliseconds later. So whoever waits within a solve looks for work
 //! for some 0.1 ms before that, or naps.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::fmt;
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -24,14 +24,16 @@ const MOST: usize = 256;
 /// is awake: a tenth of a millisecond (measured: `benches/README.md`).
 const WORTH: usize = 1 << 15;
 
-/// How often a thread looks for work in vain before it waits in another way, ...
+/// How often a thread looks for work in vain, ...
 const LOOKS: usize = 100;
 
 /// ... and how long it pauses in between: one to two microseconds.
 const PAUSES: usize = 50;
 
-/// How long a thread sleeps that found nothing to do in a solve that goes on: about what it takes to
-/// wake one.
+/// How often one that found none sleeps for a while, and looks again, ...
+const NAPS: usize = 100;
+
+/// ... and for how long: about what it takes to wake one.
 const NAP: Duration = Duration::from_micros(50);
 
 /// Whether what is done with `cells` cells is worth a second thread.
@@ -51,9 +53,7 @@ pub(crate) struct Threads {
 struct Pool {
     threads: ThreadPool,
     /// Calls from other threads that are under way.
-    calls: AtomicUsize,
-    /// Whether its threads look for work.
-    awake: Arc<AtomicBool>,
+    calls: Arc<AtomicUsize>,
 }
 
 impl fmt::Debug for Threads {
@@ -101,12 +101,12 @@ impl Threads {
         }
     }
 
-    /// Calls `work`, which goes over `cells` cells many times and now and then does something else, on
-    /// one of the threads, the others awake, where that pays and none of them does anything yet.
-    /// Elsewhere it is called here, and divides among them what it can.
-    pub(crate) fn run_awake<R: Send>(&self, cells: usize, work: impl FnOnce() -> R + Send) -> R {
+    /// Calls `work`, which goes over `cells` cells many times, on one of the threads, where that pays and
+    /// nobody else uses them yet; elsewhere here, from where it divides what it can. Each time that
+    /// something is handed to the threads takes a tenth of a millisecond.
+    pub(crate) fn run_whole<R: Send>(&self, cells: usize, work: impl FnOnce() -> R + Send) -> R {
         match self.divide(cells).then(|| self.pool()).flatten() {
-            Some(pool) => pool.run_awake(work),
+            Some(pool) => pool.run_whole(work),
             None => work(),
         }
     }
@@ -117,12 +117,16 @@ impl Threads {
         match &*pool {
             Some((owner, pool)) if *owner == process => Some(Arc::clone(pool)),
             _ => {
-                let threads = ThreadPoolBuilder::new().num_threads(self.count);
-                let new = Arc::new(Pool {
-                    threads: threads.build().ok()?,
-                    calls: AtomicUsize::new(0),
-                    awake: Arc::default(),
-                });
+                let calls = Arc::new(AtomicUsize::new(0));
+                let theirs = Arc::clone(&calls);
+                let threads = ThreadPoolBuilder::new()
+                    .num_threads(self.count)
+                    .start_handler(move |_| {
+                        CALLS.with(|calls| _ = calls.set(Arc::clone(&theirs)));
+                    })
+                    .build()
+                    .ok()?;
+                let new = Arc::new(Pool { threads, calls });
                 if let Some((_, forked)) = pool.replace((process, Arc::clone(&new))) {
                     // Its threads do not exist here: there is nothing that could be joined.
                     std::mem::forget(forked);
@@ -139,71 +143,82 @@ impl Pool {
             return work();
         }
         self.calls.fetch_add(1, Ordering::AcqRel);
-        let _call = Guard(|| _ = self.calls.fetch_sub(1, Ordering::AcqRel));
-        self.threads.install(work)
+        self.install(work)
     }
 
-    fn run_awake<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    fn run_whole<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         // One at a time, so that a thread of the pool is left whatever `work` waits for.
-        let one = self
-            .calls
-            .compare_exchange(0, 1, Ordering::AcqRel, Ordering::Relaxed);
-        if one.is_err() {
-            return work();
+        let (counted, relaxed) = (Ordering::AcqRel, Ordering::Relaxed);
+        match self.calls.compare_exchange(0, 1, counted, relaxed) {
+            Ok(_) => self.install(work),
+            Err(_) => work(),
         }
-        self.awake.store(true, Ordering::Release);
-        let _call = Guard(|| {
-            self.awake.store(false, Ordering::Release);
-            self.calls.fetch_sub(1, Ordering::AcqRel);
-        });
-        let awake = Arc::clone(&self.awake);
-        self.threads.spawn_broadcast(move |_| stay_awake(&awake));
-        self.threads.install(work)
+    }
+
+    /// Calls `work`, which is among the calls, on one of the threads.
+    fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        struct Call<'a>(&'a AtomicUsize);
+        impl Drop for Call<'_> {
+            fn drop(&mut self) {
+                self.0.fetch_sub(1, Ordering::AcqRel);
+            }
+        }
+        let _call = Call(&self.calls);
+        self.threads.install(|| {
+            let _within = Within::enter();
+            work()
+        })
     }
 }
 
-/// Calls a function when it is dropped, by a panic, too.
-struct Guard<F: FnMut()>(F);
+thread_local! {
+    /// Calls of the pool whose thread this is.
+    static CALLS: OnceCell<Arc<AtomicUsize>> = const { OnceCell::new() };
 
-impl<F: FnMut()> Drop for Guard<F> {
+    static WITHIN: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread was within work of its pool before it entered this; it is again when that is
+/// dropped.
+struct Within(bool);
+
+impl Within {
+    fn enter() -> Self {
+        Self(WITHIN.replace(true))
+    }
+}
+
+impl Drop for Within {
     fn drop(&mut self) {
-        self.0();
+        WITHIN.set(self.0);
     }
 }
 
-/// Looks for work on a thread of a pool as long as `awake` holds.
-fn stay_awake(awake: &AtomicBool) {
-    thread_local! {
-        static HERE: Cell<bool> = const { Cell::new(false) };
+/// Whether there was something to do for the pool, which is done then; else it took a pause.
+fn found_work() -> bool {
+    let found = rayon::yield_now() == Some(Yield::Executed);
+    if !found {
+        (0..PAUSES).for_each(|_| spin_loop());
     }
-    // What it finds may be a call of this function.
-    if HERE.replace(true) {
-        return;
-    }
-    while awake.load(Ordering::Acquire) {
-        if !look_for_work(|| !awake.load(Ordering::Acquire)) {
+    found
+}
+
+/// Looks for more work on a thread that has nothing else to do, while its pool is used. Ends once it
+/// found some, and goes on afterwards: it may be within a wait for something else.
+fn linger() {
+    let within = Within::enter();
+    let used = || CALLS.with(|calls| calls.get().map_or(0, |calls| calls.load(Ordering::Acquire)));
+    let mut looks = 0;
+    while !within.0 && looks < LOOKS + NAPS && used() > 0 {
+        if found_work() {
+            rayon::spawn(linger);
+            return;
+        }
+        looks += 1;
+        if looks > LOOKS {
             thread::sleep(NAP);
         }
     }
-    HERE.set(false);
-}
-
-/// Does what other threads of the pool have to do, until `enough`. False where there was nothing
-/// for a while.
-fn look_for_work(enough: impl Fn() -> bool) -> bool {
-    let mut looks = 0;
-    while !enough() {
-        if rayon::yield_now() == Some(Yield::Executed) {
-            looks = 0;
-            continue;
-        }
-        if looks == LOOKS {
-            return false;
-        }
-        looks += 1;
-        (0..PAUSES).for_each(|_| spin_loop());
-    }
-    true
 }
 
 /// Calls both, at once where another thread of the pool is free for the second.
@@ -215,15 +230,21 @@ pub(crate) fn join<A: Send, B: Send>(
     rayon::join(
         || {
             let done = first();
-            if taken.load(Ordering::Acquire) {
-                look_for_work(|| ended.load(Ordering::Acquire));
+            let mut looks = 0;
+            while taken.load(Ordering::Acquire) && !ended.load(Ordering::Acquire) && looks < LOOKS {
+                looks = if found_work() { 0 } else { looks + 1 };
             }
             done
         },
         || {
             taken.store(true, Ordering::Release);
+            let within = Within::enter();
             let done = second();
             ended.store(true, Ordering::Release);
+            if !within.0 {
+                // Found at once when this returns.
+                rayon::spawn(linger);
+            }
             done
         },
     )
@@ -276,7 +297,7 @@ mod tests {
             for (elements, length) in [(0, 3), (1, 3), (3, 3), (4, 3), (700, 9), (1000, 1)] {
                 let mut data = vec![0; elements];
                 let mut scratches = vec![Vec::new(); elements.div_ceil(length)];
-                threads.run_awake(WORTH, || {
+                threads.run_whole(WORTH, || {
                     each_chunk(&mut data, length, &mut scratches, 7, &|k, part, scratch| {
                         part.fill(k);
                         scratch.push((k, part.len()));
@@ -300,7 +321,7 @@ mod tests {
             let (sender, receiver) = channel();
             let within = Arc::clone(&threads);
             thread::spawn(move || {
-                let _ = sender.send(threads.run_awake(WORTH, || {
+                let _ = sender.send(threads.run_whole(WORTH, || {
                     let deeper = match depth {
                         0 => 0,
                         _ => nested(within, depth - 1)?,
@@ -320,9 +341,9 @@ mod tests {
     fn a_panic_reaches_the_caller_and_leaves_the_threads_as_they_were() -> Result<()> {
         let threads = Threads::new(Some(2))?;
         for cells in [WORTH, WORTH - 1] {
-            let call = || threads.run_awake(cells, || threads.run(|| panic!("on purpose")));
+            let call = || threads.run_whole(cells, || threads.run(|| panic!("on purpose")));
             assert!(catch_unwind(AssertUnwindSafe(call)).is_err());
-            assert_eq!(threads.run_awake(cells, in_pool), cells == WORTH);
+            assert_eq!(threads.run_whole(cells, in_pool), cells == WORTH);
         }
         Ok(())
     }

@@ -24,7 +24,7 @@ enum Message<M, T> {
 pub(super) struct Caller<M> {
     stopped: Arc<AtomicBool>,
     /// Calls Python's callback, and says whether to go on.
-    callback: Option<Box<dyn Fn(M) -> bool + Send>>,
+    callback: Option<Box<dyn FnMut(M) -> bool + Send>>,
 }
 
 impl<M> Caller<M> {
@@ -38,8 +38,8 @@ impl<M> Caller<M> {
     }
 
     /// The same, having told the callback, if there is one.
-    pub(super) fn tell(&self, message: impl FnOnce() -> M) -> ControlFlow<()> {
-        if let Some(callback) = &self.callback
+    pub(super) fn tell(&mut self, message: impl FnOnce() -> M) -> ControlFlow<()> {
+        if let Some(callback) = &mut self.callback
             && !callback(message())
         {
             self.stopped.store(true, Ordering::Relaxed);
@@ -53,7 +53,7 @@ impl<M> Caller<M> {
 pub(super) fn run<M, T>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
-    work: impl FnOnce(&Caller<M>) -> T + Send + 'static,
+    work: impl FnOnce(&mut Caller<M>) -> T + Send + 'static,
 ) -> PyResult<T>
 where
     M: for<'py> IntoPyObject<'py> + Send + 'static,
@@ -63,17 +63,17 @@ where
     let (answer, answers) = mpsc::channel::<bool>();
     let stopped = Arc::new(AtomicBool::new(false));
     let told = sender.clone();
-    let caller = Caller {
+    let mut caller = Caller {
         stopped: Arc::clone(&stopped),
         callback: callback.is_some().then(|| {
             // Where nobody listens any more, it was interrupted.
             Box::new(move |message| {
                 told.send(Message::Told(message)).is_ok() && answers.recv().unwrap_or(false)
-            }) as Box<dyn Fn(M) -> bool + Send>
+            }) as Box<dyn FnMut(M) -> bool + Send>
         }),
     };
     let worker = thread::Builder::new().name("nacre".into()).spawn(move || {
-        let done = work(&caller);
+        let done = work(&mut caller);
         drop(caller);
         // Nobody waits for what was interrupted.
         let _ = sender.send(Message::Done(done));

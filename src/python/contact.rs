@@ -115,7 +115,7 @@ impl PyContact {
         threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let setup = setup(counterbody, method, refinement, threads)?;
-        let contact = background::run(py, None, move |_: &Caller<()>| {
+        let contact = background::run(py, None, move |_: &mut Caller<()>| {
             Contact::plan(&body, grid.0, setup)
         })??;
         Ok(Self {

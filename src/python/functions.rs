@@ -103,7 +103,7 @@ pub(super) fn influence_coefficients<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let refinement = refinement.map_or(Ok(4), |r| count("refinement", 1, r))?;
     let method = self::method(method, refinement)?;
-    let coefficients = background::run(py, None, move |_: &Caller<()>| {
+    let coefficients = background::run(py, None, move |_: &mut Caller<()>| {
         influence::influence_coefficients(&body, &grid.0, method)
     })??;
     Ok(coefficients.into_pyarray(py))

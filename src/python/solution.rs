@@ -194,7 +194,7 @@ impl PySolution {
     /// 1.0
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let solution = Arc::clone(&self.solution);
-        let stiffness = background::run(py, None, move |caller: &Caller<()>| {
+        let stiffness = background::run(py, None, move |caller: &mut Caller<()>| {
             solution.stiffness_watched(&mut || caller.go_on())
         })??;
         Ok(PyArray2::from_owned_array(
