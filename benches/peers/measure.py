@@ -78,9 +78,10 @@ class Bench:
         threads: int,
         *,
         seconds: float = 3.0,
-        note: str = "",
+        busy: bool = False,
     ) -> Row:
         """Measure one solve, at the tolerance that gives the residual asked."""
+        note = BUSY if busy else ""
         row = Row(problem.name, problem.cells, program, threads, note=note)
         self.rows.append(row)
         key = (program, problem.name)
@@ -94,6 +95,7 @@ class Bench:
             "threads": threads,
             "gaps": str(self.gaps(problem)),
             "seconds": seconds,
+            "busy": busy,
         }
         for _ in range(TRIES):
             try:
@@ -223,7 +225,7 @@ class Bench:
             show(row)
 
 
-BUSY = "beside one spinning process for each core"
+BUSY = "beside one spinning process for each core; the median"
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from peers import report
 from peers.figures import all_figures
-from peers.measure import BUSY, Bench, busy_machine
+from peers.measure import Bench, busy_machine
 from peers.problems import Problem
 from peers.programs import PROGRAMS, release
 
@@ -67,7 +67,7 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     bench.batch(128, 1000)
     with busy_machine():
         for threads in (1, 2):
-            bench.solve(Problem("hertz", middle), "nacre", threads, seconds=10.0, note=BUSY)
+            bench.solve(Problem("hertz", middle), "nacre", threads, seconds=20.0, busy=True)
     if large:
         bench.solve(Problem("hertz", 4096), "nacre", 2, seconds=0.0)
 

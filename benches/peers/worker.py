@@ -24,6 +24,9 @@ from peers.programs import PROGRAMS, Answer
 
 REPETITIONS = 5
 
+#: The same of a busy machine, of which the median counts: the fastest is the luckiest there.
+BUSY_REPETITIONS = 41
+
 
 def memory(field: str) -> int:
     """Return a figure of this process [bytes]: VmRSS now, VmHWM at most; 0 where not known."""
@@ -50,10 +53,11 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
     before, extra = memory("VmRSS"), 0
     plans: list[float] = []
     solves: list[float] = []
-    busy: list[float] = []
+    processors: list[float] = []
+    repetitions = BUSY_REPETITIONS if request["busy"] else REPETITIONS
     answer: Answer | None = None
     begin = time.perf_counter()
-    while len(solves) < REPETITIONS and (
+    while len(solves) < repetitions and (
         not solves or time.perf_counter() - begin + plans[-1] + solves[-1] < request["seconds"]
     ):
         answer = None
@@ -62,18 +66,19 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         planned, processor = time.perf_counter(), time.process_time()
         answer = program.solve(request["tolerance"])
         end = time.perf_counter()
-        busy.append((time.process_time() - processor) / (end - planned))
+        processors.append((time.process_time() - processor) / (end - planned))
         plans.append(planned - start + answer.planning)
         solves.append(end - planned - answer.planning)
         extra = extra or memory("VmHWM") - before
     if answer is None:
         raise RuntimeError("no repetition was made")
+    taken = int(np.argsort(solves)[len(solves) // 2 if request["busy"] else 0])
     result: dict[str, Any] = {
-        "seconds": min(solves),
+        "seconds": solves[taken],
         "planning": min(plans),
         "together": min(a + b for a, b in zip(plans, solves, strict=True)),
         "bytes_per_cell": extra / gaps.size,
-        "processors": busy[int(np.argmin(solves))],
+        "processors": processors[taken],
         "iterations": answer.iterations,
         "work": answer.work,
         "reported": answer.reported,
