@@ -203,7 +203,7 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let mut fields = Fields::new(&passes);
+        let mut fields = Fields::new(&passes, self.grid.shape());
         let cascade = match options.algorithm {
             Algorithm::Cascade => Cascade::new(
                 &problem,

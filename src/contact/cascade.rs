@@ -16,7 +16,7 @@ use super::discretisation::Figures;
 use super::fields::{Fields, slice};
 use super::freedoms::Freedoms;
 use super::patch::{Patch, block, bounds, hull, whole, widened};
-use super::preconditioned::{Approximation, Arrays, Preconditioned};
+use super::preconditioned::{Approximation, Memory, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
 use crate::error::Result;
@@ -67,7 +67,7 @@ pub(super) struct Levels {
     /// Of the coarser ones.
     convolutions: Vec<Convolution>,
     grids: Vec<Grid>,
-    arrays: Pool<Arrays>,
+    memory: Pool<Memory>,
 }
 
 impl Levels {
@@ -92,7 +92,7 @@ impl Levels {
             coefficients: Arc::new(coefficients),
             convolutions,
             grids,
-            arrays: Pool::default(),
+            memory: Pool::default(),
         })
     }
 
@@ -103,7 +103,7 @@ impl Levels {
             coefficients: Arc::clone(&self.coefficients),
             convolutions: convolutions.map(|c| c.beside(finest)).collect(),
             grids: self.grids.clone(),
-            arrays: Pool::default(),
+            memory: Pool::default(),
         }
     }
 }
@@ -141,7 +141,8 @@ struct Level<'a> {
     convolution: &'a Convolution,
     freedoms: Freedoms,
     gap: Cow<'a, Array2<f64>>,
-    arrays: &'a Pool<Arrays>,
+    /// Of iterations, and how many cells they may have.
+    memory: (&'a Pool<Memory>, usize),
 }
 
 impl Level<'_> {
@@ -195,7 +196,8 @@ impl Level<'_> {
                 freedoms: &freedoms,
                 gap: &gap,
             };
-            let mut solver = Preconditioned::new(&problem, &approximation, self.arrays.lease());
+            let (memory, most) = self.memory;
+            let mut solver = Preconditioned::new(&problem, &approximation, memory.lease(), most);
             let before = *work;
             let mut outcome = solver.solve(
                 &mut patch.values,
@@ -264,12 +266,13 @@ impl<'a> Cascade<'a> {
         watch: &mut Watch,
     ) -> std::result::Result<(Self, Option<Outcome>), ()> {
         let finest = &planned.coefficients[0];
+        let memory = (&planned.memory, finest.len());
         let mut levels = vec![Level {
             coefficients: finest,
             convolution: problem.convolution,
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
-            arrays: &planned.arrays,
+            memory,
         }];
         let mut work = 0.0;
         let mut figures = Vec::new();
@@ -307,7 +310,7 @@ impl<'a> Cascade<'a> {
                 convolution,
                 freedoms,
                 gap: Cow::Owned(gap),
-                arrays: &planned.arrays,
+                memory,
             });
         }
         let limits_at = |depth: usize| Limits {

@@ -18,11 +18,16 @@ pub(super) struct Fields {
 }
 
 impl Fields {
-    pub(super) fn new(passes: &Passes) -> Self {
+    pub(super) fn new(passes: &Passes, shape: [usize; 2]) -> Self {
+        let zeros = || {
+            let mut values = Vec::new();
+            passes.zero(&mut values);
+            array(shape, values)
+        };
         Self {
-            pressure: passes.zeros(),
+            pressure: zeros(),
             window: [0..0, 0..0],
-            displacement: passes.zeros(),
+            displacement: zeros(),
             motion: Multipliers::default(),
             quality: None,
         }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, Zip, indices};
+use rayon::iter::IndexedParallelIterator;
 
 use super::patch::Window;
 use super::sums::sum;
@@ -62,14 +62,23 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// An array of zeros: the system hands out its memory as it is written.
-    pub(super) fn zeros(&self) -> Array2<f64> {
-        let shape = self.columns.each_ref().map(Vec::len);
+    /// Cells in all.
+    pub(super) fn cells(&self) -> usize {
+        self.columns[0].len() * self.columns[1].len()
+    }
+
+    /// Makes of an array as many zeros as there are cells: to be handed memory by the system takes
+    /// longer than to write it.
+    pub(super) fn zero(&self, array: &mut Vec<f64>) {
         if self.divided {
-            let zeros = || Zip::from(indices(shape)).par_map_collect(|_| 0.0);
-            self.threads.run(zeros)
+            let zeros = rayon::iter::repeat_n(0.0, self.cells());
+            self.threads.run(|| zeros.collect_into_vec(array));
+        } else if array.capacity() == 0 {
+            // The system has zeros at hand.
+            *array = vec![0.0; self.cells()];
         } else {
-            Array2::zeros(shape)
+            array.clear();
+            array.resize(self.cells(), 0.0);
         }
     }
 

@@ -21,7 +21,8 @@ use super::problem::{
 use super::sums::{ONE, ZERO, all, dot, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
 use crate::pool::Lease;
-pub(super) use arrays::Arrays;
+use arrays::Arrays;
+pub(super) use arrays::Memory;
 
 /// A convolution and what approximates it.
 pub(super) struct Approximation {
@@ -37,7 +38,7 @@ pub(super) struct Preconditioned<'a> {
     approximation: &'a Approximation,
     passes: Passes<'a>,
     workspace: Workspace,
-    arrays: Lease<Arrays>,
+    memory: Lease<Memory>,
     /// Part of the response that is not yet in the displacement.
     pending: f64,
     /// Whether the contact has changed since the images of the freedoms were made, or last seen.
@@ -71,15 +72,17 @@ impl<'a> Preconditioned<'a> {
     pub(super) fn new(
         problem: &'a Problem<'a>,
         approximation: &'a Approximation,
-        mut arrays: Lease<Arrays>,
+        mut memory: Lease<Memory>,
+        most: usize,
     ) -> Self {
-        arrays.fit(problem.gap.len(), problem.freedoms.loaded);
+        let passes = problem.passes();
+        memory.fit(&passes, most, problem.freedoms.loaded);
         Self {
             problem,
             approximation,
-            passes: problem.passes(),
+            passes,
             workspace: problem.convolution.workspace(),
-            arrays,
+            memory,
             pending: 0.0,
             changed: false,
             stale: false,
@@ -131,7 +134,7 @@ impl<'a> Preconditioned<'a> {
 
     /// Takes the cells with a pressure for the contact.
     fn start(&mut self, p: &[f64]) {
-        let contact = &mut self.arrays.contact;
+        let Arrays { contact, .. } = self.memory.arrays(self.problem.gap.len());
         self.passes.each([p], [contact], add, |_, [p], [contact]| {
             update([p], [contact], |[p], _| ([where_positive(p, ONE)], []))
         });
@@ -144,9 +147,9 @@ impl<'a> Preconditioned<'a> {
         let inverse = &self.approximation.inverse;
         let Arrays {
             contact, z, images, ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         let loaded = self.problem.freedoms.loaded;
-        for (freedom, image) in images.iter_mut().enumerate().filter(|(k, _)| loaded[*k]) {
+        for (freedom, image) in images.into_iter().enumerate().filter(|(k, _)| loaded[*k]) {
             self.passes
                 .each([contact], [z], add, |row, [contact], [z]| {
                     update([contact, row.y], [z], |[inside, y], _| {
@@ -160,7 +163,7 @@ impl<'a> Preconditioned<'a> {
 
     /// u = K p
     fn displace(&mut self, p: &[f64]) {
-        let u = &mut self.arrays.u;
+        let Arrays { u, .. } = self.memory.arrays(self.problem.gap.len());
         self.problem.apply(p, u, &mut self.workspace);
         self.work += self.problem.convolution.work();
         self.pending = 0.0;
@@ -172,15 +175,14 @@ impl<'a> Preconditioned<'a> {
         // Where more than one cell in so many joins, the directions so far say little.
         const MANY: f64 = 10.0;
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        self.memory.keep_residual();
         let Arrays {
             u,
             contact,
             r,
-            r_before,
             response,
             ..
-        } = &mut *self.arrays;
-        std::mem::swap(r, r_before);
+        } = self.memory.arrays(self.problem.gap.len());
         let pending = all(std::mem::take(&mut self.pending));
         let fit = self
             .passes
@@ -232,7 +234,7 @@ impl<'a> Preconditioned<'a> {
             self.conjugate = false;
         }
         self.stale = std::mem::take(&mut self.changed);
-        let Arrays { r, z, .. } = &mut *self.arrays;
+        let Arrays { r, z, .. } = self.memory.arrays(self.problem.gap.len());
         let inverse = &self.approximation.inverse;
         inverse.apply_slices(r, z, &mut self.workspace);
         self.work += inverse.work();
@@ -243,7 +245,7 @@ impl<'a> Preconditioned<'a> {
             z,
             direction,
             ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         if descent <= 0.0 {
             // The oblique projection failed: steepest descent, projected orthogonally.
             z.copy_from_slice(r);
@@ -295,11 +297,11 @@ impl<'a> Preconditioned<'a> {
             z,
             images,
             ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         // Whatever stands for those that are not loaded has no weight.
         let images = [0, 1, 2].map(|k| match freedoms.loaded[k] {
-            true => images[k].as_slice(),
-            false => contact.as_slice(),
+            true => &*images[k],
+            false => &*contact,
         });
         let mut factors = [0.0; 3];
         if freedoms.any_loaded() {

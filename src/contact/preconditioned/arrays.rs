@@ -1,28 +1,45 @@
 //! Memory of an iteration.
 
-/// Arrays of an iteration, as long as there are cells.
+use crate::contact::passes::Passes;
+
+/// Memory of the arrays of an iteration; it may be larger than needed.
 #[derive(Debug, Default)]
-pub(in crate::contact) struct Arrays {
-    /// Displacement K p.
-    pub(super) u: Vec<f64>,
-    /// 1 on the cells that may have a pressure, 0 elsewhere.
-    pub(super) contact: Vec<f64>,
-    /// −g on the contact, 0 elsewhere.
-    pub(super) r: Vec<f64>,
-    pub(super) r_before: Vec<f64>,
-    /// The inverse applied to the residual; once the direction is known, the change of the pressure.
-    pub(super) z: Vec<f64>,
-    pub(super) direction: Vec<f64>,
-    /// K applied to the last direction or change.
-    pub(super) response: Vec<f64>,
-    /// The pressure before a step.
-    pub(super) before: Vec<f64>,
-    /// The inverse applied to the loaded freedoms on a contact; of the others nothing.
-    pub(super) images: [Vec<f64>; 3],
+pub(in crate::contact) struct Memory {
+    u: Vec<f64>,
+    contact: Vec<f64>,
+    r: Vec<f64>,
+    r_before: Vec<f64>,
+    z: Vec<f64>,
+    direction: Vec<f64>,
+    response: Vec<f64>,
+    before: Vec<f64>,
+    images: [Vec<f64>; 3],
 }
 
-impl Arrays {
-    pub(super) fn fit(&mut self, cells: usize, loaded: [bool; 3]) {
+/// Arrays of an iteration, as long as there are cells.
+pub(super) struct Arrays<'a> {
+    /// Displacement K p.
+    pub(super) u: &'a mut [f64],
+    /// 1 on the cells that may have a pressure, 0 elsewhere.
+    pub(super) contact: &'a mut [f64],
+    /// −g on the contact, 0 elsewhere.
+    pub(super) r: &'a mut [f64],
+    pub(super) r_before: &'a mut [f64],
+    /// The inverse applied to the residual; once the direction is known, the change of the pressure.
+    pub(super) z: &'a mut [f64],
+    pub(super) direction: &'a mut [f64],
+    /// K applied to the last direction or change.
+    pub(super) response: &'a mut [f64],
+    /// The pressure before a step.
+    pub(super) before: &'a mut [f64],
+    /// The inverse applied to the loaded freedoms on a contact; of the others nothing.
+    pub(super) images: [&'a mut [f64]; 3],
+}
+
+impl Memory {
+    /// Makes it large enough for the cells of `passes`. Whatever a solve may need, up to `most` cells, is
+    /// asked for at once; the system hands it out as it is written.
+    pub(super) fn fit(&mut self, passes: &Passes, most: usize, loaded: [bool; 3]) {
         let Self {
             u,
             contact,
@@ -34,11 +51,38 @@ impl Arrays {
             before,
             images,
         } = self;
-        for array in [contact, u, r, r_before, z, direction, response, before] {
-            array.resize(cells, 0.0);
+        let arrays = [u, contact, r, r_before, z, direction, response, before];
+        let images = images.iter_mut().zip(loaded);
+        let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
+        for array in arrays.into_iter().chain(images) {
+            if array.len() < passes.cells() {
+                if array.capacity() < passes.cells() {
+                    *array = Vec::with_capacity(most.max(passes.cells()));
+                }
+                passes.zero(array);
+            }
         }
-        for (image, loaded) in images.iter_mut().zip(loaded) {
-            image.resize(if loaded { cells } else { 0 }, 0.0);
+    }
+
+    pub(super) fn arrays(&mut self, cells: usize) -> Arrays<'_> {
+        Arrays {
+            u: &mut self.u[..cells],
+            contact: &mut self.contact[..cells],
+            r: &mut self.r[..cells],
+            r_before: &mut self.r_before[..cells],
+            z: &mut self.z[..cells],
+            direction: &mut self.direction[..cells],
+            response: &mut self.response[..cells],
+            before: &mut self.before[..cells],
+            images: self.images.each_mut().map(|image| match image.len() {
+                0 => image.as_mut_slice(),
+                _ => &mut image[..cells],
+            }),
         }
+    }
+
+    /// The residual becomes that of the iteration before.
+    pub(super) fn keep_residual(&mut self) {
+        std::mem::swap(&mut self.r, &mut self.r_before);
     }
 }

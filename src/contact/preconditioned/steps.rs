@@ -19,7 +19,7 @@ impl Preconditioned<'_> {
         let freedoms = self.problem.freedoms;
         let Arrays {
             direction, before, ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         let [truncated, moments @ ..] = self.passes.each(
             [direction],
             [&mut *p, before],
@@ -49,7 +49,7 @@ impl Preconditioned<'_> {
             direction,
             response,
             ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         problem.apply(direction, response, &mut self.workspace);
         self.work += problem.convolution.work();
         let curvature = self.passes.dot(response, direction);
@@ -77,7 +77,7 @@ impl Preconditioned<'_> {
             direction,
             response,
             ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         periodic.apply_slices(direction, response, &mut self.workspace);
         self.work += periodic.work();
         let curvature = self.passes.dot(response, direction);
@@ -92,7 +92,7 @@ impl Preconditioned<'_> {
             response,
             before,
             ..
-        } = &mut *self.arrays;
+        } = self.memory.arrays(self.problem.gap.len());
         self.passes
             .each([p, before], [change], add, |_, inputs, [change]| {
                 update(inputs, [change], |[p, before], _| ([p - before], []))
