@@ -32,7 +32,7 @@ pub(super) struct Arrays<'a> {
     pub(super) response: &'a mut [f64],
     /// The pressure before a step.
     pub(super) before: &'a mut [f64],
-    /// The inverse applied to the loaded freedoms on a contact; of the others nothing.
+    /// The inverse applied to the loaded freedoms on a contact; of the others whatever there is.
     pub(super) images: [&'a mut [f64]; 3],
 }
 
@@ -74,9 +74,9 @@ impl Memory {
             direction: &mut self.direction[..cells],
             response: &mut self.response[..cells],
             before: &mut self.before[..cells],
-            images: self.images.each_mut().map(|image| match image.len() {
-                0 => image.as_mut_slice(),
-                _ => &mut image[..cells],
+            images: self.images.each_mut().map(|image| {
+                let kept = cells.min(image.len());
+                &mut image[..kept]
             }),
         }
     }
