@@ -15,6 +15,18 @@ impl Freedoms {
         (0..3).all(|k| !self.loaded[k] || (sums[k] - self.target[k]).abs() <= BALANCED * force)
     }
 
+    /// The factor by which a pressure of this `force` carries the load. None where it carries nothing;
+    /// sums may overflow, or vanish.
+    pub(super) fn to_load(&self, force: f64) -> Option<f64> {
+        let factor = self.target[0] / force;
+        (self.loaded[0] && force > 0.0 && factor > 0.0 && factor.is_finite()).then_some(factor)
+    }
+
+    /// Whether the force alone is loaded.
+    pub(super) fn only_force(&self) -> bool {
+        self.loaded == [true, false, false]
+    }
+
     /// Restores balance: p ← [p (1 + Bμ)]₊ with Bᵀp on target. Returns whether it got there.
     ///
     /// μ maximises the concave μᵀF − ½ Σ p [1 + Bμ]₊², of which the gradient is the mismatch: by
@@ -25,17 +37,11 @@ impl Freedoms {
         }
         if self.loaded[0] {
             // First the force alone, so that μ stays small against 1.
-            let force: f64 = self.moments(pressure)[0];
-            if force <= 0.0 {
+            let Some(factor) = self.to_load(self.moments(pressure)[0]) else {
                 return false;
-            }
-            let factor = self.target[0] / force;
-            // A sum may overflow, or vanish.
-            if !(factor > 0.0 && factor.is_finite()) {
-                return false;
-            }
+            };
             pressure.iter_mut().for_each(|p| *p *= factor);
-            if self.loaded == [true, false, false] {
+            if self.only_force() {
                 return true;
             }
         }

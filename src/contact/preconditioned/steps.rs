@@ -9,37 +9,56 @@ use std::ops::Range;
 
 use super::arrays::Arrays;
 use super::{Preconditioned, Step};
-use crate::contact::passes::add;
-use crate::contact::sums::{ONE, all, sum, update, where_positive};
+use crate::contact::passes::{Row, add};
+use crate::contact::sums::{Lanes, ONE, all, sum, update, where_positive};
 
 impl Preconditioned<'_> {
-    /// Moves `p` by `step` times the direction as far as it stays ≥ 0, and restores balance. Returns
-    /// [`Step::Whole`] where neither was needed.
-    fn advance(&mut self, p: &mut [f64], step: f64) -> Step {
+    /// Moves `p` by `step` times the direction as far as it stays ≥ 0, having kept what it was where
+    /// `keep` asks. Returns [`Step::Whole`] where it is balanced and none would be negative; else,
+    /// with [`Step::Truncated`], the factor on `p` that is left of restoring balance.
+    fn advance(&mut self, p: &mut [f64], step: f64, keep: bool) -> (Step, f64) {
         let freedoms = self.problem.freedoms;
         let Arrays {
             direction, before, ..
         } = self.memory.arrays(self.problem.gap.len());
-        let [truncated, moments @ ..] = self.passes.each(
-            [direction],
-            [&mut *p, before],
-            add,
-            |row, [direction], [p, before]| {
-                let [truncated] = update([direction], [&mut *p, before], |[d], [p, _]| {
-                    let moved = p + all(step) * d;
-                    let kept = where_positive(moved, moved);
-                    ([kept, p], [where_positive(-moved, ONE)])
-                });
-                let [f, fx, fy] = freedoms.moments_of(row, p);
-                [truncated, f, fx, fy]
-            },
-        );
+        let moved = |d: Lanes, p: Lanes| {
+            let moved = p + all(step) * d;
+            (where_positive(moved, moved), where_positive(-moved, ONE))
+        };
+        let with_moments = |row: Row, truncated: f64, p: &[f64]| {
+            let [f, fx, fy] = freedoms.moments_of(row, p);
+            [truncated, f, fx, fy]
+        };
+        let [truncated, moments @ ..] = if keep {
+            let outputs = [&mut *p, before];
+            self.passes
+                .each([direction], outputs, add, |row, [d], [p, before]| {
+                    let [truncated] = update([d], [&mut *p, before], |[d], [p, _]| {
+                        let (kept, lost) = moved(d, p);
+                        ([kept, p], [lost])
+                    });
+                    with_moments(row, truncated, p)
+                })
+        } else {
+            self.passes
+                .each([direction], [&mut *p], add, |row, [d], [p]| {
+                    let [truncated] = update([d], [&mut *p], |[d], [p]| {
+                        let (kept, lost) = moved(d, p);
+                        ([kept], [lost])
+                    });
+                    with_moments(row, truncated, p)
+                })
+        };
         // A direction that lost cells since it was made is out of balance, too.
-        if truncated > 0.0 || !freedoms.on_target(moments) {
-            self.problem.rebalance(p);
-            return Step::Truncated;
+        if truncated <= 0.0 && freedoms.on_target(moments) {
+            return (Step::Whole, 1.0);
         }
-        Step::Whole
+        let factor = freedoms.to_load(moments[0]);
+        let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {
+            self.problem.rebalance(p);
+            1.0
+        });
+        (Step::Truncated, factor)
     }
 
     /// A step of exact length. Where cells leave, the displacement is computed afresh.
@@ -57,8 +76,11 @@ impl Preconditioned<'_> {
             return Step::None;
         }
         let length = slope / curvature;
-        let done = self.advance(p, length);
+        let (done, factor) = self.advance(p, length, false);
         if done == Step::Truncated {
+            self.passes.each([], [&mut *p], add, |_, [], [p]| {
+                update([], [p], |[], [p]| ([all(factor) * p], []))
+            });
             self.displace(p);
         } else {
             self.pending = length;
@@ -85,7 +107,7 @@ impl Preconditioned<'_> {
         if !(curvature > 0.0 && slope > 0.0) {
             return Step::None;
         }
-        let done = self.advance(p, slope / curvature);
+        let (done, factor) = self.advance(p, slope / curvature, true);
         let Arrays {
             r,
             z: change,
@@ -93,9 +115,13 @@ impl Preconditioned<'_> {
             before,
             ..
         } = self.memory.arrays(self.problem.gap.len());
+        let outputs = [&mut *p, &mut *change];
         self.passes
-            .each([p, before], [change], add, |_, inputs, [change]| {
-                update(inputs, [change], |[p, before], _| ([p - before], []))
+            .each([&*before], outputs, add, |_, [before], outputs| {
+                update([before], outputs, |[before], [p, _]| {
+                    let p = all(factor) * p;
+                    ([p, p - before], [])
+                })
             });
         let problem = self.problem;
         problem.apply(change, response, &mut self.workspace);
