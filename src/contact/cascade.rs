@@ -15,7 +15,7 @@ use super::direct;
 use super::discretisation::Figures;
 use super::fields::{Fields, slice};
 use super::freedoms::Freedoms;
-use super::patch::{Patch, block, bounds, hull, whole, widened};
+use super::patch::{Patch, block, bounds, copied, hull, whole, widened};
 use super::preconditioned::{Approximation, Memory, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use crate::convolution::Convolution;
@@ -161,9 +161,13 @@ impl Level<'_> {
 
     /// Makes a pressure one that cells can carry and that is balanced. False where that cannot be.
     fn balance(&self, patch: &mut Patch) -> bool {
-        for (p, h) in patch.values.iter_mut().zip(block(&self.gap, &patch.window)) {
-            if !h.is_finite() {
-                *p = 0.0;
+        let gaps = block(&self.gap, &patch.window);
+        let rows = patch.values.chunks_exact_mut(patch.window[1].len());
+        for (row, gaps) in rows.zip(gaps.rows()) {
+            for (p, h) in row.iter_mut().zip(gaps) {
+                if !h.is_finite() {
+                    *p = 0.0;
+                }
             }
         }
         self.freedoms
@@ -190,7 +194,7 @@ impl Level<'_> {
             let [periodic, inverse] = self.convolution.periodic(&corner);
             let approximation = Approximation { inverse, periodic };
             let freedoms = self.freedoms.part(window.clone());
-            let gap: Vec<f64> = block(&self.gap, window).iter().copied().collect();
+            let gap = copied(&self.gap, window);
             let problem = Problem {
                 convolution: part.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
+use ndarray::{Array2, ArrayRef2, ArrayView1, ArrayView2, Axis, Slice};
 
 /// Cells around the contact in a window.
 const MARGIN: usize = 6;
@@ -48,6 +48,15 @@ pub(super) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView
     view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
     view.slice_axis_inplace(Axis(1), Slice::from(y.clone()));
     view
+}
+
+/// Its values, in C order.
+pub(super) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
+    let mut values = Vec::with_capacity(window[0].len() * window[1].len());
+    for row in block(array, window).rows() {
+        values.extend(row);
+    }
+    values
 }
 
 /// The smallest window that holds all cells of which `member` holds; none without any.
@@ -103,9 +112,8 @@ impl Patch {
         let [x, y] = &self.window;
         let rows = array.outer_iter_mut().skip(x.start);
         for (mut row, values) in rows.zip(self.values.chunks_exact(y.len())) {
-            for (to, from) in row.iter_mut().skip(y.start).zip(values) {
-                *to = *from;
-            }
+            row.slice_axis_mut(Axis(0), Slice::from(y.clone()))
+                .assign(&ArrayView1::from(values));
         }
     }
 
@@ -131,22 +139,28 @@ impl Patch {
             };
             [(near, 0.75), (next, 0.25)]
         };
+        let [x, y] = &self.window;
+        let line = |i: usize| {
+            let inside = x.contains(&i);
+            inside.then(|| &self.values[(i - x.start) * y.len()..][..y.len()])
+        };
+        let value = |line: Option<&[f64]>, j: usize| match line {
+            Some(line) if y.contains(&j) => line[j - y.start],
+            _ => 0.0,
+        };
+        let columns: Vec<_> = window[1].clone().map(|j| taps(1, j)).collect();
         let mut values = Vec::with_capacity(window[0].len() * window[1].len());
         for i in window[0].clone() {
-            let x = taps(0, i);
-            for j in window[1].clone() {
-                let y = taps(1, j);
-                if self.at(x[0].0, y[0].0) <= 0.0 {
+            let [(near, wide), (next, narrow)] = taps(0, i).map(|(i, part)| (line(i), part));
+            values.extend(columns.iter().map(|[(j, a), (k, b)]| {
+                let here = value(near, *j);
+                if here <= 0.0 {
                     // Interpolation would widen the contact by half a cell on every side.
-                    values.push(0.0);
-                    continue;
+                    return 0.0;
                 }
-                values.push(
-                    x[0].1 * (y[0].1 * self.at(x[0].0, y[0].0) + y[1].1 * self.at(x[0].0, y[1].0))
-                        + x[1].1
-                            * (y[0].1 * self.at(x[1].0, y[0].0) + y[1].1 * self.at(x[1].0, y[1].0)),
-                );
-            }
+                wide * (a * here + b * value(near, *k))
+                    + narrow * (a * value(next, *j) + b * value(next, *k))
+            }));
         }
         Self { window, values }
     }
