@@ -54,7 +54,7 @@ use problem::{Limits, Outcome, Problem, Quality, Watch};
 use review::{Carried, warnings};
 use start::{checked_gaps, given_pressure, uniform_pressure};
 
-/// Is told of each iteration, on one of the plan's threads, and breaks to stop.
+/// Is told of each iteration, perhaps on one of the plan's threads, and breaks to stop.
 pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 
 /// A body on a grid, planned once: influence coefficients and their transform.

@@ -9,7 +9,7 @@ use std::cell::{Cell, OnceCell};
 use std::fmt;
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -41,6 +41,11 @@ pub(crate) fn worth_dividing(cells: usize) -> bool {
     cells >= WORTH
 }
 
+/// Threads that the machine offers this process.
+fn available() -> usize {
+    thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// A number of threads, and the pool that is made at the first use.
 ///
 /// The pool sleeps when idle. A process that was forked has the plan but not its threads: there
@@ -54,6 +59,8 @@ struct Pool {
     threads: ThreadPool,
     /// Calls from other threads that are under way.
     calls: Arc<AtomicUsize>,
+    /// Held while one is counted, and by whoever must know that there is none.
+    gate: Mutex<()>,
 }
 
 impl fmt::Debug for Threads {
@@ -65,7 +72,6 @@ impl fmt::Debug for Threads {
 impl Threads {
     /// `count` threads, or as many as the machine offers this process.
     pub(crate) fn new(count: Option<usize>) -> Result<Self> {
-        let available = || std::thread::available_parallelism().map_or(1, usize::from);
         match count.unwrap_or_else(available) {
             0 => Err(Error::Parameter {
                 name: "threads",
@@ -119,14 +125,21 @@ impl Threads {
             _ => {
                 let calls = Arc::new(AtomicUsize::new(0));
                 let theirs = Arc::clone(&calls);
+                let lingers = self.count <= available();
                 let threads = ThreadPoolBuilder::new()
                     .num_threads(self.count)
                     .start_handler(move |_| {
-                        CALLS.with(|calls| _ = calls.set(Arc::clone(&theirs)));
+                        if lingers {
+                            CALLS.with(|calls| _ = calls.set(Arc::clone(&theirs)));
+                        }
                     })
                     .build()
                     .ok()?;
-                let new = Arc::new(Pool { threads, calls });
+                let new = Arc::new(Pool {
+                    threads,
+                    calls,
+                    gate: Mutex::default(),
+                });
                 if let Some((_, forked)) = pool.replace((process, Arc::clone(&new))) {
                     // Its threads do not exist here: there is nothing that could be joined.
                     std::mem::forget(forked);
@@ -142,37 +155,58 @@ impl Pool {
         if self.threads.current_thread_index().is_some() {
             return work();
         }
-        self.calls.fetch_add(1, Ordering::AcqRel);
-        self.install(work)
-    }
-
-    fn run_whole<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        // One at a time, so that a thread of the pool is left whatever `work` waits for.
-        let (counted, relaxed) = (Ordering::AcqRel, Ordering::Relaxed);
-        match self.calls.compare_exchange(0, 1, counted, relaxed) {
-            Ok(_) => self.install(work),
-            Err(_) => work(),
-        }
-    }
-
-    /// Calls `work`, which is among the calls, on one of the threads.
-    fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        struct Call<'a>(&'a AtomicUsize);
-        impl Drop for Call<'_> {
-            fn drop(&mut self) {
-                self.0.fetch_sub(1, Ordering::AcqRel);
-            }
-        }
-        let _call = Call(&self.calls);
+        let _call = self.call(&self.gate());
         self.threads.install(|| {
             let _within = Within::enter();
             work()
         })
     }
+
+    fn run_whole<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        let (mut work, mut done, mut call) = (Some(work), None, None);
+        self.threads.in_place_scope(|scope| {
+            let gate = self.gate();
+            // One at a time, so that a thread of the pool is left whatever `work` waits for; and none
+            // while another call waits, which might have to wait for it.
+            if self.calls.load(Ordering::Acquire) == 0 {
+                call = Some(self.call(&gate));
+                let (work, done) = (work.take(), &mut done);
+                scope.spawn(move |_| {
+                    let _within = Within::enter();
+                    *done = work.map(|work| work());
+                });
+            }
+        });
+        drop(call);
+        match (done, work) {
+            (Some(done), _) => done,
+            (None, Some(work)) => work(),
+            (None, None) => unreachable!("what was taken was done"),
+        }
+    }
+
+    fn gate(&self) -> MutexGuard<'_, ()> {
+        self.gate.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Counts a call until that is dropped.
+    fn call(&self, _gate: &MutexGuard<()>) -> Call<'_> {
+        self.calls.fetch_add(1, Ordering::AcqRel);
+        Call(&self.calls)
+    }
+}
+
+struct Call<'a>(&'a AtomicUsize);
+
+impl Drop for Call<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
 }
 
 thread_local! {
-    /// Calls of the pool whose thread this is.
+    /// Calls of the pool whose thread this is; none where there are more threads than cores, which
+    /// leave these to each other.
     static CALLS: OnceCell<Arc<AtomicUsize>> = const { OnceCell::new() };
 
     static WITHIN: Cell<bool> = const { Cell::new(false) };
@@ -194,13 +228,20 @@ impl Drop for Within {
     }
 }
 
-/// Whether there was something to do for the pool, which is done then; else it took a pause.
-fn found_work() -> bool {
-    let found = rayon::yield_now() == Some(Yield::Executed);
-    if !found {
+/// Whether there was something to do for the pool, which is done then; else, having looked so often
+/// in vain, it took a pause, or a nap.
+fn found_work(looks: &mut usize) -> bool {
+    if rayon::yield_now() == Some(Yield::Executed) {
+        *looks = 0;
+        return true;
+    }
+    *looks += 1;
+    if *looks > LOOKS {
+        thread::sleep(NAP);
+    } else {
         (0..PAUSES).for_each(|_| spin_loop());
     }
-    found
+    false
 }
 
 /// Looks for more work on a thread that has nothing else to do, while its pool is used. Ends once it
@@ -210,13 +251,9 @@ fn linger() {
     let used = || CALLS.with(|calls| calls.get().map_or(0, |calls| calls.load(Ordering::Acquire)));
     let mut looks = 0;
     while !within.0 && looks < LOOKS + NAPS && used() > 0 {
-        if found_work() {
+        if found_work(&mut looks) {
             rayon::spawn(linger);
             return;
-        }
-        looks += 1;
-        if looks > LOOKS {
-            thread::sleep(NAP);
         }
     }
 }
@@ -227,21 +264,22 @@ pub(crate) fn join<A: Send, B: Send>(
     second: impl FnOnce() -> B + Send,
 ) -> (A, B) {
     let [taken, ended] = [AtomicBool::new(false), AtomicBool::new(false)];
-    rayon::join(
-        || {
+    rayon::join_context(
+        |_| {
             let done = first();
             let mut looks = 0;
-            while taken.load(Ordering::Acquire) && !ended.load(Ordering::Acquire) && looks < LOOKS {
-                looks = if found_work() { 0 } else { looks + 1 };
+            let waits = || taken.load(Ordering::Acquire) && !ended.load(Ordering::Acquire);
+            while looks < LOOKS + NAPS && waits() {
+                found_work(&mut looks);
             }
             done
         },
-        || {
+        |context| {
             taken.store(true, Ordering::Release);
             let within = Within::enter();
             let done = second();
             ended.store(true, Ordering::Release);
-            if !within.0 {
+            if context.migrated() && !within.0 {
                 // Found at once when this returns.
                 rayon::spawn(linger);
             }
