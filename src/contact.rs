@@ -292,7 +292,7 @@ impl Contact {
 }
 
 /// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 164
-/// where the contact fills the grid, 181 where it tilts, too; 86 where it fills a ninth).
+/// where the contact fills the grid, 181 where it tilts, too; 95 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
     const ARRAYS: u64 = 18;
     let [nx, ny] = grid.shape();

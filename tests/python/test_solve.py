@@ -436,6 +436,25 @@ def test_the_number_of_threads_changes_no_bit() -> None:
     )
 
 
+def test_solves_of_one_plan_may_wait_for_each_other() -> None:
+    # More solves than threads: were a thread held by each that waits, the third would not begin.
+    contact = nacre.Contact(COATED, FINE_GRID, threads=2)
+    expected = contact.solve(SPHERE, load=HEAVY).pressure
+    for _ in range(10):
+        meeting = threading.Barrier(3)
+
+        def solve(meeting: threading.Barrier = meeting) -> nacre.Solution:
+            def wait(report: nacre.Report) -> None:
+                if report.iterations == 1:
+                    meeting.wait(timeout=20)  # raises where one of them does not come
+
+            return contact.solve(SPHERE, load=HEAVY, progress=wait)
+
+        with ThreadPoolExecutor(3) as executor:
+            for solved in [executor.submit(solve) for _ in range(3)]:
+                np.testing.assert_array_equal(solved.result().pressure, expected)
+
+
 def test_other_threads_run_during_a_solve() -> None:
     contact = nacre.Contact(COATED, FINE_GRID, threads=1)
     started = threading.Event()
