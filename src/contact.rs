@@ -203,7 +203,7 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let mut fields = Fields::new(&passes, self.grid.shape());
+        let mut fields = Fields::new(self.grid.shape());
         let cascade = match options.algorithm {
             Algorithm::Cascade => Cascade::new(
                 &problem,
@@ -291,8 +291,8 @@ impl Contact {
     }
 }
 
-/// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 164
-/// where the contact fills the grid, 181 where it tilts, too; 95 where it fills a ninth).
+/// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 161
+/// where the contact fills the grid, 177 where it tilts, too; 85 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
     const ARRAYS: u64 = 18;
     let [nx, ny] = grid.shape();

@@ -1,6 +1,6 @@
 //! A pool of threads that belongs to a plan.
 //!
-//! A solve divides its work thousands of times, for a fraction of a millisecond each. Left to itself, a
+//! A solve divides its work hundreds of times, for a few milliseconds or less each. Left to itself, a
 //! thread of rayon's that finds nothing to do gives its core away at once; beside programs that keep
 //! all cores busy it is back milliseconds later. So whoever waits within a solve looks for work
 //! for some 0.1 ms before that, or naps.
@@ -24,16 +24,16 @@ const MOST: usize = 256;
 /// is awake: a tenth of a millisecond (measured: `benches/README.md`).
 const WORTH: usize = 1 << 15;
 
-/// How often a thread looks for work in vain, ...
+/// Looks for work, in vain, before a thread that waits takes naps.
 const LOOKS: usize = 100;
 
-/// ... and how long it pauses in between: one to two microseconds.
+/// Pauses of the processor between two looks: a microsecond or so.
 const PAUSES: usize = 50;
 
-/// How often one that found none sleeps for a while, and looks again, ...
+/// Naps before it waits as rayon's threads do.
 const NAPS: usize = 100;
 
-/// ... and for how long: about what it takes to wake one.
+/// A nap, with which the system takes about as long again.
 const NAP: Duration = Duration::from_micros(50);
 
 /// Whether what is done with `cells` cells is worth a second thread.
@@ -209,11 +209,11 @@ thread_local! {
     /// leave these to each other.
     static CALLS: OnceCell<Arc<AtomicUsize>> = const { OnceCell::new() };
 
+    /// Whether this thread is within work of its pool.
     static WITHIN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread was within work of its pool before it entered this; it is again when that is
-/// dropped.
+/// What [`WITHIN`] was before this, and is again when this is dropped.
 struct Within(bool);
 
 impl Within {
@@ -335,7 +335,7 @@ mod tests {
             for (elements, length) in [(0, 3), (1, 3), (3, 3), (4, 3), (700, 9), (1000, 1)] {
                 let mut data = vec![0; elements];
                 let mut scratches = vec![Vec::new(); elements.div_ceil(length)];
-                threads.run_whole(WORTH, || {
+                threads.run(|| {
                     each_chunk(&mut data, length, &mut scratches, 7, &|k, part, scratch| {
                         part.fill(k);
                         scratch.push((k, part.len()));

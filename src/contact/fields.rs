@@ -18,16 +18,13 @@ pub(super) struct Fields {
 }
 
 impl Fields {
-    pub(super) fn new(passes: &Passes, shape: [usize; 2]) -> Self {
-        let zeros = || {
-            let mut values = Vec::new();
-            passes.zero(&mut values);
-            array(shape, values)
-        };
+    /// The system hands out its memory as it is written, most of it when that of the iteration is no
+    /// longer needed.
+    pub(super) fn new(shape: [usize; 2]) -> Self {
         Self {
-            pressure: zeros(),
+            pressure: Array2::zeros(shape),
             window: [0..0, 0..0],
-            displacement: zeros(),
+            displacement: Array2::zeros(shape),
             motion: Multipliers::default(),
             quality: None,
         }

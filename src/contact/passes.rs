@@ -73,9 +73,6 @@ impl<'a> Passes<'a> {
         if self.divided {
             let zeros = rayon::iter::repeat_n(0.0, self.cells());
             self.threads.run(|| zeros.collect_into_vec(array));
-        } else if array.capacity() == 0 {
-            // The system has zeros at hand.
-            *array = vec![0.0; self.cells()];
         } else {
             array.clear();
             array.resize(self.cells(), 0.0);
