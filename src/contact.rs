@@ -184,7 +184,12 @@ impl Contact {
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let limits = options.limits()?;
         let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
-        let mut gap = checked_gaps(shape, &self.grid)?;
+        // The system may take long to hand out memory.
+        let (gap, mut fields) = passes.both(
+            || checked_gaps(shape, &self.grid, &passes),
+            || Fields::new(self.grid.shape()),
+        );
+        let mut gap = gap?;
         freedoms.check_feasible(&gap)?;
         freedoms.prescribe(&mut gap);
         let problem = Problem {
@@ -203,7 +208,6 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let mut fields = Fields::new(self.grid.shape());
         let cascade = match options.algorithm {
             Algorithm::Cascade => Cascade::new(
                 &problem,
@@ -291,8 +295,8 @@ impl Contact {
     }
 }
 
-/// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 161
-/// where the contact fills the grid, 177 where it tilts, too; 85 where it fills a ninth).
+/// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 159
+/// where the contact fills the grid, 175 where it tilts, too; 84 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
     const ARRAYS: u64 = 18;
     let [nx, ny] = grid.shape();

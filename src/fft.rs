@@ -6,13 +6,13 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-use crate::threads::{Threads, each_chunk};
+use crate::threads::{self, Threads, each_chunk};
 
 mod cosine;
 mod even;
@@ -49,6 +49,7 @@ pub(crate) struct PaddedTransform {
     shape: [usize; 2],
     padded: [usize; 2],
     tasks: usize,
+    threads: usize,
     row_forward: Arc<dyn RealToComplex<f64>>,
     row_inverse: Arc<dyn ComplexToReal<f64>>,
     column_forward: Arc<dyn Fft<f64>>,
@@ -71,11 +72,15 @@ pub(crate) struct EvenSpectrum(Vec<f64>);
 pub(crate) struct Workspace {
     rows: Vec<Complex64>,
     blocks: Vec<Complex64>,
-    tasks: Vec<TaskScratch>,
+    scratches: Scratches,
 }
 
+/// Of each thread one, for what it does by itself.
 #[derive(Debug, Default)]
-struct TaskScratch {
+struct Scratches(Vec<Mutex<Scratch>>);
+
+#[derive(Debug, Default)]
+struct Scratch {
     real: Vec<f64>,
     spectrum: Vec<Complex64>,
     columns: Vec<Complex64>,
@@ -84,9 +89,9 @@ struct TaskScratch {
 
 /// Into how many tasks a transform of `shape` is divided.
 fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
-    // More than threads, so that one thread that is held up does not hold up the others.
+    // Many more than threads: all are at work until the last few are done.
     match threads.divide(shape[0] * shape[1]) {
-        true => 4 * threads.count(),
+        true => 16 * threads.count(),
         false => 1,
     }
 }
@@ -109,6 +114,7 @@ impl PaddedTransform {
             shape,
             padded,
             tasks: tasks(shape, threads),
+            threads: threads.count(),
             row_forward: real.plan_fft_forward(padded[1]),
             row_inverse: real.plan_fft_inverse(padded[1]),
             column_forward: complex.plan_fft_forward(padded[0]),
@@ -120,6 +126,7 @@ impl PaddedTransform {
     pub(crate) fn on_threads(&self, threads: &Threads) -> Self {
         Self {
             tasks: tasks(self.shape, threads),
+            threads: threads.count(),
             ..self.clone()
         }
     }
@@ -151,6 +158,11 @@ impl PaddedTransform {
         self.columns().div_ceil(BLOCK)
     }
 
+    /// Threads that may be at work at once.
+    fn scratches(&self) -> usize {
+        self.threads.min(self.tasks)
+    }
+
     pub(crate) fn workspace(&self) -> Workspace {
         let mut workspace = Workspace::default();
         self.fit(&mut workspace);
@@ -173,18 +185,19 @@ impl PaddedTransform {
         let Workspace {
             rows,
             blocks,
-            tasks,
+            scratches: Scratches(scratches),
         } = workspace;
         at_least(rows, self.shape[0] * self.columns(), ZERO);
         at_least(blocks, self.blocks() * self.shape[0] * BLOCK, ZERO);
-        if tasks.len() < self.tasks {
-            tasks.resize_with(self.tasks, TaskScratch::default);
+        if scratches.len() < self.scratches() {
+            scratches.resize_with(self.scratches(), Mutex::default);
         }
-        for task in &mut tasks[..self.tasks] {
-            at_least(&mut task.real, self.padded[1], 0.0);
-            at_least(&mut task.spectrum, self.columns(), ZERO);
-            at_least(&mut task.columns, BLOCK * self.padded[0], ZERO);
-            at_least(&mut task.fft, fft, ZERO);
+        for scratch in &mut scratches[..self.scratches()] {
+            let scratch = scratch.get_mut().unwrap_or_else(PoisonError::into_inner);
+            at_least(&mut scratch.real, self.padded[1], 0.0);
+            at_least(&mut scratch.spectrum, self.columns(), ZERO);
+            at_least(&mut scratch.columns, BLOCK * self.padded[0], ZERO);
+            at_least(&mut scratch.fft, fft, ZERO);
         }
     }
 
@@ -223,15 +236,15 @@ impl PaddedTransform {
         let Workspace {
             rows,
             blocks,
-            tasks,
+            scratches,
         } = workspace;
         let rows = &mut rows[..nx * columns];
         let blocks = &mut blocks[..self.blocks() * nx * BLOCK];
-        self.rows_forward(input, occupied.clone(), rows, tasks, threads);
+        self.rows_forward(input, occupied.clone(), rows, scratches, threads);
 
         let rows = &*rows;
         let quarter_rows = self.quarter_rows();
-        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
+        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
             for (block, kept) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
@@ -269,11 +282,18 @@ impl PaddedTransform {
         };
         let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
         let chunk = blocks_of_a_task * nx * BLOCK;
-        self.over_rows(threads, blocks, chunk, tasks, blocks_of_a_task, multiply);
+        self.over_rows(
+            threads,
+            blocks,
+            chunk,
+            scratches,
+            blocks_of_a_task,
+            multiply,
+        );
 
         let blocks = &*blocks;
         let rows_of_a_task = nx.div_ceil(self.tasks);
-        let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
+        let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
             for (row, values) in output.chunks_exact_mut(ny).enumerate() {
                 self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
                 values.copy_from_slice(&scratch.real[..ny]);
@@ -283,7 +303,7 @@ impl PaddedTransform {
             threads,
             output,
             ny * rows_of_a_task,
-            tasks,
+            scratches,
             rows_of_a_task,
             inverse,
         );
@@ -295,13 +315,13 @@ impl PaddedTransform {
         input: &[f64],
         occupied: Range<usize>,
         rows: &mut [Complex64],
-        tasks: &mut [TaskScratch],
+        scratches: &Scratches,
         threads: &Threads,
     ) {
         let (ny, columns) = (self.shape[1], self.columns());
         let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
         let rows = &mut rows[occupied.start * columns..occupied.end * columns];
-        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
+        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
             for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
                 let start = (occupied.start + first + row) * ny;
                 let values = &input[start..start + ny];
@@ -316,26 +336,30 @@ impl PaddedTransform {
             }
         };
         let chunk = columns * rows_of_a_task;
-        self.over_rows(threads, rows, chunk, tasks, rows_of_a_task, forward);
+        self.over_rows(threads, rows, chunk, scratches, rows_of_a_task, forward);
     }
 
-    /// Calls `work` with the number of its first item for each chunk of `data`, one task a chunk.
+    /// Calls `work` with the number of its first item for each chunk of `data`, one task a chunk, and
+    /// the scratch of its thread.
     fn over_rows<T: Send>(
         &self,
         threads: &Threads,
         data: &mut [T],
         chunk: usize,
-        tasks: &mut [TaskScratch],
+        scratches: &Scratches,
         items: usize,
-        work: impl Fn(usize, &mut [T], &mut TaskScratch) + Sync + Send,
+        work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
     ) {
+        let work = |task: usize, part: &mut [T]| {
+            // Nobody else's: what is done with it is done without waiting for anything.
+            let scratch = &scratches.0[threads::number() % self.scratches()];
+            let mut scratch = scratch.lock().unwrap_or_else(PoisonError::into_inner);
+            work(task * items, part, &mut scratch);
+        };
         if self.tasks == 1 {
-            work(0, data, &mut tasks[0]);
+            work(0, data);
         } else {
-            let work = |task: usize, part: &mut [T], scratch: &mut TaskScratch| {
-                work(task * items, part, scratch);
-            };
-            threads.run(|| each_chunk(data, chunk, tasks, 0, &work));
+            threads.run(|| each_chunk(data, chunk, 0, &work));
         }
     }
 
@@ -344,7 +368,7 @@ impl PaddedTransform {
         &self,
         parts: impl Iterator<Item = &'a [Complex64]>,
         i: usize,
-        scratch: &mut TaskScratch,
+        scratch: &mut Scratch,
     ) {
         let spectrum = &mut scratch.spectrum[..self.columns()];
         for (block, row) in parts.zip(spectrum.chunks_mut(BLOCK)) {

@@ -5,11 +5,11 @@
 use std::fmt;
 use std::sync::Arc;
 
-use ndarray::{Array2, Zip, indices};
+use ndarray::Array2;
 
 use crate::error::{Result, finite};
 use crate::grid::Grid;
-use crate::threads::worth_dividing;
+use crate::threads::fill_rows;
 
 mod height_map;
 mod profile;
@@ -68,25 +68,32 @@ impl Extent {
     }
 }
 
+/// Values at the cells of a grid.
+fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {
+    let mut values = Array2::zeros(grid.shape());
+    if let Some(values) = values.as_slice_mut() {
+        fill_rows(values, grid.shape()[1], |i, row| {
+            for (j, cell) in row.iter_mut().enumerate() {
+                *cell = value(i, j);
+            }
+        });
+    }
+    values
+}
+
 /// An undeformed shape. A new one needs [`Surface::gap`] alone.
 pub trait Surface: fmt::Debug + Send + Sync {
     /// Gap \[m\] to the plane z = 0 at (x, y) \[m\]; +∞ where the shape cannot touch; never NaN.
     fn gap(&self, x: f64, y: f64) -> f64;
 
     /// Gaps at the cells of `grid`, (nx, ny) \[m\]: at their centres, unless the shape's own
-    /// documentation says otherwise. In a pool of rayon's it uses that pool's threads.
+    /// documentation says otherwise. On a thread of a plan it uses all threads of that plan.
     ///
     /// # Errors
     /// Where the grid does not suit the shape.
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
         let (x, y) = (grid.x(), grid.y());
-        let cells = Zip::from(indices(grid.shape()));
-        let gap = |(i, j): (usize, usize)| self.gap(x[i], y[j]);
-        // On the threads of whoever asks; rayon's own would not survive a fork.
-        Ok(match rayon::current_thread_index() {
-            Some(_) if worth_dividing(x.len() * y.len()) => cells.par_map_collect(gap),
-            _ => cells.map_collect(gap),
-        })
+        Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))
     }
 
     /// How far it goes along x and along y.

@@ -1,9 +1,10 @@
 //! A pool of threads that belongs to a plan.
 //!
 //! A solve divides its work hundreds of times, for a few milliseconds or less each. Left to itself, a
-//! thread of rayon's that finds nothing to do gives its core away at once; beside programs that keep
+//! thread of rayon's that waits, or finds nothing to do, gives its core away; beside programs that keep
 //! all cores busy it is back milliseconds later. So whoever waits within a solve looks for work
-//! for some 0.1 ms before that, or naps.
+//! for some 0.1 ms, then between naps, after which it has its core at once; and what is done often
+//! there is divided by [`join`], not by rayon's iterators.
 
 use std::cell::{Cell, OnceCell};
 use std::fmt;
@@ -24,21 +25,33 @@ const MOST: usize = 256;
 /// is awake: a tenth of a millisecond (measured: `benches/README.md`).
 const WORTH: usize = 1 << 15;
 
+/// The same where the others are awake: within a solve, or whatever else these threads do.
+const WORTH_AWAKE: usize = 1 << 13;
+
+/// Cells that are not divided: a few microseconds' work, in the first caches.
+pub(crate) const LEAF: usize = 1 << 13;
+
 /// Looks for work, in vain, before a thread that waits takes naps.
 const LOOKS: usize = 100;
 
 /// Pauses of the processor between two looks: a microsecond or so.
 const PAUSES: usize = 50;
 
-/// Naps before it waits as rayon's threads do.
-const NAPS: usize = 100;
-
-/// A nap, with which the system takes about as long again.
+/// The first naps, with which the system takes about as long again; each hundred is as much longer.
 const NAP: Duration = Duration::from_micros(50);
+
+/// The longest naps, in these.
+const LONGEST: usize = 20;
+
+/// Looks and naps, in vain, before a thread without work sleeps until it is woken: some 50 ms.
+const PATIENCE: usize = 4 * LOOKS;
 
 /// Whether what is done with `cells` cells is worth a second thread.
 pub(crate) fn worth_dividing(cells: usize) -> bool {
-    cells >= WORTH
+    match rayon::current_thread_index() {
+        Some(_) => cells >= WORTH_AWAKE,
+        None => cells >= WORTH,
+    }
 }
 
 /// Threads that the machine offers this process.
@@ -170,6 +183,7 @@ impl Pool {
             // while another call waits, which might have to wait for it.
             if self.calls.load(Ordering::Acquire) == 0 {
                 call = Some(self.call(&gate));
+                self.threads.spawn_broadcast(|_| linger());
                 let (work, done) = (work.take(), &mut done);
                 scope.spawn(move |_| {
                     let _within = Within::enter();
@@ -235,13 +249,16 @@ fn found_work(looks: &mut usize) -> bool {
         *looks = 0;
         return true;
     }
-    *looks += 1;
-    if *looks > LOOKS {
-        thread::sleep(NAP);
-    } else {
-        (0..PAUSES).for_each(|_| spin_loop());
+    match (*looks / LOOKS).min(LONGEST) {
+        0 => pause(),
+        naps => thread::sleep(NAP * naps as u32),
     }
+    *looks += 1;
     false
+}
+
+fn pause() {
+    (0..PAUSES).for_each(|_| spin_loop());
 }
 
 /// Looks for more work on a thread that has nothing else to do, while its pool is used. Ends once it
@@ -250,11 +267,20 @@ fn linger() {
     let within = Within::enter();
     let used = || CALLS.with(|calls| calls.get().map_or(0, |calls| calls.load(Ordering::Acquire)));
     let mut looks = 0;
-    while !within.0 && looks < LOOKS + NAPS && used() > 0 {
+    while !within.0 && looks < PATIENCE && used() > 0 {
         if found_work(&mut looks) {
             rayon::spawn(linger);
             return;
         }
+    }
+}
+
+/// Becomes true when this is dropped, by a panic or not.
+struct SetOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for SetOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
     }
 }
 
@@ -268,17 +294,22 @@ pub(crate) fn join<A: Send, B: Send>(
         |_| {
             let done = first();
             let mut looks = 0;
-            let waits = || taken.load(Ordering::Acquire) && !ended.load(Ordering::Acquire);
-            while looks < LOOKS + NAPS && waits() {
-                found_work(&mut looks);
+            if taken.load(Ordering::Acquire) {
+                // For as long as rayon would wait.
+                while !ended.load(Ordering::Acquire) {
+                    found_work(&mut looks);
+                }
+                // Until rayon has heard of it, too: there it would give its core away.
+                pause();
             }
             done
         },
         |context| {
             taken.store(true, Ordering::Release);
             let within = Within::enter();
+            let end = SetOnDrop(&ended);
             let done = second();
-            ended.store(true, Ordering::Release);
+            drop(end);
             if context.migrated() && !within.0 {
                 // Found at once when this returns.
                 rayon::spawn(linger);
@@ -288,28 +319,50 @@ pub(crate) fn join<A: Send, B: Send>(
     )
 }
 
-/// Calls `work` with each `length` elements of `data` and a scratch of their own, and how many times
-/// `length` come before them, `first` included. There are as many scratches as calls.
-pub(crate) fn each_chunk<T: Send, S: Send>(
+/// The number of this thread in its pool; 0 where it is in none.
+pub(crate) fn number() -> usize {
+    rayon::current_thread_index().unwrap_or(0)
+}
+
+/// Calls `work` with each `length` elements of `data`, and how many times `length` come before them,
+/// `first` included.
+pub(crate) fn each_chunk<T: Send>(
     data: &mut [T],
     length: usize,
-    scratches: &mut [S],
     first: usize,
-    work: &(impl Fn(usize, &mut [T], &mut S) + Sync),
+    work: &(impl Fn(usize, &mut [T]) + Sync),
 ) {
     if data.len() <= length {
-        if let ([_, ..], [scratch, ..]) = (&*data, scratches) {
-            work(first, data, scratch);
+        if !data.is_empty() {
+            work(first, data);
         }
         return;
     }
     let half = data.len().div_ceil(length) / 2;
     let (near, far) = data.split_at_mut(half * length);
-    let (here, there) = scratches.split_at_mut(half);
     join(
-        || each_chunk(near, length, here, first, work),
-        || each_chunk(far, length, there, first + half, work),
+        || each_chunk(near, length, first, work),
+        || each_chunk(far, length, first + half, work),
     );
+}
+
+/// Calls `work` with each row of `length` elements and its number; on all threads of the pool that this
+/// thread belongs to, where it does. (Rayon's own would not survive a fork.)
+pub(crate) fn fill_rows<T: Send>(
+    data: &mut [T],
+    length: usize,
+    work: impl Fn(usize, &mut [T]) + Sync,
+) {
+    let length = length.max(1);
+    let rows = match rayon::current_thread_index() {
+        Some(_) if worth_dividing(data.len()) => (LEAF / length).max(1),
+        _ => data.len().div_ceil(length).max(1),
+    };
+    each_chunk(data, rows * length, 0, &|k, part| {
+        for (i, row) in part.chunks_mut(length).enumerate() {
+            work(k * rows + i, row);
+        }
+    });
 }
 
 #[cfg(test)]
@@ -320,7 +373,7 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use super::{Threads, WORTH, each_chunk, join};
+    use super::{Threads, WORTH, each_chunk, fill_rows, join, number};
     use crate::error::Result;
 
     /// Whether the caller is one of a pool's threads.
@@ -329,23 +382,20 @@ mod tests {
     }
 
     #[test]
-    fn each_chunk_is_seen_once_with_a_scratch_of_its_own() -> Result<()> {
+    fn each_chunk_is_seen_once() -> Result<()> {
         for count in [1, 2, 5] {
             let threads = Threads::new(Some(count))?;
             for (elements, length) in [(0, 3), (1, 3), (3, 3), (4, 3), (700, 9), (1000, 1)] {
                 let mut data = vec![0; elements];
-                let mut scratches = vec![Vec::new(); elements.div_ceil(length)];
                 threads.run(|| {
-                    each_chunk(&mut data, length, &mut scratches, 7, &|k, part, scratch| {
-                        part.fill(k);
-                        scratch.push((k, part.len()));
+                    each_chunk(&mut data, length, 7, &|k, part| {
+                        assert_eq!(part.len(), length.min(elements - (k - 7) * length));
+                        assert!(number() < count);
+                        part.iter_mut().for_each(|element| *element += k);
                     });
                 });
                 for (element, number) in data.iter().enumerate() {
                     assert_eq!(*number, 7 + element / length);
-                }
-                for (k, scratch) in scratches.iter().enumerate() {
-                    assert_eq!(*scratch, [(7 + k, length.min(elements - k * length))]);
                 }
             }
         }
@@ -372,6 +422,42 @@ mod tests {
             receiver.recv_timeout(Duration::from_secs(20)).ok()?
         }
         assert_eq!(nested(Arc::new(Threads::new(Some(2))?), 5), Some(6));
+        Ok(())
+    }
+
+    #[test]
+    fn a_panic_of_the_other_half_reaches_the_caller() -> Result<()> {
+        let threads = Threads::new(Some(2))?;
+        let (sender, receiver) = channel();
+        thread::spawn(move || {
+            let (started, starts) = channel();
+            let wait = move || starts.recv_timeout(Duration::from_secs(5)).is_ok();
+            let panics = move || {
+                let _ = started.send(());
+                panic!("on purpose");
+            };
+            let call = || threads.run_whole(WORTH, || join(wait, panics));
+            let _ = sender.send(catch_unwind(AssertUnwindSafe(call)).is_err());
+        });
+        // Where the first half waits for ever, this does not.
+        assert_eq!(receiver.recv_timeout(Duration::from_secs(20)), Ok(true));
+        Ok(())
+    }
+
+    #[test]
+    fn rows_are_filled_by_their_numbers() -> Result<()> {
+        let threads = Threads::new(Some(2))?;
+        for (count, length) in [(0, 3), (5, 3), (1, 20_000), (3, 20_000), (5000, 7)] {
+            let fill = || {
+                let mut data = vec![usize::MAX; count * length];
+                fill_rows(&mut data, length, |i, row| row.fill(i));
+                data
+            };
+            for data in [fill(), threads.run(fill)] {
+                let mut cells = data.iter().enumerate();
+                assert!(cells.all(|(k, value)| *value == k / length));
+            }
+        }
         Ok(())
     }
 

@@ -78,25 +78,14 @@ class Bench:
         threads: int,
         *,
         seconds: float = 3.0,
-        busy: bool = False,
     ) -> Row:
         """Measure one solve, at the tolerance that gives the residual asked."""
-        note = BUSY if busy else ""
-        row = Row(problem.name, problem.cells, program, threads, note=note)
+        row = Row(problem.name, problem.cells, program, threads)
         self.rows.append(row)
         key = (program, problem.name)
         scale = self.scales.get(key, AIM / TOLERANCE)
         tolerance = TOLERANCE if program == "nacre" else AIM / scale
-        request = {
-            "task": "solve",
-            "problem": problem.name,
-            "cells": problem.cells,
-            "program": program,
-            "threads": threads,
-            "gaps": str(self.gaps(problem)),
-            "seconds": seconds,
-            "busy": busy,
-        }
+        request = self.request(problem, program, threads, seconds)
         for _ in range(TRIES):
             try:
                 found = self.work(request | {"tolerance": tolerance})
@@ -112,7 +101,7 @@ class Bench:
                 or (met and found["seconds"] < (row.seconds or np.inf))
             ):
                 keep(row, found, tolerance)
-                row.note = note or found["ended"]
+                row.note = found["ended"]
             if program == "nacre" or residual == 0:
                 break
             self.scales[key] = residual / tolerance
@@ -124,6 +113,46 @@ class Bench:
             row.note = f"residual {row.residual:.1e} is the best it reached"
         show(row)
         return row
+
+    def request(
+        self, problem: Problem, program: str, threads: int, seconds: float
+    ) -> dict[str, Any]:
+        """Return what a worker is asked for, but for the tolerance."""
+        return {
+            "task": "solve",
+            "problem": problem.name,
+            "cells": problem.cells,
+            "program": program,
+            "threads": threads,
+            "gaps": str(self.gaps(problem)),
+            "seconds": seconds,
+        }
+
+    def in_turn(self, problem: Problem, *, busy: bool) -> None:
+        """Measure nacre with one thread and two in turn, several times.
+
+        So whatever else goes on meets both alike. On a busy machine the median counts: the fastest
+        had a core to itself by luck.
+        """
+        note = BUSY if busy else IDLE
+        rows = [Row(problem.name, problem.cells, "nacre", n, note=note) for n in (1, 2)]
+        each: list[list[tuple[float, float]]] = [[], []]
+        for _ in range(TURNS):
+            for row, times in zip(rows, each, strict=True):
+                request = self.request(problem, "nacre", row.threads, 3.0)
+                try:
+                    found = self.work(request | {"tolerance": TOLERANCE})
+                except Failure as failure:
+                    row.note = str(failure)
+                    continue
+                keep(row, found, TOLERANCE)
+                times += found["each"]
+        for row, times in zip(rows, each, strict=True):
+            if times:
+                taken = sorted(times)[len(times) // 2 if busy else 0]
+                row.seconds, row.processors = taken
+            self.rows.append(row)
+            show(row)
 
     def sweep(
         self, name: Name, program: str, threads: int, sizes: list[int], *, soft: float
@@ -194,10 +223,10 @@ class Bench:
             show(row)
 
     def find(self, problem: str, cells: int, program: str, threads: int) -> Row | None:
-        """Return the first measurement of that, without a note of its own circumstances."""
+        """Return the first measurement of that, of those not measured in turn."""
         for row in self.rows:
             if (row.problem, row.cells, row.program) == (problem, cells, program) and (
-                row.threads == threads and row.seconds is not None and row.note != BUSY
+                row.threads == threads and row.seconds is not None and row.note not in (IDLE, BUSY)
             ):
                 return row
         return None
@@ -225,7 +254,9 @@ class Bench:
             show(row)
 
 
-BUSY = "beside one spinning process for each core; the median"
+TURNS = 8
+IDLE = "in turn with the other; the best"
+BUSY = "in turn with the other, beside one spinning process for each core; the median"
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from peers.figures import Figure, all_figures
-from peers.measure import BUSY, Bench, Row
+from peers.measure import BUSY, IDLE, Bench, Row
 from peers.programs import PROGRAMS, release
 
 TITLES = {
@@ -67,7 +67,13 @@ def markdown(bench: Bench, image: str, data: str) -> str:
     for problem, title in TITLES.items():
         rows = [row for row in bench.rows if row.problem == problem]
         rows.sort(
-            key=lambda row: (names.index(row.program), row.note == BUSY, row.threads, row.cells)
+            key=lambda row: (
+                names.index(row.program),
+                row.note == BUSY,
+                row.note == IDLE,
+                row.threads,
+                row.cells,
+            )
         )
         if rows:
             lines += ["", f"## {title}", "", *table(HEADER, [cells(row) for row in rows])]

@@ -65,9 +65,9 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     bench.solve(Problem("coated", middle), "nacre", 1)
     bench.solve(Problem("roller", middle), "nacre", 1)
     bench.batch(128, 1000)
+    bench.in_turn(Problem("hertz", middle), busy=False)
     with busy_machine():
-        for threads in (1, 2):
-            bench.solve(Problem("hertz", middle), "nacre", threads, seconds=20.0, busy=True)
+        bench.in_turn(Problem("hertz", middle), busy=True)
     if large:
         bench.solve(Problem("hertz", 4096), "nacre", 2, seconds=0.0)
 

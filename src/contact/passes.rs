@@ -2,14 +2,9 @@
 
 use std::ops::Range;
 
-use rayon::iter::IndexedParallelIterator;
-
 use super::patch::Window;
 use super::sums::sum;
-use crate::threads::{self, Threads};
-
-/// Cells that are not divided among threads: a few microseconds' work, in the first caches.
-const LEAF: usize = 1 << 13;
+use crate::threads::{self, LEAF, Threads, each_chunk};
 
 /// A row of the grid.
 #[derive(Debug, Clone, Copy)]
@@ -67,15 +62,31 @@ impl<'a> Passes<'a> {
         self.columns[0].len() * self.columns[1].len()
     }
 
-    /// Makes of an array as many zeros as there are cells: to be handed memory by the system takes
-    /// longer than to write it.
-    pub(super) fn zero(&self, array: &mut Vec<f64>) {
-        if self.divided {
-            let zeros = rayon::iter::repeat_n(0.0, self.cells());
-            self.threads.run(|| zeros.collect_into_vec(array));
-        } else {
+    /// Makes of each array as many zeros as there are cells, of several at once: to be handed memory by
+    /// the system takes longer than to write it.
+    pub(super) fn zero(&self, arrays: &mut [&mut Vec<f64>]) {
+        let zero = |array: &mut &mut Vec<f64>| {
             array.clear();
             array.resize(self.cells(), 0.0);
+        };
+        if self.divided {
+            self.threads
+                .run(|| each_chunk(arrays, 1, 0, &|_, arrays| arrays.iter_mut().for_each(zero)));
+        } else {
+            arrays.iter_mut().for_each(zero);
+        }
+    }
+
+    /// Calls both, at once where that pays.
+    pub(super) fn both<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        if self.divided {
+            self.threads.run(|| threads::join(first, second))
+        } else {
+            (first(), second())
         }
     }
 
@@ -139,13 +150,10 @@ impl<'a> Passes<'a> {
         });
         let here = parts.each_mut().map(|[near, _]| std::mem::take(near));
         let there = parts.map(|[_, far]| far);
-        let first = || self.divide(rows.start..middle, near, here, join, row);
-        let second = || self.divide(middle..rows.end, far, there, join, row);
-        let (a, b) = if self.divided {
-            threads::join(first, second)
-        } else {
-            (first(), second())
-        };
+        let (a, b) = self.both(
+            || self.divide(rows.start..middle, near, here, join, row),
+            || self.divide(middle..rows.end, far, there, join, row),
+        );
         join(a, b)
     }
 }

@@ -3,13 +3,19 @@
 use ndarray::{Array2, ArrayRef2};
 
 use super::fields::{array, slice};
+use super::passes::{Passes, add};
 use super::problem::Problem;
+use super::sums::{ONE, all, sum};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::surface::Surface;
 
 /// Gaps of `shape` on `grid`, finite or +∞.
-pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f64>> {
+pub(super) fn checked_gaps(
+    shape: &dyn Surface,
+    grid: &Grid,
+    passes: &Passes,
+) -> Result<Array2<f64>> {
     let gaps = shape.gaps(grid)?;
     let found = [gaps.nrows(), gaps.ncols()];
     if found != grid.shape() {
@@ -24,8 +30,14 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid) -> Result<Array2<f6
     } else {
         gaps.as_standard_layout().into_owned()
     };
-    let bad = |h: &f64| h.is_nan() || *h == f64::NEG_INFINITY;
-    if let Some(cell) = slice(&gaps).iter().position(bad) {
+    let lowest = f64::NEG_INFINITY;
+    let [good] = passes.each([slice(&gaps)], [], add, |_, gaps, []| {
+        sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE])
+    });
+    // Numbers of cells are exact.
+    if good < gaps.len() as f64 {
+        let bad = |h: &f64| h.is_nan() || *h <= lowest;
+        let cell = slice(&gaps).iter().position(bad).unwrap_or(0);
         return Err(Error::NonFinite {
             name: "shape",
             index: [cell / found[1], cell % found[1]],

@@ -3,7 +3,7 @@
 use ndarray::ArrayRef2;
 use rustfft::num_complex::Complex64;
 
-use super::{BLOCK, EvenSpectrum, PaddedTransform, TaskScratch, Workspace, ZERO};
+use super::{BLOCK, EvenSpectrum, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::threads::Threads;
 
 impl PaddedTransform {
@@ -17,11 +17,13 @@ impl PaddedTransform {
     ) -> EvenSpectrum {
         let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace { rows, tasks, .. } = workspace;
+        let Workspace {
+            rows, scratches, ..
+        } = workspace;
         let rows = &mut rows[..nx * columns];
         let scale = 1.0 / (mx as f64 * my as f64);
         let rows_of_a_task = nx.div_ceil(self.tasks);
-        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut TaskScratch| {
+        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
             for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {
                 let real = &mut scratch.real[..my];
                 real.fill(0.0);
@@ -36,13 +38,13 @@ impl PaddedTransform {
             threads,
             rows,
             columns * rows_of_a_task,
-            tasks,
+            scratches,
             rows_of_a_task,
             forward,
         );
         let mut spectrum = vec![0.0; self.blocks() * quarter_rows * BLOCK];
         let rows = &*rows;
-        let transform = |first: usize, blocks: &mut [f64], scratch: &mut TaskScratch| {
+        let transform = |first: usize, blocks: &mut [f64], scratch: &mut Scratch| {
             for (block, values) in blocks.chunks_exact_mut(quarter_rows * BLOCK).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
@@ -70,7 +72,7 @@ impl PaddedTransform {
             threads,
             &mut spectrum,
             chunk,
-            tasks,
+            scratches,
             blocks_of_a_task,
             transform,
         );

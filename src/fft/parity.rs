@@ -6,7 +6,7 @@ use rustfft::num_complex::Complex64;
 
 use super::cosine::unfold_pair;
 use super::quarter::{KernelRows, QuarterTransform};
-use super::{BLOCK, PaddedTransform, TaskScratch, Workspace, ZERO};
+use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::threads::Threads;
 
 /// The transform of padded data: columns of the half spectrum, one after another. Scaled by
@@ -24,13 +24,15 @@ impl PaddedTransform {
     ) -> Transformed {
         let nx = self.shape[0];
         let (mx, columns) = (self.padded[0], self.columns());
-        let Workspace { rows, tasks, .. } = workspace;
+        let Workspace {
+            rows, scratches, ..
+        } = workspace;
         let rows = &mut rows[..nx * columns];
-        self.rows_forward(input, 0..nx, rows, tasks, threads);
+        self.rows_forward(input, 0..nx, rows, scratches, threads);
         let rows = &*rows;
         let scale = 1.0 / (mx as f64 * self.padded[1] as f64);
         let mut spectrum = vec![ZERO; columns * mx];
-        let along = |first: usize, part: &mut [Complex64], scratch: &mut TaskScratch| {
+        let along = |first: usize, part: &mut [Complex64], scratch: &mut Scratch| {
             for (l, column) in part.chunks_exact_mut(mx).enumerate() {
                 for (i, value) in column[..nx].iter_mut().enumerate() {
                     *value = rows[i * columns + first + l] * scale;
@@ -44,7 +46,7 @@ impl PaddedTransform {
             threads,
             &mut spectrum,
             columns_of_a_task * mx,
-            tasks,
+            scratches,
             columns_of_a_task,
             along,
         );
@@ -80,12 +82,14 @@ impl PaddedTransform {
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace { blocks, tasks, .. } = workspace;
+        let Workspace {
+            blocks, scratches, ..
+        } = workspace;
         let size = numbers.len() * nx * BLOCK;
         blocks.resize(blocks.len().max(self.blocks() * size), ZERO);
         let blocks = &mut blocks[..self.blocks() * size];
-        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut TaskScratch| {
-            let TaskScratch {
+        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
+            let Scratch {
                 real,
                 columns: memory,
                 fft,
@@ -126,12 +130,19 @@ impl PaddedTransform {
         };
         let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
         let chunk = blocks_of_a_task * size;
-        self.over_rows(threads, blocks, chunk, tasks, blocks_of_a_task, multiply);
+        self.over_rows(
+            threads,
+            blocks,
+            chunk,
+            scratches,
+            blocks_of_a_task,
+            multiply,
+        );
 
         let blocks = &*blocks;
         let rows_of_a_task = nx.div_ceil(self.tasks);
         for (k, output) in outputs.iter_mut().enumerate() {
-            let inverse = |first: usize, output: &mut [f64], scratch: &mut TaskScratch| {
+            let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
                 for (row, values) in output.chunks_exact_mut(ny).enumerate() {
                     let blocks = blocks.chunks_exact(size);
                     let parts = blocks.map(|block| &block[k * nx * BLOCK..(k + 1) * nx * BLOCK]);
@@ -140,7 +151,7 @@ impl PaddedTransform {
                 }
             };
             let chunk = ny * rows_of_a_task;
-            self.over_rows(threads, output, chunk, tasks, rows_of_a_task, inverse);
+            self.over_rows(threads, output, chunk, scratches, rows_of_a_task, inverse);
         }
     }
 }

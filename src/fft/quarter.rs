@@ -14,7 +14,7 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
 use super::cosine::{Angles, fold, fold_lines, unfold};
-use super::{BLOCK, PaddedTransform, TaskScratch, Workspace, ZERO};
+use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::threads::Threads;
 
 /// Takes row i of kernel k: (i, k, values).
@@ -150,7 +150,7 @@ impl PaddedTransform {
         let (columns, count) = (self.columns(), odd.len());
         let (plan, angles) = (&transform.row, &transform.angles[1]);
         let odd = &*odd;
-        let work = |first: usize, part: &mut [[f64; BLOCK]], scratch: &mut TaskScratch| {
+        let work = |first: usize, part: &mut [[f64; BLOCK]], scratch: &mut Scratch| {
             let (length, fft) = (columns - 1, &mut scratch.fft);
             fft.resize(fft.len().max(plan.get_scratch_len()), ZERO);
             let fft = &mut fft[..plan.get_scratch_len()];
@@ -172,7 +172,7 @@ impl PaddedTransform {
             source(first..(first + of_a_task).min(nx), &mut keep);
         };
         let chunk = self.blocks() * count * of_a_task;
-        let tasks = &mut workspace.tasks;
-        self.over_rows(threads, values, chunk, tasks, of_a_task, work);
+        let scratches = &workspace.scratches;
+        self.over_rows(threads, values, chunk, scratches, of_a_task, work);
     }
 }

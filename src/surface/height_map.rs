@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::{Extent, Surface};
+use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 
@@ -116,7 +116,7 @@ impl Surface for HeightMap {
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
         if *grid == self.grid {
-            return Ok(self.heights.mapv(|height| self.highest - height));
+            return Ok(sampled(grid, |i, j| self.highest - self.heights[[i, j]]));
         }
         for (cell, sample) in grid.spacing().into_iter().zip(self.grid.spacing()) {
             if cell > 2.0 * sample * (1.0 + 1e-9) {
@@ -128,9 +128,7 @@ impl Surface for HeightMap {
             }
         }
         let (x, y) = (grid.x(), grid.y());
-        Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
-            self.gap(x[i], y[j])
-        }))
+        Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))
     }
 
     fn extent(&self) -> [Extent; 2] {

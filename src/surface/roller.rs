@@ -4,7 +4,7 @@ use ndarray::Array2;
 
 use super::profile::{CrownedProfile, Profile};
 use super::quadric::sagitta;
-use super::{Extent, Surface};
+use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
 
@@ -127,9 +127,7 @@ impl Surface for Roller {
                 f64::INFINITY
             }
         });
-        Ok(Array2::from_shape_fn(grid.shape(), |(i, j)| {
-            self.gap_at(drops[i], y[j])
-        }))
+        Ok(sampled(grid, |i, j| self.gap_at(drops[i], y[j])))
     }
 
     fn extent(&self) -> [Extent; 2] {

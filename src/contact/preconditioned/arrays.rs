@@ -54,14 +54,14 @@ impl Memory {
         let arrays = [u, contact, r, r_before, z, direction, response, before];
         let images = images.iter_mut().zip(loaded);
         let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
-        for array in arrays.into_iter().chain(images) {
-            if array.len() < passes.cells() {
-                if array.capacity() < passes.cells() {
-                    *array = Vec::with_capacity(most.max(passes.cells()));
-                }
-                passes.zero(array);
+        let short = |array: &&mut Vec<f64>| array.len() < passes.cells();
+        let mut short: Vec<_> = arrays.into_iter().chain(images).filter(short).collect();
+        for array in &mut short {
+            if array.capacity() < passes.cells() {
+                **array = Vec::with_capacity(most.max(passes.cells()));
             }
         }
+        passes.zero(&mut short);
     }
 
     pub(super) fn arrays(&mut self, cells: usize) -> Arrays<'_> {
