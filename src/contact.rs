@@ -59,7 +59,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
-/// A plan and a solve take up to 184 bytes a cell: what does not fit is refused before it starts.
+/// A plan and a solve take up to 168 bytes a cell: what does not fit is refused before it starts.
 /// Between solves a plan keeps the memory that they worked in: up to 130 bytes a cell.
 ///
 /// ```
@@ -295,8 +295,8 @@ impl Contact {
     }
 }
 
-/// Bytes that a plan, its coefficients, and the arrays of one solve take: 184 a cell (measured: 159
-/// where the contact fills the grid, 175 where it tilts, too; 84 where it fills a ninth).
+/// Bytes that a plan, its coefficients, and the arrays of one solve take: 168 a cell (measured: 143
+/// where the contact fills the grid, 159 where it tilts, too; 68 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
     const ARRAYS: u64 = 18;
     let [nx, ny] = grid.shape();

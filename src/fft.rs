@@ -6,13 +6,14 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use ndarray::{ArrayViewMut3, Axis};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-use crate::threads::{self, Threads, each_chunk};
+use crate::threads::{self, Threads, each_chunk, join};
 
 mod cosine;
 mod even;
@@ -70,8 +71,8 @@ pub(crate) struct EvenSpectrum(Vec<f64>);
 /// Memory for one convolution at a time; it may be larger than needed.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
-    rows: Vec<Complex64>,
-    blocks: Vec<Complex64>,
+    /// Half spectra of rows, whole or by blocks of columns.
+    mesh: Vec<Complex64>,
     scratches: Scratches,
 }
 
@@ -94,6 +95,26 @@ fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
         true => 16 * threads.count(),
         false => 1,
     }
+}
+
+/// Calls `work` with each `length` rows along the second axis, and the number of the first.
+fn each_part(
+    rows: ArrayViewMut3<Complex64>,
+    length: usize,
+    first: usize,
+    work: &(impl Fn(usize, ArrayViewMut3<Complex64>) + Sync),
+) {
+    let count = rows.len_of(Axis(1));
+    if count <= length {
+        work(first, rows);
+        return;
+    }
+    let half = count.div_ceil(length) / 2 * length;
+    let (near, far) = rows.split_at(Axis(1), half);
+    join(
+        || each_part(near, length, first, work),
+        || each_part(far, length, first + half, work),
+    );
 }
 
 impl PaddedTransform {
@@ -141,7 +162,7 @@ impl PaddedTransform {
     pub(crate) fn memory(shape: [usize; 2]) -> u64 {
         let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
         let half = padded[1] / 2 + 1;
-        shape[0] as u64 * half * 32 + (padded[0] / 2 + 1) * half * 8
+        shape[0] as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
     }
 
     /// Stored columns of the half spectrum.
@@ -183,12 +204,10 @@ impl PaddedTransform {
             .max(self.row_forward.get_scratch_len())
             .max(self.row_inverse.get_scratch_len());
         let Workspace {
-            rows,
-            blocks,
+            mesh,
             scratches: Scratches(scratches),
         } = workspace;
-        at_least(rows, self.shape[0] * self.columns(), ZERO);
-        at_least(blocks, self.blocks() * self.shape[0] * BLOCK, ZERO);
+        at_least(mesh, self.blocks() * self.shape[0] * BLOCK, ZERO);
         if scratches.len() < self.scratches() {
             scratches.resize_with(self.scratches(), Mutex::default);
         }
@@ -233,19 +252,13 @@ impl PaddedTransform {
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let columns = self.columns();
-        let Workspace {
-            rows,
-            blocks,
-            scratches,
-        } = workspace;
-        let rows = &mut rows[..nx * columns];
-        let blocks = &mut blocks[..self.blocks() * nx * BLOCK];
-        self.rows_forward(input, occupied.clone(), rows, scratches, threads);
+        let Workspace { mesh, scratches } = workspace;
+        let blocks = &mut mesh[..self.blocks() * nx * BLOCK];
+        self.rows_to_blocks(input, occupied.clone(), blocks, scratches, threads);
 
-        let rows = &*rows;
         let quarter_rows = self.quarter_rows();
         let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
-            for (block, kept) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
+            for (block, lines) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
                 let start = (first + block) * BLOCK;
                 let width = BLOCK.min(columns - start);
                 let buffer = &mut scratch.columns[..width * mx];
@@ -254,7 +267,7 @@ impl PaddedTransform {
                     column[occupied.end..].fill(ZERO);
                     let values = column[occupied.clone()].iter_mut();
                     for (value, i) in values.zip(occupied.clone()) {
-                        *value = rows[i * columns + start + b];
+                        *value = lines[i * BLOCK + b];
                     }
                 }
                 self.column_forward
@@ -275,7 +288,7 @@ impl PaddedTransform {
                     .process_with_scratch(buffer, &mut scratch.fft);
                 for (b, column) in buffer.chunks_exact(mx).enumerate() {
                     for (i, value) in column[..nx].iter().enumerate() {
-                        kept[i * BLOCK + b] = *value;
+                        lines[i * BLOCK + b] = *value;
                     }
                 }
             }
@@ -309,34 +322,85 @@ impl PaddedTransform {
         );
     }
 
-    /// Transforms the `occupied` rows of `input` along y into `rows`.
-    fn rows_forward(
+    /// Transforms the `occupied` rows of `input` along y into `blocks`.
+    fn rows_to_blocks(
         &self,
         input: &[f64],
         occupied: Range<usize>,
+        blocks: &mut [Complex64],
+        scratches: &Scratches,
+        threads: &Threads,
+    ) {
+        let [nx, ny] = self.shape;
+        let Ok(blocks) = ArrayViewMut3::from_shape([self.blocks(), nx, BLOCK], blocks) else {
+            return;
+        };
+        let (_, blocks) = blocks.split_at(Axis(1), occupied.start);
+        let (blocks, _) = blocks.split_at(Axis(1), occupied.len());
+        let input = &input[occupied.start * ny..occupied.end * ny];
+        let forward = |first: usize, mut blocks: ArrayViewMut3<Complex64>| {
+            let scratch = &mut *self.scratch(scratches);
+            let half = &mut scratch.spectrum[..self.columns()];
+            let rows = input[first * ny..].chunks_exact(ny);
+            for (mut lines, values) in blocks.axis_iter_mut(Axis(1)).zip(rows) {
+                self.row_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
+                for (line, values) in lines.outer_iter_mut().zip(half.chunks(BLOCK)) {
+                    if let Some(line) = line.into_slice() {
+                        line[..values.len()].copy_from_slice(values);
+                    }
+                }
+            }
+        };
+        let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
+        if self.tasks == 1 {
+            forward(0, blocks);
+        } else {
+            threads.run(|| each_part(blocks, rows_of_a_task, 0, &forward));
+        }
+    }
+
+    /// Transforms the rows of `input` along y into `rows`.
+    fn rows_forward(
+        &self,
+        input: &[f64],
         rows: &mut [Complex64],
         scratches: &Scratches,
         threads: &Threads,
     ) {
-        let (ny, columns) = (self.shape[1], self.columns());
-        let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
-        let rows = &mut rows[occupied.start * columns..occupied.end * columns];
+        let ([nx, ny], columns) = (self.shape, self.columns());
+        let rows_of_a_task = nx.div_ceil(self.tasks);
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
-            for (row, half) in rows.chunks_exact_mut(columns).enumerate() {
-                let start = (occupied.start + first + row) * ny;
-                let values = &input[start..start + ny];
-                if values.iter().all(|&value| value == 0.0) {
-                    half.fill(ZERO);
-                    continue;
-                }
-                let real = &mut scratch.real[..self.padded[1]];
-                real[..ny].copy_from_slice(values);
-                real[ny..].fill(0.0);
-                self.rows_to_spectrum(real, half, &mut scratch.fft);
+            let values = input[first * ny..].chunks_exact(ny);
+            for (half, values) in rows.chunks_exact_mut(columns).zip(values) {
+                self.row_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
             }
         };
         let chunk = columns * rows_of_a_task;
         self.over_rows(threads, rows, chunk, scratches, rows_of_a_task, forward);
+    }
+
+    /// Transforms one row of data.
+    fn row_to_spectrum(
+        &self,
+        values: &[f64],
+        half: &mut [Complex64],
+        real: &mut [f64],
+        scratch: &mut [Complex64],
+    ) {
+        if values.iter().all(|&value| value == 0.0) {
+            half.fill(ZERO);
+            return;
+        }
+        let (data, padding) = real[..self.padded[1]].split_at_mut(values.len());
+        data.copy_from_slice(values);
+        padding.fill(0.0);
+        self.rows_to_spectrum(&mut real[..self.padded[1]], half, scratch);
+    }
+
+    /// That of this thread: nobody else's, as what is done with it is done without waiting.
+    fn scratch<'a>(&self, scratches: &'a Scratches) -> MutexGuard<'a, Scratch> {
+        let scratch = &scratches.0[threads::number() % self.scratches()];
+        scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Calls `work` with the number of its first item for each chunk of `data`, one task a chunk, and
@@ -351,10 +415,7 @@ impl PaddedTransform {
         work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
     ) {
         let work = |task: usize, part: &mut [T]| {
-            // Nobody else's: what is done with it is done without waiting for anything.
-            let scratch = &scratches.0[threads::number() % self.scratches()];
-            let mut scratch = scratch.lock().unwrap_or_else(PoisonError::into_inner);
-            work(task * items, part, &mut scratch);
+            work(task * items, part, &mut self.scratch(scratches));
         };
         if self.tasks == 1 {
             work(0, data);

@@ -17,10 +17,8 @@ impl PaddedTransform {
     ) -> EvenSpectrum {
         let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace {
-            rows, scratches, ..
-        } = workspace;
-        let rows = &mut rows[..nx * columns];
+        let Workspace { mesh, scratches } = workspace;
+        let rows = &mut mesh[..nx * columns];
         let scale = 1.0 / (mx as f64 * my as f64);
         let rows_of_a_task = nx.div_ceil(self.tasks);
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {

@@ -24,11 +24,9 @@ impl PaddedTransform {
     ) -> Transformed {
         let nx = self.shape[0];
         let (mx, columns) = (self.padded[0], self.columns());
-        let Workspace {
-            rows, scratches, ..
-        } = workspace;
-        let rows = &mut rows[..nx * columns];
-        self.rows_forward(input, 0..nx, rows, scratches, threads);
+        let Workspace { mesh, scratches } = workspace;
+        let rows = &mut mesh[..nx * columns];
+        self.rows_forward(input, rows, scratches, threads);
         let rows = &*rows;
         let scale = 1.0 / (mx as f64 * self.padded[1] as f64);
         let mut spectrum = vec![ZERO; columns * mx];
@@ -82,12 +80,10 @@ impl PaddedTransform {
         let [nx, ny] = self.shape;
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace {
-            blocks, scratches, ..
-        } = workspace;
+        let Workspace { mesh, scratches } = workspace;
         let size = numbers.len() * nx * BLOCK;
-        blocks.resize(blocks.len().max(self.blocks() * size), ZERO);
-        let blocks = &mut blocks[..self.blocks() * size];
+        mesh.resize(mesh.len().max(self.blocks() * size), ZERO);
+        let blocks = &mut mesh[..self.blocks() * size];
         let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
             let Scratch {
                 real,
