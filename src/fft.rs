@@ -5,16 +5,15 @@
 //! (mx, my) only nx rows are transformed along y, and nothing of the padding is stored.
 
 use std::fmt;
-use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use ndarray::{ArrayViewMut3, Axis};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-use crate::threads::{self, Threads, each_chunk, join};
+use crate::threads::{self, Threads, each_chunk};
 
+mod convolve;
 mod cosine;
 mod even;
 mod parity;
@@ -95,26 +94,6 @@ fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
         true => 16 * threads.count(),
         false => 1,
     }
-}
-
-/// Calls `work` with each `length` rows along the second axis, and the number of the first.
-fn each_part(
-    rows: ArrayViewMut3<Complex64>,
-    length: usize,
-    first: usize,
-    work: &(impl Fn(usize, ArrayViewMut3<Complex64>) + Sync),
-) {
-    let count = rows.len_of(Axis(1));
-    if count <= length {
-        work(first, rows);
-        return;
-    }
-    let half = count.div_ceil(length) / 2 * length;
-    let (near, far) = rows.split_at(Axis(1), half);
-    join(
-        || each_part(near, length, first, work),
-        || each_part(far, length, first + half, work),
-    );
 }
 
 impl PaddedTransform {
@@ -220,145 +199,6 @@ impl PaddedTransform {
         }
     }
 
-    /// `output` = kernel ∗ `input`, both (nx, ny) in C order; `input` is read in the rows of
-    /// `occupied`, and zero elsewhere. Allocates nothing.
-    pub(crate) fn convolve_into(
-        &self,
-        spectrum: &EvenSpectrum,
-        (input, occupied): (&[f64], Range<usize>),
-        output: &mut [f64],
-        workspace: &mut Workspace,
-        threads: &Threads,
-    ) {
-        if self.tasks == 1 {
-            self.convolve_here(spectrum, (input, occupied), output, workspace, threads);
-        } else {
-            // Once, rather than for each of the three parts.
-            threads.run(|| {
-                self.convolve_here(spectrum, (input, occupied), output, workspace, threads)
-            });
-        }
-    }
-
-    /// The same, on one of the threads.
-    fn convolve_here(
-        &self,
-        spectrum: &EvenSpectrum,
-        (input, occupied): (&[f64], Range<usize>),
-        output: &mut [f64],
-        workspace: &mut Workspace,
-        threads: &Threads,
-    ) {
-        let [nx, ny] = self.shape;
-        let mx = self.padded[0];
-        let columns = self.columns();
-        let Workspace { mesh, scratches } = workspace;
-        let blocks = &mut mesh[..self.blocks() * nx * BLOCK];
-        self.rows_to_blocks(input, occupied.clone(), blocks, scratches, threads);
-
-        let quarter_rows = self.quarter_rows();
-        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
-            for (block, lines) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
-                let start = (first + block) * BLOCK;
-                let width = BLOCK.min(columns - start);
-                let buffer = &mut scratch.columns[..width * mx];
-                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                    column[..occupied.start].fill(ZERO);
-                    column[occupied.end..].fill(ZERO);
-                    let values = column[occupied.clone()].iter_mut();
-                    for (value, i) in values.zip(occupied.clone()) {
-                        *value = lines[i * BLOCK + b];
-                    }
-                }
-                self.column_forward
-                    .process_with_scratch(buffer, &mut scratch.fft);
-                let offset = (first + block) * quarter_rows * BLOCK;
-                let values = &spectrum.0[offset..offset + quarter_rows * BLOCK];
-                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                    column[0] *= values[b];
-                    let (low, high) = column[1..].split_at_mut(quarter_rows - 1);
-                    for (k, value) in low.iter_mut().enumerate() {
-                        *value *= values[(k + 1) * BLOCK + b];
-                    }
-                    for (k, value) in high.iter_mut().rev().enumerate() {
-                        *value *= values[(k + 1) * BLOCK + b];
-                    }
-                }
-                self.column_inverse
-                    .process_with_scratch(buffer, &mut scratch.fft);
-                for (b, column) in buffer.chunks_exact(mx).enumerate() {
-                    for (i, value) in column[..nx].iter().enumerate() {
-                        lines[i * BLOCK + b] = *value;
-                    }
-                }
-            }
-        };
-        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * nx * BLOCK;
-        self.over_rows(
-            threads,
-            blocks,
-            chunk,
-            scratches,
-            blocks_of_a_task,
-            multiply,
-        );
-
-        let blocks = &*blocks;
-        let rows_of_a_task = nx.div_ceil(self.tasks);
-        let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
-            for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
-                values.copy_from_slice(&scratch.real[..ny]);
-            }
-        };
-        self.over_rows(
-            threads,
-            output,
-            ny * rows_of_a_task,
-            scratches,
-            rows_of_a_task,
-            inverse,
-        );
-    }
-
-    /// Transforms the `occupied` rows of `input` along y into `blocks`.
-    fn rows_to_blocks(
-        &self,
-        input: &[f64],
-        occupied: Range<usize>,
-        blocks: &mut [Complex64],
-        scratches: &Scratches,
-        threads: &Threads,
-    ) {
-        let [nx, ny] = self.shape;
-        let Ok(blocks) = ArrayViewMut3::from_shape([self.blocks(), nx, BLOCK], blocks) else {
-            return;
-        };
-        let (_, blocks) = blocks.split_at(Axis(1), occupied.start);
-        let (blocks, _) = blocks.split_at(Axis(1), occupied.len());
-        let input = &input[occupied.start * ny..occupied.end * ny];
-        let forward = |first: usize, mut blocks: ArrayViewMut3<Complex64>| {
-            let scratch = &mut *self.scratch(scratches);
-            let half = &mut scratch.spectrum[..self.columns()];
-            let rows = input[first * ny..].chunks_exact(ny);
-            for (mut lines, values) in blocks.axis_iter_mut(Axis(1)).zip(rows) {
-                self.row_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
-                for (line, values) in lines.outer_iter_mut().zip(half.chunks(BLOCK)) {
-                    if let Some(line) = line.into_slice() {
-                        line[..values.len()].copy_from_slice(values);
-                    }
-                }
-            }
-        };
-        let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
-        if self.tasks == 1 {
-            forward(0, blocks);
-        } else {
-            threads.run(|| each_part(blocks, rows_of_a_task, 0, &forward));
-        }
-    }
-
     /// Transforms the rows of `input` along y into `rows`.
     fn rows_forward(
         &self,
@@ -372,15 +212,15 @@ impl PaddedTransform {
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
             let values = input[first * ny..].chunks_exact(ny);
             for (half, values) in rows.chunks_exact_mut(columns).zip(values) {
-                self.row_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
+                self.data_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
             }
         };
         let chunk = columns * rows_of_a_task;
         self.over_rows(threads, rows, chunk, scratches, rows_of_a_task, forward);
     }
 
-    /// Transforms one row of data.
-    fn row_to_spectrum(
+    /// Transforms one row of data, padded.
+    fn data_to_spectrum(
         &self,
         values: &[f64],
         half: &mut [Complex64],
