@@ -59,8 +59,8 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
-/// A plan and a solve take up to 168 bytes a cell: what does not fit is refused before it starts.
-/// Between solves a plan keeps the memory that they worked in: up to 130 bytes a cell.
+/// A plan and a solve take up to 160 bytes a cell: what does not fit is refused before it starts.
+/// Between solves a plan keeps the memory that they worked in: up to 120 bytes a cell.
 ///
 /// ```
 /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
@@ -295,10 +295,10 @@ impl Contact {
     }
 }
 
-/// Bytes that a plan, its coefficients, and the arrays of one solve take: 168 a cell (measured: 143
-/// where the contact fills the grid, 159 where it tilts, too; 68 where it fills a ninth).
+/// Bytes that a plan, its coefficients, and the arrays of one solve take: 160 a cell (measured: 135
+/// where the contact fills the grid, 151 where it tilts, too; 67 where it fills a ninth).
 fn memory(grid: &Grid) -> u64 {
-    const ARRAYS: u64 = 18;
+    const ARRAYS: u64 = 17;
     let [nx, ny] = grid.shape();
     Convolution::memory(grid.shape()) + (nx as u64 * ny as u64) * 8 * ARRAYS
 }

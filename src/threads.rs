@@ -346,25 +346,6 @@ pub(crate) fn each_chunk<T: Send>(
     );
 }
 
-/// Calls `work` with each row of `length` elements and its number; on all threads of the pool that this
-/// thread belongs to, where it does. (Rayon's own would not survive a fork.)
-pub(crate) fn fill_rows<T: Send>(
-    data: &mut [T],
-    length: usize,
-    work: impl Fn(usize, &mut [T]) + Sync,
-) {
-    let length = length.max(1);
-    let rows = match rayon::current_thread_index() {
-        Some(_) if worth_dividing(data.len()) => (LEAF / length).max(1),
-        _ => data.len().div_ceil(length).max(1),
-    };
-    each_chunk(data, rows * length, 0, &|k, part| {
-        for (i, row) in part.chunks_mut(length).enumerate() {
-            work(k * rows + i, row);
-        }
-    });
-}
-
 #[cfg(test)]
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -373,7 +354,7 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use super::{Threads, WORTH, each_chunk, fill_rows, join, number};
+    use super::{Threads, WORTH, each_chunk, join, number};
     use crate::error::Result;
 
     /// Whether the caller is one of a pool's threads.
@@ -441,23 +422,6 @@ mod tests {
         });
         // Where the first half waits for ever, this does not.
         assert_eq!(receiver.recv_timeout(Duration::from_secs(20)), Ok(true));
-        Ok(())
-    }
-
-    #[test]
-    fn rows_are_filled_by_their_numbers() -> Result<()> {
-        let threads = Threads::new(Some(2))?;
-        for (count, length) in [(0, 3), (5, 3), (1, 20_000), (3, 20_000), (5000, 7)] {
-            let fill = || {
-                let mut data = vec![usize::MAX; count * length];
-                fill_rows(&mut data, length, |i, row| row.fill(i));
-                data
-            };
-            for data in [fill(), threads.run(fill)] {
-                let mut cells = data.iter().enumerate();
-                assert!(cells.all(|(k, value)| *value == k / length));
-            }
-        }
         Ok(())
     }
 

@@ -208,18 +208,24 @@ class Bench:
         return result
 
     def batch(self, cells: int, cases: int) -> None:
-        """Time many coated spheres, one after the other on one thread and side by side on all."""
-        for threads in (1, os.cpu_count() or 1):
-            row = Row("batch", cells, "nacre", threads)
+        """Time many coated spheres, one after the other on one thread and side by side on all.
+
+        In turn, several times; the best.
+        """
+        rows = [Row("batch", cells, "nacre", n) for n in (1, os.cpu_count() or 1)]
+        for _ in range(TURNS):
+            for row in rows:
+                task = {"task": "batch", "cells": cells, "threads": row.threads, "cases": cases}
+                try:
+                    found = self.work(task)
+                except Failure as failure:
+                    row.note = str(failure)
+                    continue
+                if found["seconds"] < (row.seconds or np.inf):
+                    keep(row, found, TOLERANCE)
+                    row.note = f"{cases} cases, {cases / found['seconds']:.0f} solves a second"
+        for row in rows:
             self.rows.append(row)
-            request = {"task": "batch", "cells": cells, "threads": threads, "cases": cases}
-            try:
-                found = self.work(request)
-            except Failure as failure:
-                row.note = str(failure)
-            else:
-                keep(row, found, TOLERANCE)
-                row.note = f"{cases} cases, {cases / found['seconds']:.0f} solves a second"
             show(row)
 
     def find(self, problem: str, cells: int, program: str, threads: int) -> Row | None:

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::freedoms::Freedoms;
 use super::passes::Row;
-use super::sums::{ONE, all, sum, update, where_positive};
+use super::sums::{ONE, all, sum, update, where_member, where_positive};
 
 /// Sums over rows of which [`Freedoms::fitted`] makes a motion: Bᵀv, and the upper half of BᵀB.
 pub(super) type FitSums = [f64; 9];
@@ -51,15 +51,15 @@ impl Freedoms {
         [s, s * row.x, sy]
     }
 
-    /// The same over the cells of which `member` is 1.
+    /// The same over the cells of which `member` is not 0.
     pub(super) fn moments_on(&self, row: Row, member: &[f64], values: &[f64]) -> [f64; 3] {
         let [s, sy] = if self.loaded[2] {
             sum([member, values, row.y], |[member, v, y]| {
-                let v = where_positive(member, v);
+                let v = where_member(member, v);
                 [v, v * y]
             })
         } else {
-            let [s] = sum([member, values], |[member, v]| [where_positive(member, v)]);
+            let [s] = sum([member, values], |[member, v]| [where_member(member, v)]);
             [s, 0.0]
         };
         [s, s * row.x, sy]
@@ -93,7 +93,7 @@ impl Freedoms {
     }
 
     /// Takes from `values` what is nearest to them of the form Bλ over the cells of which `member` is
-    /// 1, and all of them outside.
+    /// not 0, and all of them outside.
     pub(super) fn project(&self, values: &mut [f64], member: &[f64]) {
         let (mut right, mut gram) = ([0.0; 3], [[0.0; 3]; 3]);
         for (x, row) in self.rows() {
@@ -102,6 +102,7 @@ impl Freedoms {
                 [member, &self.columns[1]],
                 [values],
                 |[member, y], [value]| {
+                    let member = where_member(member, ONE);
                     let value = member * value;
                     let sums = [value, value * y, member, member * y, member * y * y];
                     ([value], sums)
@@ -112,7 +113,11 @@ impl Freedoms {
             add_gram(&mut gram, x, [s, sy, syy]);
         }
         let mean = self.solve(&symmetric(gram), right);
-        self.for_each(mean, |k, b| values[k] -= member[k] * b);
+        self.for_each(mean, |k, b| {
+            if member[k] != 0.0 {
+                values[k] -= b;
+            }
+        });
     }
 
     /// Solves for the loaded freedoms; one that the others determine (a contact of one cell has no

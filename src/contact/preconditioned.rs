@@ -18,7 +18,7 @@ use super::passes::{Passes, add};
 use super::problem::{
     Limits, Multipliers, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
 };
-use super::sums::{ONE, ZERO, all, dot, update, where_positive};
+use super::sums::{ONE, ZERO, all, dot, update, where_member, where_positive};
 use crate::convolution::{Convolution, Workspace};
 use crate::pool::Lease;
 use arrays::Arrays;
@@ -134,9 +134,9 @@ impl<'a> Preconditioned<'a> {
 
     /// Takes the cells with a pressure for the contact.
     fn start(&mut self, p: &[f64]) {
-        let Arrays { contact, .. } = self.memory.arrays(self.problem.gap.len());
-        self.passes.each([p], [contact], add, |_, [p], [contact]| {
-            update([p], [contact], |[p], _| ([where_positive(p, ONE)], []))
+        let Arrays { r, .. } = self.memory.arrays(self.problem.gap.len());
+        self.passes.each([p], [r], add, |_, [p], [r]| {
+            update([p], [r], |[p], _| ([where_positive(p, ONE)], []))
         });
         self.invert_freedoms();
         self.displace(p);
@@ -145,17 +145,14 @@ impl<'a> Preconditioned<'a> {
     /// Applies the inverse to the loaded freedoms, as they are on the contact.
     fn invert_freedoms(&mut self) {
         let inverse = &self.approximation.inverse;
-        let Arrays {
-            contact, z, images, ..
-        } = self.memory.arrays(self.problem.gap.len());
+        let Arrays { r, z, images, .. } = self.memory.arrays(self.problem.gap.len());
         let loaded = self.problem.freedoms.loaded;
         for (freedom, image) in images.into_iter().enumerate().filter(|(k, _)| loaded[*k]) {
-            self.passes
-                .each([contact], [z], add, |row, [contact], [z]| {
-                    update([contact, row.y], [z], |[inside, y], _| {
-                        ([inside * [ONE, all(row.x), y][freedom]], [])
-                    })
-                });
+            self.passes.each([r], [z], add, |row, [r], [z]| {
+                update([r, row.y], [z], |[r, y], _| {
+                    ([where_member(r, [ONE, all(row.x), y][freedom])], [])
+                })
+            });
             inverse.apply_slices(z, image, &mut self.workspace);
             self.work += inverse.work();
         }
@@ -178,8 +175,8 @@ impl<'a> Preconditioned<'a> {
         self.memory.keep_residual();
         let Arrays {
             u,
-            contact,
             r,
+            r_before,
             response,
             ..
         } = self.memory.arrays(self.problem.gap.len());
@@ -198,19 +195,20 @@ impl<'a> Preconditioned<'a> {
             ..Multipliers::default()
         };
         let sums = self.passes.each(
-            [p, u, problem.gap],
-            [r, contact],
+            [p, u, problem.gap, r_before],
+            [r],
             join,
-            |row, [p, u, h], [r, contact]| {
+            |row, [p, u, h, before], [r]| {
                 motion.gap(row, [u, h], r);
                 let [deepest, most] = overlap_of([u, r]);
                 let [a, b, c, d, e] = problem.carried_of(row, [p, u, r]);
-                let [left, joined, members] = update([p], [r, contact], |[p], [g, before]| {
+                let [left, joined, members] = update([p, before], [r], |[p, before], [g]| {
                     let pressed = where_positive(p, ONE);
                     let inside = pressed.simd_gt(ZERO) | g.simd_lt(ZERO);
                     let now = inside & ONE;
+                    let before = where_member(before, ONE);
                     (
-                        [inside & -g, now],
+                        [inside & (all(f64::MIN_POSITIVE) - g)],
                         [(pressed - before).abs(), now - pressed, pressed],
                     )
                 });
@@ -240,16 +238,12 @@ impl<'a> Preconditioned<'a> {
         self.work += inverse.work();
         let [mut descent, with_last] = self.deflate();
         let Arrays {
-            contact,
-            r,
-            z,
-            direction,
-            ..
+            r, z, direction, ..
         } = self.memory.arrays(self.problem.gap.len());
         if descent <= 0.0 {
             // The oblique projection failed: steepest descent, projected orthogonally.
             z.copy_from_slice(r);
-            self.problem.freedoms.project(z, contact);
+            self.problem.freedoms.project(z, r);
             descent = dot(r, z);
             self.conjugate = false;
         }
@@ -262,18 +256,15 @@ impl<'a> Preconditioned<'a> {
         self.descent = descent;
         self.conjugate = true;
         let beta = all(beta);
-        let [slope] = self.passes.each(
-            [contact, z, r],
-            [direction],
-            add,
-            |_, [contact, z, r], [direction]| {
-                update([contact, z, r], [direction], |[inside, z, r], [d]| {
+        let [slope] = self
+            .passes
+            .each([z, r], [direction], add, |_, inputs, [direction]| {
+                update(inputs, [direction], |[z, r], [d]| {
                     // What the direction was before it was ever one is not read.
-                    let d = z + where_positive(inside * beta, beta * d);
+                    let d = z + where_member(beta * where_member(r, ONE), beta * d);
                     ([d], [r * d])
                 })
-            },
-        );
+            });
         if slope > 0.0 {
             return slope;
         }
@@ -291,7 +282,6 @@ impl<'a> Preconditioned<'a> {
     fn deflate(&mut self) -> [f64; 2] {
         let freedoms = self.problem.freedoms;
         let Arrays {
-            contact,
             r,
             r_before,
             z,
@@ -301,21 +291,21 @@ impl<'a> Preconditioned<'a> {
         // Whatever stands for those that are not loaded has no weight.
         let images = [0, 1, 2].map(|k| match freedoms.loaded[k] {
             true => &*images[k],
-            false => &*contact,
+            false => &*r,
         });
         let mut factors = [0.0; 3];
         if freedoms.any_loaded() {
             let [i0, i1, i2] = images;
             let sums = self.passes.each(
-                [contact, z, i0, i1, i2],
+                [&*r, z, i0, i1, i2],
                 [],
                 add,
-                |row, [contact, z, images @ ..], []| {
+                |row, [r, z, images @ ..], []| {
                     let mut sums = [[0.0; 3]; 4];
-                    sums[3] = freedoms.moments_on(row, contact, z);
+                    sums[3] = freedoms.moments_on(row, r, z);
                     for (k, image) in images.into_iter().enumerate() {
                         if freedoms.loaded[k] {
-                            sums[k] = freedoms.moments_on(row, contact, image);
+                            sums[k] = freedoms.moments_on(row, r, image);
                         }
                     }
                     let flat: [f64; 12] = std::array::from_fn(|k| sums[k / 3][k % 3]);
@@ -328,22 +318,19 @@ impl<'a> Preconditioned<'a> {
         let [f0, f1, f2] = factors.map(all);
         let [i0, i1, i2] = images;
         if freedoms.loaded[1] || freedoms.loaded[2] {
-            return self.passes.each(
-                [contact, r, r_before, i0, i1, i2],
-                [z],
-                add,
-                |_, inputs, [z]| {
-                    update(inputs, [z], |[inside, r, last, a, b, c], [z]| {
-                        let z = where_positive(inside, z - f0 * a - f1 * b - f2 * c);
+            return self
+                .passes
+                .each([&*r, r_before, i0, i1, i2], [z], add, |_, inputs, [z]| {
+                    update(inputs, [z], |[r, last, a, b, c], [z]| {
+                        let z = where_member(r, z - f0 * a - f1 * b - f2 * c);
                         ([z], [r * z, last * z])
                     })
-                },
-            );
+                });
         }
         self.passes
-            .each([contact, r, r_before, i0], [z], add, |_, inputs, [z]| {
-                update(inputs, [z], |[inside, r, last, a], [z]| {
-                    let z = where_positive(inside, z - f0 * a);
+            .each([&*r, r_before, i0], [z], add, |_, inputs, [z]| {
+                update(inputs, [z], |[r, last, a], [z]| {
+                    let z = where_member(r, z - f0 * a);
                     ([z], [r * z, last * z])
                 })
             })

@@ -21,6 +21,11 @@ pub(super) fn where_positive(p: Lanes, value: Lanes) -> Lanes {
     p.simd_gt(ZERO) & value
 }
 
+/// `value` where `member` is not 0, and 0 elsewhere, whatever `value` is there.
+pub(super) fn where_member(member: Lanes, value: Lanes) -> Lanes {
+    member.simd_ne(ZERO) & value
+}
+
 /// Σ `term` over the elements of `inputs`, which are equally long.
 pub(super) fn sum<const M: usize, const N: usize>(
     inputs: [&[f64]; M],

@@ -68,7 +68,7 @@ const REFINEMENT: usize = 4;
 /// ValueError
 ///     If an argument is out of range.
 /// MemoryError
-///     If the grid does not fit: a plan and a solve take up to 168 bytes a cell.
+///     If the grid does not fit: a plan and a solve take up to 160 bytes a cell.
 ///
 /// Examples
 /// --------

@@ -6,7 +6,6 @@ use crate::contact::passes::Passes;
 #[derive(Debug, Default)]
 pub(in crate::contact) struct Memory {
     u: Vec<f64>,
-    contact: Vec<f64>,
     r: Vec<f64>,
     r_before: Vec<f64>,
     z: Vec<f64>,
@@ -20,9 +19,7 @@ pub(in crate::contact) struct Memory {
 pub(super) struct Arrays<'a> {
     /// Displacement K p.
     pub(super) u: &'a mut [f64],
-    /// 1 on the cells that may have a pressure, 0 elsewhere.
-    pub(super) contact: &'a mut [f64],
-    /// −g on the contact, 0 elsewhere.
+    /// −g on the contact, which are the cells that may have a pressure, and not 0 there; 0 elsewhere.
     pub(super) r: &'a mut [f64],
     pub(super) r_before: &'a mut [f64],
     /// The inverse applied to the residual; once the direction is known, the change of the pressure.
@@ -42,7 +39,6 @@ impl Memory {
     pub(super) fn fit(&mut self, passes: &Passes, most: usize, loaded: [bool; 3]) {
         let Self {
             u,
-            contact,
             r,
             r_before,
             z,
@@ -51,7 +47,7 @@ impl Memory {
             before,
             images,
         } = self;
-        let arrays = [u, contact, r, r_before, z, direction, response, before];
+        let arrays = [u, r, r_before, z, direction, response, before];
         let images = images.iter_mut().zip(loaded);
         let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
         let short = |array: &&mut Vec<f64>| array.len() < passes.cells();
@@ -67,7 +63,6 @@ impl Memory {
     pub(super) fn arrays(&mut self, cells: usize) -> Arrays<'_> {
         Arrays {
             u: &mut self.u[..cells],
-            contact: &mut self.contact[..cells],
             r: &mut self.r[..cells],
             r_before: &mut self.r_before[..cells],
             z: &mut self.z[..cells],
