@@ -207,6 +207,7 @@ impl<'a> Preconditioned<'a> {
                     let inside = pressed.simd_gt(ZERO) | g.simd_lt(ZERO);
                     let now = inside & ONE;
                     let before = where_member(before, ONE);
+                    // A gap of 0 is told from a cell outside.
                     (
                         [inside & (all(f64::MIN_POSITIVE) - g)],
                         [(pressed - before).abs(), now - pressed, pressed],
