@@ -208,15 +208,14 @@ impl PaddedTransform {
         threads: &Threads,
     ) {
         let ([nx, ny], columns) = (self.shape, self.columns());
-        let rows_of_a_task = nx.div_ceil(self.tasks);
+        let rows = &mut rows[..nx * columns];
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
             let values = input[first * ny..].chunks_exact(ny);
             for (half, values) in rows.chunks_exact_mut(columns).zip(values) {
                 self.data_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
             }
         };
-        let chunk = columns * rows_of_a_task;
-        self.over_rows(threads, rows, chunk, scratches, rows_of_a_task, forward);
+        self.over_items(threads, rows, columns, scratches, forward);
     }
 
     /// Transforms one row of data, padded.
@@ -243,24 +242,42 @@ impl PaddedTransform {
         scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `work` with the number of its first item for each chunk of `data`, one task a chunk, and
-    /// the scratch of its thread.
-    fn over_rows<T: Send>(
+    /// Calls `work` with some items of `data`, each of `size` elements, and the number of the first, for
+    /// all of them; and the scratch of its thread.
+    fn over_items<T: Send>(
         &self,
         threads: &Threads,
         data: &mut [T],
-        chunk: usize,
+        size: usize,
         scratches: &Scratches,
-        items: usize,
+        work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
+    ) {
+        let of_a_task = (data.len() / size).div_ceil(self.tasks);
+        self.over_tasks(threads, data, (size, of_a_task), scratches, work);
+    }
+
+    /// The same with so many items at a time.
+    fn over_tasks<T: Send>(
+        &self,
+        threads: &Threads,
+        data: &mut [T],
+        (size, of_a_task): (usize, usize),
+        scratches: &Scratches,
         work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
     ) {
         let work = |task: usize, part: &mut [T]| {
-            work(task * items, part, &mut self.scratch(scratches));
+            work(task * of_a_task, part, &mut self.scratch(scratches));
         };
+        self.divided(threads, || each_chunk(data, size * of_a_task, 0, &work));
+    }
+
+    /// Calls `work`, which divides itself into tasks, where they are done by `threads`; at once if it
+    /// is one.
+    fn divided<R: Send>(&self, threads: &Threads, work: impl FnOnce() -> R + Send) -> R {
         if self.tasks == 1 {
-            work(0, data);
+            work()
         } else {
-            threads.run(|| each_chunk(data, chunk, 0, &work));
+            threads.run(work)
         }
     }
 

@@ -39,96 +39,63 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        if self.tasks == 1 {
-            self.convolve_here(spectrum, (input, occupied), output, workspace, threads);
-        } else {
-            // Once, rather than for each of the three parts.
-            threads.run(|| {
-                self.convolve_here(spectrum, (input, occupied), output, workspace, threads)
-            });
-        }
-    }
+        // Handed over once, rather than for each of the three parts.
+        self.divided(threads, || {
+            let [nx, ny] = self.shape;
+            let mx = self.padded[0];
+            let columns = self.columns();
+            let Workspace { mesh, scratches } = workspace;
+            let blocks = &mut mesh[..self.blocks() * nx * BLOCK];
+            self.rows_to_blocks(input, occupied.clone(), blocks, scratches, threads);
 
-    /// The same, on one of the threads.
-    fn convolve_here(
-        &self,
-        spectrum: &EvenSpectrum,
-        (input, occupied): (&[f64], Range<usize>),
-        output: &mut [f64],
-        workspace: &mut Workspace,
-        threads: &Threads,
-    ) {
-        let [nx, ny] = self.shape;
-        let mx = self.padded[0];
-        let columns = self.columns();
-        let Workspace { mesh, scratches } = workspace;
-        let blocks = &mut mesh[..self.blocks() * nx * BLOCK];
-        self.rows_to_blocks(input, occupied.clone(), blocks, scratches, threads);
-
-        let quarter_rows = self.quarter_rows();
-        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
-            for (block, lines) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
-                let start = (first + block) * BLOCK;
-                let width = BLOCK.min(columns - start);
-                let buffer = &mut scratch.columns[..width * mx];
-                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                    column[..occupied.start].fill(ZERO);
-                    column[occupied.end..].fill(ZERO);
-                    let values = column[occupied.clone()].iter_mut();
-                    for (value, i) in values.zip(occupied.clone()) {
-                        *value = lines[i * BLOCK + b];
+            let quarter_rows = self.quarter_rows();
+            let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
+                for (block, lines) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
+                    let start = (first + block) * BLOCK;
+                    let width = BLOCK.min(columns - start);
+                    let buffer = &mut scratch.columns[..width * mx];
+                    for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
+                        column[..occupied.start].fill(ZERO);
+                        column[occupied.end..].fill(ZERO);
+                        let values = column[occupied.clone()].iter_mut();
+                        for (value, i) in values.zip(occupied.clone()) {
+                            *value = lines[i * BLOCK + b];
+                        }
+                    }
+                    self.column_forward
+                        .process_with_scratch(buffer, &mut scratch.fft);
+                    let offset = (first + block) * quarter_rows * BLOCK;
+                    let values = &spectrum.0[offset..offset + quarter_rows * BLOCK];
+                    for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
+                        column[0] *= values[b];
+                        let (low, high) = column[1..].split_at_mut(quarter_rows - 1);
+                        for (k, value) in low.iter_mut().enumerate() {
+                            *value *= values[(k + 1) * BLOCK + b];
+                        }
+                        for (k, value) in high.iter_mut().rev().enumerate() {
+                            *value *= values[(k + 1) * BLOCK + b];
+                        }
+                    }
+                    self.column_inverse
+                        .process_with_scratch(buffer, &mut scratch.fft);
+                    for (b, column) in buffer.chunks_exact(mx).enumerate() {
+                        for (i, value) in column[..nx].iter().enumerate() {
+                            lines[i * BLOCK + b] = *value;
+                        }
                     }
                 }
-                self.column_forward
-                    .process_with_scratch(buffer, &mut scratch.fft);
-                let offset = (first + block) * quarter_rows * BLOCK;
-                let values = &spectrum.0[offset..offset + quarter_rows * BLOCK];
-                for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                    column[0] *= values[b];
-                    let (low, high) = column[1..].split_at_mut(quarter_rows - 1);
-                    for (k, value) in low.iter_mut().enumerate() {
-                        *value *= values[(k + 1) * BLOCK + b];
-                    }
-                    for (k, value) in high.iter_mut().rev().enumerate() {
-                        *value *= values[(k + 1) * BLOCK + b];
-                    }
-                }
-                self.column_inverse
-                    .process_with_scratch(buffer, &mut scratch.fft);
-                for (b, column) in buffer.chunks_exact(mx).enumerate() {
-                    for (i, value) in column[..nx].iter().enumerate() {
-                        lines[i * BLOCK + b] = *value;
-                    }
-                }
-            }
-        };
-        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * nx * BLOCK;
-        self.over_rows(
-            threads,
-            blocks,
-            chunk,
-            scratches,
-            blocks_of_a_task,
-            multiply,
-        );
+            };
+            self.over_items(threads, blocks, nx * BLOCK, scratches, multiply);
 
-        let blocks = &*blocks;
-        let rows_of_a_task = nx.div_ceil(self.tasks);
-        let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
-            for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
-                values.copy_from_slice(&scratch.real[..ny]);
-            }
-        };
-        self.over_rows(
-            threads,
-            output,
-            ny * rows_of_a_task,
-            scratches,
-            rows_of_a_task,
-            inverse,
-        );
+            let blocks = &*blocks;
+            let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
+                for (row, values) in output.chunks_exact_mut(ny).enumerate() {
+                    self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
+                    values.copy_from_slice(&scratch.real[..ny]);
+                }
+            };
+            self.over_items(threads, output, ny, scratches, inverse);
+        });
     }
 
     /// Transforms the `occupied` rows of `input` along y into `blocks`.
@@ -161,10 +128,6 @@ impl PaddedTransform {
             }
         };
         let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
-        if self.tasks == 1 {
-            forward(0, blocks);
-        } else {
-            threads.run(|| each_part(blocks, rows_of_a_task, 0, &forward));
-        }
+        self.divided(threads, || each_part(blocks, rows_of_a_task, 0, &forward));
     }
 }

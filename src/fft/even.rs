@@ -20,7 +20,6 @@ impl PaddedTransform {
         let Workspace { mesh, scratches } = workspace;
         let rows = &mut mesh[..nx * columns];
         let scale = 1.0 / (mx as f64 * my as f64);
-        let rows_of_a_task = nx.div_ceil(self.tasks);
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
             for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {
                 let real = &mut scratch.real[..my];
@@ -32,14 +31,7 @@ impl PaddedTransform {
                 self.rows_to_spectrum(real, spectrum, &mut scratch.fft);
             }
         };
-        self.over_rows(
-            threads,
-            rows,
-            columns * rows_of_a_task,
-            scratches,
-            rows_of_a_task,
-            forward,
-        );
+        self.over_items(threads, rows, columns, scratches, forward);
         let mut spectrum = vec![0.0; self.blocks() * quarter_rows * BLOCK];
         let rows = &*rows;
         let transform = |first: usize, blocks: &mut [f64], scratch: &mut Scratch| {
@@ -64,16 +56,8 @@ impl PaddedTransform {
                 }
             }
         };
-        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * quarter_rows * BLOCK;
-        self.over_rows(
-            threads,
-            &mut spectrum,
-            chunk,
-            scratches,
-            blocks_of_a_task,
-            transform,
-        );
+        let size = quarter_rows * BLOCK;
+        self.over_items(threads, &mut spectrum, size, scratches, transform);
         EvenSpectrum(spectrum)
     }
 

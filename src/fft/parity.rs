@@ -39,15 +39,7 @@ impl PaddedTransform {
                     .process_with_scratch(column, &mut scratch.fft);
             }
         };
-        let columns_of_a_task = columns.div_ceil(self.tasks);
-        self.over_rows(
-            threads,
-            &mut spectrum,
-            columns_of_a_task * mx,
-            scratches,
-            columns_of_a_task,
-            along,
-        );
+        self.over_items(threads, &mut spectrum, mx, scratches, along);
         Transformed(spectrum)
     }
 
@@ -124,19 +116,9 @@ impl PaddedTransform {
                 }
             }
         };
-        let blocks_of_a_task = self.blocks().div_ceil(self.tasks);
-        let chunk = blocks_of_a_task * size;
-        self.over_rows(
-            threads,
-            blocks,
-            chunk,
-            scratches,
-            blocks_of_a_task,
-            multiply,
-        );
+        self.over_items(threads, blocks, size, scratches, multiply);
 
         let blocks = &*blocks;
-        let rows_of_a_task = nx.div_ceil(self.tasks);
         for (k, output) in outputs.iter_mut().enumerate() {
             let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
                 for (row, values) in output.chunks_exact_mut(ny).enumerate() {
@@ -146,8 +128,7 @@ impl PaddedTransform {
                     values.copy_from_slice(&scratch.real[..ny]);
                 }
             };
-            let chunk = ny * rows_of_a_task;
-            self.over_rows(threads, output, chunk, scratches, rows_of_a_task, inverse);
+            self.over_items(threads, output, ny, scratches, inverse);
         }
     }
 }

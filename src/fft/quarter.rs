@@ -171,8 +171,7 @@ impl PaddedTransform {
             };
             source(first..(first + of_a_task).min(nx), &mut keep);
         };
-        let chunk = self.blocks() * count * of_a_task;
-        let scratches = &workspace.scratches;
-        self.over_rows(threads, values, chunk, scratches, of_a_task, work);
+        let (size, scratches) = (self.blocks() * count, &workspace.scratches);
+        self.over_tasks(threads, values, (size, of_a_task), scratches, work);
     }
 }
