@@ -24,6 +24,7 @@ mod discretisation;
 mod fields;
 mod fit;
 mod freedoms;
+mod gap;
 mod hull;
 mod options;
 mod passes;
@@ -49,10 +50,11 @@ use cascade::{Cascade, Levels};
 use discretisation::estimate;
 use fields::{Fields, slice};
 use freedoms::Freedoms;
+use gap::Gap;
 use passes::Passes;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
 use review::{Carried, warnings};
-use start::{checked_gaps, given_pressure, uniform_pressure};
+use start::{Sampled, checked_gaps, given_pressure, uniform_pressure};
 
 /// Is told of each iteration, perhaps on one of the plan's threads, and breaks to stop.
 pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
@@ -165,17 +167,30 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
+        self.solve_sampled(shape, &mut Sampled::default(), motion, options, progress)
+    }
+
+    /// The same; where `shape` is the one of `sampled`, its gaps are not computed again.
+    fn solve_sampled<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
         let [nx, ny] = self.grid.shape();
         let threads = self.convolution.own_threads();
         threads.run_whole(nx * ny, || {
-            self.solve_here(shape, motion, options, progress)
+            self.solve_here(shape, sampled, motion, options, progress)
         })
     }
 
     /// The same, on this thread and those that it finds free.
-    fn solve_here(
+    fn solve_here<'a>(
         &self,
-        shape: &dyn Surface,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
         motion: &Motion,
         options: &Options,
         progress: &mut Progress,
@@ -186,12 +201,14 @@ impl Contact {
         let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
         // The system may take long to hand out memory.
         let (gap, mut fields) = passes.both(
-            || checked_gaps(shape, &self.grid, &passes),
+            || sampled.gaps(shape, || checked_gaps(shape, &self.grid, &passes)),
             || Fields::new(self.grid.shape()),
         );
         let mut gap = gap?;
         freedoms.check_feasible(&gap)?;
-        freedoms.prescribe(&mut gap);
+        if freedoms.any_prescribed() {
+            freedoms.prescribe(Arc::make_mut(&mut gap));
+        }
         let problem = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,
@@ -236,8 +253,7 @@ impl Contact {
             }
         };
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, solved.lambda));
-        // The undeformed gap is no longer needed.
-        if !fields.close(&passes, &mut gap) {
+        if !fields.finite(&passes) {
             return Err(Error::Inconsistent(
                 "load, lengths and moduli must be in units in which their products do not overflow",
             ));
@@ -252,15 +268,20 @@ impl Contact {
             pressure,
             window,
             displacement,
+            motion: multipliers,
             ..
         } = fields;
         let mut solution = Solution {
             pressure,
-            gap,
             displacement,
             approach,
             tilt,
             report,
+            gap: Gap::Of {
+                undeformed: gap,
+                freedoms: Box::new(freedoms),
+                multipliers,
+            },
         };
         let carried = Carried::by(&solution, &window);
         if solution.report.converged() {

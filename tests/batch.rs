@@ -46,7 +46,7 @@ fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
         for (solved, alone) in solved.into_iter().zip(&alone) {
             let solved = solved.ok_or(Error::Inconsistent("every case is finished"))??;
             assert_eq!(solved.pressure, alone.pressure);
-            assert_eq!(solved.gap, alone.gap);
+            assert_eq!(solved.gap(), alone.gap());
             assert_eq!(solved.approach.to_bits(), alone.approach.to_bits());
         }
     }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use super::freedoms::Motion;
 use super::problem::Termination;
 use super::solution::Solution;
+use super::start::Sampled;
 use super::{Contact, Options, memory};
 use crate::error::Result;
 use crate::memory::check_memory;
@@ -76,6 +77,7 @@ impl Contact {
                 let sender = sender.clone();
                 let (plan, next, stopped) = (&plan, &next, &stopped);
                 scope.spawn(move || {
+                    let mut sampled = Sampled::default();
                     let asked = || match stopped.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
@@ -85,8 +87,11 @@ impl Contact {
                         let Some(case) = cases.get(number) else {
                             break;
                         };
+                        let Case { shape, motion } = case;
                         let solved =
-                            plan.solve_watched(case.shape, &case.motion, options, &mut |_| asked());
+                            plan.solve_sampled(*shape, &mut sampled, motion, options, &mut |_| {
+                                asked()
+                            });
                         if sender.send((number, solved)).is_err() {
                             break;
                         }

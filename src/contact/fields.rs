@@ -5,7 +5,7 @@ use ndarray::Array2;
 use super::passes::{Passes, add};
 use super::patch::{Patch, Window};
 use super::problem::{Multipliers, Problem, Quality};
-use super::sums::{ZERO, update};
+use super::sums::{ZERO, sum};
 
 /// Pressure and displacement of a problem, and how good they are, once that was seen.
 pub(super) struct Fields {
@@ -51,19 +51,12 @@ impl Fields {
         quality
     }
 
-    /// Makes of the undeformed gap that of the solution. Returns whether all displacements are
-    /// finite.
-    pub(super) fn close(&self, passes: &Passes, gap: &mut Array2<f64>) -> bool {
-        let [lost] = passes.each(
-            [slice(&self.displacement)],
-            [slice_mut(gap)],
-            add,
-            |row, [u], [g]| {
-                let gap = self.motion.on(row);
-                // The sum is 0, unless one is not finite.
-                update([u, row.y], [g], |[u, y], [h]| ([gap(u, h, y)], [u * ZERO]))
-            },
-        );
+    /// Whether all displacements are finite.
+    pub(super) fn finite(&self, passes: &Passes) -> bool {
+        // The sum is 0, unless one is not.
+        let [lost] = passes.each([slice(&self.displacement)], [], add, |_, u, []| {
+            sum(u, |[u]| [u * ZERO])
+        });
         lost <= 0.0
     }
 }

@@ -212,12 +212,17 @@ impl Freedoms {
         }
     }
 
+    /// Whether the prescribed freedoms change the gap.
+    pub(super) fn any_prescribed(&self) -> bool {
+        self.prescribed.iter().any(|&freedom| freedom != 0.0)
+    }
+
     /// Takes the prescribed freedoms from the gap: h − δ − s_x x − s_y y.
     pub(super) fn prescribe(&self, gap: &mut Array2<f64>) {
-        let [delta, sx, sy] = self.prescribed;
-        if [delta, sx, sy].iter().all(|&freedom| freedom == 0.0) {
+        if !self.any_prescribed() {
             return;
         }
+        let [delta, sx, sy] = self.prescribed;
         let [x, y] = &self.coordinates;
         for (mut row, x) in gap.rows_mut().into_iter().zip(x) {
             let shift = delta + sx * x;

@@ -6,6 +6,7 @@ use ndarray::{Array1, Array2};
 
 use super::discretisation::Discretisation;
 use super::freedoms::Motion;
+use super::gap::Gap;
 use super::problem::Termination;
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
@@ -130,13 +131,10 @@ impl Report {
 }
 
 /// A solved contact. Arrays are (nx, ny), at cell centres.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Solution {
     /// Pressure \[Pa\], ≥ 0.
     pub pressure: Array2<f64>,
-    /// Gap \[m\], h + u − δ − s_x x − s_y y: 0 in contact within the tolerance, +∞ where the shape
-    /// cannot touch.
-    pub gap: Array2<f64>,
     /// Normal displacement of both bodies together \[m\], positive into them.
     pub displacement: Array2<f64>,
     /// Approach δ of the origin \[m\].
@@ -145,9 +143,53 @@ pub struct Solution {
     pub tilt: [f64; 2],
     /// How it came about.
     pub report: Report,
+    pub(super) gap: Gap,
+}
+
+impl PartialEq for Solution {
+    fn eq(&self, other: &Self) -> bool {
+        let motion = |solution: &Self| (solution.approach, solution.tilt);
+        motion(self) == motion(other)
+            && self.report == other.report
+            && self.pressure == other.pressure
+            && self.displacement == other.displacement
+            && self.gap() == other.gap()
+    }
 }
 
 impl Solution {
+    /// One of which these were kept: pressure, gap and displacement, approach and tilt.
+    ///
+    /// # Errors
+    /// A field of another shape than that of the report's grid.
+    pub fn from_fields(
+        [pressure, gap, displacement]: [Array2<f64>; 3],
+        approach: f64,
+        tilt: [f64; 2],
+        report: Report,
+    ) -> Result<Self> {
+        let expected = report.grid.shape();
+        let fields = [&pressure, &gap, &displacement];
+        for (name, field) in ["pressure", "gap", "displacement"].into_iter().zip(fields) {
+            let found = [field.nrows(), field.ncols()];
+            if found != expected {
+                return Err(Error::Shape {
+                    name,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(Self {
+            pressure,
+            displacement,
+            approach,
+            tilt,
+            report,
+            gap: Gap::Known(gap),
+        })
+    }
+
     /// Itself, if the tolerance was met.
     ///
     /// # Errors
@@ -173,6 +215,12 @@ impl Solution {
     /// The grid.
     pub fn grid(&self) -> &Grid {
         &self.report.grid
+    }
+
+    /// Gap \[m\], h + u − δ − s_x x − s_y y: 0 in contact within the tolerance, +∞ where the shape
+    /// cannot touch. Computed at each call.
+    pub fn gap(&self) -> Array2<f64> {
+        self.gap.of(&self.displacement)
     }
 
     /// Whether each cell is in contact, p > 0.

@@ -1,5 +1,7 @@
 //! What a solve starts from: the gaps of a shape, and a pressure.
 
+use std::sync::{Arc, Weak};
+
 use ndarray::{Array2, ArrayRef2};
 
 use super::fields::{array, slice};
@@ -9,6 +11,29 @@ use super::sums::{ONE, all, sum};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::surface::Surface;
+
+/// The gaps of the shape that was sampled last, on one grid, while a solution has them.
+#[derive(Default)]
+pub(super) struct Sampled<'a>(Option<(&'a dyn Surface, Weak<Array2<f64>>)>);
+
+impl<'a> Sampled<'a> {
+    /// Those of `shape`: what `sample` returns, where that is another one.
+    pub(super) fn gaps(
+        &mut self,
+        shape: &'a dyn Surface,
+        sample: impl FnOnce() -> Result<Array2<f64>>,
+    ) -> Result<Arc<Array2<f64>>> {
+        if let Some((known, gaps)) = &self.0
+            && std::ptr::eq(*known, shape)
+            && let Some(gaps) = gaps.upgrade()
+        {
+            return Ok(gaps);
+        }
+        let gaps = Arc::new(sample()?);
+        self.0 = Some((shape, Arc::downgrade(&gaps)));
+        Ok(gaps)
+    }
+}
 
 /// Gaps of `shape` on `grid`, finite or +∞.
 pub(super) fn checked_gaps(

@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyList, PyMapping};
 
 use super::arrays::Repr;
 use super::call::{finish, motion, progress_callable, shape};
-use super::shapes::Shape;
+use super::shapes::PyShape;
 use super::solution::PySolution;
 use crate::contact::{Case, Contact, Motion, Options};
 
@@ -22,7 +22,7 @@ const KEYS: [&str; 6] = [
 ];
 
 /// Shape and motion of a case.
-fn case(case: &Bound<'_, PyAny>) -> PyResult<(Shape, Motion)> {
+fn case(case: &Bound<'_, PyAny>) -> PyResult<(Py<PyShape>, Motion)> {
     let mapping = case.cast::<PyMapping>().map_err(|_| {
         let got = Repr(case);
         PyTypeError::new_err(format!(
@@ -62,7 +62,7 @@ fn case(case: &Bound<'_, PyAny>) -> PyResult<(Shape, Motion)> {
         moment.as_ref(),
         tilt.as_ref(),
     )?;
-    Ok((shape(&pressed)?, motion))
+    Ok((shape(&pressed)?.clone().unbind(), motion))
 }
 
 /// `error`, saying which case it is of.
@@ -97,7 +97,7 @@ pub(super) fn solve_many(
         let cases: Vec<Case> = parsed
             .iter()
             .map(|(shape, motion)| Case {
-                shape,
+                shape: &shape.get().0,
                 motion: *motion,
             })
             .collect();

@@ -26,11 +26,10 @@ pub(super) fn algorithm(word: &str) -> PyResult<Algorithm> {
 }
 
 /// A shape.
-pub(super) fn shape(shape: &Bound<'_, PyAny>) -> PyResult<Shape> {
-    let shape = shape.cast::<PyShape>().map_err(|_| {
+pub(super) fn shape<'a, 'py>(shape: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyShape>> {
+    shape.cast::<PyShape>().map_err(|_| {
         PyTypeError::new_err(format!("shape must be a nacre.Shape, got {}", Repr(shape)))
-    })?;
-    Ok(shape.get().0.clone())
+    })
 }
 
 /// The rigid motion that is asked.
@@ -116,7 +115,7 @@ impl Call {
         check: bool,
     ) -> PyResult<Self> {
         Ok(Self {
-            shape: self::shape(shape)?,
+            shape: self::shape(shape)?.get().0.clone(),
             motion: self::motion(load, approach, eccentricity, moment, tilt)?,
             options: self::options(tolerance, max_iterations, algorithm, initial)?,
             progress: progress_callable(progress)?,

@@ -51,13 +51,13 @@ impl PySolution {
     }
 }
 
-/// The array of `cell`, copied from `field` at the first use.
+/// The array of `cell`: that of `field`, at the first use.
 fn cached<'py>(
     py: Python<'py>,
     cell: &PyOnceLock<Py<PyArray2<f64>>>,
-    field: &Array2<f64>,
+    field: impl FnOnce() -> Array2<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let array = cell.get_or_try_init(py, || read_only(py, field.clone()).map(Bound::unbind))?;
+    let array = cell.get_or_try_init(py, || read_only(py, field()).map(Bound::unbind))?;
     Ok(array.bind(py).clone())
 }
 
@@ -66,19 +66,21 @@ impl PySolution {
     /// Pressure [Pa], at least 0.
     #[getter]
     fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        cached(py, &self.pressure, &self.solution.pressure)
+        cached(py, &self.pressure, || self.solution.pressure.clone())
     }
 
     /// Gap [m]: 0 in contact, within the tolerance; +inf where the shape cannot touch.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        cached(py, &self.gap, &self.solution.gap)
+        cached(py, &self.gap, || self.solution.gap())
     }
 
     /// Normal displacement of both bodies together [m], positive into them.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        cached(py, &self.displacement, &self.solution.displacement)
+        cached(py, &self.displacement, || {
+            self.solution.displacement.clone()
+        })
     }
 
     /// Whether each cell is in contact: its pressure is above 0.
@@ -653,13 +655,10 @@ pub(super) fn restore_solution(
     report: PyReport,
 ) -> PyResult<PySolution> {
     let [pressure, gap, displacement] = fields;
-    Ok(Solution {
-        pressure: real_matrix("pressure", &pressure)?,
-        gap: real_matrix("gap", &gap)?,
-        displacement: real_matrix("displacement", &displacement)?,
-        approach: motion.0,
-        tilt: motion.1.into(),
-        report: report.0,
-    }
-    .into())
+    let fields = [
+        real_matrix("pressure", &pressure)?,
+        real_matrix("gap", &gap)?,
+        real_matrix("displacement", &displacement)?,
+    ];
+    Ok(Solution::from_fields(fields, motion.0, motion.1.into(), report.0)?.into())
 }
