@@ -4,7 +4,7 @@
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
     Contact, Cylinder, Elastic, Error, FlatPunch, Grid, HalfSpace, HeightMap, Motion, Options,
-    Paraboloid, Result, Setup, Surface, solve,
+    Paraboloid, Result, Setup, Solution, Surface, solve,
 };
 use ndarray::Array2;
 
@@ -324,5 +324,27 @@ fn an_iteration_that_did_not_converge_says_how_far_it_came() -> Result<()> {
     let ends =
         "above the tolerance 1e-10 after 1 iterations; raise max_iterations or the tolerance";
     assert!(text.ends_with(ends), "{text}");
+    Ok(())
+}
+
+#[test]
+fn fields_that_were_kept() -> Result<()> {
+    let (contact, shape) = (contact()?, Paraboloid::new(1.0, 1.0)?);
+    let solution = contact.solve(&shape, &Motion::load(10.0), &Options::default())?;
+    let again = |gap: Array2<f64>| {
+        let fields = [
+            solution.pressure.clone(),
+            gap,
+            solution.displacement.clone(),
+        ];
+        let (approach, tilt) = (solution.approach, solution.tilt);
+        Solution::from_fields(fields, approach, tilt, solution.report.clone())
+    };
+    assert_eq!(again(solution.gap())?, solution);
+    assert_ne!(again(solution.gap() + 1e-9)?, solution);
+    assert_eq!(
+        message(again(Array2::zeros((12, 16)))),
+        "gap: expected shape [16, 12], got [12, 16]"
+    );
     Ok(())
 }

@@ -1,8 +1,10 @@
 //! Many load cases on one plan, side by side.
 
+use std::convert::Infallible;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use super::freedoms::Motion;
@@ -24,16 +26,16 @@ pub struct Case<'a> {
     pub motion: Motion,
 }
 
-/// How often the caller is asked whether to go on, at least.
-const ASKED: Duration = Duration::from_millis(50);
+/// How often the caller is asked whether to go on.
+const ASKED: Duration = Duration::from_millis(20);
 
 impl Contact {
     /// Solves many cases side by side, each on one of the plan's threads (on several, where there
     /// are fewer cases). Solutions come in the order of the cases, and are those of
     /// [`Contact::solve`] to the bit.
     ///
-    /// `progress` is told how many cases are finished, on the calling thread, as each finishes and
-    /// every 50 ms; its break stops the rest: those that are not finished are `None`.
+    /// `progress` is told how many cases are finished, on the calling thread, every 20 ms and at the
+    /// end; its break stops the rest: those that are not finished are `None`.
     ///
     /// # Errors
     /// Too little memory. What is wrong with a case is its own result.
@@ -72,12 +74,14 @@ impl Contact {
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (sender, finished) = mpsc::channel();
+        // Nothing is ever sent: it ends with the last worker.
+        let (working, ended) = mpsc::channel::<Infallible>();
         std::thread::scope(|scope| {
             for _ in 0..workers {
-                let sender = sender.clone();
+                let (sender, working) = (sender.clone(), working.clone());
                 let (plan, next, stopped) = (&plan, &next, &stopped);
                 scope.spawn(move || {
-                    let mut sampled = Sampled::default();
+                    let (_working, mut sampled) = (working, Sampled::default());
                     let asked = || match stopped.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
@@ -98,20 +102,19 @@ impl Contact {
                     }
                 });
             }
-            drop(sender);
+            drop(working);
             let mut done = 0;
-            loop {
-                match finished.recv_timeout(ASKED) {
-                    Ok((number, solved)) => {
-                        let unfinished = matches!(&solved, Ok(solution)
-                            if solution.report.termination == Termination::Stopped);
-                        if !unfinished {
-                            solutions[number] = Some(solved);
-                            done += 1;
-                        }
+            // Woken for each solution, this thread would take a core from the workers each time.
+            let mut working = true;
+            while working {
+                working = ended.recv_timeout(ASKED) != Err(RecvTimeoutError::Disconnected);
+                for (number, solved) in finished.try_iter() {
+                    let unfinished = matches!(&solved, Ok(solution)
+                        if solution.report.termination == Termination::Stopped);
+                    if !unfinished {
+                        solutions[number] = Some(solved);
+                        done += 1;
                     }
-                    Err(mpsc::RecvTimeoutError::Timeout) => {}
-                    Err(mpsc::RecvTimeoutError::Disconnected) => break,
                 }
                 if progress(done).is_break() {
                     stopped.store(true, Ordering::Relaxed);

@@ -263,7 +263,8 @@ impl PyContact {
     /// algorithm : {"cascade", "polonsky-keer"}, optional
     ///     As in `solve`.
     /// progress : callable, optional
-    ///     Called with the number of finished cases and of all, as each finishes.
+    ///     Called with the number of finished cases and of all, 50 times a second while some
+    ///     finish, and at the end.
     /// check : bool, optional
     ///     Whether to raise where the tolerance was not met.
     ///
