@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from peers.measure import BUSY, IDLE, Bench, Row
+from peers.measure import Bench, Row
 from peers.problems import TOLERANCE
 
 
@@ -96,8 +96,10 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     large = bench.find("hertz", 4096, "nacre", 2)
     extra = value(large, "bytes_per_cell")
     yield Figure("hertz 4096² solves: extra memory", 200, 120, extra, "bytes a cell")
-    for note, machine, bar in ((IDLE, "idle", 0.6), (BUSY, "busy", 1.1)):
-        rows = {row.threads: row for row in bench.rows if row.note == note and row.cells == 1024}
+    for machine, bar in (("idle", 0.6), ("busy", 1.1)):
+        rows = {
+            row.threads: row for row in bench.rows if row.machine == machine and row.cells == 1024
+        }
         what = f"hertz 1024²: two threads over one, machine {machine}"
         yield Figure(what, bar, None, ratio(rows.get(2), rows.get(1)))
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from peers.problems import TOLERANCE, Name, Problem
 
@@ -54,6 +55,8 @@ class Row:
     processors: float | None = None
     outside: float | None = None
     """Share of a solve of the sphere that is not transforms and products."""
+    machine: str = ""
+    """"idle" or "busy" of what was measured in turn with another number of threads."""
     note: str = ""
 
 
@@ -129,16 +132,17 @@ class Bench:
         }
 
     def in_turn(self, problem: Problem, *, busy: bool) -> None:
-        """Measure nacre with one thread and two in turn, several times.
+        """Measure nacre with one thread and two in turn, in many processes.
 
-        So whatever else goes on meets both alike. On a busy machine the median counts: the fastest
-        had a core to itself by luck.
+        So whatever else goes on meets both alike. On an idle machine the fastest solve counts. On a
+        busy one the mean over the processes does: one that has a core to itself by luck, which one
+        thread has more often than two, takes half the time of one that has not.
         """
-        note = BUSY if busy else IDLE
-        rows = [Row(problem.name, problem.cells, "nacre", n, note=note) for n in (1, 2)]
-        each: list[list[tuple[float, float]]] = [[], []]
-        for _ in range(TURNS):
-            for row, times in zip(rows, each, strict=True):
+        machine = "busy" if busy else "idle"
+        rows = [Row(problem.name, problem.cells, "nacre", n, machine=machine) for n in (1, 2)]
+        by_process: list[list[Solves]] = [[], []]
+        for _ in range(BUSY_TURNS if busy else TURNS):
+            for row, processes in zip(rows, by_process, strict=True):
                 request = self.request(problem, "nacre", row.threads, 3.0)
                 try:
                     found = self.work(request | {"tolerance": TOLERANCE})
@@ -146,11 +150,11 @@ class Bench:
                     row.note = str(failure)
                     continue
                 keep(row, found, TOLERANCE)
-                times += found["each"]
-        for row, times in zip(rows, each, strict=True):
-            if times:
-                taken = sorted(times)[len(times) // 2 if busy else 0]
-                row.seconds, row.processors = taken
+                processes.append(np.array(found["each"]))
+        for row, processes in zip(rows, by_process, strict=True):
+            if processes:
+                taken = mean if busy else fastest
+                row.seconds, row.processors, row.note = taken(processes)
             self.rows.append(row)
             show(row)
 
@@ -232,7 +236,7 @@ class Bench:
         """Return the first measurement of that, of those not measured in turn."""
         for row in self.rows:
             if (row.problem, row.cells, row.program) == (problem, cells, program) and (
-                row.threads == threads and row.seconds is not None and row.note not in (IDLE, BUSY)
+                row.threads == threads and row.seconds is not None and not row.machine
             ):
                 return row
         return None
@@ -261,8 +265,25 @@ class Bench:
 
 
 TURNS = 8
-IDLE = "in turn with the other; the best"
-BUSY = "in turn with the other, beside one spinning process for each core; the median"
+BUSY_TURNS = 32
+
+Solves = npt.NDArray[np.float64]
+"""Those of one process, a line each: seconds, and processors that were used."""
+
+
+def fastest(processes: list[Solves]) -> tuple[float, float, str]:
+    """Return seconds and processors of the fastest solve, and what it is."""
+    seconds, processors = min(tuple(solve) for solves in processes for solve in solves)
+    return seconds, processors, "in turn with the other; the best"
+
+
+def mean(processes: list[Solves]) -> tuple[float, float, str]:
+    """Return those of the mean process, and with which standard error."""
+    means = np.array([solves.mean(axis=0) for solves in processes])
+    seconds, processors = means.mean(axis=0)
+    error = means[:, 0].std(ddof=1) / np.sqrt(len(means)) / seconds if len(means) > 1 else np.nan
+    beside = "in turn with the other, beside one spinning process for each core"
+    return seconds, processors, f"{beside}; mean of {len(means)} processes, ± {error:.1%}"
 
 
 @contextmanager

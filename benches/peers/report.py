@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from peers.figures import Figure, all_figures
-from peers.measure import BUSY, IDLE, Bench, Row
+from peers.measure import Bench, Row
 from peers.programs import PROGRAMS, release
 
 TITLES = {
@@ -69,8 +69,8 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         rows.sort(
             key=lambda row: (
                 names.index(row.program),
-                row.note == BUSY,
-                row.note == IDLE,
+                row.machine == "busy",
+                row.machine == "idle",
                 row.threads,
                 row.cells,
             )

@@ -12,7 +12,7 @@ import nacre
 from peers import report
 from peers.figures import all_figures
 from peers.judge import Convolution, judge
-from peers.measure import Bench, Row
+from peers.measure import Bench, Row, fastest, mean
 from peers.problems import HURST, Problem, rough_heights, rough_waves
 
 # Sums of some thousand terms, and transforms, in double precision.
@@ -131,3 +131,12 @@ def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_pat
     text = files[0].read_text(encoding="utf-8")
     assert "| 64² | nacre | 1 |" in text
     assert "![Time over cells](peers.png)" in text
+
+
+def test_solves_in_turn_count_by_the_fastest_or_by_the_mean_process() -> None:
+    processes = [np.array([[1.0, 2.0], [3.0, 1.0]]), np.array([[4.0, 0.5]])]
+    assert fastest(processes)[:2] == (1.0, 2.0)
+    seconds, processors, note = mean(processes)
+    assert (seconds, processors) == (3.0, 1.0)
+    # Processes of 2 and 4 s: their deviation is √2 s, the mean's √2/√2 = 1 s, a third of 3 s.
+    assert note.endswith("mean of 2 processes, ± 33.3%")
