@@ -104,6 +104,28 @@ fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
 }
 
 #[test]
+fn each_solution_is_given_away_once() -> Result<()> {
+    let (sphere, contact) = (Sphere::new(50.0)?, contact(2)?);
+    let cases: Vec<Case> = (1..=30)
+        .map(|k| Case {
+            shape: &sphere,
+            motion: Motion::load(1e-3 * f64::from(k)),
+        })
+        .collect();
+    let mut given = vec![0; cases.len()];
+    contact.solve_each(&cases, &Options::default(), &mut |finished| {
+        for (number, solved) in finished {
+            let load = solved.map(|solution| solution.load() / (1e-3 * (number + 1) as f64));
+            assert!(load.is_ok_and(|ratio| (ratio - 1.0).abs() < 1e-9));
+            given[number] += 1;
+        }
+        ControlFlow::Continue(())
+    })?;
+    assert!(given.iter().all(|count| *count == 1), "{given:?}");
+    Ok(())
+}
+
+#[test]
 fn no_cases_give_no_solutions() -> Result<()> {
     let go_on = &mut |_| ControlFlow::Continue(());
     let solved = contact(2)?.solve_many(&[], &Options::default(), go_on)?;

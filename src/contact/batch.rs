@@ -32,7 +32,7 @@ const ASKED: Duration = Duration::from_millis(20);
 impl Contact {
     /// Solves many cases side by side, each on one of the plan's threads (on several, where there
     /// are fewer cases). Solutions come in the order of the cases, and are those of
-    /// [`Contact::solve`] to the bit.
+    /// [`Contact::solve`] to the bit; those of the same shape, by its address, share its undeformed gap.
     ///
     /// `progress` is told how many cases are finished, on the calling thread, every 20 ms and at the
     /// end; its break stops the rest: those that are not finished are `None`.
@@ -59,21 +59,41 @@ impl Contact {
         options: &Options,
         progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<Vec<Option<Result<Solution>>>> {
+        self.check_many(cases)?;
         let mut solutions: Vec<Option<Result<Solution>>> = cases.iter().map(|_| None).collect();
-        let threads = self.convolution().threads();
-        let workers = threads.min(cases.len());
+        let mut done = 0;
+        self.solve_each(cases, options, &mut |finished| {
+            done += finished.len();
+            for (number, solved) in finished {
+                solutions[number] = Some(solved);
+            }
+            progress(done)
+        })?;
+        Ok(solutions)
+    }
+
+    /// [`Contact::solve_many`] that gives solutions away, so that not all of them need be kept: 50 times
+    /// a second and at the end, on the calling thread, `finished` is given those that were finished since,
+    /// each with the number of its case.
+    ///
+    /// # Errors
+    /// Too little memory.
+    pub fn solve_each(
+        &self,
+        cases: &[Case],
+        options: &Options,
+        finished: &mut dyn FnMut(Vec<(usize, Result<Solution>)>) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let workers = self.workers(cases);
         if workers == 0 {
-            return Ok(solutions);
+            return Ok(());
         }
-        let [nx, ny] = self.grid().shape();
-        let solution = nx as u64 * ny as u64 * 24;
-        check_memory(
-            [nx, ny],
-            workers as u64 * memory(self.grid()) + cases.len() as u64 * solution,
-        )?;
+        let grid = self.grid();
+        check_memory(grid.shape(), workers as u64 * memory(grid))?;
+        let threads = self.convolution().threads();
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let (sender, finished) = mpsc::channel();
+        let (sender, solutions) = mpsc::channel();
         // Nothing is ever sent: it ends with the last worker.
         let (working, ended) = mpsc::channel::<Infallible>();
         std::thread::scope(|scope| {
@@ -103,24 +123,34 @@ impl Contact {
                 });
             }
             drop(working);
-            let mut done = 0;
             // Woken for each solution, this thread would take a core from the workers each time.
             let mut working = true;
             while working {
                 working = ended.recv_timeout(ASKED) != Err(RecvTimeoutError::Disconnected);
-                for (number, solved) in finished.try_iter() {
-                    let unfinished = matches!(&solved, Ok(solution)
-                        if solution.report.termination == Termination::Stopped);
-                    if !unfinished {
-                        solutions[number] = Some(solved);
-                        done += 1;
-                    }
-                }
-                if progress(done).is_break() {
+                let is_finished = |(_, solved): &(usize, Result<Solution>)| {
+                    !matches!(solved, Ok(solution)
+                        if solution.report.termination == Termination::Stopped)
+                };
+                if finished(solutions.try_iter().filter(is_finished).collect()).is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
             }
         });
-        Ok(solutions)
+        Ok(())
+    }
+
+    /// An error where there is too little memory to solve `cases` and to keep all solutions.
+    pub(crate) fn check_many(&self, cases: &[Case]) -> Result<()> {
+        let [nx, ny] = self.grid().shape();
+        // Pressure, displacement, undeformed gap.
+        let solution = nx as u64 * ny as u64 * 24;
+        let solutions = cases.len() as u64 * solution;
+        let workers = self.workers(cases) as u64;
+        check_memory([nx, ny], workers * memory(self.grid()) + solutions)
+    }
+
+    /// How many cases are solved at once.
+    fn workers(&self, cases: &[Case]) -> usize {
+        self.convolution().threads().min(cases.len())
     }
 }

@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use pyo3::IntoPyObjectExt;
+use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 
 /// How often Ctrl-C is looked for.
@@ -37,26 +37,31 @@ impl<M> Caller<M> {
         }
     }
 
-    /// The same, having told the callback, if there is one.
-    pub(super) fn tell(&mut self, message: impl FnOnce() -> M) -> ControlFlow<()> {
-        if let Some(callback) = &mut self.callback
-            && !callback(message())
-        {
+    /// Whether neither anybody has interrupted nor the callback, if there is one, says to stop.
+    pub(super) fn ask(&mut self, message: impl FnOnce() -> M) -> ControlFlow<()> {
+        if !self.tell(message) {
             self.stopped.store(true, Ordering::Relaxed);
         }
         self.go_on()
     }
+
+    /// What the callback says, if there is one.
+    pub(super) fn tell(&mut self, message: impl FnOnce() -> M) -> bool {
+        self.callback
+            .as_mut()
+            .is_none_or(|callback| callback(message()))
+    }
 }
 
-/// What `work` returns. `callback` is called on this thread with what it tells; where that returns
-/// False, the work is asked to stop.
+/// What `work` returns. `callback` is called on this thread with the arguments that it tells, and what
+/// that returns is told to the work.
 pub(super) fn run<M, T>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
     work: impl FnOnce(&mut Caller<M>) -> T + Send + 'static,
 ) -> PyResult<T>
 where
-    M: for<'py> IntoPyObject<'py> + Send + 'static,
+    M: for<'py> PyCallArgs<'py> + Send + 'static,
     T: Send + 'static,
 {
     let (sender, mut messages) = mpsc::channel();
@@ -104,7 +109,7 @@ where
 }
 
 /// Whether the callback says to go on.
-fn tell<M: for<'py> IntoPyObject<'py>>(
+fn tell<M: for<'py> PyCallArgs<'py>>(
     py: Python<'_>,
     callback: Option<&Py<PyAny>>,
     message: M,
@@ -113,7 +118,6 @@ fn tell<M: for<'py> IntoPyObject<'py>>(
     let Some(callback) = callback else {
         return Ok(true);
     };
-    let message = message.into_py_any(py)?;
-    let answer = callback.bind(py).call1((message,))?;
+    let answer = callback.bind(py).call1(message)?;
     Ok(answer.is_none() || answer.is_truthy()?)
 }

@@ -1,16 +1,18 @@
 //! Many load cases on one plan.
 
-use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyMapping};
 
 use super::arrays::Repr;
+use super::background::{self, Caller};
 use super::call::{finish, motion, progress_callable, shape};
 use super::shapes::PyShape;
 use super::solution::PySolution;
-use crate::contact::{Case, Contact, Motion, Options};
+use crate::contact::{Case, Contact, Motion, Options, Solution};
+use crate::error::Result;
 
 const KEYS: [&str; 6] = [
     "shape",
@@ -73,12 +75,19 @@ fn of_case(py: Python<'_>, error: PyErr, number: usize) -> PyErr {
     noted.err().unwrap_or(error)
 }
 
+/// Solutions by the number of their case, as they are finished.
+type Finished = Arc<Mutex<Vec<Option<Result<Solution>>>>>;
+
+fn lock(finished: &Finished) -> MutexGuard<'_, Vec<Option<Result<Solution>>>> {
+    finished.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Solves `cases` on `contact`; whatever interrupts it carries the finished ones as `solutions`.
 pub(super) fn solve_many(
     py: Python<'_>,
-    contact: &Contact,
+    contact: &Arc<Contact>,
     cases: &Bound<'_, PyAny>,
-    options: &Options,
+    options: Options,
     progress: Option<&Bound<'_, PyAny>>,
     check: bool,
 ) -> PyResult<Vec<Py<PySolution>>> {
@@ -91,9 +100,11 @@ pub(super) fn solve_many(
     for (number, item) in iterable.enumerate() {
         parsed.push(case(&item?).map_err(|error| of_case(py, error, number))?);
     }
-    let total = parsed.len();
-    let (mut failure, mut told) = (None, 0);
-    let solved = py.detach(|| {
+    let (total, tolerance) = (parsed.len(), options.tolerance);
+    let finished = Finished::default();
+    lock(&finished).resize_with(total, || None);
+    let (contact, kept) = (Arc::clone(contact), Arc::clone(&finished));
+    let ended = background::run(py, progress, move |caller: &mut Caller<(usize, usize)>| {
         let cases: Vec<Case> = parsed
             .iter()
             .map(|(shape, motion)| Case {
@@ -101,29 +112,30 @@ pub(super) fn solve_many(
                 motion: *motion,
             })
             .collect();
-        contact.solve_many(&cases, options, &mut |done| {
-            if failure.is_some() {
-                return ControlFlow::Break(());
-            }
-            let answer = Python::attach(|py| {
-                py.check_signals()?;
-                match progress.as_ref().filter(|_| done > told) {
-                    Some(progress) => progress.call1(py, (done, total)).map(drop),
-                    None => Ok(()),
+        contact.check_many(&cases)?;
+        let mut done = 0;
+        contact.solve_each(&cases, &options, &mut |solutions| {
+            if !solutions.is_empty() {
+                done += solutions.len();
+                for (number, solved) in solutions {
+                    // There is no place left where it was interrupted.
+                    if let Some(place) = lock(&kept).get_mut(number) {
+                        *place = Some(solved);
+                    }
                 }
-            });
-            told = done;
-            failure = answer.err();
-            if failure.is_some() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
+                caller.tell(|| (done, total));
             }
+            caller.go_on()
         })
-    })?;
+    });
+    let mut failure = match ended {
+        Ok(solved) => solved.map(|()| None)?,
+        Err(interrupt) => Some(interrupt),
+    };
+    let solved = std::mem::take(&mut *lock(&finished));
     let mut solutions: Vec<Option<Py<PySolution>>> = Vec::with_capacity(total);
     for (number, solved) in solved.into_iter().enumerate() {
-        let outcome = solved.map(|solved| finish(py, solved?, options.tolerance, check));
+        let outcome = solved.map(|solved| finish(py, solved?, tolerance, check));
         let solution = match outcome {
             None => None,
             Some(Ok(solution)) => Some(Py::new(py, solution)?),

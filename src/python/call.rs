@@ -146,7 +146,7 @@ impl Call {
         let tolerance = options.tolerance;
         let solution = background::run(py, progress, move |caller| {
             work(&shape, &motion, &options, &mut |report| {
-                caller.tell(|| PyReport(report.clone()))
+                caller.ask(|| (PyReport(report.clone()),))
             })
         })?;
         finish(py, solution?, tolerance, check)

@@ -311,7 +311,7 @@ impl PyContact {
         check: bool,
     ) -> PyResult<Vec<Py<PySolution>>> {
         let options = options(tolerance, max_iterations, algorithm, None)?;
-        batch::solve_many(py, &self.contact, cases, &options, progress, check)
+        batch::solve_many(py, &self.contact, cases, options, progress, check)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

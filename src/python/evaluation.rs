@@ -144,7 +144,7 @@ pub(super) fn watched<R: Send + 'static>(
 ) -> PyResult<R> {
     let callback = progress_callable(progress)?;
     let result = background::run(py, callback, move |caller| {
-        work(&mut |part: f64| caller.tell(|| part))
+        work(&mut |part: f64| caller.ask(|| (part,)))
     })?;
     Ok(result?)
 }
