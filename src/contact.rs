@@ -277,7 +277,7 @@ impl Contact {
             approach,
             tilt,
             report,
-            gap: Gap::Of {
+            gap: Gap::Computed {
                 undeformed: gap,
                 freedoms: Box::new(freedoms),
                 multipliers,

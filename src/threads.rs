@@ -276,7 +276,7 @@ fn linger() {
 }
 
 /// Becomes true when this is dropped, by a panic or not.
-struct SetOnDrop<'a>(&'a AtomicBool);
+pub(crate) struct SetOnDrop<'a>(pub(crate) &'a AtomicBool);
 
 impl Drop for SetOnDrop<'_> {
     fn drop(&mut self) {

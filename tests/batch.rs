@@ -2,11 +2,14 @@
 //! what is finished.
 
 use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nacre::{
-    Case, Contact, Elastic, Error, Grid, HalfSpace, Layer, Motion, Options, Result, Setup, Sphere,
-    Surface,
+    Case, Contact, Elastic, Error, Grid, HalfSpace, Layer, Motion, Options, Result, Setup,
+    Solution, Sphere, Surface,
 };
+use ndarray::Array2;
 
 fn contact(threads: usize) -> Result<Contact> {
     let (coat, base) = (Elastic::new(4.0, 0.3)?, Elastic::new(1.0, 0.25)?);
@@ -106,22 +109,70 @@ fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
 #[test]
 fn each_solution_is_given_away_once() -> Result<()> {
     let (sphere, contact) = (Sphere::new(50.0)?, contact(2)?);
-    let cases: Vec<Case> = (1..=30)
+    let cases: Vec<Case> = (1..=1000)
         .map(|k| Case {
             shape: &sphere,
-            motion: Motion::load(1e-3 * f64::from(k)),
+            motion: Motion::load(1e-5 * f64::from(k)),
         })
         .collect();
-    let mut given = vec![0; cases.len()];
-    contact.solve_each(&cases, &Options::default(), &mut |finished| {
-        for (number, solved) in finished {
-            let load = solved.map(|solution| solution.load() / (1e-3 * (number + 1) as f64));
+    for stop in [false, true] {
+        let given = Mutex::new(vec![0; cases.len()]);
+        let take = |number: usize, solved: Result<Solution>| {
+            let load = solved.map(|solution| solution.load() / (1e-5 * (number + 1) as f64));
             assert!(load.is_ok_and(|ratio| (ratio - 1.0).abs() < 1e-9));
-            given[number] += 1;
+            if let Ok(mut given) = given.lock() {
+                given[number] += 1;
+            }
+        };
+        contact.solve_each(&cases, &Options::default(), &take, &mut || match stop {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        })?;
+        let given = given.into_inner().unwrap_or_default();
+        assert!(given.iter().all(|count| *count <= 1), "{given:?}");
+        assert_eq!(given.contains(&0), stop, "{given:?}");
+    }
+    Ok(())
+}
+
+/// A sphere that counts how often it is sampled on its grid.
+#[derive(Debug)]
+struct Counted {
+    sphere: Sphere,
+    sampled: AtomicUsize,
+}
+
+impl Surface for Counted {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.sphere.gap(x, y)
+    }
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        if grid.shape() == [96, 112] {
+            self.sampled.fetch_add(1, Ordering::Relaxed);
         }
-        ControlFlow::Continue(())
-    })?;
-    assert!(given.iter().all(|count| *count == 1), "{given:?}");
+        self.sphere.gaps(grid)
+    }
+}
+
+#[test]
+fn cases_of_one_shape_share_its_undeformed_gap() -> Result<()> {
+    let counted = |sphere| Counted {
+        sphere,
+        sampled: AtomicUsize::new(0),
+    };
+    let shapes = [counted(Sphere::new(50.0)?), counted(Sphere::new(80.0)?)];
+    let cases: Vec<Case> = (0..12)
+        .map(|k| Case {
+            shape: &shapes[k / 6],
+            motion: Motion::load(1e-3 * (k + 1) as f64),
+        })
+        .collect();
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let solved = contact(1)?.solve_many(&cases, &Options::default(), go_on)?;
+    assert_eq!(solved.len(), cases.len());
+    for shape in &shapes {
+        assert_eq!(shape.sampled.load(Ordering::Relaxed), 1);
+    }
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ class Figure:
     unit: str = ""
     least: bool = False
     """Whether the bar is the least that is allowed."""
+    error: float | None = None
+    """Relative standard error of what was measured, where it is a mean."""
 
     @property
     def met(self) -> str:
@@ -39,6 +42,12 @@ def ratio(ours: Row | None, theirs: Row | None, field: str = "seconds") -> float
         return None
     a, b = getattr(ours, field), getattr(theirs, field)
     return None if a is None or b is None else float(a / b)
+
+
+def error(ours: Row | None, theirs: Row | None) -> float | None:
+    """Return the relative standard error of the ratio of two means."""
+    errors = [row.error for row in (ours, theirs) if row is not None and row.error is not None]
+    return math.hypot(*errors) if len(errors) == 2 else None
 
 
 def value(row: Row | None, field: str) -> float | None:
@@ -96,12 +105,13 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     large = bench.find("hertz", 4096, "nacre", 2)
     extra = value(large, "bytes_per_cell")
     yield Figure("hertz 4096² solves: extra memory", 200, 120, extra, "bytes a cell")
-    for machine, bar in (("idle", 0.6), ("busy", 1.1)):
+    for setting, bar in (("idle", 0.6), ("busy", 1.1)):
         rows = {
-            row.threads: row for row in bench.rows if row.machine == machine and row.cells == 1024
+            row.threads: row for row in bench.rows if row.setting == setting and row.cells == 1024
         }
-        what = f"hertz 1024²: two threads over one, machine {machine}"
-        yield Figure(what, bar, None, ratio(rows.get(2), rows.get(1)))
+        one, two = rows.get(1), rows.get(2)
+        what = f"hertz 1024²: two threads over one, machine {setting}"
+        yield Figure(what, bar, None, ratio(two, one), error=error(two, one))
 
 
 def rough(bench: Bench) -> Iterator[Figure]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -55,8 +55,10 @@ class Row:
     processors: float | None = None
     outside: float | None = None
     """Share of a solve of the sphere that is not transforms and products."""
-    machine: str = ""
-    """"idle" or "busy" of what was measured in turn with another number of threads."""
+    setting: Literal["", "idle", "busy"] = ""
+    """The machine, of what was measured in turn with another number of threads."""
+    error: float | None = None
+    """Relative standard error of the seconds, where these are a mean."""
     note: str = ""
 
 
@@ -131,17 +133,16 @@ class Bench:
             "seconds": seconds,
         }
 
-    def in_turn(self, problem: Problem, *, busy: bool) -> None:
-        """Measure nacre with one thread and two in turn, in many processes.
+    def in_turn(self, problem: Problem, turns: int, *, busy: bool) -> None:
+        """Measure nacre with one thread and two in turn, each in so many processes.
 
         So whatever else goes on meets both alike. On an idle machine the fastest solve counts. On a
         busy one the mean over the processes does: one that has a core to itself by luck, which one
         thread has more often than two, takes half the time of one that has not.
         """
-        machine = "busy" if busy else "idle"
-        rows = [Row(problem.name, problem.cells, "nacre", n, machine=machine) for n in (1, 2)]
+        rows = [Row(problem.name, problem.cells, "nacre", threads) for threads in (1, 2)]
         by_process: list[list[Solves]] = [[], []]
-        for _ in range(BUSY_TURNS if busy else TURNS):
+        for _ in range(turns):
             for row, processes in zip(rows, by_process, strict=True):
                 request = self.request(problem, "nacre", row.threads, 3.0)
                 try:
@@ -152,9 +153,16 @@ class Bench:
                 keep(row, found, TOLERANCE)
                 processes.append(np.array(found["each"]))
         for row, processes in zip(rows, by_process, strict=True):
-            if processes:
-                taken = mean if busy else fastest
-                row.seconds, row.processors, row.note = taken(processes)
+            row.setting = "busy" if busy else "idle"
+            if busy and processes:
+                row.seconds, row.processors, row.error = mean(processes)
+                row.note = (
+                    "in turn with the other, beside one spinning process for each core; "
+                    f"mean of {len(processes)} processes, ± {row.error:.1%}"
+                )
+            elif processes:
+                row.seconds, row.processors = fastest(processes)
+                row.note = "in turn with the other; the best"
             self.rows.append(row)
             show(row)
 
@@ -236,7 +244,7 @@ class Bench:
         """Return the first measurement of that, of those not measured in turn."""
         for row in self.rows:
             if (row.problem, row.cells, row.program) == (problem, cells, program) and (
-                row.threads == threads and row.seconds is not None and not row.machine
+                row.threads == threads and row.seconds is not None and not row.setting
             ):
                 return row
         return None
@@ -265,25 +273,23 @@ class Bench:
 
 
 TURNS = 8
-BUSY_TURNS = 32
 
 Solves = npt.NDArray[np.float64]
 """Those of one process, a line each: seconds, and processors that were used."""
 
 
-def fastest(processes: list[Solves]) -> tuple[float, float, str]:
-    """Return seconds and processors of the fastest solve, and what it is."""
+def fastest(processes: list[Solves]) -> tuple[float, float]:
+    """Return seconds and processors of the fastest solve."""
     seconds, processors = min(tuple(solve) for solves in processes for solve in solves)
-    return seconds, processors, "in turn with the other; the best"
+    return seconds, processors
 
 
-def mean(processes: list[Solves]) -> tuple[float, float, str]:
-    """Return those of the mean process, and with which standard error."""
+def mean(processes: list[Solves]) -> tuple[float, float, float]:
+    """Return those of the mean process, and the relative standard error of its seconds."""
     means = np.array([solves.mean(axis=0) for solves in processes])
     seconds, processors = means.mean(axis=0)
-    error = means[:, 0].std(ddof=1) / np.sqrt(len(means)) / seconds if len(means) > 1 else np.nan
-    beside = "in turn with the other, beside one spinning process for each core"
-    return seconds, processors, f"{beside}; mean of {len(means)} processes, ± {error:.1%}"
+    scatter = means[:, 0].std(ddof=1) if len(means) > 1 else np.nan
+    return seconds, processors, scatter / np.sqrt(len(means)) / seconds
 
 
 @contextmanager

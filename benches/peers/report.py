@@ -56,7 +56,7 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         *table(
             ("figure", "measured", "bar", "stretch", ""),
             [
-                (f.what, number(f.measured, f), number(f.bar, f), number(f.stretch, f), f.met)
+                (f.what, measured(f), number(f.bar, f), number(f.stretch, f), f.met)
                 for f in all_figures(bench)
             ],
         ),
@@ -69,8 +69,7 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         rows.sort(
             key=lambda row: (
                 names.index(row.program),
-                row.machine == "busy",
-                row.machine == "idle",
+                ("", "idle", "busy").index(row.setting),
                 row.threads,
                 row.cells,
             )
@@ -138,6 +137,14 @@ def number(found: float | None, figure: Figure) -> str:
     if "time over" in figure.what and 0 < found < 1:
         text = f"1/{1 / found:.3g}"
     return f"{text} {figure.unit}".strip()
+
+
+def measured(figure: Figure) -> str:
+    """Return what was measured, with its standard error where that is known."""
+    text = number(figure.measured, figure)
+    if figure.measured is None or figure.error is None:
+        return text
+    return f"{text} ± {figure.error * figure.measured:.1g}"
 
 
 def table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[str]:

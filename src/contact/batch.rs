@@ -2,9 +2,9 @@
 
 use std::convert::Infallible;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use super::freedoms::Motion;
@@ -15,7 +15,7 @@ use super::{Contact, Options, memory};
 use crate::error::Result;
 use crate::memory::check_memory;
 use crate::surface::Surface;
-use crate::threads::Threads;
+use crate::threads::{SetOnDrop, Threads};
 
 /// One of many load cases.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +32,8 @@ const ASKED: Duration = Duration::from_millis(20);
 impl Contact {
     /// Solves many cases side by side, each on one of the plan's threads (on several, where there
     /// are fewer cases). Solutions come in the order of the cases, and are those of
-    /// [`Contact::solve`] to the bit; those of the same shape, by its address, share its undeformed gap.
+    /// [`Contact::solve`] to the bit. Under a load, successive cases of one shape (at one address) share
+    /// its undeformed gap.
     ///
     /// `progress` is told how many cases are finished, on the calling thread, every 20 ms and at the
     /// end; its break stops the rest: those that are not finished are `None`.
@@ -59,30 +60,57 @@ impl Contact {
         options: &Options,
         progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<Vec<Option<Result<Solution>>>> {
-        self.check_many(cases)?;
-        let mut solutions: Vec<Option<Result<Solution>>> = cases.iter().map(|_| None).collect();
-        let mut done = 0;
-        self.solve_each(cases, options, &mut |finished| {
-            done += finished.len();
-            for (number, solved) in finished {
-                solutions[number] = Some(solved);
-            }
-            progress(done)
+        self.check_memory_for(cases)?;
+        let solutions: Vec<Option<Result<Solution>>> = cases.iter().map(|_| None).collect();
+        let (solutions, done) = (Mutex::new(solutions), AtomicUsize::new(0));
+        let keep = |number: usize, solved| {
+            let mut solutions = solutions.lock().unwrap_or_else(PoisonError::into_inner);
+            solutions[number] = Some(solved);
+            done.fetch_add(1, Ordering::Relaxed);
+        };
+        self.solve_each(cases, options, &keep, &mut || {
+            progress(done.load(Ordering::Relaxed))
         })?;
-        Ok(solutions)
+        Ok(solutions
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// [`Contact::solve_many`] that gives solutions away, so that not all of them need be kept: 50 times
-    /// a second and at the end, on the calling thread, `finished` is given those that were finished since,
-    /// each with the number of its case.
+    /// [`Contact::solve_many`] that gives solutions away, so that not all of them need be kept.
+    ///
+    /// `take` is given the number of a case and its solution as soon as that is finished, on the thread
+    /// that solved it. `ask` is called on the calling thread, every 20 ms and at the end; its break
+    /// stops the rest, which are not given.
     ///
     /// # Errors
-    /// Too little memory.
+    /// Too little memory for what is solved at once. What is wrong with a case is its own result.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use std::sync::Mutex;
+    /// use nacre::{Case, Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
+    ///
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let shape = Paraboloid::new(1e3, 1e3)?;
+    /// let cases = [1e-3, 2e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
+    /// let peak = Mutex::new(0.0_f64);
+    /// let take = |_, solved: nacre::Result<nacre::Solution>| {
+    ///     if let (Ok(solution), Ok(mut peak)) = (solved, peak.lock()) {
+    ///         *peak = peak.max(solution.peak_pressure());
+    ///     }
+    /// };
+    /// contact.solve_each(&cases, &Options::default(), &take, &mut || ControlFlow::Continue(()))?;
+    /// // Hertz: p0 = (6 W E*² / π³ R²)^{1/3}
+    /// let hertz = (6.0 * 8e-3 / std::f64::consts::PI.powi(3) / 1e6).powf(1.0 / 3.0);
+    /// assert!((peak.into_inner().unwrap_or(0.0) / hertz - 1.0).abs() < 0.01);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
     pub fn solve_each(
         &self,
         cases: &[Case],
         options: &Options,
-        finished: &mut dyn FnMut(Vec<(usize, Result<Solution>)>) -> ControlFlow<()>,
+        take: &(dyn Fn(usize, Result<Solution>) + Sync),
+        ask: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<()> {
         let workers = self.workers(cases);
         if workers == 0 {
@@ -93,54 +121,57 @@ impl Contact {
         let threads = self.convolution().threads();
         let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
         let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let (sender, solutions) = mpsc::channel();
         // Nothing is ever sent: it ends with the last worker.
-        let (working, ended) = mpsc::channel::<Infallible>();
+        let (alive, ended) = mpsc::channel::<Infallible>();
         std::thread::scope(|scope| {
             for _ in 0..workers {
-                let (sender, working) = (sender.clone(), working.clone());
+                let alive = alive.clone();
                 let (plan, next, stopped) = (&plan, &next, &stopped);
                 scope.spawn(move || {
-                    let (_working, mut sampled) = (working, Sampled::default());
+                    let (_alive, mut sampled) = (alive, Sampled::default());
                     let asked = || match stopped.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
                         false => ControlFlow::Continue(()),
                     };
                     while asked().is_continue() {
                         let number = next.fetch_add(1, Ordering::Relaxed);
-                        let Some(case) = cases.get(number) else {
+                        let Some(Case { shape, motion }) = cases.get(number) else {
                             break;
                         };
-                        let Case { shape, motion } = case;
-                        let solved =
-                            plan.solve_sampled(*shape, &mut sampled, motion, options, &mut |_| {
-                                asked()
-                            });
-                        if sender.send((number, solved)).is_err() {
-                            break;
+                        let mut progress = |_: &_| asked();
+                        let solved = plan.solve_sampled(
+                            *shape,
+                            &mut sampled,
+                            motion,
+                            options,
+                            &mut progress,
+                        );
+                        let unfinished = matches!(&solved, Ok(solution)
+                            if solution.report.termination == Termination::Stopped);
+                        if !unfinished {
+                            take(number, solved);
                         }
                     }
                 });
             }
-            drop(working);
+            drop(alive);
+            // Where `ask` panics, too, the workers end.
+            let stop = SetOnDrop(&stopped);
             // Woken for each solution, this thread would take a core from the workers each time.
             let mut working = true;
             while working {
                 working = ended.recv_timeout(ASKED) != Err(RecvTimeoutError::Disconnected);
-                let is_finished = |(_, solved): &(usize, Result<Solution>)| {
-                    !matches!(solved, Ok(solution)
-                        if solution.report.termination == Termination::Stopped)
-                };
-                if finished(solutions.try_iter().filter(is_finished).collect()).is_break() {
+                if ask().is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
             }
+            drop(stop);
         });
         Ok(())
     }
 
     /// An error where there is too little memory to solve `cases` and to keep all solutions.
-    pub(crate) fn check_many(&self, cases: &[Case]) -> Result<()> {
+    pub(crate) fn check_memory_for(&self, cases: &[Case]) -> Result<()> {
         let [nx, ny] = self.grid().shape();
         // Pressure, displacement, undeformed gap.
         let solution = nx as u64 * ny as u64 * 24;

@@ -304,7 +304,9 @@ impl<'a> Cascade<'a> {
             // A measured surface has no values for cells that are much larger than its own.
             let gap = match shape.gaps(grid) {
                 Ok(mut gap) => {
-                    freedoms.prescribe(&mut gap);
+                    if freedoms.any_prescribed() {
+                        freedoms.prescribe(&mut gap);
+                    }
                     gap
                 }
                 Err(_) => coarse_gap(&fine.gap, halved),

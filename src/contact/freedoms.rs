@@ -219,9 +219,6 @@ impl Freedoms {
 
     /// Takes the prescribed freedoms from the gap: h − δ − s_x x − s_y y.
     pub(super) fn prescribe(&self, gap: &mut Array2<f64>) {
-        if !self.any_prescribed() {
-            return;
-        }
         let [delta, sx, sy] = self.prescribed;
         let [x, y] = &self.coordinates;
         for (mut row, x) in gap.rows_mut().into_iter().zip(x) {

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use super::fields::{slice, slice_mut};
 use super::freedoms::Freedoms;
 use super::passes::Row;
 use super::problem::Multipliers;
@@ -13,7 +12,7 @@ use super::problem::Multipliers;
 #[derive(Debug, Clone)]
 pub(super) enum Gap {
     /// g = h + u − Bλ, of the displacement u.
-    Of {
+    Computed {
         /// h, less the prescribed motion; solutions of one shape share it.
         undeformed: Arc<Array2<f64>>,
         /// B
@@ -26,22 +25,26 @@ pub(super) enum Gap {
 }
 
 impl Gap {
-    /// It, of a solution with that displacement.
-    pub(super) fn of(&self, displacement: &Array2<f64>) -> Array2<f64> {
+    /// The gap of a solution with that displacement.
+    pub(super) fn field(&self, displacement: &Array2<f64>) -> Array2<f64> {
         let (undeformed, freedoms, multipliers) = match self {
-            Self::Of {
+            Self::Computed {
                 undeformed,
                 freedoms,
                 multipliers,
             } => (undeformed, freedoms, multipliers),
             Self::Known(gap) => return gap.clone(),
         };
-        let mut gap = Array2::zeros(displacement.dim());
-        let (u, h, g) = (slice(displacement), slice(undeformed), slice_mut(&mut gap));
-        let y = &freedoms.columns[1];
-        for (number, (x, cells)) in freedoms.rows().enumerate() {
-            let fields = [u, h].map(|field| &field[cells.clone()]);
-            multipliers.gap(Row { number, x, y }, fields, &mut g[cells]);
+        let mut gap = Array2::zeros(undeformed.dim());
+        // It is the user's own, who may have replaced it.
+        let displacement = displacement.as_standard_layout();
+        let fields = gap.rows_mut().into_iter().zip(displacement.rows());
+        let rows = fields.zip(undeformed.rows()).enumerate();
+        let [x, y] = &freedoms.columns;
+        for ((number, ((g, u), h)), &x) in rows.zip(x) {
+            if let (Some(g), Some(u), Some(h)) = (g.into_slice(), u.to_slice(), h.to_slice()) {
+                multipliers.gap(Row { number, x, y }, [u, h], g);
+            }
         }
         gap
     }

@@ -3,7 +3,7 @@
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
 use super::patch::Window;
-use super::sums::{Lanes, all, largest, sum, update, where_positive};
+use super::sums::{all, largest, sum, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -174,17 +174,13 @@ impl Multipliers {
         [0, 1, 2].map(|k| self.base[k] + self.change[k])
     }
 
-    /// The gap g = u + h − Bλ in a row, of u, h and y.
-    pub(super) fn on(self, row: Row) -> impl Fn(Lanes, Lanes, Lanes) -> Lanes {
+    /// The gap g = u + h − Bλ in a row.
+    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
         let [[a, b], [c, d]] =
             [self.base, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
-        move |u, h, y| (h - (a + b * y)) + u - (c + d * y)
-    }
-
-    /// The same of all its cells.
-    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
-        let gap = self.on(row);
-        update([u, h, row.y], [g], |[u, h, y], _| ([gap(u, h, y)], []));
+        update([u, h, row.y], [g], |[u, h, y], _| {
+            ([(h - (a + b * y)) + u - (c + d * y)], [])
+        });
     }
 }
 

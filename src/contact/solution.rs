@@ -158,10 +158,21 @@ impl PartialEq for Solution {
 }
 
 impl Solution {
-    /// One of which these were kept: pressure, gap and displacement, approach and tilt.
+    /// A solution from its parts, as a file has them: pressure, gap and displacement, approach and tilt.
     ///
     /// # Errors
     /// A field of another shape than that of the report's grid.
+    ///
+    /// ```
+    /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup, Solution};
+    ///
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let solution = contact.solve(&Paraboloid::new(1e3, 1e3)?, &Motion::load(1e-3), &Options::default())?;
+    /// let fields = [solution.pressure.clone(), solution.gap(), solution.displacement.clone()];
+    /// let again = Solution::from_fields(fields, solution.approach, solution.tilt, solution.report.clone())?;
+    /// assert_eq!(again, solution);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
     pub fn from_fields(
         [pressure, gap, displacement]: [Array2<f64>; 3],
         approach: f64,
@@ -218,9 +229,9 @@ impl Solution {
     }
 
     /// Gap \[m\], h + u − δ − s_x x − s_y y: 0 in contact within the tolerance, +∞ where the shape
-    /// cannot touch. Computed at each call.
+    /// cannot touch. Computed at each call, of the displacement that the solution has then.
     pub fn gap(&self) -> Array2<f64> {
-        self.gap.of(&self.displacement)
+        self.gap.field(&self.displacement)
     }
 
     /// Whether each cell is in contact, p > 0.

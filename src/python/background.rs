@@ -16,7 +16,8 @@ use pyo3::prelude::*;
 const ASKED: Duration = Duration::from_millis(50);
 
 enum Message<M, T> {
-    Told(M),
+    /// Arguments of the callback, and whether its answer counts.
+    Told(M, bool),
     Done(T),
 }
 
@@ -24,7 +25,7 @@ enum Message<M, T> {
 pub(super) struct Caller<M> {
     stopped: Arc<AtomicBool>,
     /// Calls Python's callback, and says whether to go on.
-    callback: Option<Box<dyn FnMut(M) -> bool + Send>>,
+    callback: Option<Box<dyn FnMut(M, bool) -> bool + Send>>,
 }
 
 impl<M> Caller<M> {
@@ -39,22 +40,23 @@ impl<M> Caller<M> {
 
     /// Whether neither anybody has interrupted nor the callback, if there is one, says to stop.
     pub(super) fn ask(&mut self, message: impl FnOnce() -> M) -> ControlFlow<()> {
-        if !self.tell(message) {
+        if let Some(callback) = &mut self.callback
+            && !callback(message(), true)
+        {
             self.stopped.store(true, Ordering::Relaxed);
         }
         self.go_on()
     }
 
-    /// What the callback says, if there is one.
-    pub(super) fn tell(&mut self, message: impl FnOnce() -> M) -> bool {
-        self.callback
-            .as_mut()
-            .is_none_or(|callback| callback(message()))
+    /// Calls the callback, if there is one, whatever it returns.
+    pub(super) fn tell(&mut self, message: impl FnOnce() -> M) {
+        if let Some(callback) = &mut self.callback {
+            callback(message(), false);
+        }
     }
 }
 
-/// What `work` returns. `callback` is called on this thread with the arguments that it tells, and what
-/// that returns is told to the work.
+/// What `work` returns. `callback` is called on this thread with the arguments that it tells.
 pub(super) fn run<M, T>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
@@ -72,9 +74,9 @@ where
         stopped: Arc::clone(&stopped),
         callback: callback.is_some().then(|| {
             // Where nobody listens any more, it was interrupted.
-            Box::new(move |message| {
-                told.send(Message::Told(message)).is_ok() && answers.recv().unwrap_or(false)
-            }) as Box<dyn FnMut(M) -> bool + Send>
+            Box::new(move |message, asks| {
+                told.send(Message::Told(message, asks)).is_ok() && answers.recv().unwrap_or(false)
+            }) as Box<dyn FnMut(M, bool) -> bool + Send>
         }),
     };
     let worker = thread::Builder::new().name("nacre".into()).spawn(move || {
@@ -87,7 +89,7 @@ where
         let messages = &mut messages;
         match py.detach(move || messages.recv_timeout(ASKED)) {
             Ok(Message::Done(done)) => break Ok(done),
-            Ok(Message::Told(message)) => match tell(py, callback.as_ref(), message) {
+            Ok(Message::Told(message, asks)) => match tell(py, callback.as_ref(), message, asks) {
                 Ok(go_on) => {
                     let _ = answer.send(go_on);
                 }
@@ -108,16 +110,17 @@ where
     outcome.and_then(|done| py.check_signals().map(|()| done))
 }
 
-/// Whether the callback says to go on.
+/// Whether the callback says to go on, where it was asked.
 fn tell<M: for<'py> PyCallArgs<'py>>(
     py: Python<'_>,
     callback: Option<&Py<PyAny>>,
     message: M,
+    asks: bool,
 ) -> PyResult<bool> {
     py.check_signals()?;
     let Some(callback) = callback else {
         return Ok(true);
     };
     let answer = callback.bind(py).call1(message)?;
-    Ok(answer.is_none() || answer.is_truthy()?)
+    Ok(!asks || answer.is_none() || answer.is_truthy()?)
 }

@@ -1,5 +1,6 @@
 //! Many load cases on one plan.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyTypeError;
@@ -112,17 +113,20 @@ pub(super) fn solve_many(
                 motion: *motion,
             })
             .collect();
-        contact.check_many(&cases)?;
-        let mut done = 0;
-        contact.solve_each(&cases, &options, &mut |solutions| {
-            if !solutions.is_empty() {
-                done += solutions.len();
-                for (number, solved) in solutions {
-                    // There is no place left where it was interrupted.
-                    if let Some(place) = lock(&kept).get_mut(number) {
-                        *place = Some(solved);
-                    }
-                }
+        contact.check_memory_for(&cases)?;
+        let done = AtomicUsize::new(0);
+        let keep = |number: usize, solved| {
+            // There is no place left where it was interrupted.
+            if let Some(place) = lock(&kept).get_mut(number) {
+                *place = Some(solved);
+                done.fetch_add(1, Ordering::Relaxed);
+            }
+        };
+        let mut told = 0;
+        contact.solve_each(&cases, &options, &keep, &mut || {
+            let done = done.load(Ordering::Relaxed);
+            if done > told {
+                told = done;
                 caller.tell(|| (done, total));
             }
             caller.go_on()

@@ -263,8 +263,8 @@ impl PyContact {
     /// algorithm : {"cascade", "polonsky-keer"}, optional
     ///     As in `solve`.
     /// progress : callable, optional
-    ///     Called with the number of finished cases and of all, 50 times a second while some
-    ///     finish, and at the end.
+    ///     Called with the number of finished cases and of all, at most 50 times a second, and at
+    ///     the end. What it returns is ignored.
     /// check : bool, optional
     ///     Whether to raise where the tolerance was not met.
     ///
@@ -284,14 +284,18 @@ impl PyContact {
     ///
     /// Notes
     /// -----
-    /// Every exception that ends it, `KeyboardInterrupt` included, carries what was finished as
-    /// `solutions`: a list in the order of the cases, with `None` for those that were not.
+    /// Once it solves, every exception that ends it, `KeyboardInterrupt` included, carries what was
+    /// finished as `solutions`: a list in the order of the cases, with `None` for those that were not.
+    ///
+    /// Under a load, successive cases of which the shape is the same object share its undeformed gap:
+    /// they take two thirds of the memory.
     ///
     /// Examples
     /// --------
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
-    /// >>> cases = [{"shape": nacre.Sphere(5e-3), "load": load} for load in (5.0, 10.0)]
+    /// >>> ball = nacre.Sphere(5e-3)
+    /// >>> cases = [{"shape": ball, "load": load} for load in (5.0, 10.0)]
     /// >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
     /// [5.0, 10.0]
     #[expect(

@@ -72,7 +72,7 @@ impl PySolution {
     /// Gap [m]: 0 in contact, within the tolerance; +inf where the shape cannot touch.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        cached(py, &self.gap, || self.solution.gap())
+        cached(py, &self.gap, || py.detach(|| self.solution.gap()))
     }
 
     /// Normal displacement of both bodies together [m], positive into them.
