@@ -12,7 +12,7 @@ from pathlib import Path
 
 from peers import report
 from peers.figures import all_figures
-from peers.measure import TURNS, Bench, busy_machine
+from peers.measure import TURNS, Bench
 from peers.problems import Problem
 from peers.programs import PROGRAMS, release
 
@@ -66,9 +66,8 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     bench.solve(Problem("roller", middle), "nacre", 1)
     bench.batch(128, 1000)
     bench.in_turn(Problem("hertz", middle), TURNS, busy=False)
-    with busy_machine():
-        # A solve on one thread takes one time or twice that, by luck.
-        bench.in_turn(Problem("hertz", middle), 4 * TURNS if large else TURNS, busy=True)
+    # A solve on one thread takes one time or twice that, by luck.
+    bench.in_turn(Problem("hertz", middle), 4 * TURNS if large else TURNS, busy=True)
     if large:
         bench.solve(Problem("hertz", 4096), "nacre", 2, seconds=0.0)
 
