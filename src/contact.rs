@@ -167,26 +167,18 @@ impl Contact {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        self.solve_sampled(shape, &mut Sampled::default(), motion, options, progress)
+        let sampled = &mut Sampled::default();
+        self.whole(|| self.solve_here(shape, sampled, motion, options, progress))
     }
 
-    /// The same; where `shape` is the one of `sampled`, its gaps are not computed again.
-    fn solve_sampled<'a>(
-        &self,
-        shape: &'a dyn Surface,
-        sampled: &mut Sampled<'a>,
-        motion: &Motion,
-        options: &Options,
-        progress: &mut Progress,
-    ) -> Result<Solution> {
+    /// Calls `work`, a whole solve, on the plan's threads.
+    fn whole<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let [nx, ny] = self.grid.shape();
-        let threads = self.convolution.own_threads();
-        threads.run_whole(nx * ny, || {
-            self.solve_here(shape, sampled, motion, options, progress)
-        })
+        self.convolution.own_threads().run_whole(nx * ny, work)
     }
 
-    /// The same, on this thread and those that it finds free.
+    /// [`Contact::solve_watched`] on this thread and those that it finds free; where `shape` is the one
+    /// of `sampled`, its gaps are not computed again.
     fn solve_here<'a>(
         &self,
         shape: &'a dyn Surface,

@@ -156,13 +156,13 @@ class Bench:
                     processes.append(np.array(found["each"]))
         for row, processes in zip(rows, by_process, strict=True):
             row.setting = "busy" if busy else "idle"
-            if busy and processes:
+            if busy and len(processes) > 1:
                 row.seconds, row.processors, row.error = mean(processes)
                 row.note = (
                     "in turn with the other, beside one spinning process for each core; "
                     f"mean of {len(processes)} processes, ± {row.error:.1%}"
                 )
-            elif processes:
+            elif processes and not busy:
                 row.seconds, row.processors = fastest(processes)
                 row.note = "in turn with the other; the best"
             self.rows.append(row)
@@ -287,11 +287,11 @@ def fastest(processes: list[Solves]) -> tuple[float, float]:
 
 
 def mean(processes: list[Solves]) -> tuple[float, float, float]:
-    """Return those of the mean process, and the relative standard error of its seconds."""
+    """Return those of the mean of several, and the relative standard error of its seconds."""
     means = np.array([solves.mean(axis=0) for solves in processes])
     seconds, processors = means.mean(axis=0)
-    scatter = means[:, 0].std(ddof=1) if len(means) > 1 else np.nan
-    return seconds, processors, scatter / np.sqrt(len(means)) / seconds
+    scatter = means[:, 0].std(ddof=1) / np.sqrt(len(means))
+    return seconds, processors, scatter / seconds
 
 
 @contextmanager

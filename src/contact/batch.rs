@@ -138,14 +138,9 @@ impl Contact {
                         let Some(Case { shape, motion }) = cases.get(number) else {
                             break;
                         };
-                        let mut progress = |_: &_| asked();
-                        let solved = plan.solve_sampled(
-                            *shape,
-                            &mut sampled,
-                            motion,
-                            options,
-                            &mut progress,
-                        );
+                        let (sampled, progress) = (&mut sampled, &mut |_: &_| asked());
+                        let solved = plan
+                            .whole(|| plan.solve_here(*shape, sampled, motion, options, progress));
                         let unfinished = matches!(&solved, Ok(solution)
                             if solution.report.termination == Termination::Stopped);
                         if !unfinished {

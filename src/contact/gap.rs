@@ -13,7 +13,7 @@ use super::problem::Multipliers;
 pub(super) enum Gap {
     /// g = h + u − Bλ, of the displacement u.
     Computed {
-        /// h, less the prescribed motion; solutions of one shape share it.
+        /// h, less the prescribed motion; other solutions of the shape may share it.
         undeformed: Arc<Array2<f64>>,
         /// B
         freedoms: Box<Freedoms>,
