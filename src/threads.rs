@@ -183,7 +183,7 @@ impl Pool {
             // while another call waits, which might have to wait for it.
             if self.calls.load(Ordering::Acquire) == 0 {
                 call = Some(self.call(&gate));
-                self.threads.spawn_broadcast(|_| linger());
+                self.threads.spawn_broadcast(|_| linger(true));
                 let (work, done) = (work.take(), &mut done);
                 scope.spawn(move |_| {
                     let _within = Within::enter();
@@ -261,15 +261,16 @@ fn pause() {
     (0..PAUSES).for_each(|_| spin_loop());
 }
 
-/// Looks for more work on a thread that has nothing else to do, while its pool is used. Ends once it
-/// found some, and goes on afterwards: it may be within a wait for something else.
-fn linger() {
+/// Looks for more work on a thread that has nothing else to do, while its pool is used. Where it is not
+/// known to be `idle` but may be within a wait for something else, that ends once it found some, and
+/// goes on afterwards.
+fn linger(idle: bool) {
     let within = Within::enter();
     let used = || CALLS.with(|calls| calls.get().map_or(0, |calls| calls.load(Ordering::Acquire)));
     let mut looks = 0;
     while !within.0 && looks < PATIENCE && used() > 0 {
-        if found_work(&mut looks) {
-            rayon::spawn(linger);
+        if found_work(&mut looks) && !idle {
+            rayon::spawn(|| linger(false));
             return;
         }
     }
@@ -289,30 +290,31 @@ pub(crate) fn join<A: Send, B: Send>(
     first: impl FnOnce() -> A + Send,
     second: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    let [taken, ended] = [AtomicBool::new(false), AtomicBool::new(false)];
+    let ended = AtomicBool::new(false);
     rayon::join_context(
         |_| {
+            let _within = Within::enter();
             let done = first();
-            let mut looks = 0;
-            if taken.load(Ordering::Acquire) {
-                // For as long as rayon would wait.
-                while !ended.load(Ordering::Acquire) {
-                    found_work(&mut looks);
-                }
-                // Until rayon has heard of it, too: there it would give its core away.
+            // If nobody has taken the second, it is found at the first look. All waiting is done here:
+            // where rayon waits it gives its core away.
+            let (mut looks, mut found) = (0, true);
+            while !ended.load(Ordering::Acquire) {
+                found = found_work(&mut looks);
+            }
+            if !found {
+                // Until rayon has heard of it, too.
                 pause();
             }
             done
         },
         |context| {
-            taken.store(true, Ordering::Release);
             let within = Within::enter();
             let end = SetOnDrop(&ended);
             let done = second();
             drop(end);
             if context.migrated() && !within.0 {
                 // Found at once when this returns.
-                rayon::spawn(linger);
+                rayon::spawn(|| linger(false));
             }
             done
         },
