@@ -245,7 +245,7 @@ impl Contact {
             }
         };
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, solved.lambda));
-        if !fields.finite(&passes) {
+        if !quality.finite {
             return Err(Error::Inconsistent(
                 "load, lengths and moduli must be in units in which their products do not overflow",
             ));

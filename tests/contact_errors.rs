@@ -117,6 +117,16 @@ fn controls() -> Result<()> {
 }
 
 #[test]
+fn products_that_overflow() -> Result<()> {
+    let shape = Paraboloid::new(1.0, 1.0)?;
+    let overflows =
+        "load, lengths and moduli must be in units in which their products do not overflow";
+    // Pressures of 1e13 times that.
+    check([(solved(&shape, &Motion::approach(1e300)), overflows)]);
+    Ok(())
+}
+
+#[test]
 fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
     // A punch of 4 mm on cells of 1 mm: centres up to 3.5 mm.
     let punch = FlatPunch::new(4e-3)?;

@@ -61,8 +61,8 @@ def markdown(bench: Bench, image: str, data: str) -> str:
             ],
         ),
         "",
-        "The time outside transforms is that of the fastest of five solves, less what the plan's",
-        "clock counted in kernels, transforms and products (`benches/convolution.rs`).",
+        "The time outside transforms is that of the fastest of some hundred solves, less what the",
+        "plan's clock counted in kernels, transforms and products (`benches/convolution.rs`).",
     ]
     for problem, title in TITLES.items():
         rows = [row for row in bench.rows if row.problem == problem]

@@ -2,10 +2,8 @@
 
 use ndarray::Array2;
 
-use super::passes::{Passes, add};
 use super::patch::{Patch, Window};
 use super::problem::{Multipliers, Problem, Quality};
-use super::sums::{ZERO, sum};
 
 /// Pressure and displacement of a problem, and how good they are, once that was seen.
 pub(super) struct Fields {
@@ -49,15 +47,6 @@ impl Fields {
         self.motion = motion;
         self.quality = Some(quality);
         quality
-    }
-
-    /// Whether all displacements are finite.
-    pub(super) fn finite(&self, passes: &Passes) -> bool {
-        // The sum is 0, unless one is not.
-        let [lost] = passes.each([slice(&self.displacement)], [], add, |_, u, []| {
-            sum(u, |[u]| [u * ZERO])
-        });
-        lost <= 0.0
     }
 }
 

@@ -3,7 +3,7 @@
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
 use super::patch::Window;
-use super::sums::{all, largest, sum, update, where_positive};
+use super::sums::{Lanes, ZERO, all, largest, largest_and_sum, sum, update, where_positive};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -26,11 +26,14 @@ pub(super) struct Quality {
     pub(super) overlap: f64,
     /// Whether force and moments are balanced.
     pub(super) balanced: bool,
+    /// Whether all displacements are finite, in so far as the others do not say it.
+    pub(super) finite: bool,
 }
 
 impl Quality {
     pub(super) fn meets(&self, tolerance: f64) -> bool {
-        self.balanced && self.residual <= tolerance && self.overlap <= tolerance
+        let close = self.residual <= tolerance && self.overlap <= tolerance;
+        self.balanced && self.finite && close
     }
 }
 
@@ -77,16 +80,27 @@ impl Problem<'_> {
             base: near,
             change: self.freedoms.fitted(sums),
         };
-        let sums = passes.each(fields, [], join, |row, [p, u, h], []| {
-            let mut g = vec![0.0; u.len()];
-            motion.gap(row, [u, h], &mut g);
-            let [deepest, most] = overlap_of([u, &g]);
-            let carried = row.part(window, [p, u, &g]);
-            let [work, mismatch, f, fx, fy] =
-                carried.map_or([0.0; 5], |(row, fields)| self.carried_of(row, fields));
-            [deepest, most, work, mismatch, f, fx, fy]
+        let sums = passes.each(fields, [], join, |row, fields @ [_, u, h], []| {
+            let gap = motion.gap_of(row);
+            let [deepest, most, lost] = largest_and_sum([u, h, row.y], |[u, h, y]| {
+                let [deepest, most] = overlap(u, gap([u, h, y]));
+                [deepest, most, u * ZERO]
+            });
+            let carried = row.part(window, fields).map(|(row, [p, u, h])| {
+                let mut g = vec![0.0; u.len()];
+                motion.gap(row, [u, h], &mut g);
+                self.carried_of(row, [p, u, &g])
+            });
+            let [work, mismatch, f, fx, fy] = carried.unwrap_or_default();
+            [deepest, most, work, mismatch, f, fx, fy, lost]
         });
-        (motion, self.quality(sums))
+        let [sums @ .., lost] = sums;
+        let quality = Quality {
+            // The sum is 0, unless one is not finite.
+            finite: lost <= 0.0,
+            ..self.quality(sums)
+        };
+        (motion, quality)
     }
 
     /// g = u + h − Bλ
@@ -137,6 +151,7 @@ impl Problem<'_> {
             residual: over(mismatch, work),
             overlap: over(deepest, most),
             balanced: self.freedoms.on_target([f, fx, fy]),
+            finite: true,
         }
     }
 }
@@ -155,10 +170,13 @@ pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
 
 /// The deepest overlap of one row, and the largest displacement where it can touch.
 pub(super) fn overlap_of(fields: [&[f64]; 2]) -> [f64; 2] {
-    largest(fields, |[u, g]| {
-        let touches = g.simd_lt(all(f64::INFINITY));
-        [-g, touches & u.abs()]
-    })
+    largest(fields, |[u, g]| overlap(u, g))
+}
+
+/// How deep cells overlap, and their displacement where they can touch.
+fn overlap(u: Lanes, g: Lanes) -> [Lanes; 2] {
+    let touches = g.simd_lt(all(f64::INFINITY));
+    [-g, touches & u.abs()]
 }
 
 /// λ in two parts: where loads are small, h − Bλ is far less than either.
@@ -174,13 +192,17 @@ impl Multipliers {
         [0, 1, 2].map(|k| self.base[k] + self.change[k])
     }
 
-    /// The gap g = u + h − Bλ in a row.
-    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
+    /// The gap g = u + h − Bλ of cells in a row, from u, h and their coordinates.
+    fn gap_of(self, row: Row) -> impl Fn([Lanes; 3]) -> Lanes {
         let [[a, b], [c, d]] =
             [self.base, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
-        update([u, h, row.y], [g], |[u, h, y], _| {
-            ([(h - (a + b * y)) + u - (c + d * y)], [])
-        });
+        move |[u, h, y]| (h - (a + b * y)) + u - (c + d * y)
+    }
+
+    /// The gap in a row.
+    pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
+        let gap = self.gap_of(row);
+        update([u, h, row.y], [g], |fields, _| ([gap(fields)], []));
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn sum<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
     term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [f64; N] {
-    let lanes = fold(inputs, |sum, value| sum + value, term);
+    let lanes = fold(inputs, |_, sum, value| sum + value, term);
     lanes.map(total)
 }
 
@@ -41,13 +41,30 @@ pub(super) fn largest<const M: usize, const N: usize>(
     term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [f64; N] {
     // Not max, which looks for NaN: a field with NaN shows in the sums.
-    let lanes = fold(inputs, Lanes::fast_max, term);
-    lanes.map(|lanes| lanes.to_array().into_iter().fold(0.0, f64::max))
+    let lanes = fold(inputs, |_, a, b| a.fast_max(b), term);
+    lanes.map(top)
 }
 
+/// Σ of the last `term`, and the largest of the others and 0.
+pub(super) fn largest_and_sum<const M: usize, const N: usize>(
+    inputs: [&[f64]; M],
+    term: impl Fn([Lanes; M]) -> [Lanes; N],
+) -> [f64; N] {
+    let join = |k, a: Lanes, b| if k + 1 < N { a.fast_max(b) } else { a + b };
+    let lanes = fold(inputs, join, term);
+    std::array::from_fn(|k| {
+        if k + 1 < N {
+            top(lanes[k])
+        } else {
+            total(lanes[k])
+        }
+    })
+}
+
+/// `join` is told which of the terms it joins.
 fn fold<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
-    join: impl Fn(Lanes, Lanes) -> Lanes,
+    join: impl Fn(usize, Lanes, Lanes) -> Lanes,
     term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [Lanes; N] {
     let mut joined = [ZERO; N];
@@ -55,15 +72,15 @@ fn fold<const M: usize, const N: usize>(
     let count = chunks.iter().map(|chunks| chunks.len()).min();
     for k in 0..count.unwrap_or(0) {
         let values = term(chunks.map(|chunks| Lanes::new(chunks[k])));
-        for (joined, value) in joined.iter_mut().zip(values) {
-            *joined = join(*joined, value);
+        for (k, value) in values.into_iter().enumerate() {
+            joined[k] = join(k, joined[k], value);
         }
     }
     let rest = inputs.map(|input| input.as_chunks::<LANES>().1);
     let keep = first(rest.iter().map(|rest| rest.len()).min().unwrap_or(0));
     let values = term(rest.map(padded));
-    for (joined, value) in joined.iter_mut().zip(values) {
-        *joined = join(*joined, keep & value);
+    for (k, value) in values.into_iter().enumerate() {
+        joined[k] = join(k, joined[k], keep & value);
     }
     joined
 }
@@ -130,6 +147,11 @@ fn total(lanes: Lanes) -> f64 {
     (a + c) + (b + d)
 }
 
+/// The largest of the lanes and 0.
+fn top(lanes: Lanes) -> f64 {
+    lanes.to_array().into_iter().fold(0.0, f64::max)
+}
+
 /// Σ a b
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let [dot] = sum([a, b], |[a, b]| [a * b]);
@@ -138,7 +160,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{ONE, all, dot, largest, sum, update};
+    use super::{ONE, all, dot, largest, largest_and_sum, sum, update};
 
     #[test]
     fn sums_and_largest_of_any_length() {
@@ -163,6 +185,8 @@ mod tests {
                 .zip(&b)
                 .fold(0.0, |t: f64, (a, b)| t.max(a + 3.0 * b));
             assert_eq!(top.to_bits(), expected.to_bits());
+            let both = largest_and_sum([&a, &b], |[a, b]| [a + all(3.0) * b, a * b]);
+            assert_eq!(both.map(f64::to_bits), [top, dot(&a, &b)].map(f64::to_bits));
         }
     }
 
