@@ -82,7 +82,7 @@ class Bench:
         program: str,
         threads: int,
         *,
-        seconds: float = 3.0,
+        seconds: float = 10.0,
     ) -> Row:
         """Measure one solve, at the tolerance that gives the residual asked."""
         row = Row(problem.name, problem.cells, program, threads)

@@ -65,7 +65,7 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     bench.solve(Problem("coated", middle), "nacre", 1)
     bench.solve(Problem("roller", middle), "nacre", 1)
     bench.batch(128, 1000)
-    bench.in_turn(Problem("hertz", middle), TURNS, busy=False)
+    bench.in_turn(Problem("hertz", middle), 2 * TURNS if large else TURNS, busy=False)
     # A solve on one thread takes one time or twice that, by luck.
     bench.in_turn(Problem("hertz", middle), 4 * TURNS if large else TURNS, busy=True)
     if large:
