@@ -26,7 +26,7 @@ pub(super) struct Quality {
     pub(super) overlap: f64,
     /// Whether force and moments are balanced.
     pub(super) balanced: bool,
-    /// Whether all displacements are finite, in so far as the others do not say it.
+    /// Whether all displacements are finite; [`Problem::judge`] alone looks.
     pub(super) finite: bool,
 }
 
