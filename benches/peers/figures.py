@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from peers.measure import Bench, Row
+from peers.measure import Bench, Row, Setting
 from peers.problems import TOLERANCE
 
 
@@ -44,10 +44,11 @@ def ratio(ours: Row | None, theirs: Row | None, field: str = "seconds") -> float
     return None if a is None or b is None else float(a / b)
 
 
-def error(ours: Row | None, theirs: Row | None) -> float | None:
+def error(ours: Row | None, theirs: Row | None, field: str = "error") -> float | None:
     """Return the relative standard error of the ratio of two means."""
-    errors = [row.error for row in (ours, theirs) if row is not None and row.error is not None]
-    return math.hypot(*errors) if len(errors) == 2 else None
+    errors = [value(row, field) for row in (ours, theirs)]
+    known = [found for found in errors if found is not None]
+    return math.hypot(*known) if len(known) == 2 else None
 
 
 def value(row: Row | None, field: str) -> float | None:
@@ -105,11 +106,9 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     large = bench.find("hertz", 4096, "nacre", 2)
     extra = value(large, "bytes_per_cell")
     yield Figure("hertz 4096² solves: extra memory", 200, 120, extra, "bytes a cell")
-    for setting, bar in (("idle", 0.6), ("busy", 1.1)):
-        rows = {
-            row.threads: row for row in bench.rows if row.setting == setting and row.cells == 1024
-        }
-        one, two = rows.get(1), rows.get(2)
+    settings: tuple[tuple[Setting, float], ...] = (("idle", 0.6), ("busy", 1.1))
+    for setting, bar in settings:
+        one, two = (bench.find("hertz", 1024, "nacre", threads, setting) for threads in (1, 2))
         what = f"hertz 1024²: two threads over one, machine {setting}"
         yield Figure(what, bar, None, ratio(two, one), error=error(two, one))
 
@@ -124,12 +123,13 @@ def others(bench: Bench) -> Iterator[Figure]:
     roller = bench.find("roller", 1024, "nacre", 1)
     work = value(roller, "work")
     yield Figure("the paper's roller, 1024×128, E1/E2 = 4, e/L = 0.3: work", 30, 20, work)
-    bare, coated = (bench.find(name, 1024, "nacre", 1) for name in ("hertz", "coated"))
-    measured = ratio(coated, bare, "together")
-    yield Figure("coated over bare, 1024², 1 thread, with planning", 1.4, 1.2, measured)
+    bare, coated = (bench.find(name, 1024, "nacre", 1, "idle") for name in ("hertz", "coated"))
+    what = "coated over bare, 1024², 1 thread, with planning"
+    more = ratio(coated, bare, "together")
+    yield Figure(what, 1.4, 1.2, more, error=error(coated, bare, "error_together"))
     cores = os.cpu_count() or 1
-    alone, many = (bench.find("batch", 128, "nacre", threads) for threads in (1, cores))
+    alone, many = (bench.find("batch", 128, "nacre", threads, "idle") for threads in (1, cores))
     gain = ratio(alone, many)
     what = "1000 coated spheres at 128²: speed over cores × one alone"
     measured = None if gain is None else gain / cores
-    yield Figure(what, 0.9, None, measured, least=True)
+    yield Figure(what, 0.9, None, measured, least=True, error=error(alone, many))

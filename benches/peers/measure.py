@@ -6,14 +6,13 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from peers.problems import TOLERANCE, Name, Problem
 
@@ -26,6 +25,12 @@ CHEAP = 8.0
 # Time grows so much, at the most, when the cells of a side are doubled.
 GROWTH = 7.0
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+Setting = Literal["", "idle", "busy"]
+Request = dict[str, Any]
+"""What a worker is asked for."""
+Times = dict[str, list[float]]
+"""Of each solve of one process: seconds, planning, both together, processors that were used."""
 
 
 class Failure(Exception):
@@ -55,10 +60,14 @@ class Row:
     processors: float | None = None
     outside: float | None = None
     """Share of a solve of the sphere that is not transforms and products."""
-    setting: Literal["", "idle", "busy"] = ""
-    """The machine, of what was measured in turn with another number of threads."""
+    setting: Setting = ""
+    """The machine, where this was measured in turn with what it is compared with."""
     error: float | None = None
     """Relative standard error of the seconds, where these are a mean."""
+    error_together: float | None = None
+    """The same of planning and solving together."""
+    cases: int | None = None
+    """Those of a batch."""
     note: str = ""
 
 
@@ -119,9 +128,7 @@ class Bench:
         show(row)
         return row
 
-    def request(
-        self, problem: Problem, program: str, threads: int, seconds: float
-    ) -> dict[str, Any]:
+    def request(self, problem: Problem, program: str, threads: int, seconds: float) -> Request:
         """Return what a worker is asked for, but for the tolerance."""
         return {
             "task": "solve",
@@ -133,40 +140,54 @@ class Bench:
             "seconds": seconds,
         }
 
-    def in_turn(self, problem: Problem, turns: int, *, busy: bool) -> None:
-        """Measure nacre with one thread and two in turn, each in so many processes.
+    def in_turn(self, setting: Setting, turns: int, asked: Iterable[tuple[Row, Request]]) -> None:
+        """Measure what is compared with itself in turn, each in so many processes.
 
-        So whatever else goes on meets both alike. On an idle machine the fastest solve counts. On a
-        busy one the mean over the processes does: one that has a core to itself by luck, which one
-        thread has more often than two, takes half the time of one that has not.
+        So whatever else goes on meets all alike. The mean over the processes counts: on a busy
+        machine one that has a core to itself by luck, which one thread has more often than two,
+        takes half the time of one that has not; on an idle one where its memory lies makes a tenth.
         """
-        rows = [Row(problem.name, problem.cells, "nacre", threads) for threads in (1, 2)]
-        by_process: list[list[Solves]] = [[], []]
+        asked = list(asked)
+        by_process: list[list[Times]] = [[] for _ in asked]
         for _ in range(turns):
             # Afresh each time: where these run is part of the luck.
-            with busy_machine() if busy else nullcontext():
-                for row, processes in zip(rows, by_process, strict=True):
-                    request = self.request(problem, "nacre", row.threads, 3.0)
+            with busy_machine() if setting == "busy" else nullcontext():
+                for (row, request), processes in zip(asked, by_process, strict=True):
                     try:
-                        found = self.work(request | {"tolerance": TOLERANCE})
+                        found = self.work(request)
                     except Failure as failure:
                         row.note = str(failure)
                         continue
                     keep(row, found, TOLERANCE)
-                    processes.append(np.array(found["each"]))
-        for row, processes in zip(rows, by_process, strict=True):
-            row.setting = "busy" if busy else "idle"
-            if busy and len(processes) > 1:
-                row.seconds, row.processors, row.error = mean(processes)
-                row.note = (
-                    "in turn with the other, beside one spinning process for each core; "
-                    f"mean of {len(processes)} processes, ± {row.error:.1%}"
-                )
-            elif processes and not busy:
-                row.seconds, row.processors = fastest(processes)
-                row.note = "in turn with the other; the best"
+                    processes.append(found["each"])
+        for (row, _), processes in zip(asked, by_process, strict=True):
+            row.setting = setting
+            if len(processes) < 2:
+                row.seconds = row.together = None
+            else:
+                means = mean(processes)
+                for name, (value, _) in means.items():
+                    setattr(row, name, value)
+                row.error, row.error_together = means["seconds"][1], means["together"][1]
+                fastest = min(min(process["seconds"]) for process in processes)
+                row.note = f"mean of {len(processes)} processes, ± {row.error:.1%}"
+                if setting == "busy":
+                    row.note += ", beside one spinning process for each core"
+                row.note += f"; the fastest {fastest:.3g} s"
+                if row.cases is not None and row.seconds is not None:
+                    row.note += f"; {row.cases / row.seconds:.0f} solves a second"
             self.rows.append(row)
             show(row)
+
+    def solves(self, problem: Problem, threads: int) -> tuple[Row, Request]:
+        """Return what `in_turn` is asked for solves of nacre's."""
+        row = Row(problem.name, problem.cells, "nacre", threads)
+        return row, self.request(problem, "nacre", threads, 3.0) | {"tolerance": TOLERANCE}
+
+    def batch(self, cells: int, cases: int, threads: int) -> tuple[Row, Request]:
+        """Return the same of many coated spheres: one after the other, or side by side."""
+        row = Row("batch", cells, "nacre", threads, cases=cases)
+        return row, {"task": "batch", "cells": cells, "threads": threads, "cases": cases}
 
     def sweep(
         self, name: Name, program: str, threads: int, sizes: list[int], *, soft: float
@@ -198,7 +219,7 @@ class Bench:
             np.save(file, problem.gaps())
         return file
 
-    def work(self, request: dict[str, Any]) -> dict[str, Any]:
+    def work(self, request: Request) -> dict[str, Any]:
         """Return what a worker measured.
 
         Raises
@@ -221,33 +242,14 @@ class Bench:
         result: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
         return result
 
-    def batch(self, cells: int, cases: int) -> None:
-        """Time many coated spheres, one after the other on one thread and side by side on all.
-
-        In turn, several times; the best.
-        """
-        rows = [Row("batch", cells, "nacre", n) for n in (1, os.cpu_count() or 1)]
-        for _ in range(TURNS):
-            for row in rows:
-                task = {"task": "batch", "cells": cells, "threads": row.threads, "cases": cases}
-                try:
-                    found = self.work(task)
-                except Failure as failure:
-                    row.note = str(failure)
-                    continue
-                if found["seconds"] < (row.seconds or np.inf):
-                    keep(row, found, TOLERANCE)
-                    row.note = f"{cases} cases, {cases / found['seconds']:.0f} solves a second"
-        for row in rows:
-            self.rows.append(row)
-            show(row)
-
-    def find(self, problem: str, cells: int, program: str, threads: int) -> Row | None:
-        """Return the first measurement of that, of those not measured in turn."""
+    def find(
+        self, problem: str, cells: int, program: str, threads: int, setting: Setting = ""
+    ) -> Row | None:
+        """Return the first measurement of that."""
+        sought = (problem, cells, program, threads, setting)
         for row in self.rows:
-            if (row.problem, row.cells, row.program) == (problem, cells, program) and (
-                row.threads == threads and row.seconds is not None and not row.setting
-            ):
+            found = (row.problem, row.cells, row.program, row.threads, row.setting)
+            if found == sought and row.seconds is not None:
                 return row
         return None
 
@@ -276,27 +278,17 @@ class Bench:
             show(row)
 
 
-TURNS = 8
-
 REPETITIONS = 5
 """Processes for one convolution."""
 
-Solves = npt.NDArray[np.float64]
-"""Those of one process, a line each: seconds, and processors that were used."""
 
-
-def fastest(processes: list[Solves]) -> tuple[float, float]:
-    """Return seconds and processors of the fastest solve."""
-    seconds, processors = min(tuple(solve) for solves in processes for solve in solves)
-    return seconds, processors
-
-
-def mean(processes: list[Solves]) -> tuple[float, float, float]:
-    """Return those of the mean of several, and the relative standard error of its seconds."""
-    means = np.array([solves.mean(axis=0) for solves in processes])
-    seconds, processors = means.mean(axis=0)
-    scatter = means[:, 0].std(ddof=1) / np.sqrt(len(means))
-    return seconds, processors, scatter / seconds
+def mean(processes: list[Times]) -> dict[str, tuple[float, float]]:
+    """Return the mean of each figure over several processes, and its relative standard error."""
+    means = {}
+    for name in processes[0]:
+        each = np.array([np.mean(process[name]) for process in processes])
+        means[name] = (each.mean(), each.std(ddof=1) / np.sqrt(each.size) / each.mean())
+    return means
 
 
 @contextmanager

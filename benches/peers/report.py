@@ -17,7 +17,7 @@ TITLES = {
     "hertz": "Hertz: a sphere on a square of side 2, contact radius 1/3",
     "rough": "Rough: self-affine, Hurst 0.8, rms slope 1, mean pressure 0.04 E*",
     "coated": "Hertz on a layer of four times the modulus, as thick as the contact radius",
-    "batch": "Coated spheres, load by load; on several threads by `Contact.solve_many`",
+    "batch": "1000 coated spheres, load by load; on several threads by `Contact.solve_many`",
     "roller": "The paper's roller, E1/E2 = 4, e/L = 0.3 (cells along it; an eighth across)",
 }
 CONVOLUTION = "One zero-padded convolution"

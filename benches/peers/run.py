@@ -6,18 +6,21 @@
 from __future__ import annotations
 
 import argparse
+import os
 import tempfile
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 from peers import report
 from peers.figures import all_figures
-from peers.measure import TURNS, Bench
+from peers.measure import Bench
 from peers.problems import Problem
 from peers.programs import PROGRAMS, release
 
 ROOT = Path(__file__).parents[2]
 SIZES = [256, 512, 1024, 2048]
+TURNS = 32
+"""Processes of each of what is measured in turn."""
 
 
 def options() -> argparse.Namespace:
@@ -62,12 +65,13 @@ def compare(bench: Bench, programs: list[str], sizes: list[int], soft: float) ->
 def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     """Measure what nacre alone is asked for."""
     middle = min(1024, sizes[-1])
-    bench.solve(Problem("coated", middle), "nacre", 1)
+    turns = TURNS if large else TURNS // 4
     bench.solve(Problem("roller", middle), "nacre", 1)
-    bench.batch(128, 1000)
-    bench.in_turn(Problem("hertz", middle), 2 * TURNS if large else TURNS, busy=False)
-    # A solve on one thread takes one time or twice that, by luck.
-    bench.in_turn(Problem("hertz", middle), 4 * TURNS if large else TURNS, busy=True)
+    bench.in_turn("idle", turns // 4, [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
+    sphere = Problem("hertz", middle)
+    pair = [bench.solves(sphere, threads) for threads in (1, 2)]
+    bench.in_turn("idle", turns, [*pair, bench.solves(Problem("coated", middle), 1)])
+    bench.in_turn("busy", turns, [bench.solves(sphere, threads) for threads in (1, 2)])
     if large:
         bench.solve(Problem("hertz", 4096), "nacre", 2, seconds=0.0)
 

@@ -69,13 +69,19 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
     if answer is None:
         raise RuntimeError("no repetition was made")
     taken = int(np.argmin(solves))
+    together = [a + b for a, b in zip(plans, solves, strict=True)]
     result: dict[str, Any] = {
         "seconds": solves[taken],
-        "each": list(zip(solves, processors, strict=True)),
         "planning": min(plans),
-        "together": min(a + b for a, b in zip(plans, solves, strict=True)),
+        "together": min(together),
         "bytes_per_cell": extra / gaps.size,
         "processors": processors[taken],
+        "each": {
+            "seconds": solves,
+            "planning": plans,
+            "together": together,
+            "processors": processors,
+        },
         "iterations": answer.iterations,
         "work": answer.work,
         "reported": answer.reported,
@@ -107,7 +113,7 @@ def batch(request: dict[str, Any]) -> dict[str, Any]:
             worst = max(solution.report.residual for solution in solutions)
             del solutions
         seconds = time.perf_counter() - start
-    return {"seconds": seconds, "residual": worst}
+    return {"each": {"seconds": [seconds], "together": [seconds]}, "residual": worst}
 
 
 def convolution(request: dict[str, Any]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import nacre
 from peers import report
 from peers.figures import all_figures
 from peers.judge import Convolution, judge
-from peers.measure import Bench, Row, fastest, mean
+from peers.measure import Bench, Row, mean
 from peers.problems import HURST, Problem, rough_heights, rough_waves
 
 # Sums of some thousand terms, and transforms, in double precision.
@@ -86,6 +87,23 @@ def test_the_rough_surface_has_slope_one() -> None:
     assert not np.allclose(heights[0], heights[-1], atol=0.1 * heights.std())
 
 
+def in_turn(
+    problem: str, threads: int, seconds: float, together: float, errors: tuple[float, float]
+) -> Row:
+    """Return a row of what was measured in turn."""
+    return Row(
+        problem,
+        128 if problem == "batch" else 1024,
+        "nacre",
+        threads,
+        seconds=seconds,
+        together=together,
+        setting="idle",
+        error=errors[0],
+        error_together=errors[1],
+    )
+
+
 def test_figures_are_ratios_with_a_verdict() -> None:
     bench = Bench(Path(), limit=1.0)
     bench.rows = [
@@ -93,7 +111,12 @@ def test_figures_are_ratios_with_a_verdict() -> None:
         Row("hertz", 1024, "ASPHER", 1, seconds=9.0, residual=1e-8),
         Row("hertz", 1024, "Tamaas", 1, seconds=180.0, residual=9e-9),
         Row("hertz", 1024, "ContactMechanics", 1, seconds=900.0, residual=1.1e-8),
-        Row("coated", 1024, "nacre", 1, seconds=2.5, together=3.3),
+        # Measured in turn: relative standard errors of the seconds, and with planning.
+        in_turn("hertz", 1, 2.2, 3.0, (0.03, 0.05)),
+        in_turn("hertz", 2, 1.1, 2.0, (0.04, 0.10)),
+        in_turn("coated", 1, 2.5, 3.3, (0.02, 0.12)),
+        in_turn("batch", 1, 4.0, 4.0, (0.03, 0.03)),
+        in_turn("batch", os.cpu_count() or 1, 2.0, 2.0, (0.04, 0.04)),
     ]
     found = {figure.what: figure for figure in all_figures(bench)}
     work = found["hertz 1024², 1 thread: work in convolutions"]
@@ -104,6 +127,13 @@ def test_figures_are_ratios_with_a_verdict() -> None:
     coated = found["coated over bare, 1024², 1 thread, with planning"]
     assert coated.measured == pytest.approx(1.1)
     assert coated.met == "met, and the stretch"
+    assert coated.error == pytest.approx(0.13)  # of 5 and 12 %
+    assert report.measured(coated) == "1.1 ± 0.1"
+    idle = found["hertz 1024²: two threads over one, machine idle"]
+    assert (idle.measured, idle.error, idle.met) == pytest.approx((0.5, 0.05, "met"))
+    assert found["hertz 1024²: two threads over one, machine busy"].met == "not measured"
+    batch = found["1000 coated spheres at 128²: speed over cores × one alone"]
+    assert batch.measured == pytest.approx(2 / (os.cpu_count() or 1))
     # It missed the tolerance.
     assert found["hertz 1024², 1 thread: time over ContactMechanics"].met == "not measured"
 
@@ -133,8 +163,34 @@ def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_pat
     assert "![Time over cells](peers.png)" in text
 
 
-def test_solves_in_turn_count_by_the_fastest_or_by_the_mean_process() -> None:
-    processes = [np.array([[1.0, 2.0], [3.0, 1.0]]), np.array([[4.0, 0.5]])]
-    assert fastest(processes) == (1.0, 2.0)
+def test_what_is_measured_in_turn_counts_by_the_mean_over_processes() -> None:
+    processes = [{"seconds": [1.0, 3.0], "together": [5.0]}, {"seconds": [4.0], "together": [7.0]}]
+    found = mean(processes)
     # Processes of 2 and 4 s: their deviation is √2 s, the mean's √2/√2 = 1 s, a third of 3 s.
-    assert mean(processes) == pytest.approx((3.0, 1.0, 1 / 3))
+    assert found["seconds"] == pytest.approx((3.0, 1 / 3))
+    assert found["together"] == pytest.approx((6.0, 1 / 6))
+
+
+def test_solves_in_turn_are_rows_with_an_error(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, limit=60.0)
+    bench.in_turn("idle", 2, [bench.solves(Problem("hertz", 32), 1), bench.batch(16, 3, 1)])
+    sphere, batch = bench.rows
+    assert bench.find("hertz", 32, "nacre", 1, "idle") is sphere
+    assert bench.find("hertz", 32, "nacre", 1) is None
+    for row in (sphere, batch):
+        assert (row.seconds or 0) > 0
+        assert (row.error or 0) > 0
+        assert 0 < (row.residual or 0) <= 1e-8
+    both = (sphere.seconds or 0) + (sphere.planning or 0)
+    assert sphere.together == pytest.approx(both)
+    assert batch.note.startswith("mean of 2 processes, ± ")
+    assert batch.note.endswith(f"; {3 / (batch.seconds or 1):.0f} solves a second")
+
+
+def test_what_fails_in_turn_says_why(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, limit=60.0)
+    row, request = bench.solves(Problem("hertz", 32), 1)
+    bench.in_turn("idle", 2, [(row, request | {"program": "Tamaas"})])
+    assert bench.rows == [row]
+    assert row.seconds is None
+    assert row.note == "failed: ModuleNotFoundError: No module named 'tamaas'"
