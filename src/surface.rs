@@ -9,7 +9,7 @@ use ndarray::Array2;
 
 use crate::error::{Result, finite};
 use crate::grid::Grid;
-use crate::threads::{LEAF, each_chunk, worth_dividing};
+use crate::threads::each_row;
 
 mod height_map;
 mod profile;
@@ -68,21 +68,14 @@ impl Extent {
     }
 }
 
-/// Values at the cells of a grid; on all threads of the pool that this thread belongs to, where it does.
-/// (Rayon's own would not survive a fork.)
+/// Values at the cells of a grid.
 fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {
     let [nx, ny] = grid.shape();
-    if rayon::current_thread_index().is_none() || !worth_dividing(nx * ny) {
-        return Array2::from_shape_fn((nx, ny), |(i, j)| value(i, j));
-    }
     let mut values = Array2::zeros((nx, ny));
     if let Some(values) = values.as_slice_mut() {
-        let rows = (LEAF / ny).max(1);
-        each_chunk(values, rows * ny, 0, &|k, part| {
-            for (i, row) in part.chunks_exact_mut(ny).enumerate() {
-                for (j, cell) in row.iter_mut().enumerate() {
-                    *cell = value(k * rows + i, j);
-                }
+        each_row(values, ny, |i, row| {
+            for (j, cell) in row.iter_mut().enumerate() {
+                *cell = value(i, j);
             }
         });
     }

@@ -348,6 +348,27 @@ pub(crate) fn each_chunk<T: Send>(
     );
 }
 
+/// Calls `work` with each row of `data`, of `length` elements, and its number; on all threads of the pool
+/// that this thread belongs to, where it does. (Rayon's own would not survive a fork.)
+pub(crate) fn each_row<T: Send>(
+    data: &mut [T],
+    length: usize,
+    work: impl Fn(usize, &mut [T]) + Sync,
+) {
+    let length = length.max(1);
+    let rows = (LEAF / length).max(1);
+    let some = |k: usize, part: &mut [T]| {
+        for (i, row) in part.chunks_exact_mut(length).enumerate() {
+            work(k * rows + i, row);
+        }
+    };
+    if rayon::current_thread_index().is_some() && worth_dividing(data.len()) {
+        each_chunk(data, rows * length, 0, &some);
+    } else {
+        some(0, data);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -356,7 +377,7 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use super::{Threads, WORTH, each_chunk, join, number};
+    use super::{LEAF, Threads, WORTH, each_chunk, each_row, join, number};
     use crate::error::Result;
 
     /// Whether the caller is one of a pool's threads.
@@ -381,6 +402,31 @@ mod tests {
                     assert_eq!(*number, 7 + element / length);
                 }
             }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn each_row_is_seen_once() -> Result<()> {
+        let threads = Threads::new(Some(3))?;
+        for (rows, length) in [
+            (0, 3),
+            (5, 0),
+            (1, 2 * LEAF),
+            (7, LEAF / 2 + 1),
+            (9 * LEAF, 1),
+        ] {
+            let seen = |data: &mut [usize]| {
+                each_row(data, length, |k, row| {
+                    assert_eq!(row.len(), length);
+                    row.iter_mut().for_each(|element| *element += k);
+                });
+            };
+            let (mut here, mut there) = (vec![0; rows * length], vec![0; rows * length]);
+            seen(&mut here);
+            threads.run(|| seen(&mut there));
+            let expected: Vec<_> = (0..rows * length).map(|n| n / length).collect();
+            assert_eq!([&here, &there], [&expected; 2]);
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -26,11 +27,17 @@ CHEAP = 8.0
 GROWTH = 7.0
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-Setting = Literal["", "idle", "busy"]
+Setting = Literal["", "idle", "shared", "busy"]
 Request = dict[str, Any]
 """What a worker is asked for."""
 Times = dict[str, list[float]]
 """Of each solve of one process: seconds, planning, both together, processors that were used."""
+BESIDE: dict[Setting, str] = {
+    "": "",
+    "idle": "",
+    "shared": ", two at once",
+    "busy": ", beside one spinning process for each core",
+}
 
 
 class Failure(Exception):
@@ -61,7 +68,8 @@ class Row:
     outside: float | None = None
     """Share of a solve of the sphere that is not transforms and products."""
     setting: Setting = ""
-    """The machine, where this was measured in turn with what it is compared with."""
+    """The machine, where this was measured in turn with what it is compared with: idle, shared by
+    two processes that do the same at once, or kept busy."""
     error: float | None = None
     """Relative standard error of the seconds, where these are a mean."""
     error_together: float | None = None
@@ -140,8 +148,8 @@ class Bench:
             "seconds": seconds,
         }
 
-    def in_turn(self, setting: Setting, turns: int, asked: Iterable[tuple[Row, Request]]) -> None:
-        """Measure what is compared with itself in turn, each in so many processes.
+    def in_turn(self, turns: int, asked: Iterable[tuple[Row, Request]]) -> None:
+        """Measure what is compared with itself in turn, each so many times in a process of its own.
 
         So whatever else goes on meets all alike. The mean over the processes counts: on a busy
         machine one that has a core to itself by luck, which one thread has more often than two,
@@ -150,18 +158,18 @@ class Bench:
         asked = list(asked)
         by_process: list[list[Times]] = [[] for _ in asked]
         for _ in range(turns):
-            # Afresh each time: where these run is part of the luck.
-            with busy_machine() if setting == "busy" else nullcontext():
-                for (row, request), processes in zip(asked, by_process, strict=True):
+            for (row, request), processes in zip(asked, by_process, strict=True):
+                at_once = 2 if row.setting == "shared" else 1
+                # Spinning processes are started afresh: where these run is part of the luck.
+                spinning = busy_machine() if row.setting == "busy" else nullcontext()
+                with spinning, ThreadPoolExecutor(at_once) as pool:
                     try:
-                        found = self.work(request)
+                        for found in pool.map(self.work, [request] * at_once):
+                            keep(row, found, TOLERANCE)
+                            processes.append(found["each"])
                     except Failure as failure:
                         row.note = str(failure)
-                        continue
-                    keep(row, found, TOLERANCE)
-                    processes.append(found["each"])
         for (row, _), processes in zip(asked, by_process, strict=True):
-            row.setting = setting
             if len(processes) < 2:
                 row.seconds = row.together = None
             else:
@@ -171,22 +179,21 @@ class Bench:
                 row.error, row.error_together = means["seconds"][1], means["together"][1]
                 fastest = min(min(process["seconds"]) for process in processes)
                 row.note = f"mean of {len(processes)} processes, ± {row.error:.1%}"
-                if setting == "busy":
-                    row.note += ", beside one spinning process for each core"
+                row.note += BESIDE[row.setting]
                 row.note += f"; the fastest {fastest:.3g} s"
                 if row.cases is not None and row.seconds is not None:
                     row.note += f"; {row.cases / row.seconds:.0f} solves a second"
             self.rows.append(row)
             show(row)
 
-    def solves(self, problem: Problem, threads: int) -> tuple[Row, Request]:
+    def solves(self, problem: Problem, threads: int, setting: Setting) -> tuple[Row, Request]:
         """Return what `in_turn` is asked for solves of nacre's."""
-        row = Row(problem.name, problem.cells, "nacre", threads)
+        row = Row(problem.name, problem.cells, "nacre", threads, setting=setting)
         return row, self.request(problem, "nacre", threads, 3.0) | {"tolerance": TOLERANCE}
 
     def batch(self, cells: int, cases: int, threads: int) -> tuple[Row, Request]:
         """Return the same of many coated spheres: one after the other, or side by side."""
-        row = Row("batch", cells, "nacre", threads, cases=cases)
+        row = Row("batch", cells, "nacre", threads, setting="idle", cases=cases)
         return row, {"task": "batch", "cells": cells, "threads": threads, "cases": cases}
 
     def sweep(

@@ -9,8 +9,8 @@ from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from pathlib import Path
 
-from peers.figures import Figure, all_figures
-from peers.measure import Bench, Row
+from peers.figures import Figure, all_figures, ratio
+from peers.measure import BESIDE, Bench, Row
 from peers.programs import PROGRAMS, release
 
 TITLES = {
@@ -63,13 +63,14 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         "",
         "The time outside transforms is that of the fastest of some hundred solves, less what the",
         "plan's clock counted in kernels, transforms and products (`benches/convolution.rs`).",
+        *shared(bench),
     ]
     for problem, title in TITLES.items():
         rows = [row for row in bench.rows if row.problem == problem]
         rows.sort(
             key=lambda row: (
                 names.index(row.program),
-                ("", "idle", "busy").index(row.setting),
+                list(BESIDE).index(row.setting),
                 row.threads,
                 row.cells,
             )
@@ -80,6 +81,19 @@ def markdown(bench: Bench, image: str, data: str) -> str:
     if rows:
         lines += ["", f"## {CONVOLUTION}", "", *convolutions(rows)]
     return "\n".join(lines) + "\n"
+
+
+def shared(bench: Bench) -> list[str]:
+    """Return lines that say what a second core is worth on this machine."""
+    alone = bench.find("hertz", 1024, "nacre", 1, "idle")
+    longer = ratio(bench.find("hertz", 1024, "nacre", 1, "shared"), alone)
+    if longer is None:
+        return []
+    return [
+        "",
+        f"Two processes on one thread each, at once, take {longer:.2f} times as long for a solve",
+        f"as one alone: two threads that lose nothing would take {longer / 2:.2f} of one's time.",
+    ]
 
 
 HEADER = (

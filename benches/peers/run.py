@@ -67,11 +67,12 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     middle = min(1024, sizes[-1])
     turns = TURNS if large else TURNS // 4
     bench.solve(Problem("roller", middle), "nacre", 1)
-    bench.in_turn("idle", turns // 4, [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
-    sphere = Problem("hertz", middle)
-    pair = [bench.solves(sphere, threads) for threads in (1, 2)]
-    bench.in_turn("idle", turns, [*pair, bench.solves(Problem("coated", middle), 1)])
-    bench.in_turn("busy", turns, [bench.solves(sphere, threads) for threads in (1, 2)])
+    bench.in_turn(turns // 4, [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
+    sphere, coated = Problem("hertz", middle), Problem("coated", middle)
+    asked = [bench.solves(sphere, threads, "idle") for threads in (1, 2)]
+    asked += [bench.solves(sphere, 1, "shared"), bench.solves(coated, 1, "idle")]
+    bench.in_turn(turns, asked)
+    bench.in_turn(turns, [bench.solves(sphere, threads, "busy") for threads in (1, 2)])
     if large:
         bench.solve(Problem("hertz", 4096), "nacre", 2, seconds=0.0)
 

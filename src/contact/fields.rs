@@ -30,7 +30,8 @@ impl Fields {
 
     /// Takes the pressure of a window that holds the one before.
     pub(super) fn take(&mut self, patch: &Patch) {
-        patch.paste(&mut self.pressure);
+        let columns = self.pressure.ncols();
+        patch.paste(slice_mut(&mut self.pressure), columns);
         self.window = patch.window.clone();
     }
 

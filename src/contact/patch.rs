@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayRef2, ArrayView1, ArrayView2, Axis, Slice};
+use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
+
+use crate::threads::each_row;
 
 /// Cells around the contact in a window.
 const MARGIN: usize = 6;
@@ -50,13 +52,22 @@ pub(super) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView
     view
 }
 
-/// Its values, in C order.
-pub(super) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
-    let mut values = Vec::with_capacity(window[0].len() * window[1].len());
-    for row in block(array, window).rows() {
-        values.extend(row);
-    }
+/// Values of a window in C order: `fill` writes those of each of its rows.
+fn filled([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
+    let mut values = vec![0.0; x.len() * y.len()];
+    each_row(&mut values, y.len(), |k, row| fill(x.start + k, row));
     values
+}
+
+/// Values of an array, in C order.
+pub(super) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
+    filled(window, |i, row| {
+        let values = array.row(i);
+        let values = values.slice_axis(Axis(0), Slice::from(window[1].clone()));
+        row.iter_mut()
+            .zip(values)
+            .for_each(|(to, from)| *to = *from);
+    })
 }
 
 /// The smallest window that holds all cells of which `member` holds; none without any.
@@ -100,21 +111,21 @@ impl Patch {
 
     /// The same pressure in another window.
     pub(super) fn moved(&self, window: Window) -> Self {
-        let [x, y] = window.clone();
-        let values = x
-            .flat_map(|i| y.clone().map(move |j| self.at(i, j)))
-            .collect();
+        let values = filled(&window, |i, row| {
+            for (value, j) in row.iter_mut().zip(window[1].clone()) {
+                *value = self.at(i, j);
+            }
+        });
         Self { window, values }
     }
 
-    /// Writes it into an array that is zero outside its window.
-    pub(super) fn paste(&self, array: &mut Array2<f64>) {
+    /// Writes it into values of a grid with so many columns, which are zero outside its window.
+    pub(super) fn paste(&self, values: &mut [f64], columns: usize) {
         let [x, y] = &self.window;
-        let rows = array.outer_iter_mut().skip(x.start);
-        for (mut row, values) in rows.zip(self.values.chunks_exact(y.len())) {
-            row.slice_axis_mut(Axis(0), Slice::from(y.clone()))
-                .assign(&ArrayView1::from(values));
-        }
+        let rows = &mut values[x.start * columns..x.end * columns];
+        each_row(rows, columns, |k, row| {
+            row[y.clone()].copy_from_slice(&self.values[k * y.len()..][..y.len()]);
+        });
     }
 
     /// Linear interpolation between the centres of its cells, on a grid of `shape` of which the
@@ -149,19 +160,17 @@ impl Patch {
             _ => 0.0,
         };
         let columns: Vec<_> = window[1].clone().map(|j| taps(1, j)).collect();
-        let mut values = Vec::with_capacity(window[0].len() * window[1].len());
-        for i in window[0].clone() {
+        let values = filled(&window, |i, row| {
             let [(near, wide), (next, narrow)] = taps(0, i).map(|(i, part)| (line(i), part));
-            values.extend(columns.iter().map(|[(j, a), (k, b)]| {
+            for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
                 let here = value(near, *j);
-                if here <= 0.0 {
-                    // Interpolation would widen the contact by half a cell on every side.
-                    return 0.0;
+                // Interpolation would widen the contact by half a cell on every side.
+                if here > 0.0 {
+                    *fine = wide * (a * here + b * value(near, *k))
+                        + narrow * (a * value(next, *j) + b * value(next, *k));
                 }
-                wide * (a * here + b * value(near, *k))
-                    + narrow * (a * value(next, *j) + b * value(next, *k))
-            }));
-        }
+            }
+        });
         Self { window, values }
     }
 }

@@ -173,24 +173,27 @@ def test_what_is_measured_in_turn_counts_by_the_mean_over_processes() -> None:
 
 def test_solves_in_turn_are_rows_with_an_error(tmp_path: Path) -> None:
     bench = Bench(tmp_path, limit=60.0)
-    bench.in_turn("idle", 2, [bench.solves(Problem("hertz", 32), 1), bench.batch(16, 3, 1)])
-    sphere, batch = bench.rows
+    problem = Problem("hertz", 32)
+    asked = [bench.solves(problem, 1, "idle"), bench.solves(problem, 1, "shared")]
+    bench.in_turn(2, [*asked, bench.batch(16, 3, 1)])
+    sphere, both, batch = bench.rows
     assert bench.find("hertz", 32, "nacre", 1, "idle") is sphere
     assert bench.find("hertz", 32, "nacre", 1) is None
-    for row in (sphere, batch):
+    for row in (sphere, both, batch):
         assert (row.seconds or 0) > 0
         assert (row.error or 0) > 0
         assert 0 < (row.residual or 0) <= 1e-8
-    both = (sphere.seconds or 0) + (sphere.planning or 0)
-    assert sphere.together == pytest.approx(both)
+    assert sphere.together == pytest.approx((sphere.seconds or 0) + (sphere.planning or 0))
+    assert both.note.startswith("mean of 4 processes, ± ")
+    assert ", two at once; the fastest " in both.note
     assert batch.note.startswith("mean of 2 processes, ± ")
     assert batch.note.endswith(f"; {3 / (batch.seconds or 1):.0f} solves a second")
 
 
 def test_what_fails_in_turn_says_why(tmp_path: Path) -> None:
     bench = Bench(tmp_path, limit=60.0)
-    row, request = bench.solves(Problem("hertz", 32), 1)
-    bench.in_turn("idle", 2, [(row, request | {"program": "Tamaas"})])
+    row, request = bench.solves(Problem("hertz", 32), 1, "idle")
+    bench.in_turn(2, [(row, request | {"program": "Tamaas"})])
     assert bench.rows == [row]
     assert row.seconds is None
     assert row.note == "failed: ModuleNotFoundError: No module named 'tamaas'"
