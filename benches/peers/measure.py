@@ -153,7 +153,8 @@ class Bench:
 
         So whatever else goes on meets all alike. The mean over the processes counts: on a busy
         machine one that has a core to itself by luck, which one thread has more often than two,
-        takes half the time of one that has not; on an idle one where its memory lies makes a tenth.
+        takes half the time of one that has not; and cores of a virtual machine are not always as
+        fast.
         """
         asked = list(asked)
         by_process: list[list[Times]] = [[] for _ in asked]
