@@ -55,7 +55,7 @@ bench: ## time it, print the change since the last run, append to benches/histor
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
 
 # In an environment of its own under target/peers; OPTIONS=--quick is a first look.
-peers: $(WHEEL) ## nacre beside other solvers: docs/peers.md; OPTIONS=--quick takes two minutes
+peers: $(WHEEL) ## nacre beside other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
 	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
 
 develop: $(DEV) ## build in place: Python files are used where they are, Rust after the next make develop

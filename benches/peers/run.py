@@ -26,7 +26,7 @@ TURNS = 32
 def options() -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="make peers", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="256² and 512² alone, in two minutes")
+    parser.add_argument("--quick", action="store_true", help="256² and 512² alone, in four minutes")
     parser.add_argument("--full", action="store_true", help="all up to 2048², in hours")
     parser.add_argument("--sizes", help="cells along a side, such as 256,512")
     parser.add_argument("--programs", default=",".join(PROGRAMS), help="those to compare")
@@ -67,7 +67,7 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     middle = min(1024, sizes[-1])
     turns = TURNS if large else TURNS // 4
     bench.solve(Problem("roller", middle), "nacre", 1)
-    bench.in_turn(turns // 4, [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
+    bench.in_turn(max(4, turns // 4), [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
     sphere, coated = Problem("hertz", middle), Problem("coated", middle)
     asked = [bench.solves(sphere, threads, "idle") for threads in (1, 2)]
     asked += [bench.solves(sphere, 1, "shared"), bench.solves(coated, 1, "idle")]
