@@ -8,7 +8,7 @@ use ndarray::Array2;
 
 use crate::body::HalfSpace;
 use crate::convolution::Convolution;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::coefficients_on;
 use crate::memory::check_memory;
@@ -49,7 +49,7 @@ pub use solution::{Balance, Report, Solution, Warning};
 use cascade::{Cascade, Levels};
 use discretisation::estimate;
 use fields::{Fields, slice};
-use freedoms::Freedoms;
+use freedoms::{Freedoms, OVERFLOW};
 use gap::Gap;
 use passes::Passes;
 use problem::{Limits, Outcome, Problem, Quality, Watch};
@@ -245,10 +245,8 @@ impl Contact {
             }
         };
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, solved.lambda));
-        if !quality.finite {
-            return Err(Error::Inconsistent(
-                "load, lengths and moduli must be in units in which their products do not overflow",
-            ));
+        if !quality.finite || quality.residual.is_infinite() {
+            return Err(OVERFLOW);
         }
         report.termination = solved.termination;
         report.iterations = solved.iterations;

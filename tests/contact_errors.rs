@@ -121,8 +121,18 @@ fn products_that_overflow() -> Result<()> {
     let shape = Paraboloid::new(1.0, 1.0)?;
     let overflows =
         "load, lengths and moduli must be in units in which their products do not overflow";
-    // Pressures of 1e13 times that.
-    check([(solved(&shape, &Motion::approach(1e300)), overflows)]);
+    let apart = Motion {
+        eccentricity: [Some(1e-3), None],
+        ..Motion::load(1e307)
+    };
+    // Pressures of 1e13 times that approach; of the smaller one products with displacements.
+    check([
+        (solved(&shape, &Motion::approach(1e300)), overflows),
+        (solved(&shape, &Motion::approach(1e160)), overflows),
+        (solved(&shape, &Motion::load(1e307)), overflows),
+        (solved(&shape, &Motion::load(1e200)), overflows),
+        (solved(&shape, &apart), overflows),
+    ]);
     Ok(())
 }
 

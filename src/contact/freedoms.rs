@@ -73,6 +73,10 @@ const DIRECTIONS: [&str; 2] = [
     "along y at most one of eccentricity, moment and tilt can be a number",
 ];
 
+pub(super) const OVERFLOW: Error = Error::Inconsistent(
+    "load, lengths and moduli must be in units in which their products do not overflow",
+);
+
 impl Freedoms {
     pub(super) fn new(motion: &Motion, grid: &Grid) -> Result<Self> {
         let mut prescribed = [0.0; 3];
@@ -117,6 +121,9 @@ impl Freedoms {
             }
             loaded[k + 1] = true;
             target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
+        }
+        if target.iter().any(|sum| !(sum * sum).is_finite()) {
+            return Err(OVERFLOW);
         }
         let coordinates = [0, 1].map(|k| grid.coordinates(k).to_vec());
         let columns = [0, 1].map(|k| {
