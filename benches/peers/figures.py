@@ -30,6 +30,8 @@ class Figure:
         """The verdict."""
         if self.measured is None:
             return "not measured"
+        if self.error is not None and abs(self.measured - self.bar) <= self.error * self.measured:
+            return "undecided: the bar is within the error"
         sign = -1 if self.least else 1
         if self.stretch is not None and sign * self.measured <= sign * self.stretch:
             return "met, and the stretch"

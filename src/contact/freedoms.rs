@@ -73,6 +73,7 @@ const DIRECTIONS: [&str; 2] = [
     "along y at most one of eccentricity, moment and tilt can be a number",
 ];
 
+/// Numbers that are too large to be computed with.
 pub(super) const OVERFLOW: Error = Error::Inconsistent(
     "load, lengths and moduli must be in units in which their products do not overflow",
 );
@@ -122,6 +123,7 @@ impl Freedoms {
             loaded[k + 1] = true;
             target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
         }
+        // Σ p u and its like are products of two of these and a coefficient.
         if target.iter().any(|sum| !(sum * sum).is_finite()) {
             return Err(OVERFLOW);
         }

@@ -11,7 +11,7 @@ import pytest
 
 import nacre
 from peers import report
-from peers.figures import all_figures
+from peers.figures import Figure, all_figures
 from peers.judge import Convolution, judge
 from peers.measure import Bench, Row, mean
 from peers.problems import HURST, Problem, rough_heights, rough_waves
@@ -136,6 +136,22 @@ def test_figures_are_ratios_with_a_verdict() -> None:
     assert batch.measured == pytest.approx(2 / (os.cpu_count() or 1))
     # It missed the tolerance.
     assert found["hertz 1024², 1 thread: time over ContactMechanics"].met == "not measured"
+
+
+@pytest.mark.parametrize(
+    ("measured", "error", "met"),
+    [
+        (0.59, 0.03, "undecided: the bar is within the error"),
+        (0.61, 0.03, "undecided: the bar is within the error"),
+        (0.61, 0.01, "missed"),
+        (0.59, 0.01, "met"),
+        (0.59, None, "met"),
+    ],
+)
+def test_a_figure_nearer_to_its_bar_than_its_error_decides_nothing(
+    measured: float, error: float | None, met: str
+) -> None:
+    assert Figure("two threads over one", 0.6, None, measured, error=error).met == met
 
 
 def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_path: Path) -> None:
