@@ -46,7 +46,7 @@ pub use options::{Algorithm, Options, Setup};
 pub use problem::Termination;
 pub use solution::{Balance, Report, Solution, Warning};
 
-use cascade::{Cascade, Levels};
+use cascade::{Cascade, Coarser, Levels};
 use discretisation::estimate;
 use fields::{Fields, slice};
 use freedoms::{Freedoms, OVERFLOW};
@@ -191,22 +191,6 @@ impl Contact {
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let limits = options.limits()?;
         let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
-        // The system may take long to hand out memory.
-        let (gap, mut fields) = passes.both(
-            || sampled.gaps(shape, || checked_gaps(shape, &self.grid, &passes)),
-            || Fields::new(self.grid.shape()),
-        );
-        let mut gap = gap?;
-        freedoms.check_feasible(&gap)?;
-        if freedoms.any_prescribed() {
-            freedoms.prescribe(Arc::make_mut(&mut gap));
-        }
-        let problem = Problem {
-            convolution: &self.convolution,
-            freedoms: &freedoms,
-            gap: slice(&gap),
-        };
-        let initial = given_pressure(&problem, options.initial.as_deref())?;
         let mut report = self.report(motion, limits.tolerance);
         let unit = self.convolution.work();
         let mut watch = |iterations: usize, work: f64, quality: Quality| {
@@ -217,29 +201,48 @@ impl Contact {
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report).is_break()
         };
-        let cascade = match options.algorithm {
-            Algorithm::Cascade => Cascade::new(
-                &problem,
-                &gap,
-                shape,
-                &self.levels,
-                initial.as_ref(),
-                limits,
-                &mut watch,
-            ),
-            Algorithm::PolonskyKeer => Err(()),
+        let cascades = options.algorithm == Algorithm::Cascade;
+        let mut coarser = |gap: Option<&Array2<f64>>| {
+            Coarser::solve(&freedoms, gap, shape, &self.levels, limits, &mut watch)
+        };
+        // The system may take long to hand out memory, and the coarsest grids are too small to be divided.
+        let (finest, ahead) = passes.both(
+            || -> Result<_> {
+                let sample = || checked_gaps(shape, &self.grid, &passes);
+                let mut gap = sampled.gaps(shape, sample)?;
+                freedoms.check_feasible(&gap)?;
+                if freedoms.any_prescribed() {
+                    freedoms.prescribe(Arc::make_mut(&mut gap));
+                }
+                Ok((gap, Fields::new(self.grid.shape(), &passes)))
+            },
+            || (cascades && options.initial.is_none()).then(|| coarser(None)),
+        );
+        let (gap, mut fields) = finest?;
+        let problem = Problem {
+            convolution: &self.convolution,
+            freedoms: &freedoms,
+            gap: slice(&gap),
+        };
+        let initial = given_pressure(&problem, options.initial.as_deref())?;
+        let cascade = match &initial {
+            _ if !cascades => None,
+            Some(given) => Some((Cascade::from(given, &problem, &gap, &self.levels), None)),
+            None => (ahead.flatten())
+                .or_else(|| coarser(Some(&gap)))
+                .and_then(|coarser| Cascade::after(coarser, &problem, &gap, &self.levels)),
         };
         let mut figures = Vec::new();
         let solved = match cascade {
-            Ok((cascade, Some(stopped))) => {
+            Some((cascade, Some(stopped))) => {
                 cascade.give(&mut fields);
                 stopped
             }
-            Ok((mut cascade, None)) => {
+            Some((mut cascade, None)) => {
                 figures = std::mem::take(&mut cascade.figures);
                 solve_in_window(&problem, cascade, &mut fields, limits, &mut watch)
             }
-            Err(()) => {
+            None => {
                 fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
                 polonsky_keer::solve(&problem, &mut fields, limits, &mut watch)
             }
@@ -261,7 +264,18 @@ impl Contact {
             motion: multipliers,
             ..
         } = fields;
-        let mut solution = Solution {
+        let (carried, warnings) = passes.both(
+            || Carried::by(&pressure, &window, &self.grid),
+            || warnings(&pressure, &window, &self.grid, shape),
+        );
+        if report.converged() {
+            figures.push(carried.figures(approach));
+            report.discretisation = estimate(&figures);
+        }
+        report.balance = carried.balance(&self.grid, motion);
+        report.warnings = warnings;
+        report.seconds = start.elapsed().as_secs_f64();
+        Ok(Solution {
             pressure,
             displacement,
             approach,
@@ -272,16 +286,7 @@ impl Contact {
                 freedoms: Box::new(freedoms),
                 multipliers,
             },
-        };
-        let carried = Carried::by(&solution, &window);
-        if solution.report.converged() {
-            figures.push(carried.figures(solution.approach));
-            solution.report.discretisation = estimate(&figures);
-        }
-        solution.report.balance = carried.balance(&self.grid, motion);
-        solution.report.warnings = warnings(&solution, &window, shape);
-        solution.report.seconds = start.elapsed().as_secs_f64();
-        Ok(solution)
+        })
     }
 
     /// Of an iteration that has not begun.

@@ -130,6 +130,19 @@ impl Threads {
         }
     }
 
+    /// Calls both, at once where this is one of the threads. (Handed to them from elsewhere, whatever waits
+    /// within would keep one of them from those that it waits for.)
+    pub(crate) fn both<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match self.pool() {
+            Some(pool) if pool.threads.current_thread_index().is_some() => join(first, second),
+            _ => (first(), second()),
+        }
+    }
+
     fn pool(&self) -> Option<Arc<Pool>> {
         let process = std::process::id();
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);

@@ -302,6 +302,39 @@ fn a_shape_of_the_wrong_size_or_without_a_gap() -> Result<()> {
     Ok(())
 }
 
+/// Even where the coarser grids, which are solved at the same time, know nothing of it.
+#[test]
+fn a_shape_without_a_gap_on_the_finest_grid() -> Result<()> {
+    #[derive(Debug)]
+    struct Pierced(Paraboloid);
+    impl Surface for Pierced {
+        fn gap(&self, x: f64, y: f64) -> f64 {
+            self.0.gap(x, y)
+        }
+        fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+            let mut gaps = self.0.gaps(grid)?;
+            if grid.shape() == [256, 192] {
+                gaps[[17, 5]] = NAN;
+            }
+            Ok(gaps)
+        }
+    }
+    let shape = Pierced(Paraboloid::new(1.0, 1.0)?);
+    let grid = Grid::new([256, 192], [16e-3, 12e-3])?;
+    for threads in [1, 2] {
+        let setup = Setup {
+            threads: Some(threads),
+            ..Setup::default()
+        };
+        let contact = Contact::plan(&steel()?.into(), grid, setup)?;
+        check([(
+            contact.solve(&shape, &Motion::load(1e3), &Options::default()),
+            "shape is not finite at [17, 5]",
+        )]);
+    }
+    Ok(())
+}
+
 #[test]
 fn grids_that_are_not_to_be_found() -> Result<()> {
     let body: HalfSpace = steel()?.into();

@@ -304,6 +304,41 @@ fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
     Ok(())
 }
 
+/// A paraboloid that has sound gaps on the grid of these tests alone.
+#[derive(Debug)]
+struct OnOneGrid(Paraboloid, f64);
+
+impl Surface for OnOneGrid {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.0.gap(x, y)
+    }
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        match grid.shape() {
+            [45, 64] => self.0.gaps(grid),
+            shape => Ok(Array2::from_elem(shape, self.1)),
+        }
+    }
+}
+
+/// Coarser grids only say where to start.
+#[test]
+fn gaps_of_coarser_grids_do_not_change_the_solution() -> Result<()> {
+    let prescribed = Motion {
+        approach: Some(2e-7),
+        ..Motion::default()
+    };
+    for motion in [Motion::load(30.0), prescribed] {
+        let contact = plan(&stack()?)?;
+        let known = contact.solve(&paraboloid()?, &motion, &tight())?;
+        for coarser in [f64::NAN, f64::NEG_INFINITY, f64::INFINITY, 0.0] {
+            let shape = OnOneGrid(paraboloid()?, coarser);
+            let found = contact.solve(&shape, &motion, &tight())?;
+            assert_same(&found, &known, &format!("{coarser}, {motion:?}"));
+        }
+    }
+    Ok(())
+}
+
 /// In a window of some cells, and on all of so many that every pass is divided.
 #[test]
 fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {

@@ -15,9 +15,11 @@ use super::direct;
 use super::discretisation::Figures;
 use super::fields::{Fields, slice};
 use super::freedoms::Freedoms;
+use super::passes::Passes;
 use super::patch::{Patch, block, bounds, copied, hull, whole, widened};
 use super::preconditioned::{Approximation, Memory, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
+use super::start::checked_gaps;
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -105,6 +107,61 @@ impl Levels {
             grids: self.grids.clone(),
             memory: Pool::default(),
         }
+    }
+
+    /// The finest level, of `problem`, which has this `gap`.
+    fn finest<'a>(&'a self, problem: &Problem<'a>, gap: &'a Array2<f64>) -> Level<'a> {
+        Level {
+            coefficients: &self.coefficients[0],
+            convolution: problem.convolution,
+            freedoms: problem.freedoms.clone(),
+            gap: Cow::Borrowed(gap),
+            memory: self.memory(),
+        }
+    }
+
+    /// The coarser levels, from the finest of them on; `freedoms` and `gap` are those of the finest level.
+    /// None where a gap must be made of that one, and it is not given.
+    fn coarser(
+        &self,
+        freedoms: &Freedoms,
+        gap: Option<&Array2<f64>>,
+        shape: &dyn Surface,
+    ) -> Option<Vec<Level<'_>>> {
+        let mut levels: Vec<Level> = Vec::new();
+        let coarser = self.coefficients.iter().zip(&self.grids).skip(1);
+        let finer = self.grids.iter().map(Grid::shape);
+        for (((coefficients, grid), convolution), finer) in
+            coarser.zip(&self.convolutions).zip(finer)
+        {
+            let halved = halved(finer);
+            let fine = levels.last();
+            let freedoms = fine.map_or(freedoms, |fine| &fine.freedoms).coarse(halved);
+            let passes = Passes::new(&freedoms.columns, convolution.own_threads());
+            // A measured surface has no values for cells that are much larger than its own.
+            let gap = match checked_gaps(shape, grid, &passes) {
+                Ok(mut gap) => {
+                    if freedoms.any_prescribed() {
+                        freedoms.prescribe(&mut gap);
+                    }
+                    gap
+                }
+                Err(_) => coarse_gap(fine.map_or(gap, |fine| Some(&fine.gap))?, halved),
+            };
+            levels.push(Level {
+                coefficients,
+                convolution,
+                freedoms,
+                gap: Cow::Owned(gap),
+                memory: self.memory(),
+            });
+        }
+        Some(levels)
+    }
+
+    /// Of iterations, and how many cells they may have.
+    fn memory(&self) -> (&Pool<Memory>, usize) {
+        (&self.memory, self.coefficients[0].len())
     }
 }
 
@@ -245,6 +302,87 @@ impl Level<'_> {
     }
 }
 
+/// Solutions of the coarser grids, from the coarsest on.
+pub(super) struct Coarser {
+    /// That of the last.
+    pressure: Option<Patch>,
+    figures: Vec<Figures>,
+    work: f64,
+    /// How it ended where the caller stopped it.
+    stopped: Option<Outcome>,
+}
+
+impl Coarser {
+    /// Solves on the coarser grids of `planned`; `freedoms` and `gap` are those of the finest. None where
+    /// `shape` has no gaps for coarser cells, and that `gap`, which serves instead, is not known yet.
+    pub(super) fn solve(
+        freedoms: &Freedoms,
+        gap: Option<&Array2<f64>>,
+        shape: &dyn Surface,
+        planned: &Levels,
+        limits: Limits,
+        watch: &mut Watch,
+    ) -> Option<Self> {
+        let levels = planned.coarser(freedoms, gap, shape)?;
+        let mut solved = Self {
+            pressure: None,
+            figures: Vec::new(),
+            work: 0.0,
+            stopped: None,
+        };
+        for (coarser, level) in levels.iter().enumerate().rev() {
+            let tolerance = match coarser {
+                0 => COARSE_TOLERANCE,
+                _ => COARSER_TOLERANCE,
+            };
+            let limits = Limits {
+                tolerance: limits.tolerance.max(tolerance),
+                ..limits
+            };
+            let Some(mut patch) = solved.start(level) else {
+                continue;
+            };
+            if solved.stopped.is_none() {
+                let outcome = level.solve(&mut patch, limits, &mut solved.work, watch);
+                if outcome.termination == Termination::Stopped {
+                    solved.stopped = Some(outcome);
+                }
+                let figures = level.figures(&patch, outcome.lambda);
+                solved.figures.push(figures);
+            }
+            solved.pressure = Some(patch);
+        }
+        Some(solved)
+    }
+
+    /// What the next grid starts from: the interpolated pressure, or else a uniform one, balanced.
+    /// None where that cannot be: coarse cells may not carry the moments that fine ones can.
+    fn start(&mut self, level: &Level) -> Option<Patch> {
+        let shape = level.shape();
+        let halved = halved(shape);
+        if !halved
+            .iter()
+            .zip(shape)
+            .all(|(halved, n)| *halved || n == 1)
+        {
+            // Grids are compared where all their directions were halved.
+            self.figures.clear();
+        }
+        let mut patch = match self.pressure.take() {
+            Some(coarse) => coarse.interpolated(shape, halved),
+            None => {
+                let uniform = level.freedoms.typical_pressure(level.gap.len());
+                Patch::whole(&Array2::from_elem(shape, uniform))
+            }
+        };
+        let balanced = level.balance(&mut patch);
+        if !balanced {
+            self.figures.clear();
+        }
+        balanced.then_some(patch)
+    }
+}
+
 /// The finest grid, and where its contact is.
 pub(super) struct Cascade<'a> {
     finest: Level<'a>,
@@ -255,122 +393,43 @@ pub(super) struct Cascade<'a> {
 }
 
 impl<'a> Cascade<'a> {
-    /// Solves on the coarser grids, and starts the finest one from the interpolated pressure; with
-    /// a `given` pressure there is nothing to solve for.
-    ///
-    /// Says how it ended where the caller stopped it. Fails where no balanced pressure was found:
-    /// coarse cells may not carry the moments that fine ones can.
-    pub(super) fn new(
+    /// Starts the finest grid from what was solved on the coarser ones, and says how that ended where the
+    /// caller stopped it. None where no balanced pressure was found.
+    pub(super) fn after(
+        mut coarser: Coarser,
         problem: &Problem<'a>,
         gap: &'a Array2<f64>,
-        shape: &dyn Surface,
         planned: &'a Levels,
-        given: Option<&Array2<f64>>,
-        limits: Limits,
-        watch: &mut Watch,
-    ) -> std::result::Result<(Self, Option<Outcome>), ()> {
-        let finest = &planned.coefficients[0];
-        let memory = (&planned.memory, finest.len());
-        let mut levels = vec![Level {
-            coefficients: finest,
-            convolution: problem.convolution,
-            freedoms: problem.freedoms.clone(),
-            gap: Cow::Borrowed(gap),
-            memory,
-        }];
-        let mut work = 0.0;
-        let mut figures = Vec::new();
-        let mut stopped = None;
-        if let Some(given) = given {
-            let mut patch = Patch::whole(given);
-            if let Some(contact) = patch.contact() {
-                patch = patch.moved(widened(&contact, levels[0].shape()));
-            }
-            return Ok((
-                Self {
-                    finest: levels.swap_remove(0),
-                    patch,
-                    figures,
-                    work,
-                },
-                stopped,
-            ));
-        }
-        let coarser = planned.coefficients.iter().zip(&planned.grids).skip(1);
-        for ((coefficients, grid), convolution) in coarser.zip(&planned.convolutions) {
-            let fine = &levels[levels.len() - 1];
-            let halved = halved(fine.shape());
-            let freedoms = fine.freedoms.coarse(halved);
-            // A measured surface has no values for cells that are much larger than its own.
-            let gap = match shape.gaps(grid) {
-                Ok(mut gap) => {
-                    if freedoms.any_prescribed() {
-                        freedoms.prescribe(&mut gap);
-                    }
-                    gap
-                }
-                Err(_) => coarse_gap(&fine.gap, halved),
-            };
-            levels.push(Level {
-                coefficients,
-                convolution,
-                freedoms,
-                gap: Cow::Owned(gap),
-                memory,
-            });
-        }
-        let limits_at = |depth: usize| Limits {
-            tolerance: if depth == 1 {
-                COARSE_TOLERANCE
-            } else {
-                COARSER_TOLERANCE
-            }
-            .max(limits.tolerance),
-            ..limits
+    ) -> Option<(Self, Option<Outcome>)> {
+        let finest = planned.finest(problem, gap);
+        let patch = coarser.start(&finest)?;
+        let cascade = Self {
+            finest,
+            patch,
+            figures: coarser.figures,
+            work: coarser.work,
         };
-        let mut coarse: Option<Patch> = None;
-        for (depth, level) in levels.iter().enumerate().rev() {
-            let shape = level.shape();
-            if !halved(shape)
-                .iter()
-                .zip(shape)
-                .all(|(halved, n)| *halved || n == 1)
-            {
-                // Grids are compared where all their directions were halved.
-                figures.clear();
-            }
-            let mut patch = match &coarse {
-                Some(coarse) => coarse.interpolated(shape, halved(shape)),
-                None => {
-                    let uniform = level.freedoms.typical_pressure(level.gap.len());
-                    Patch::whole(&Array2::from_elem(shape, uniform))
-                }
-            };
-            if !level.balance(&mut patch) {
-                (coarse, figures) = (None, Vec::new());
-                continue;
-            }
-            if depth == 0 {
-                return Ok((
-                    Self {
-                        finest: levels.swap_remove(0),
-                        patch,
-                        figures,
-                        work,
-                    },
-                    stopped,
-                ));
-            }
-            if stopped.is_none() {
-                let outcome = level.solve(&mut patch, limits_at(depth), &mut work, watch);
-                if outcome.termination == Termination::Stopped {
-                    stopped = Some(outcome);
-                }
-                figures.push(level.figures(&patch, outcome.lambda));
-            }
-            coarse = Some(patch);
+        Some((cascade, coarser.stopped))
+    }
+
+    /// Starts the finest grid from a `given` pressure.
+    pub(super) fn from(
+        given: &Array2<f64>,
+        problem: &Problem<'a>,
+        gap: &'a Array2<f64>,
+        planned: &'a Levels,
+    ) -> Self {
+        let finest = planned.finest(problem, gap);
+        let mut patch = Patch::whole(given);
+        if let Some(contact) = patch.contact() {
+            patch = patch.moved(widened(&contact, finest.shape()));
         }
-        Err(())
+        Self {
+            finest,
+            patch,
+            figures: Vec::new(),
+            work: 0.0,
+        }
     }
 
     /// Gives the pressure that it starts from.

@@ -2,6 +2,7 @@
 
 use ndarray::Array2;
 
+use super::passes::Passes;
 use super::patch::{Patch, Window};
 use super::problem::{Multipliers, Problem, Quality};
 
@@ -18,11 +19,13 @@ pub(super) struct Fields {
 impl Fields {
     /// The system hands out its memory as it is written, most of it when that of the iteration is no
     /// longer needed.
-    pub(super) fn new(shape: [usize; 2]) -> Self {
+    pub(super) fn new(shape: [usize; 2], passes: &Passes) -> Self {
+        let zeros = || Array2::zeros(shape);
+        let (pressure, displacement) = passes.both(zeros, zeros);
         Self {
-            pressure: Array2::zeros(shape),
+            pressure,
             window: [0..0, 0..0],
-            displacement: Array2::zeros(shape),
+            displacement,
             motion: Multipliers::default(),
             quality: None,
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::patch::Window;
 use super::sums::sum;
-use crate::threads::{self, LEAF, Threads, each_chunk};
+use crate::threads::{LEAF, Threads, each_chunk};
 
 /// A row of the grid.
 #[derive(Debug, Clone, Copy)]
@@ -77,14 +77,14 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Calls both, at once where that pays.
+    /// Calls both, at once where that pays and this is one of the threads.
     pub(super) fn both<A: Send, B: Send>(
         &self,
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
         if self.divided {
-            self.threads.run(|| threads::join(first, second))
+            self.threads.both(first, second)
         } else {
             (first(), second())
         }

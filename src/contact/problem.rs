@@ -229,7 +229,7 @@ pub(super) struct Outcome {
 }
 
 /// Is told an iteration's number, the work done and the quality; true asks to stop.
-pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> bool + 'a;
+pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> bool + Send + 'a;
 
 /// When to end.
 #[derive(Debug, Clone, Copy)]

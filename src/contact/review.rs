@@ -1,10 +1,12 @@
 //! A finished solution, looked at: balance and warnings.
 
+use ndarray::Array2;
+
 use super::discretisation::Figures;
 use super::fields::slice;
 use super::freedoms::Motion;
 use super::patch::{Window, block};
-use super::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Solution, Warning};
+use super::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Warning};
 use super::sums::{largest, sum};
 use crate::grid::Grid;
 use crate::surface::{Extent, Surface};
@@ -19,8 +21,8 @@ pub(super) struct Carried {
 
 impl Carried {
     /// By the pressure of a window, outside of which there is none.
-    pub(super) fn by(solution: &Solution, window: &Window) -> Self {
-        let (grid, pressure) = (solution.grid(), slice(&solution.pressure));
+    pub(super) fn by(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
+        let pressure = slice(pressure);
         let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
         let mut carried = Self::default();
         for (i, x) in window[0].clone().zip(x) {
@@ -68,8 +70,12 @@ impl Carried {
 }
 
 /// What the user of a solution should know.
-pub(super) fn warnings(solution: &Solution, window: &Window, shape: &dyn Surface) -> Vec<Warning> {
-    let grid = solution.grid();
+pub(super) fn warnings(
+    pressure: &Array2<f64>,
+    window: &Window,
+    grid: &Grid,
+    shape: &dyn Surface,
+) -> Vec<Warning> {
     let [nx, ny] = grid.shape();
     let [dx, dy] = grid.spacing();
     let (x, y) = (grid.x(), grid.y());
@@ -91,8 +97,7 @@ pub(super) fn warnings(solution: &Solution, window: &Window, shape: &dyn Surface
     // Lines of cells across each axis that hold some of the contact.
     let mut held = [vec![false; nx], vec![false; ny]];
     let mut at_edge = false;
-    let pressure = block(&solution.pressure, window);
-    for (i, row) in window[0].clone().zip(pressure.rows()) {
+    for (i, row) in window[0].clone().zip(block(pressure, window).rows()) {
         for (j, _) in window[1].clone().zip(row).filter(|(_, p)| **p > 0.0) {
             (held[0][i], held[1][j]) = (true, true);
             at_edge |= on_edge(i, j) && goes_on(i, j);
