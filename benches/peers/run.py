@@ -19,7 +19,7 @@ from peers.programs import PROGRAMS, release
 
 ROOT = Path(__file__).parents[2]
 SIZES = [256, 512, 1024, 2048]
-TURNS = 32
+TURNS = 64
 """Processes of each of what is measured in turn."""
 
 
@@ -65,9 +65,9 @@ def compare(bench: Bench, programs: list[str], sizes: list[int], soft: float) ->
 def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     """Measure what nacre alone is asked for."""
     middle = min(1024, sizes[-1])
-    turns = TURNS if large else TURNS // 4
+    turns = TURNS if large else TURNS // 8
     bench.solve(Problem("roller", middle), "nacre", 1)
-    bench.in_turn(max(4, turns // 4), [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
+    bench.in_turn(max(4, turns // 8), [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
     sphere, coated = Problem("hertz", middle), Problem("coated", middle)
     asked = [bench.solves(sphere, threads, "idle") for threads in (1, 2)]
     asked += [bench.solves(sphere, 1, "shared"), bench.solves(coated, 1, "idle")]
