@@ -444,6 +444,15 @@ mod tests {
         Ok(())
     }
 
+    #[test]
+    fn both_are_done_here_unless_this_is_one_of_the_threads() -> Result<()> {
+        let threads = Threads::new(Some(2))?;
+        assert_eq!(threads.both(in_pool, in_pool), (false, false));
+        let within = threads.run(|| threads.both(in_pool, in_pool));
+        assert_eq!(within, (true, true));
+        Ok(())
+    }
+
     /// Solves whose callbacks solve with the same plan: each call waits for another, of another thread.
     #[test]
     fn calls_that_wait_for_calls_end() -> Result<()> {
