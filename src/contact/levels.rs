@@ -237,18 +237,28 @@ impl Level<'_> {
             let window = &patch.window;
             let whole = *window == shape.map(|n| 0..n);
             let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
-            let part = (!whole).then(|| self.convolution.part(&corner));
-            let [periodic, inverse] = self.convolution.periodic(&corner);
-            let approximation = Approximation { inverse, periodic };
             let freedoms = self.freedoms.part(window.clone());
-            let gap = copied(&self.gap, window);
+            let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
+            // Planning transforms leaves the other threads idle in part: meanwhile they get the memory.
+            let ((part, [periodic, inverse]), (gap, memory)) = passes.both(
+                || {
+                    let part = (!whole).then(|| self.convolution.part(&corner));
+                    (part, self.convolution.periodic(&corner))
+                },
+                || {
+                    let (memory, most) = self.memory;
+                    let mut memory = memory.lease();
+                    memory.fit(&passes, most, freedoms.loaded);
+                    (copied(&self.gap, window), memory)
+                },
+            );
+            let approximation = Approximation { inverse, periodic };
             let problem = Problem {
                 convolution: part.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
                 gap: &gap,
             };
-            let (memory, most) = self.memory;
-            let mut solver = Preconditioned::new(&problem, &approximation, memory.lease(), most);
+            let mut solver = Preconditioned::new(&problem, &approximation, memory);
             let before = *work;
             let mut outcome = solver.solve(
                 &mut patch.values,

@@ -72,15 +72,12 @@ impl<'a> Preconditioned<'a> {
     pub(super) fn new(
         problem: &'a Problem<'a>,
         approximation: &'a Approximation,
-        mut memory: Lease<Memory>,
-        most: usize,
+        memory: Lease<Memory>,
     ) -> Self {
-        let passes = problem.passes();
-        memory.fit(&passes, most, problem.freedoms.loaded);
         Self {
             problem,
             approximation,
-            passes,
+            passes: problem.passes(),
             workspace: problem.convolution.workspace(),
             memory,
             pending: 0.0,

@@ -36,7 +36,7 @@ pub(super) struct Arrays<'a> {
 impl Memory {
     /// Makes it large enough for the cells of `passes`. Whatever a solve may need, up to `most` cells, is
     /// asked for at once, as the plan's memory was checked for; most systems hand it out as it is written.
-    pub(super) fn fit(&mut self, passes: &Passes, most: usize, loaded: [bool; 3]) {
+    pub(in crate::contact) fn fit(&mut self, passes: &Passes, most: usize, loaded: [bool; 3]) {
         let Self {
             u,
             r,
