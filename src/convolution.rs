@@ -11,7 +11,9 @@ use std::time::Instant;
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result};
-use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
+use crate::fft::{
+    EvenSpectrum, HalfSpectra, PaddedTransform, Scratches, Workspace as FftWorkspace,
+};
 use crate::pool::{Lease, Pool};
 use crate::threads::Threads;
 
@@ -49,9 +51,20 @@ impl Clock {
     fn during<R>(&self, work: impl FnOnce() -> R) -> R {
         let start = Instant::now();
         let result = work();
-        let spent = start.elapsed().as_nanos() as u64;
-        self.0.fetch_add(spent, Ordering::Relaxed);
+        self.add(start, 1);
         result
+    }
+
+    /// Work that as many threads as `among` do at once, each on a part.
+    fn during_part(&self, among: usize, work: impl FnOnce()) {
+        let start = Instant::now();
+        work();
+        self.add(start, among as u64);
+    }
+
+    fn add(&self, start: Instant, among: u64) {
+        let spent = start.elapsed().as_nanos() as u64 / among;
+        self.0.fetch_add(spent, Ordering::Relaxed);
     }
 }
 
@@ -293,6 +306,77 @@ impl Convolution {
         self.clock.during(|| {
             self.transform
                 .convolve_into(&self.spectrum, input, output, memory, &self.threads);
+        });
+    }
+    /// The first of the three parts of an application: what takes its rows, as they are made, and where
+    /// they go.
+    pub(crate) fn inwards<'a>(
+        &'a self,
+        workspace: &'a mut Workspace,
+    ) -> (Inwards<'a>, HalfSpectra<'a>) {
+        self.transform.fit(&mut workspace.0);
+        let (rows, scratches) = self.transform.half_spectra(&mut workspace.0);
+        let inwards = Inwards {
+            convolution: self,
+            scratches,
+        };
+        (inwards, rows)
+    }
+
+    /// The first part, of rows that are there.
+    pub(crate) fn rows_in(&self, input: &[f64], workspace: &mut Workspace) {
+        let memory = &mut workspace.0;
+        self.transform.fit(memory);
+        let input = (input, 0..self.shape[0]);
+        let work = || self.transform.rows_in(input, memory, &self.threads);
+        self.clock.during(work);
+    }
+
+    /// The second part, after all rows are in; returns the last, which gives them.
+    pub(crate) fn outwards<'a>(&'a self, workspace: &'a mut Workspace) -> Outwards<'a> {
+        let memory = &mut *workspace.0;
+        let (transform, rows) = (&self.transform, 0..self.shape[0]);
+        self.clock
+            .during(|| transform.columns_through(&self.spectrum, rows, memory, &self.threads));
+        Outwards {
+            convolution: self,
+            memory,
+        }
+    }
+}
+
+/// Takes the rows of what a convolution is applied to.
+pub(crate) struct Inwards<'a> {
+    convolution: &'a Convolution,
+    scratches: &'a Scratches,
+}
+
+impl Inwards<'_> {
+    /// Takes some rows, of which these are the `halves`.
+    pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
+        let Convolution {
+            transform, clock, ..
+        } = self.convolution;
+        clock.during_part(transform.scratches(), || {
+            transform.some_rows_in(values, halves, self.scratches);
+        });
+    }
+}
+
+/// Gives the rows of what a convolution made.
+pub(crate) struct Outwards<'a> {
+    convolution: &'a Convolution,
+    memory: &'a FftWorkspace,
+}
+
+impl Outwards<'_> {
+    /// Those from `first` on, as many as `values` have room for.
+    pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
+        let Convolution {
+            transform, clock, ..
+        } = self.convolution;
+        clock.during_part(transform.scratches(), || {
+            transform.rows_out(first, values, self.memory);
         });
     }
 }

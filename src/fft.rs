@@ -20,6 +20,7 @@ mod parity;
 mod quarter;
 mod series;
 
+pub(crate) use convolve::HalfSpectra;
 pub(crate) use parity::Transformed;
 pub(crate) use quarter::{Keep, KernelRows, QuarterTransform};
 pub(crate) use series::{fourier_coefficients, inverse_even};
@@ -27,6 +28,10 @@ pub(crate) use series::{fourier_coefficients, inverse_even};
 /// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
 /// columns of a few thousand points stay in the second-level cache.
 const BLOCK: usize = 16;
+
+/// Rows whose pieces of a block are read or written together: two kilobytes one after another, where
+/// single ones, each of another page, would have to be waited for.
+const GROUP: usize = 8;
 
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
@@ -70,19 +75,20 @@ pub(crate) struct EvenSpectrum(Vec<f64>);
 /// Memory for one convolution at a time; it may be larger than needed.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
-    /// Half spectra of rows, whole or by blocks of columns.
-    mesh: Vec<Complex64>,
+    /// Half spectra of rows: whole, or by blocks of columns.
+    mesh: Vec<[Complex64; BLOCK]>,
     scratches: Scratches,
 }
 
 /// Of each thread one, for what it does by itself.
 #[derive(Debug, Default)]
-struct Scratches(Vec<Mutex<Scratch>>);
+pub(crate) struct Scratches(Vec<Mutex<Scratch>>);
 
 #[derive(Debug, Default)]
 struct Scratch {
     real: Vec<f64>,
-    spectrum: Vec<Complex64>,
+    /// Of some rows.
+    spectra: Vec<Complex64>,
     columns: Vec<Complex64>,
     fft: Vec<Complex64>,
 }
@@ -94,6 +100,15 @@ fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
         true => 16 * threads.count(),
         false => 1,
     }
+}
+
+/// For how many rows a block of columns has room, of which there are `rows`: so many that the same row of
+/// one block after another is an odd number of pages and a row further. Were it a power of two of them, as
+/// many grids would have it, few sets of the caches would have to hold all.
+fn block_rows(rows: usize) -> usize {
+    const PAGE: usize = 4096 / size_of::<[Complex64; BLOCK]>();
+    let beyond = PAGE + 1;
+    rows.saturating_sub(beyond).next_multiple_of(2 * PAGE) + beyond
 }
 
 impl PaddedTransform {
@@ -141,7 +156,7 @@ impl PaddedTransform {
     pub(crate) fn memory(shape: [usize; 2]) -> u64 {
         let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
         let half = padded[1] / 2 + 1;
-        shape[0] as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
+        block_rows(shape[0]) as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
     }
 
     /// Stored columns of the half spectrum.
@@ -158,8 +173,13 @@ impl PaddedTransform {
         self.columns().div_ceil(BLOCK)
     }
 
+    /// Rows that a block has room for.
+    fn block_rows(&self) -> usize {
+        block_rows(self.shape[0])
+    }
+
     /// Threads that may be at work at once.
-    fn scratches(&self) -> usize {
+    pub(crate) fn scratches(&self) -> usize {
         self.threads.min(self.tasks)
     }
 
@@ -186,14 +206,14 @@ impl PaddedTransform {
             mesh,
             scratches: Scratches(scratches),
         } = workspace;
-        at_least(mesh, self.blocks() * self.shape[0] * BLOCK, ZERO);
+        at_least(mesh, self.blocks() * self.block_rows(), [ZERO; BLOCK]);
         if scratches.len() < self.scratches() {
             scratches.resize_with(self.scratches(), Mutex::default);
         }
         for scratch in &mut scratches[..self.scratches()] {
             let scratch = scratch.get_mut().unwrap_or_else(PoisonError::into_inner);
             at_least(&mut scratch.real, self.padded[1], 0.0);
-            at_least(&mut scratch.spectrum, self.columns(), ZERO);
+            at_least(&mut scratch.spectra, GROUP * self.blocks() * BLOCK, ZERO);
             at_least(&mut scratch.columns, BLOCK * self.padded[0], ZERO);
             at_least(&mut scratch.fft, fft, ZERO);
         }
@@ -281,19 +301,32 @@ impl PaddedTransform {
         }
     }
 
-    /// Row `i` of the data whose columns, transformed back, are in `parts` by blocks.
-    fn row_from_parts<'a>(
+    /// Rows from `first` on, of as many as `values` have room for, of the data whose columns, transformed
+    /// back, are in `parts` by blocks.
+    fn rows_from_parts<'a>(
         &self,
-        parts: impl Iterator<Item = &'a [Complex64]>,
-        i: usize,
+        parts: impl Iterator<Item = &'a [[Complex64; BLOCK]]> + Clone,
+        first: usize,
+        values: &mut [f64],
         scratch: &mut Scratch,
     ) {
-        let spectrum = &mut scratch.spectrum[..self.columns()];
-        for (block, row) in parts.zip(spectrum.chunks_mut(BLOCK)) {
-            row.copy_from_slice(&block[i * BLOCK..i * BLOCK + row.len()]);
+        let (ny, blocks) = (self.shape[1], self.blocks());
+        for (group, values) in values.chunks_mut(GROUP * ny).enumerate() {
+            let rows = first + group * GROUP..first + group * GROUP + values.len() / ny;
+            let (spectra, _) = scratch.spectra.as_chunks_mut();
+            for (block, lines) in parts.clone().enumerate() {
+                let spectra = spectra[block..].iter_mut().step_by(blocks);
+                for (spectrum, line) in spectra.zip(&lines[rows.clone()]) {
+                    *spectrum = *line;
+                }
+            }
+            let spectra = scratch.spectra.chunks_exact_mut(blocks * BLOCK);
+            for (spectrum, values) in spectra.zip(values.chunks_exact_mut(ny)) {
+                let real = &mut scratch.real[..self.padded[1]];
+                self.spectrum_to_rows(&mut spectrum[..self.columns()], real, &mut scratch.fft);
+                values.copy_from_slice(&real[..ny]);
+            }
         }
-        let real = &mut scratch.real[..self.padded[1]];
-        self.spectrum_to_rows(spectrum, real, &mut scratch.fft);
     }
 
     fn rows_to_spectrum(

@@ -89,8 +89,8 @@ pub(super) fn solve(
         } else if watch(iterations, work, quality) {
             Some(Termination::Stopped)
         } else {
-            (renewals == RENEWALS || iterations >= limits.max_iterations)
-                .then_some(Termination::IterationLimit)
+            let limited = renewals == RENEWALS || iterations >= limits.max_iterations;
+            (limited || quality.overflows()).then_some(Termination::IterationLimit)
         };
         if let Some(termination) = termination {
             return Outcome {

@@ -51,18 +51,27 @@ impl Freedoms {
         [s, s * row.x, sy]
     }
 
-    /// The same over the cells of which `member` is not 0.
-    pub(super) fn moments_on(&self, row: Row, member: &[f64], values: &[f64]) -> [f64; 3] {
-        let [s, sy] = if self.loaded[2] {
-            sum([member, values, row.y], |[member, v, y]| {
-                let v = where_member(member, v);
-                [v, v * y]
+    /// Moments over the cells of which the residual `r` is not 0, as [`Freedoms::moments_of`] gives them;
+    /// and the products with the residual, and over the same cells with the one `before`.
+    pub(super) fn products_on(
+        &self,
+        row: Row,
+        [r, before]: [&[f64]; 2],
+        values: &[f64],
+    ) -> [f64; 5] {
+        let [s, sy, now, last] = if self.loaded[2] {
+            sum([r, before, values, row.y], |[r, before, v, y]| {
+                let v = where_member(r, v);
+                [v, v * y, r * v, before * v]
             })
         } else {
-            let [s] = sum([member, values], |[member, v]| [where_member(member, v)]);
-            [s, 0.0]
+            let [s, now, last] = sum([r, before, values], |[r, before, v]| {
+                let v = where_member(r, v);
+                [v, r * v, before * v]
+            });
+            [s, 0.0, now, last]
         };
-        [s, s * row.x, sy]
+        [s, s * row.x, sy, now, last]
     }
 
     /// What one row adds to the fit of u + h − Bλ over the cells with pressure, where λ is `near`.

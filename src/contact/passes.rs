@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::patch::Window;
-use super::sums::sum;
+use crate::fft::HalfSpectra;
 use crate::threads::{LEAF, Threads, each_chunk};
 
 /// A row of the grid.
@@ -38,6 +38,67 @@ pub(super) struct Passes<'a> {
     /// Rows that are not divided.
     leaf: usize,
     divided: bool,
+}
+
+/// Rows of the grid that one thread goes over.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part<'a> {
+    /// The number of the first.
+    pub(super) first: usize,
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl Part<'_> {
+    /// Calls `row` with each of its rows of all arrays, and joins what it returns.
+    pub(super) fn each<const M: usize, const N: usize, const S: usize>(
+        &self,
+        inputs: [&[f64]; M],
+        mut outputs: [&mut [f64]; N],
+        join: impl Fn([f64; S], [f64; S]) -> [f64; S],
+        row: impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> [f64; S],
+    ) -> [f64; S] {
+        let ny = self.y.len();
+        let mut sums = [0.0; S];
+        for (k, &x) in self.x.iter().enumerate() {
+            let cells = k * ny..(k + 1) * ny;
+            let here = Row {
+                number: self.first + k,
+                x,
+                y: self.y,
+            };
+            let from = inputs.map(|input| &input[cells.clone()]);
+            let to = outputs.each_mut().map(|output| &mut output[cells.clone()]);
+            sums = join(sums, row(here, from, to));
+        }
+        sums
+    }
+}
+
+/// What a pass writes: some rows of it, of `ny` cells.
+pub(super) trait Written: Send + Sized {
+    /// The first so many, and the others.
+    fn split(self, rows: usize, ny: usize) -> (Self, Self);
+}
+
+/// Fields.
+impl<const N: usize> Written for [&mut [f64]; N] {
+    fn split(self, rows: usize, ny: usize) -> (Self, Self) {
+        let mut parts = self.map(|field| {
+            let (near, far) = field.split_at_mut(rows * ny);
+            [near, far]
+        });
+        let near = parts.each_mut().map(|[near, _]| std::mem::take(near));
+        (near, parts.map(|[_, far]| far))
+    }
+}
+
+/// Fields, and rows on their way into a convolution.
+impl<const N: usize> Written for ([&mut [f64]; N], HalfSpectra<'_>) {
+    fn split(self, rows: usize, ny: usize) -> (Self, Self) {
+        let (fields, halves) = (self.0.split(rows, ny), self.1.split(rows));
+        ((fields.0, halves.0), (fields.1, halves.1))
+    }
 }
 
 /// a + b
@@ -99,60 +160,53 @@ impl<'a> Passes<'a> {
         join: impl Fn([f64; S], [f64; S]) -> [f64; S] + Sync,
         row: impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> [f64; S] + Sync,
     ) -> [f64; S] {
+        self.parts(inputs, outputs, &join, |part, inputs, outputs| {
+            part.each(inputs, outputs, &join, &row)
+        })
+    }
+
+    /// The same with all rows of a part at once: what is done with them beside finds them in the caches.
+    pub(super) fn parts<const M: usize, W: Written, const S: usize>(
+        &self,
+        inputs: [&[f64]; M],
+        outputs: W,
+        join: impl Fn([f64; S], [f64; S]) -> [f64; S] + Sync,
+        part: impl Fn(Part, [&[f64]; M], W) -> [f64; S] + Sync,
+    ) -> [f64; S] {
         let rows = 0..self.columns[0].len();
         if self.divided {
             self.threads
-                .run(|| self.divide(rows, inputs, outputs, &join, &row))
+                .run(|| self.divide(rows, inputs, outputs, &join, &part))
         } else {
-            self.divide(rows, inputs, outputs, &join, &row)
+            self.divide(rows, inputs, outputs, &join, &part)
         }
     }
 
-    /// Σ a b
-    pub(super) fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
-        let [dot] = self.each([a, b], [], add, |_, inputs, []| {
-            sum(inputs, |[a, b]| [a * b])
-        });
-        dot
-    }
-
-    fn divide<const M: usize, const N: usize, const S: usize>(
+    fn divide<const M: usize, W: Written, const S: usize>(
         &self,
         rows: Range<usize>,
         inputs: [&[f64]; M],
-        mut outputs: [&mut [f64]; N],
+        outputs: W,
         join: &(impl Fn([f64; S], [f64; S]) -> [f64; S] + Sync),
-        row: &(impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> [f64; S] + Sync),
+        part: &(impl Fn(Part, [&[f64]; M], W) -> [f64; S] + Sync),
     ) -> [f64; S] {
-        let ny = self.columns[1].len();
+        let [x, y] = self.columns;
         if rows.len() <= self.leaf {
-            let mut sums = [0.0; S];
-            for (k, number) in rows.enumerate() {
-                let cells = k * ny..(k + 1) * ny;
-                let here = Row {
-                    number,
-                    x: self.columns[0][number],
-                    y: &self.columns[1],
-                };
-                let from = inputs.map(|input| &input[cells.clone()]);
-                let to = outputs.each_mut().map(|output| &mut output[cells.clone()]);
-                sums = join(sums, row(here, from, to));
-            }
-            return sums;
+            let here = Part {
+                first: rows.start,
+                x: &x[rows],
+                y,
+            };
+            return part(here, inputs, outputs);
         }
         let first = rows.len().div_ceil(2).next_multiple_of(self.leaf);
         let middle = rows.start + first;
-        let near = inputs.map(|input| &input[..first * ny]);
-        let far = inputs.map(|input| &input[first * ny..]);
-        let mut parts = outputs.map(|output| {
-            let (near, far) = output.split_at_mut(first * ny);
-            [near, far]
-        });
-        let here = parts.each_mut().map(|[near, _]| std::mem::take(near));
-        let there = parts.map(|[_, far]| far);
+        let near = inputs.map(|input| &input[..first * y.len()]);
+        let far = inputs.map(|input| &input[first * y.len()..]);
+        let (here, there) = outputs.split(first, y.len());
         let (a, b) = self.both(
-            || self.divide(rows.start..middle, near, here, join, row),
-            || self.divide(middle..rows.end, far, there, join, row),
+            || self.divide(rows.start..middle, near, here, join, part),
+            || self.divide(middle..rows.end, far, there, join, part),
         );
         join(a, b)
     }

@@ -56,9 +56,7 @@ pub(super) fn solve(
         if watch(iterations, work, quality) {
             return end(Termination::Stopped);
         }
-        // Numbers that overflow do not come back.
-        let lost = quality.residual.is_infinite() && p.iter().any(|p| !p.is_finite());
-        if lost || iterations == limits.max_iterations {
+        if quality.overflows() || iterations == limits.max_iterations {
             return end(Termination::IterationLimit);
         }
 

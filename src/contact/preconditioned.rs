@@ -14,6 +14,7 @@ mod arrays;
 mod steps;
 
 use super::direct;
+use super::fit::FitSums;
 use super::passes::{Passes, add};
 use super::problem::{
     Limits, Multipliers, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
@@ -41,6 +42,8 @@ pub(super) struct Preconditioned<'a> {
     memory: Lease<Memory>,
     /// Part of the response that is not yet in the displacement.
     pending: f64,
+    /// Of the gap, where a step has made them.
+    fit: Option<FitSums>,
     /// Whether the contact has changed since the images of the freedoms were made, or last seen.
     changed: bool,
     /// Whether the images are those of another contact.
@@ -56,6 +59,18 @@ pub(super) struct Preconditioned<'a> {
 
 /// Iterations after which a contact of a few cells is left to [`direct`]; most have converged by then.
 const PATIENCE: usize = 20;
+
+/// How many products [`Freedoms::products_on`] gives.
+const OF_EACH: usize = 5;
+
+/// What [`Preconditioned::deflate`] found.
+struct Deflated {
+    /// Of the images that must be removed.
+    factors: [f64; 3],
+    /// r · z of what remains; and with the residual before.
+    descent: f64,
+    with_last: f64,
+}
 
 /// What became of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +96,7 @@ impl<'a> Preconditioned<'a> {
             workspace: problem.convolution.workspace(),
             memory,
             pending: 0.0,
+            fit: None,
             changed: false,
             stale: false,
             conjugate: false,
@@ -111,17 +127,11 @@ impl<'a> Preconditioned<'a> {
             if watch(iterations, self.work, quality) {
                 return end(Termination::Stopped);
             }
-            if iterations == limits.max_iterations || (iterations >= PATIENCE && direct::few(p)) {
+            let limited = iterations == limits.max_iterations || quality.overflows();
+            if limited || (iterations >= PATIENCE && direct::few(p)) {
                 return end(Termination::IterationLimit);
             }
-            let slope = self.direct();
-            last = match last {
-                Step::Truncated => match self.step_with_losses(p, slope) {
-                    Step::None => self.step(p, slope),
-                    done => done,
-                },
-                _ => self.step(p, slope),
-            };
+            last = self.step(p, last);
             if last == Step::None {
                 return end(Termination::IterationLimit);
             }
@@ -145,7 +155,7 @@ impl<'a> Preconditioned<'a> {
         let Arrays { r, z, images, .. } = self.memory.arrays(self.problem.gap.len());
         let loaded = self.problem.freedoms.loaded;
         for (freedom, image) in images.into_iter().enumerate().filter(|(k, _)| loaded[*k]) {
-            self.passes.each([r], [z], add, |row, [r], [z]| {
+            self.passes.each([r], [&mut *z], add, |row, [r], [z]| {
                 update([r, row.y], [z], |[r, y], _| {
                     ([where_member(r, [ONE, all(row.x), y][freedom])], [])
                 })
@@ -178,15 +188,17 @@ impl<'a> Preconditioned<'a> {
             ..
         } = self.memory.arrays(self.problem.gap.len());
         let pending = all(std::mem::take(&mut self.pending));
-        let fit = self
-            .passes
-            .each([p, problem.gap, response], [u], add, |row, inputs, [u]| {
-                let [p, h, response] = inputs;
-                update([response], [&mut *u], |[response], [u]| {
-                    ([u + where_positive(pending, pending * response)], [])
-                });
-                freedoms.fit_of(row, [p, u, h], [0.0; 3])
-            });
+        let fit = self.fit.take().unwrap_or_else(|| {
+            let inputs = [p, problem.gap, response];
+            self.passes
+                .each(inputs, [&mut *u], add, |row, inputs, [u]| {
+                    let [p, h, response] = inputs;
+                    update([response], [&mut *u], |[response], [u]| {
+                        ([u + where_positive(pending, pending * response)], [])
+                    });
+                    freedoms.fit_of(row, [p, u, h], [0.0; 3])
+                })
+        });
         let motion = Multipliers {
             change: freedoms.fitted(fit),
             ..Multipliers::default()
@@ -221,8 +233,9 @@ impl<'a> Preconditioned<'a> {
         (motion.lambda(), problem.quality(quality))
     }
 
-    /// Makes the direction of the next step; returns its product with the residual.
-    fn direct(&mut self) -> f64 {
+    /// Makes the direction of the next step, of which the rows are then in `convolution`; returns its
+    /// product with the residual.
+    fn direct(&mut self, convolution: &Convolution) -> f64 {
         // The projection is symmetric only if the images belong to the contact. While the contact
         // changes they need not: once it stays, they must.
         if self.stale && !self.changed {
@@ -230,21 +243,11 @@ impl<'a> Preconditioned<'a> {
             self.conjugate = false;
         }
         self.stale = std::mem::take(&mut self.changed);
-        let Arrays { r, z, .. } = self.memory.arrays(self.problem.gap.len());
-        let inverse = &self.approximation.inverse;
-        inverse.apply_slices(r, z, &mut self.workspace);
-        self.work += inverse.work();
-        let [mut descent, with_last] = self.deflate();
-        let Arrays {
-            r, z, direction, ..
-        } = self.memory.arrays(self.problem.gap.len());
-        if descent <= 0.0 {
-            // The oblique projection failed: steepest descent, projected orthogonally.
-            z.copy_from_slice(r);
-            self.problem.freedoms.project(z, r);
-            descent = dot(r, z);
-            self.conjugate = false;
-        }
+        let Deflated {
+            factors,
+            descent,
+            with_last,
+        } = self.deflate();
         // Polak and Ribière's.
         let beta = if self.conjugate {
             ((descent - with_last) / self.descent).max(0.0)
@@ -253,31 +256,21 @@ impl<'a> Preconditioned<'a> {
         };
         self.descent = descent;
         self.conjugate = true;
-        let beta = all(beta);
-        let [slope] = self
-            .passes
-            .each([z, r], [direction], add, |_, inputs, [direction]| {
-                update(inputs, [direction], |[z, r], [d]| {
-                    // What the direction was before it was ever one is not read.
-                    let d = z + where_member(beta * where_member(r, ONE), beta * d);
-                    ([d], [r * d])
-                })
-            });
+        let slope = self.turn(convolution, factors, beta);
         if slope > 0.0 {
             return slope;
         }
         // The direction lost too many cells: start again along the gradient.
-        direction.copy_from_slice(z);
-        descent
+        self.turn(convolution, factors, 0.0)
     }
 
-    /// Restricts z to the contact C and removes from it what would change force and moments. Returns
-    /// its products with the residual and with the one before.
+    /// Preconditions the residual, and finds what must be removed from that on the contact C so that it
+    /// does not change force and moments.
     ///
     /// ```text
     /// z ← z − (MB)_C [B_Cᵀ (MB)_C]⁻¹ B_Cᵀ z
     /// ```
-    fn deflate(&mut self) -> [f64; 2] {
+    fn deflate(&mut self) -> Deflated {
         let freedoms = self.problem.freedoms;
         let Arrays {
             r,
@@ -286,51 +279,101 @@ impl<'a> Preconditioned<'a> {
             images,
             ..
         } = self.memory.arrays(self.problem.gap.len());
-        // Whatever stands for those that are not loaded has no weight.
-        let images = [0, 1, 2].map(|k| match freedoms.loaded[k] {
-            true => &*images[k],
-            false => &*r,
-        });
-        let mut factors = [0.0; 3];
-        if freedoms.any_loaded() {
-            let [i0, i1, i2] = images;
-            let sums = self.passes.each(
-                [&*r, z, i0, i1, i2],
-                [],
-                add,
-                |row, [r, z, images @ ..], []| {
-                    let mut sums = [[0.0; 3]; 4];
-                    sums[3] = freedoms.moments_on(row, r, z);
-                    for (k, image) in images.into_iter().enumerate() {
+        let inverse = &self.approximation.inverse;
+        inverse.rows_in(r, &mut self.workspace);
+        let outwards = inverse.outwards(&mut self.workspace);
+        self.work += inverse.work();
+        let [i0, i1, i2] = with_weight(freedoms.loaded, images, r);
+        // Of z and of each image.
+        let inputs = [&*r, r_before, i0, i1, i2];
+        let sums = self
+            .passes
+            .parts(inputs, [&mut *z], add, |part, inputs, [z]| {
+                outwards.rows(part.first, z);
+                let [r, before, i0, i1, i2] = inputs;
+                let inputs = [r, before, z, i0, i1, i2];
+                part.each(inputs, [], add, |row, [r, before, z, images @ ..], []| {
+                    let mut sums = [0.0; 4 * OF_EACH];
+                    sums[..OF_EACH].copy_from_slice(&freedoms.products_on(row, [r, before], z));
+                    let parts = sums[OF_EACH..].chunks_exact_mut(OF_EACH);
+                    for (k, (part, image)) in parts.zip(images).enumerate() {
                         if freedoms.loaded[k] {
-                            sums[k] = freedoms.moments_on(row, r, image);
+                            part.copy_from_slice(&freedoms.products_on(row, [r, before], image));
                         }
                     }
-                    let flat: [f64; 12] = std::array::from_fn(|k| sums[k / 3][k % 3]);
-                    flat
-                },
-            );
-            let matrix = [0, 1, 2].map(|row| [0, 1, 2].map(|column| sums[3 * column + row]));
-            factors = freedoms.solve(&matrix, [sums[9], sums[10], sums[11]]);
+                    sums
+                })
+            });
+        let [of_z, of_images @ ..]: [[f64; OF_EACH]; 4] =
+            std::array::from_fn(|n| std::array::from_fn(|k| sums[n * OF_EACH + k]));
+        let matrix = [0, 1, 2].map(|row| of_images.map(|sums| sums[row]));
+        let factors = freedoms.solve(&matrix, [of_z[0], of_z[1], of_z[2]]);
+        let remains = |k: usize| {
+            let removed = factors.iter().zip(of_images).map(|(f, sums)| f * sums[k]);
+            of_z[k] - removed.sum::<f64>()
+        };
+        let [descent, with_last] = [3, 4].map(remains);
+        if descent <= 0.0 {
+            // The oblique projection failed: steepest descent, projected orthogonally.
+            z.copy_from_slice(r);
+            freedoms.project(z, r);
+            self.conjugate = false;
+            return Deflated {
+                factors: [0.0; 3],
+                descent: dot(r, z),
+                with_last: 0.0,
+            };
         }
-        let [f0, f1, f2] = factors.map(all);
-        let [i0, i1, i2] = images;
-        if freedoms.loaded[1] || freedoms.loaded[2] {
-            return self
-                .passes
-                .each([&*r, r_before, i0, i1, i2], [z], add, |_, inputs, [z]| {
-                    update(inputs, [z], |[r, last, a, b, c], [z]| {
-                        let z = where_member(r, z - f0 * a - f1 * b - f2 * c);
-                        ([z], [r * z, last * z])
+        Deflated {
+            factors,
+            descent,
+            with_last,
+        }
+    }
+
+    /// The direction: z less these images, and `beta` times the last.
+    fn turn(&mut self, convolution: &Convolution, factors: [f64; 3], beta: f64) -> f64 {
+        let Arrays {
+            r,
+            z,
+            direction,
+            images,
+            ..
+        } = self.memory.arrays(self.problem.gap.len());
+        let [i0, i1, i2] = with_weight(self.problem.freedoms.loaded, images, r);
+        let ([f0, f1, f2], beta) = (factors.map(all), all(beta));
+        let (inwards, rows) = convolution.inwards(&mut self.workspace);
+        let (inputs, outputs) = ([&*r, z, i0, i1, i2], ([direction], rows));
+        let [slope] = self.passes.parts(
+            inputs,
+            outputs,
+            add,
+            |part, inputs, ([direction], halves)| {
+                let slope = part.each(inputs, [&mut *direction], add, |_, inputs, [direction]| {
+                    update(inputs, [direction], |[r, z, a, b, c], [d]| {
+                        let z = z - f0 * a - f1 * b - f2 * c;
+                        // What the direction was before it was ever one is not read.
+                        let d = where_member(r, z + where_member(beta, beta * d));
+                        ([d], [r * d])
                     })
                 });
-        }
-        self.passes
-            .each([&*r, r_before, i0], [z], add, |_, inputs, [z]| {
-                update(inputs, [z], |[r, last, a], [z]| {
-                    let z = where_member(r, z - f0 * a);
-                    ([z], [r * z, last * z])
-                })
-            })
+                inwards.rows(direction, halves);
+                slope
+            },
+        );
+        slope
     }
+}
+
+/// Images of the loaded freedoms; whatever stands for the others has no weight.
+fn with_weight<'a>(
+    loaded: [bool; 3],
+    images: [&'a mut [f64]; 3],
+    other: &'a [f64],
+) -> [&'a [f64]; 3] {
+    let mut loaded = loaded.into_iter();
+    images.map(|image| match loaded.next() {
+        Some(true) => &*image,
+        _ => other,
+    })
 }

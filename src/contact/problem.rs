@@ -35,6 +35,11 @@ impl Quality {
         let close = self.residual <= tolerance && self.overlap <= tolerance;
         self.balanced && self.finite && close
     }
+
+    /// Whether sums overflowed: such numbers do not come back.
+    pub(super) fn overflows(&self) -> bool {
+        self.residual.is_infinite()
+    }
 }
 
 impl Problem<'_> {

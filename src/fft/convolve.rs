@@ -2,26 +2,37 @@
 
 use std::ops::Range;
 
-use ndarray::{ArrayViewMut3, Axis};
+use ndarray::{ArrayViewMut2, Axis};
 use rustfft::num_complex::Complex64;
 
-use super::{BLOCK, EvenSpectrum, PaddedTransform, Scratch, Scratches, Workspace, ZERO};
-use crate::threads::{Threads, join};
+use super::{BLOCK, EvenSpectrum, GROUP, PaddedTransform, Scratch, Scratches, Workspace, ZERO};
+use crate::threads::{Threads, each_chunk, join};
 
-/// Calls `work` with each `length` rows along the second axis, and the number of the first.
+/// Half spectra of some rows of a mesh, by blocks of columns.
+pub(crate) struct HalfSpectra<'a>(ArrayViewMut2<'a, [Complex64; BLOCK]>);
+
+impl HalfSpectra<'_> {
+    /// Those of the first `rows`, and of the others.
+    pub(crate) fn split(self, rows: usize) -> (Self, Self) {
+        let (near, far) = self.0.split_at(Axis(1), rows);
+        (Self(near), Self(far))
+    }
+}
+
+/// Calls `work` with some `rows`, `length` at most, and the number of the first, for all of them.
 fn each_part(
-    rows: ArrayViewMut3<Complex64>,
+    rows: HalfSpectra,
     length: usize,
     first: usize,
-    work: &(impl Fn(usize, ArrayViewMut3<Complex64>) + Sync),
+    work: &(impl Fn(usize, HalfSpectra) + Sync),
 ) {
-    let count = rows.len_of(Axis(1));
+    let count = rows.0.len_of(Axis(1));
     if count <= length {
         work(first, rows);
         return;
     }
     let half = count.div_ceil(length) / 2 * length;
-    let (near, far) = rows.split_at(Axis(1), half);
+    let (near, far) = rows.split(half);
     join(
         || each_part(near, length, first, work),
         || each_part(far, length, first + half, work),
@@ -41,93 +52,186 @@ impl PaddedTransform {
     ) {
         // Handed over once, rather than for each of the three parts.
         self.divided(threads, || {
-            let [nx, ny] = self.shape;
-            let mx = self.padded[0];
-            let columns = self.columns();
-            let Workspace { mesh, scratches } = workspace;
-            let blocks = &mut mesh[..self.blocks() * nx * BLOCK];
-            self.rows_to_blocks(input, occupied.clone(), blocks, scratches, threads);
-
-            let quarter_rows = self.quarter_rows();
-            let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
-                for (block, lines) in blocks.chunks_exact_mut(nx * BLOCK).enumerate() {
-                    let start = (first + block) * BLOCK;
-                    let width = BLOCK.min(columns - start);
-                    let buffer = &mut scratch.columns[..width * mx];
-                    for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                        column[..occupied.start].fill(ZERO);
-                        column[occupied.end..].fill(ZERO);
-                        let values = column[occupied.clone()].iter_mut();
-                        for (value, i) in values.zip(occupied.clone()) {
-                            *value = lines[i * BLOCK + b];
-                        }
-                    }
-                    self.column_forward
-                        .process_with_scratch(buffer, &mut scratch.fft);
-                    let offset = (first + block) * quarter_rows * BLOCK;
-                    let values = &spectrum.0[offset..offset + quarter_rows * BLOCK];
-                    for (b, column) in buffer.chunks_exact_mut(mx).enumerate() {
-                        column[0] *= values[b];
-                        let (low, high) = column[1..].split_at_mut(quarter_rows - 1);
-                        for (k, value) in low.iter_mut().enumerate() {
-                            *value *= values[(k + 1) * BLOCK + b];
-                        }
-                        for (k, value) in high.iter_mut().rev().enumerate() {
-                            *value *= values[(k + 1) * BLOCK + b];
-                        }
-                    }
-                    self.column_inverse
-                        .process_with_scratch(buffer, &mut scratch.fft);
-                    for (b, column) in buffer.chunks_exact(mx).enumerate() {
-                        for (i, value) in column[..nx].iter().enumerate() {
-                            lines[i * BLOCK + b] = *value;
-                        }
-                    }
-                }
-            };
-            self.over_items(threads, blocks, nx * BLOCK, scratches, multiply);
-
-            let blocks = &*blocks;
-            let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
-                for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                    self.row_from_parts(blocks.chunks(nx * BLOCK), first + row, scratch);
-                    values.copy_from_slice(&scratch.real[..ny]);
-                }
-            };
-            self.over_items(threads, output, ny, scratches, inverse);
+            self.rows_in((input, occupied.clone()), workspace, threads);
+            self.columns_through(spectrum, occupied, workspace, threads);
+            let ny = self.shape[1];
+            let of_a_task = self.shape[0].div_ceil(self.tasks);
+            let workspace = &*workspace;
+            each_chunk(output, of_a_task * ny, 0, &|task, output| {
+                self.rows_out(task * of_a_task, output, workspace);
+            });
         });
     }
 
-    /// Transforms the `occupied` rows of `input` along y into `blocks`.
-    fn rows_to_blocks(
+    /// The first part: transforms the `occupied` rows of `input` along y.
+    pub(crate) fn rows_in(
         &self,
-        input: &[f64],
-        occupied: Range<usize>,
-        blocks: &mut [Complex64],
-        scratches: &Scratches,
+        (input, occupied): (&[f64], Range<usize>),
+        workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        let [nx, ny] = self.shape;
-        let Ok(blocks) = ArrayViewMut3::from_shape([self.blocks(), nx, BLOCK], blocks) else {
+        let (rows, scratches) = self.half_spectra(workspace);
+        let (_, rows) = rows.split(occupied.start);
+        let (rows, _) = rows.split(occupied.len());
+        let of_a_task = occupied.len().div_ceil(self.tasks).max(1);
+        let ny = self.shape[1];
+        let work = |first: usize, rows: HalfSpectra| {
+            self.some_rows_in(&input[first * ny..], rows, scratches)
+        };
+        self.divided(threads, || {
+            each_part(rows, of_a_task, occupied.start, &work)
+        });
+    }
+
+    /// Where the first part leaves the rows; each may be transformed by itself, by
+    /// [`Self::some_rows_in`].
+    pub(crate) fn half_spectra<'a>(
+        &self,
+        workspace: &'a mut Workspace,
+    ) -> (HalfSpectra<'a>, &'a Scratches) {
+        let Workspace { mesh, scratches } = workspace;
+        let shape = [self.blocks(), self.block_rows()];
+        let Ok(rows) = ArrayViewMut2::from_shape(shape, &mut mesh[..shape[0] * shape[1]]) else {
             unreachable!("the mesh has room for the rows of all blocks");
         };
-        let (_, blocks) = blocks.split_at(Axis(1), occupied.start);
-        let (blocks, _) = blocks.split_at(Axis(1), occupied.len());
-        let input = &input[occupied.start * ny..occupied.end * ny];
-        let forward = |first: usize, mut blocks: ArrayViewMut3<Complex64>| {
-            let scratch = &mut *self.scratch(scratches);
-            let half = &mut scratch.spectrum[..self.columns()];
-            let rows = input[first * ny..].chunks_exact(ny);
-            for (mut lines, values) in blocks.axis_iter_mut(Axis(1)).zip(rows) {
-                self.data_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
-                for (line, values) in lines.outer_iter_mut().zip(half.chunks(BLOCK)) {
-                    if let Some(line) = line.into_slice() {
-                        line[..values.len()].copy_from_slice(values);
-                    }
+        let (rows, _) = HalfSpectra(rows).split(self.shape[0]);
+        (rows, scratches)
+    }
+
+    /// Transforms the first rows of `input` along y, into `halves`.
+    pub(crate) fn some_rows_in(&self, input: &[f64], halves: HalfSpectra, scratches: &Scratches) {
+        let Scratch {
+            real, spectra, fft, ..
+        } = &mut *self.scratch(scratches);
+        let (ny, blocks, columns) = (self.shape[1], self.blocks(), self.columns());
+        let HalfSpectra(mut rows) = halves;
+        let input = &input[..rows.len_of(Axis(1)) * ny];
+        let groups = rows.axis_chunks_iter_mut(Axis(1), GROUP);
+        for (mut rows, input) in groups.zip(input.chunks(GROUP * ny)) {
+            let spectra_of = spectra.chunks_exact_mut(blocks * BLOCK);
+            for (spectrum, values) in spectra_of.zip(input.chunks_exact(ny)) {
+                let (half, beyond) = spectrum.split_at_mut(columns);
+                self.data_to_spectrum(values, half, real, fft);
+                beyond.fill(ZERO);
+            }
+            let (spectra, _) = spectra.as_chunks();
+            for (block, lines) in rows.outer_iter_mut().enumerate() {
+                let spectra = spectra[block..].iter().step_by(blocks);
+                for (line, spectrum) in lines.into_iter().zip(spectra) {
+                    *line = *spectrum;
                 }
             }
+        }
+    }
+
+    /// The second part: columns, of which the `occupied` rows were transformed, are convolved along x.
+    pub(crate) fn columns_through(
+        &self,
+        spectrum: &EvenSpectrum,
+        occupied: Range<usize>,
+        workspace: &mut Workspace,
+        threads: &Threads,
+    ) {
+        let (nx, mx) = (self.shape[0], self.padded[0]);
+        let (columns, size) = (self.columns(), self.block_rows());
+        let kernel = spectrum.0.as_chunks().0;
+        let Workspace { mesh, scratches } = workspace;
+        let blocks = &mut mesh[..self.blocks() * size];
+        let convolve = |first: usize, blocks: &mut [_], scratch: &mut Scratch| {
+            let kernels = kernel.chunks_exact(self.quarter_rows()).skip(first);
+            let blocks = blocks.chunks_exact_mut(size).zip(kernels);
+            for (block, (lines, kernel)) in blocks.enumerate() {
+                let width = (columns - (first + block) * BLOCK).min(BLOCK);
+                let buffer = &mut scratch.columns[..width.next_multiple_of(TOGETHER) * mx];
+                gather(lines, occupied.clone(), mx, buffer);
+                self.column_forward
+                    .process_with_scratch(buffer, &mut scratch.fft);
+                multiply(buffer, mx, kernel);
+                self.column_inverse
+                    .process_with_scratch(buffer, &mut scratch.fft);
+                scatter(buffer, mx, &mut lines[..nx]);
+            }
         };
-        let rows_of_a_task = occupied.len().div_ceil(self.tasks).max(1);
-        self.divided(threads, || each_part(blocks, rows_of_a_task, 0, &forward));
+        self.over_items(threads, blocks, size, scratches, convolve);
+    }
+
+    /// The last part: transforms rows from `first` on back along y, as many as `values` have room for.
+    pub(crate) fn rows_out(&self, first: usize, values: &mut [f64], workspace: &Workspace) {
+        let Workspace { mesh, scratches } = workspace;
+        let size = self.block_rows();
+        let blocks = mesh[..self.blocks() * size].chunks_exact(size);
+        self.rows_from_parts(blocks, first, values, &mut self.scratch(scratches));
+    }
+}
+
+/// Columns of a block that are gone over together: of each row they are a cache line.
+const TOGETHER: usize = 4;
+
+/// The first columns of `length` points, of some one after another.
+fn together(columns: &mut [Complex64], length: usize) -> [&mut [Complex64]; TOGETHER] {
+    let (ab, cd) = columns.split_at_mut(2 * length);
+    let ((a, b), (c, d)) = (ab.split_at_mut(length), cd.split_at_mut(length));
+    [a, b, c, d]
+}
+
+/// The columns, of `length` points, of `lines`, of which those `occupied` are read: the others are zero.
+fn gather(
+    lines: &[[Complex64; BLOCK]],
+    occupied: Range<usize>,
+    length: usize,
+    columns: &mut [Complex64],
+) {
+    let lines = &lines[occupied.clone()];
+    for (k, columns) in columns.chunks_exact_mut(TOGETHER * length).enumerate() {
+        let [a, b, c, d] = together(columns, length).map(|column| {
+            column[..occupied.start].fill(ZERO);
+            column[occupied.end..].fill(ZERO);
+            &mut column[occupied.clone()]
+        });
+        let entries = a.iter_mut().zip(b).zip(c.iter_mut().zip(d));
+        for (line, ((a, b), (c, d))) in lines.iter().zip(entries) {
+            [*a, *b, *c, *d] = line.as_chunks().0[k];
+        }
+    }
+}
+
+/// Multiplies columns of `length` points by those of a real and even `kernel`, of which the first half is
+/// given.
+fn multiply(columns: &mut [Complex64], length: usize, kernel: &[[f64; BLOCK]]) {
+    for (k, columns) in columns.chunks_exact_mut(TOGETHER * length).enumerate() {
+        let halves = together(columns, length).map(|column| column.split_at_mut(kernel.len()));
+        let [(a, a_high), (b, b_high), (c, c_high), (d, d_high)] = halves;
+        let times = |entries: [&mut Complex64; TOGETHER], values: &[f64; BLOCK]| {
+            let values: [f64; TOGETHER] = values.as_chunks().0[k];
+            entries.into_iter().zip(values).for_each(|(e, v)| *e *= v);
+        };
+        let low = a.iter_mut().zip(b).zip(c.iter_mut().zip(d)).zip(kernel);
+        low.for_each(|(((a, b), (c, d)), values)| times([a, b, c, d], values));
+        // The others mirror them, but the first.
+        let high = a_high
+            .iter_mut()
+            .zip(b_high)
+            .zip(c_high.iter_mut().zip(d_high));
+        let high = high.rev().zip(&kernel[1..]);
+        high.for_each(|(((a, b), (c, d)), values)| times([a, b, c, d], values));
+    }
+}
+
+/// The first points of columns of `length`, into as many `lines`.
+pub(super) fn scatter(columns: &[Complex64], length: usize, lines: &mut [[Complex64; BLOCK]]) {
+    let mut four = columns.chunks_exact(TOGETHER * length);
+    for (k, columns) in four.by_ref().enumerate() {
+        let (ab, cd) = columns.split_at(2 * length);
+        let ((a, b), (c, d)) = (ab.split_at(length), cd.split_at(length));
+        let entries = a.iter().zip(b).zip(c.iter().zip(d));
+        for (line, ((a, b), (c, d))) in lines.iter_mut().zip(entries) {
+            line.as_chunks_mut().0[k] = [*a, *b, *c, *d];
+        }
+    }
+    let done = columns.len() / length / TOGETHER * TOGETHER;
+    for (k, column) in four.remainder().chunks_exact(length).enumerate() {
+        for (line, value) in lines.iter_mut().zip(column) {
+            line[done + k] = *value;
+        }
     }
 }

@@ -18,7 +18,7 @@ impl PaddedTransform {
         let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let Workspace { mesh, scratches } = workspace;
-        let rows = &mut mesh[..nx * columns];
+        let rows = &mut mesh.as_flattened_mut()[..nx * columns];
         let scale = 1.0 / (mx as f64 * my as f64);
         let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
             for (row, spectrum) in rows.chunks_exact_mut(columns).enumerate() {

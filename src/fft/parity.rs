@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rustfft::num_complex::Complex64;
 
+use super::convolve::scatter;
 use super::cosine::unfold_pair;
 use super::quarter::{KernelRows, QuarterTransform};
 use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
@@ -25,7 +26,7 @@ impl PaddedTransform {
         let nx = self.shape[0];
         let (mx, columns) = (self.padded[0], self.columns());
         let Workspace { mesh, scratches } = workspace;
-        let rows = &mut mesh[..nx * columns];
+        let rows = &mut mesh.as_flattened_mut()[..nx * columns];
         self.rows_forward(input, rows, scratches, threads);
         let rows = &*rows;
         let scale = 1.0 / (mx as f64 * self.padded[1] as f64);
@@ -73,10 +74,11 @@ impl PaddedTransform {
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let Workspace { mesh, scratches } = workspace;
-        let size = numbers.len() * nx * BLOCK;
-        mesh.resize(mesh.len().max(self.blocks() * size), ZERO);
+        let block_rows = self.block_rows();
+        let size = numbers.len() * block_rows;
+        mesh.resize(mesh.len().max(self.blocks() * size), [ZERO; BLOCK]);
         let blocks = &mut mesh[..self.blocks() * size];
-        let multiply = |first: usize, blocks: &mut [Complex64], scratch: &mut Scratch| {
+        let multiply = |first: usize, blocks: &mut [[Complex64; BLOCK]], scratch: &mut Scratch| {
             let Scratch {
                 real,
                 columns: memory,
@@ -94,7 +96,7 @@ impl PaddedTransform {
                 let width = BLOCK.min(columns - start);
                 let pairs = width.div_ceil(2);
                 let buffer = &mut memory[..width * mx];
-                for (number, kept) in numbers.clone().zip(parts.chunks_exact_mut(nx * BLOCK)) {
+                for (number, kept) in numbers.clone().zip(parts.chunks_exact_mut(block_rows)) {
                     for (set, (weight, kernels)) in sets.iter().enumerate() {
                         let odd = kernels.odd(number);
                         let terms = transform.columns(kernels, [block, number], pairs, folded, fft);
@@ -112,7 +114,7 @@ impl PaddedTransform {
                         }
                     }
                     self.column_inverse.process_with_scratch(buffer, fft);
-                    scatter(buffer, mx, kept);
+                    scatter(buffer, mx, &mut kept[..nx]);
                 }
             }
         };
@@ -121,37 +123,12 @@ impl PaddedTransform {
         let blocks = &*blocks;
         for (k, output) in outputs.iter_mut().enumerate() {
             let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
-                for (row, values) in output.chunks_exact_mut(ny).enumerate() {
-                    let blocks = blocks.chunks_exact(size);
-                    let parts = blocks.map(|block| &block[k * nx * BLOCK..(k + 1) * nx * BLOCK]);
-                    self.row_from_parts(parts, first + row, scratch);
-                    values.copy_from_slice(&scratch.real[..ny]);
-                }
+                let blocks = blocks.chunks_exact(size);
+                let parts = blocks.map(|block| &block[k * block_rows..]);
+                self.rows_from_parts(parts, first, output, scratch);
             };
             self.over_items(threads, output, ny, scratches, inverse);
         }
-    }
-}
-
-/// Columns of `length` points, one after another, to rows of [`BLOCK`] columns: as many as there
-/// are rows. A cache line of a row is written at once.
-fn scatter(columns: &[Complex64], length: usize, rows: &mut [Complex64]) {
-    let mut start = 0;
-    let mut rest = columns.chunks_exact(4 * length);
-    for four in &mut rest {
-        let (a, b) = four.split_at(2 * length);
-        let ((a, b), (c, d)) = (a.split_at(length), b.split_at(length));
-        let values = a.iter().zip(b).zip(c.iter().zip(d));
-        for (row, ((a, b), (c, d))) in rows.chunks_exact_mut(BLOCK).zip(values) {
-            row[start..start + 4].copy_from_slice(&[*a, *b, *c, *d]);
-        }
-        start += 4;
-    }
-    for column in rest.remainder().chunks_exact(length) {
-        for (row, value) in rows.chunks_exact_mut(BLOCK).zip(column) {
-            row[start] = *value;
-        }
-        start += 1;
     }
 }
 

@@ -154,7 +154,7 @@ impl PaddedTransform {
             let (length, fft) = (columns - 1, &mut scratch.fft);
             fft.resize(fft.len().max(plan.get_scratch_len()), ZERO);
             let fft = &mut fft[..plan.get_scratch_len()];
-            let half = &mut scratch.spectrum[..length / 2 + 1];
+            let half = &mut scratch.spectra[..length / 2 + 1];
             let (padded, folded) = scratch.real[..2 * length].split_at_mut(length);
             padded.fill(0.0);
             let mut line = vec![0.0; self.blocks() * BLOCK];

@@ -11,7 +11,6 @@ pub(in crate::contact) struct Memory {
     z: Vec<f64>,
     direction: Vec<f64>,
     response: Vec<f64>,
-    before: Vec<f64>,
     images: [Vec<f64>; 3],
 }
 
@@ -21,14 +20,13 @@ pub(super) struct Arrays<'a> {
     pub(super) u: &'a mut [f64],
     /// −g on the contact, which are the cells that may have a pressure, and not 0 there; 0 elsewhere.
     pub(super) r: &'a mut [f64],
+    /// That of the iteration before; once the direction is known, the pressure before a step.
     pub(super) r_before: &'a mut [f64],
     /// The inverse applied to the residual; once the direction is known, the change of the pressure.
     pub(super) z: &'a mut [f64],
     pub(super) direction: &'a mut [f64],
     /// K applied to the last direction or change.
     pub(super) response: &'a mut [f64],
-    /// The pressure before a step.
-    pub(super) before: &'a mut [f64],
     /// The inverse applied to the loaded freedoms on a contact; of the others whatever there is.
     pub(super) images: [&'a mut [f64]; 3],
 }
@@ -44,10 +42,9 @@ impl Memory {
             z,
             direction,
             response,
-            before,
             images,
         } = self;
-        let arrays = [u, r, r_before, z, direction, response, before];
+        let arrays = [u, r, r_before, z, direction, response];
         let images = images.iter_mut().zip(loaded);
         let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
         let short = |array: &&mut Vec<f64>| array.len() < passes.cells();
@@ -68,7 +65,6 @@ impl Memory {
             z: &mut self.z[..cells],
             direction: &mut self.direction[..cells],
             response: &mut self.response[..cells],
-            before: &mut self.before[..cells],
             images: self.images.each_mut().map(|image| {
                 let kept = cells.min(image.len());
                 &mut image[..kept]

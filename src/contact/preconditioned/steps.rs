@@ -9,48 +9,103 @@ use std::ops::Range;
 
 use super::arrays::Arrays;
 use super::{Preconditioned, Step};
-use crate::contact::passes::{Row, add};
+use crate::contact::passes::add;
 use crate::contact::sums::{Lanes, ONE, all, sum, update, where_positive};
+use crate::convolution::Convolution;
 
 impl Preconditioned<'_> {
-    /// Moves `p` by `step` times the direction as far as it stays ≥ 0, having kept what it was where
-    /// `keep` asks. Returns [`Step::Whole`] where it is balanced and none would be negative; else,
-    /// with [`Step::Truncated`], the factor on `p` that is left of restoring balance.
-    fn advance(&mut self, p: &mut [f64], step: f64, keep: bool) -> (Step, f64) {
-        let freedoms = self.problem.freedoms;
+    /// A step of `p`, after one that was the `last`.
+    pub(super) fn step(&mut self, p: &mut [f64], last: Step) -> Step {
+        let exact = self.problem.convolution;
+        if last != Step::Truncated {
+            let slope = self.direct(exact);
+            return self.exact_step(p, slope);
+        }
+        let slope = self.direct(&self.approximation.periodic);
+        match self.step_with_losses(p, slope) {
+            Step::None => {
+                let Arrays { direction, .. } = self.memory.arrays(self.problem.gap.len());
+                exact.rows_in(direction, &mut self.workspace);
+                self.exact_step(p, slope)
+            }
+            done => done,
+        }
+    }
+
+    /// Applies `convolution`, which has the rows of the direction; returns what that gives times the
+    /// direction.
+    fn respond(&mut self, convolution: &Convolution) -> f64 {
         let Arrays {
-            direction, before, ..
+            direction,
+            response,
+            ..
         } = self.memory.arrays(self.problem.gap.len());
-        let moved = |d: Lanes, p: Lanes| {
-            let moved = p + all(step) * d;
-            (where_positive(moved, moved), where_positive(-moved, ONE))
-        };
-        let with_moments = |row: Row, truncated: f64, p: &[f64]| {
-            let [f, fx, fy] = freedoms.moments_of(row, p);
-            [truncated, f, fx, fy]
-        };
-        let [truncated, moments @ ..] = if keep {
-            let outputs = [&mut *p, before];
-            self.passes
-                .each([direction], outputs, add, |row, [d], [p, before]| {
-                    let [truncated] = update([d], [&mut *p, before], |[d], [p, _]| {
-                        let (kept, lost) = moved(d, p);
-                        ([kept, p], [lost])
-                    });
-                    with_moments(row, truncated, p)
+        self.work += convolution.work();
+        let outwards = convolution.outwards(&mut self.workspace);
+        let [curvature] = self.passes.parts(
+            [direction],
+            [response],
+            add,
+            |part, [direction], [response]| {
+                outwards.rows(part.first, response);
+                part.each([direction, response], [], add, |_, fields, []| {
+                    sum(fields, |[direction, response]| [direction * response])
                 })
-        } else {
-            self.passes
-                .each([direction], [&mut *p], add, |row, [d], [p]| {
-                    let [truncated] = update([d], [&mut *p], |[d], [p]| {
-                        let (kept, lost) = moved(d, p);
-                        ([kept], [lost])
-                    });
-                    with_moments(row, truncated, p)
+            },
+        );
+        curvature
+    }
+
+    /// A step of exact length. Where cells leave, the displacement is computed afresh.
+    fn exact_step(&mut self, p: &mut [f64], slope: f64) -> Step {
+        let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        let curvature = self.respond(problem.convolution);
+        if !(curvature > 0.0 && slope > 0.0) {
+            return Step::None;
+        }
+        let length = all(slope / curvature);
+        let Arrays {
+            u,
+            direction,
+            response,
+            ..
+        } = self.memory.arrays(problem.gap.len());
+        let (inputs, outputs) = ([&*direction, response, problem.gap], [&mut *p, u]);
+        let sums = self
+            .passes
+            .each(inputs, outputs, add, |row, [d, response, h], [p, u]| {
+                let fields = [&mut *p, &mut *u];
+                let [lost] = update([d, response], fields, |[d, response], [p, u]| {
+                    let (p, lost) = moved(p, length * d);
+                    ([p, u + length * response], [lost])
+                });
+                let [f, fx, fy] = freedoms.moments_of(row, p);
+                let fit = freedoms.fit_of(row, [p, u, h], [0.0; 3]);
+                let carried = [lost, f, fx, fy];
+                std::array::from_fn::<_, 13, _>(|k| match k.checked_sub(carried.len()) {
+                    None => carried[k],
+                    Some(k) => fit[k],
                 })
-        };
+            });
+        let [lost, f, fx, fy, fit @ ..] = sums;
+        let (done, factor) = self.restored(p, lost, [f, fx, fy]);
+        if done == Step::Whole {
+            self.fit = Some(fit);
+            return done;
+        }
+        self.passes.each([], [&mut *p], add, |_, [], [p]| {
+            update([], [p], |[], [p]| ([all(factor) * p], []))
+        });
+        self.displace(p);
+        done
+    }
+
+    /// [`Step::Whole`] where a pressure of these `moments`, of which so many cells were `lost`, is balanced;
+    /// else balance is restored, but for the factor on `p` that is returned with [`Step::Truncated`].
+    fn restored(&self, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
+        let freedoms = self.problem.freedoms;
         // A direction that lost cells since it was made is out of balance, too.
-        if truncated <= 0.0 && freedoms.on_target(moments) {
+        if lost <= 0.0 && freedoms.on_target(moments) {
             return (Step::Whole, 1.0);
         }
         let factor = freedoms.to_load(moments[0]);
@@ -61,79 +116,77 @@ impl Preconditioned<'_> {
         (Step::Truncated, factor)
     }
 
-    /// A step of exact length. Where cells leave, the displacement is computed afresh.
-    pub(super) fn step(&mut self, p: &mut [f64], slope: f64) -> Step {
-        let problem = self.problem;
-        let Arrays {
-            direction,
-            response,
-            ..
-        } = self.memory.arrays(self.problem.gap.len());
-        problem.apply(direction, response, &mut self.workspace);
-        self.work += problem.convolution.work();
-        let curvature = self.passes.dot(response, direction);
-        if !(curvature > 0.0 && slope > 0.0) {
-            return Step::None;
-        }
-        let length = slope / curvature;
-        let (done, factor) = self.advance(p, length, false);
-        if done == Step::Truncated {
-            self.passes.each([], [&mut *p], add, |_, [], [p]| {
-                update([], [p], |[], [p]| ([all(factor) * p], []))
-            });
-            self.displace(p);
-        } else {
-            self.pending = length;
-        }
-        done
-    }
-
     /// A step of approximate length, exactly displaced however many cells leave. None,
     /// with the pressure as it was, where it would not descend.
-    pub(super) fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
+    fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
         // Where the best length along the change is further from the planned one, so many cells have
         // left that the plan was worth little. Beyond twice the best length the energy would rise.
         const AS_PLANNED: Range<f64> = 0.6..1.8;
-        let periodic = &self.approximation.periodic;
-        let Arrays {
-            direction,
-            response,
-            ..
-        } = self.memory.arrays(self.problem.gap.len());
-        periodic.apply_slices(direction, response, &mut self.workspace);
-        self.work += periodic.work();
-        let curvature = self.passes.dot(response, direction);
-        let curvature = curvature * self.curvature_ratio;
+        let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        let curvature = self.respond(&self.approximation.periodic) * self.curvature_ratio;
         if !(curvature > 0.0 && slope > 0.0) {
             return Step::None;
         }
-        let (done, factor) = self.advance(p, slope / curvature, true);
+        let length = all(slope / curvature);
+        let Arrays {
+            direction,
+            r_before: before,
+            ..
+        } = self.memory.arrays(problem.gap.len());
+        let outputs = [&mut *p, before];
+        let sums = self
+            .passes
+            .each([direction], outputs, add, |row, [d], [p, before]| {
+                let [lost] = update([d], [&mut *p, before], |[d], [p, _]| {
+                    let (next, lost) = moved(p, length * d);
+                    ([next, p], [lost])
+                });
+                let [f, fx, fy] = freedoms.moments_of(row, p);
+                [lost, f, fx, fy]
+            });
+        let [lost, moments @ ..] = sums;
+        let (done, factor) = self.restored(p, lost, moments);
         let Arrays {
             r,
             z: change,
             response,
-            before,
+            r_before: before,
             ..
-        } = self.memory.arrays(self.problem.gap.len());
-        let outputs = [&mut *p, &mut *change];
-        self.passes
-            .each([&*before], outputs, add, |_, [before], outputs| {
-                update([before], outputs, |[before], [p, _]| {
-                    let p = all(factor) * p;
-                    ([p, p - before], [])
-                })
-            });
-        let problem = self.problem;
-        problem.apply(change, response, &mut self.workspace);
-        self.work += problem.convolution.work();
-        // The best length along the change.
-        let [slope, curvature] =
-            self.passes
-                .each([change, r, response], [], add, |_, inputs, []| {
-                    sum(inputs, |[change, r, response]| {
-                        [change * r, change * response]
+        } = self.memory.arrays(problem.gap.len());
+        let (inwards, rows) = problem.convolution.inwards(&mut self.workspace);
+        let outputs = ([&mut *p, &mut *change], rows);
+        self.passes.parts(
+            [&*before],
+            outputs,
+            add,
+            |part, inputs, ([p, change], halves)| {
+                let fields = [p, &mut *change];
+                let sums = part.each(inputs, fields, add, |_, [before], fields| {
+                    update([before], fields, |[before], [p, _]| {
+                        let p = all(factor) * p;
+                        ([p, p - before], [])
                     })
                 });
+                inwards.rows(change, halves);
+                sums
+            },
+        );
+        self.work += problem.convolution.work();
+        let outwards = problem.convolution.outwards(&mut self.workspace);
+        // The best length along the change.
+        let [slope, curvature] = self.passes.parts(
+            [&*change, r],
+            [response],
+            add,
+            |part, [change, r], [response]| {
+                outwards.rows(part.first, response);
+                part.each([change, r, response], [], add, |_, fields, []| {
+                    sum(fields, |[change, r, response]| {
+                        [change * r, change * response]
+                    })
+                })
+            },
+        );
         let best = slope / curvature;
         if !(best > 0.0 && best.is_finite()) {
             p.copy_from_slice(before);
@@ -153,4 +206,10 @@ impl Preconditioned<'_> {
             Step::Whole
         }
     }
+}
+
+/// A pressure moved as far as it stays ≥ 0; and 1 where it would not, 0 elsewhere.
+fn moved(p: Lanes, change: Lanes) -> (Lanes, Lanes) {
+    let moved = p + change;
+    (where_positive(moved, moved), where_positive(-moved, ONE))
 }
