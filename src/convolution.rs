@@ -387,3 +387,57 @@ fn lease(idle: &Pool<FftWorkspace>, transform: &PaddedTransform) -> Workspace {
     transform.fit(&mut memory);
     Workspace(memory)
 }
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array2;
+
+    use super::Convolution;
+    use crate::error::Result;
+
+    fn field([nx, ny]: [usize; 2]) -> Array2<f64> {
+        Array2::from_shape_fn((nx, ny), |(i, j)| {
+            ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0
+        })
+    }
+
+    /// In parts of any size, and where only some rows are occupied: the same bits as at once.
+    #[test]
+    fn rows_in_parts_give_the_same_bits() -> Result<()> {
+        for shape in [[1, 9], [7, 1], [23, 18], [150, 130]] {
+            let convolution = Convolution::plan(&field(shape), Some(2))?;
+            let mut workspace = convolution.workspace();
+            let [nx, ny] = shape;
+            let occupied = nx / 3..nx - nx / 4;
+            let mut input = field(shape);
+            for (i, mut row) in input.rows_mut().into_iter().enumerate() {
+                if !occupied.contains(&i) {
+                    row.fill(0.0);
+                }
+            }
+            let at_once = convolution.apply(&input)?.into_raw_vec_and_offset().0;
+            let input = input.into_raw_vec_and_offset().0;
+            let mut of_occupied = vec![f64::NAN; nx * ny];
+            convolution.apply_rows(&input, occupied, &mut of_occupied, &mut workspace);
+            let mut in_parts = vec![f64::NAN; nx * ny];
+            for length in [1, 3, 8, 11] {
+                let (inwards, mut halves) = convolution.inwards(&mut workspace);
+                for part in input.chunks(length * ny) {
+                    let (here, rest) = halves.split(part.len() / ny);
+                    inwards.rows(part, here);
+                    halves = rest;
+                }
+                let outwards = convolution.outwards(&mut workspace);
+                for (k, part) in in_parts.chunks_mut(length * ny).enumerate() {
+                    outwards.rows(k * length, part);
+                }
+                for values in [&of_occupied, &in_parts] {
+                    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+                    assert!(values.iter().zip(&at_once).all(same), "{shape:?} {length}");
+                }
+                in_parts.fill(f64::NAN);
+            }
+        }
+        Ok(())
+    }
+}
