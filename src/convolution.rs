@@ -289,25 +289,14 @@ impl Convolution {
         output: &mut [f64],
         workspace: &mut Workspace,
     ) {
-        self.apply_rows(input, 0..self.shape[0], output, workspace);
-    }
-
-    /// The same where `input` is zero but in the rows of `occupied`, which alone are read.
-    pub(crate) fn apply_rows(
-        &self,
-        input: &[f64],
-        occupied: Range<usize>,
-        output: &mut [f64],
-        workspace: &mut Workspace,
-    ) {
         let memory = &mut workspace.0;
         self.transform.fit(memory);
-        let input = (input, occupied);
         self.clock.during(|| {
             self.transform
                 .convolve_into(&self.spectrum, input, output, memory, &self.threads);
         });
     }
+
     /// The first of the three parts of an application: what takes its rows, as they are made, and where
     /// they go.
     pub(crate) fn inwards<'a>(
@@ -325,23 +314,45 @@ impl Convolution {
 
     /// The first part, of rows that are there.
     pub(crate) fn rows_in(&self, input: &[f64], workspace: &mut Workspace) {
+        let input = (input, 0..self.shape[0]);
+        self.some_rows_in(input, workspace);
+    }
+
+    fn some_rows_in(&self, input: (&[f64], Range<usize>), workspace: &mut Workspace) {
         let memory = &mut workspace.0;
         self.transform.fit(memory);
-        let input = (input, 0..self.shape[0]);
         let work = || self.transform.rows_in(input, memory, &self.threads);
         self.clock.during(work);
     }
 
     /// The second part, after all rows are in; returns the last, which gives them.
     pub(crate) fn outwards<'a>(&'a self, workspace: &'a mut Workspace) -> Outwards<'a> {
-        let memory = &mut *workspace.0;
-        let (transform, rows) = (&self.transform, 0..self.shape[0]);
+        self.some_outwards(0..self.shape[0], workspace)
+    }
+
+    fn some_outwards<'a>(
+        &'a self,
+        rows: Range<usize>,
+        workspace: &'a mut Workspace,
+    ) -> Outwards<'a> {
+        let (transform, memory) = (&self.transform, &mut *workspace.0);
         self.clock
             .during(|| transform.columns_through(&self.spectrum, rows, memory, &self.threads));
         Outwards {
             convolution: self,
             memory,
         }
+    }
+
+    /// Both, of an input that is zero but in the rows of `occupied`, which alone are read.
+    pub(crate) fn through<'a>(
+        &'a self,
+        input: &[f64],
+        occupied: Range<usize>,
+        workspace: &'a mut Workspace,
+    ) -> Outwards<'a> {
+        self.some_rows_in((input, occupied.clone()), workspace);
+        self.some_outwards(occupied, workspace)
     }
 }
 
@@ -418,7 +429,8 @@ mod tests {
             let at_once = convolution.apply(&input)?.into_raw_vec_and_offset().0;
             let input = input.into_raw_vec_and_offset().0;
             let mut of_occupied = vec![f64::NAN; nx * ny];
-            convolution.apply_rows(&input, occupied, &mut of_occupied, &mut workspace);
+            let outwards = convolution.through(&input, occupied, &mut workspace);
+            outwards.rows(0, &mut of_occupied);
             let mut in_parts = vec![f64::NAN; nx * ny];
             for length in [1, 3, 8, 11] {
                 let (inwards, mut halves) = convolution.inwards(&mut workspace);

@@ -79,9 +79,8 @@ pub(super) fn solve(
                 lambda: system.lambda,
             };
         };
-        problem.apply(p, &mut u, &mut workspace);
+        let (motion, quality) = problem.judge(p, &everywhere, &mut u, lambda, &mut workspace);
         work += problem.convolution.work();
-        let (motion, quality) = problem.judge(p, &everywhere, &u, lambda);
         let lambda = motion.lambda();
         problem.gap_into(&u, motion, &mut g);
         let termination = if quality.meets(limits.tolerance) {

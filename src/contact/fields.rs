@@ -44,10 +44,7 @@ impl Fields {
         let (p, window) = (slice(&self.pressure), &self.window);
         let workspace = &mut problem.convolution.workspace();
         let u = slice_mut(&mut self.displacement);
-        problem
-            .convolution
-            .apply_rows(p, window[0].clone(), u, workspace);
-        let (motion, quality) = problem.judge(p, window, u, near);
+        let (motion, quality) = problem.judge(p, window, u, near, workspace);
         self.motion = motion;
         self.quality = Some(quality);
         quality

@@ -50,6 +50,11 @@ pub(super) struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// From which of its own rows on, and up to which, they are of `rows`.
+    pub(super) fn within(&self, rows: &Range<usize>) -> [usize; 2] {
+        [rows.start, rows.end].map(|row| row.saturating_sub(self.first).min(self.x.len()))
+    }
+
     /// Calls `row` with each of its rows of all arrays, and joins what it returns.
     pub(super) fn each<const M: usize, const N: usize, const S: usize>(
         &self,

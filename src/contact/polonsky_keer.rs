@@ -40,9 +40,8 @@ pub(super) fn solve(
     let mut work = 0.0;
 
     for iterations in 0.. {
-        problem.apply(p, u, workspace);
+        let (motion, quality) = problem.judge(p, &window, u, [0.0; 3], workspace);
         work += problem.convolution.work();
-        let (motion, quality) = problem.judge(p, &window, u, [0.0; 3]);
         problem.gap_into(u, motion, &mut g);
         let end = |termination| Outcome {
             termination,

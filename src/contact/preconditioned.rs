@@ -17,9 +17,11 @@ use super::direct;
 use super::fit::FitSums;
 use super::passes::{Passes, add};
 use super::problem::{
-    Limits, Multipliers, Outcome, Problem, Quality, Termination, Watch, join, overlap_of,
+    Limits, Outcome, Problem, Quality, Termination, Watch, depths, join, mismatch,
 };
-use super::sums::{ONE, ZERO, all, dot, update, where_member, where_positive};
+use super::sums::{
+    Lanes, ONE, ZERO, all, dot, update, update_with_largest, where_member, where_positive,
+};
 use crate::convolution::{Convolution, Workspace};
 use crate::pool::Lease;
 use arrays::Arrays;
@@ -44,7 +46,7 @@ pub(super) struct Preconditioned<'a> {
     pending: f64,
     /// Of the gap, where a step has made them.
     fit: Option<FitSums>,
-    /// Whether the contact has changed since the images of the freedoms were made, or last seen.
+    /// Whether the contact may have changed since the images of the freedoms were made, or last seen.
     changed: bool,
     /// Whether the images are those of another contact.
     stale: bool,
@@ -180,13 +182,7 @@ impl<'a> Preconditioned<'a> {
         const MANY: f64 = 10.0;
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
         self.memory.keep_residual();
-        let Arrays {
-            u,
-            r,
-            r_before,
-            response,
-            ..
-        } = self.memory.arrays(self.problem.gap.len());
+        let Arrays { u, r, response, .. } = self.memory.arrays(self.problem.gap.len());
         let pending = all(std::mem::take(&mut self.pending));
         let fit = self.fit.take().unwrap_or_else(|| {
             let inputs = [p, problem.gap, response];
@@ -199,38 +195,32 @@ impl<'a> Preconditioned<'a> {
                     freedoms.fit_of(row, [p, u, h], [0.0; 3])
                 })
         });
-        let motion = Multipliers {
-            change: freedoms.fitted(fit),
-            ..Multipliers::default()
-        };
-        let sums = self.passes.each(
-            [p, u, problem.gap, r_before],
-            [r],
-            join,
-            |row, [p, u, h, before], [r]| {
-                motion.gap(row, [u, h], r);
-                let [deepest, most] = overlap_of([u, r]);
-                let [a, b, c, d, e] = problem.carried_of(row, [p, u, r]);
-                let [left, joined, members] = update([p, before], [r], |[p, before], [g]| {
-                    let pressed = where_positive(p, ONE);
-                    let inside = pressed.simd_gt(ZERO) | g.simd_lt(ZERO);
-                    let now = inside & ONE;
-                    let before = where_member(before, ONE);
-                    // A gap of 0 is told from a cell outside.
-                    (
-                        [inside & (all(f64::MIN_POSITIVE) - g)],
-                        [(pressed - before).abs(), now - pressed, pressed],
-                    )
-                });
-                [deepest, most, a, b, c, d, e, left, joined, members]
-            },
-        );
-        let [quality @ .., left, joined, members] = sums;
-        if MANY * joined > members {
+        let lambda = freedoms.fitted(fit);
+        let inputs = [p, u, problem.gap];
+        let sums = self.passes.each(inputs, [r], join, |row, [p, u, h], [r]| {
+            let (base, slope) = (all(lambda[0] + lambda[1] * row.x), all(lambda[2]));
+            let step = |[p, u, h, y]: [Lanes; 4], _| {
+                let overlap = (base + slope * y) - (h + u);
+                let pressed = p.simd_gt(ZERO);
+                let inside = pressed | overlap.simd_gt(ZERO);
+                let sums = [p * u, mismatch(p, overlap), pressed & ONE, inside & ONE];
+                // A gap of 0 is told from a cell outside.
+                let residual = inside & (overlap + all(f64::MIN_POSITIVE));
+                ([residual], depths(u, overlap), sums)
+            };
+            let (largest, sums) = update_with_largest([p, u, h, row.y], [r], step);
+            let [deepest, most] = largest;
+            let [work, mismatch, pressed, inside] = sums;
+            let [f, fx, fy] = freedoms.moments_of(row, p);
+            [deepest, most, work, mismatch, f, fx, fy, pressed, inside]
+        });
+        let [quality @ .., pressed, inside] = sums;
+        let joined = inside - pressed;
+        if MANY * joined > pressed {
             self.conjugate = false;
         }
-        self.changed |= left + joined > 0.0;
-        (motion.lambda(), problem.quality(quality))
+        self.changed |= joined > 0.0;
+        (lambda, problem.quality(quality))
     }
 
     /// Makes the direction of the next step, of which the rows are then in `convolution`; returns its
@@ -280,8 +270,7 @@ impl<'a> Preconditioned<'a> {
             ..
         } = self.memory.arrays(self.problem.gap.len());
         let inverse = &self.approximation.inverse;
-        inverse.rows_in(r, &mut self.workspace);
-        let outwards = inverse.outwards(&mut self.workspace);
+        let outwards = inverse.through(r, 0..inverse.shape()[0], &mut self.workspace);
         self.work += inverse.work();
         let [i0, i1, i2] = with_weight(freedoms.loaded, images, r);
         // Of z and of each image.

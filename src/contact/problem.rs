@@ -3,7 +3,7 @@
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
 use super::patch::Window;
-use super::sums::{Lanes, ZERO, all, largest, largest_and_sum, sum, update, where_positive};
+use super::sums::{Lanes, ZERO, all, sum, update, update_with_largest, where_positive};
 use crate::convolution::{Convolution, Workspace};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
@@ -66,38 +66,49 @@ impl Problem<'_> {
         self.freedoms.fitted(sums)
     }
 
-    /// λ that makes the gap least over the contact, as [`Problem::fit`] does, and how good `p` is; it is
-    /// zero outside `window`, and not read there.
+    /// Computes the displacement `u` of a pressure, which is zero outside `window` and not read there; λ
+    /// that makes the gap least over the contact, as [`Problem::fit`] does, and how good `p` is.
     pub(super) fn judge(
         &self,
         p: &[f64],
         window: &Window,
-        u: &[f64],
+        u: &mut [f64],
         near: [f64; 3],
+        workspace: &mut Workspace,
     ) -> (Multipliers, Quality) {
-        let (passes, fields) = (self.passes(), [p, u, self.gap]);
-        let sums = passes.each(fields, [], add, |row, fields, []| {
-            row.part(window, fields).map_or([0.0; 9], |(row, fields)| {
-                self.freedoms.fit_of(row, fields, near)
+        let (passes, ny) = (self.passes(), self.convolution.shape()[1]);
+        let outwards = self.convolution.through(p, window[0].clone(), workspace);
+        let displace = |first: usize, u: &mut [f64]| {
+            if !u.is_empty() {
+                outwards.rows(first, u);
+            }
+        };
+        let inputs = [p, self.gap];
+        // Rows of the window first: what λ depends on.
+        let sums = passes.parts(inputs, [&mut *u], add, |part, [p, h], [u]| {
+            let [start, end] = part.within(&window[0]);
+            displace(part.first + start, &mut u[start * ny..end * ny]);
+            part.each([p, u, h], [], add, |row, fields, []| {
+                row.part(window, fields).map_or([0.0; 9], |(row, fields)| {
+                    self.freedoms.fit_of(row, fields, near)
+                })
             })
         });
         let motion = Multipliers {
             base: near,
             change: self.freedoms.fitted(sums),
         };
-        let sums = passes.each(fields, [], join, |row, fields @ [_, u, h], []| {
-            let gap = motion.gap_of(row);
-            let [deepest, most, lost] = largest_and_sum([u, h, row.y], |[u, h, y]| {
-                let [deepest, most] = overlap(u, gap([u, h, y]));
-                [deepest, most, u * ZERO]
-            });
-            let carried = row.part(window, fields).map(|(row, [p, u, h])| {
-                let mut g = vec![0.0; u.len()];
-                motion.gap(row, [u, h], &mut g);
-                self.carried_of(row, [p, u, &g])
-            });
-            let [work, mismatch, f, fx, fy] = carried.unwrap_or_default();
-            [deepest, most, work, mismatch, f, fx, fy, lost]
+        let sums = passes.parts(inputs, [u], join, |part, [p, h], [u]| {
+            let [start, end] = part.within(&window[0]);
+            displace(part.first, &mut u[..start * ny]);
+            displace(part.first + end, &mut u[end * ny..]);
+            part.each([p, u, h], [], join, |row, fields, []| {
+                let [deepest, most, lost] = overlap_of(motion, row, fields);
+                let carried = row.part(window, fields);
+                let carried = carried.map(|(row, fields)| self.carried_of(motion, row, fields));
+                let [work, mismatch, f, fx, fy] = carried.unwrap_or_default();
+                [deepest, most, work, mismatch, f, fx, fy, lost]
+            })
         });
         let [sums @ .., lost] = sums;
         let quality = Quality {
@@ -133,10 +144,11 @@ impl Problem<'_> {
     }
 
     /// What one row adds to the work, the mismatch and the moments of the pressure.
-    pub(super) fn carried_of(&self, row: Row, [p, u, g]: [&[f64]; 3]) -> [f64; 5] {
-        let [work, mismatch] = sum([p, u, g], |[p, u, g]| {
-            // The gap is infinite only where there is no pressure.
-            [p * u, where_positive(p, p * g.abs())]
+    fn carried_of(&self, motion: Multipliers, row: Row, fields: [&[f64]; 3]) -> [f64; 5] {
+        let overlap = motion.overlap(row);
+        let [p, u, h] = fields;
+        let [work, mismatch] = sum([p, u, h, row.y], |[p, u, h, y]| {
+            [p * u, mismatch(p, overlap([u, h, y]))]
         });
         let [f, fx, fy] = self.freedoms.moments_of(row, p);
         [work, mismatch, f, fx, fy]
@@ -173,15 +185,27 @@ pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
     })
 }
 
-/// The deepest overlap of one row, and the largest displacement where it can touch.
-pub(super) fn overlap_of(fields: [&[f64]; 2]) -> [f64; 2] {
-    largest(fields, |[u, g]| overlap(u, g))
+/// The deepest overlap of one row, and the largest displacement where it can touch; and 0, unless a
+/// displacement is not finite.
+fn overlap_of(motion: Multipliers, row: Row, [_, u, h]: [&[f64]; 3]) -> [f64; 3] {
+    let overlap = motion.overlap(row);
+    let (largest, [lost]) = update_with_largest([u, h, row.y], [], |[u, h, y], []| {
+        ([], depths(u, overlap([u, h, y])), [u * ZERO])
+    });
+    let [deepest, most] = largest;
+    [deepest, most, lost]
 }
 
 /// How deep cells overlap, and their displacement where they can touch.
-fn overlap(u: Lanes, g: Lanes) -> [Lanes; 2] {
-    let touches = g.simd_lt(all(f64::INFINITY));
-    [-g, touches & u.abs()]
+pub(super) fn depths(u: Lanes, overlap: Lanes) -> [Lanes; 2] {
+    let touches = overlap.simd_gt(all(f64::NEG_INFINITY));
+    [overlap, touches & u.abs()]
+}
+
+/// p |g|
+pub(super) fn mismatch(p: Lanes, overlap: Lanes) -> Lanes {
+    // The gap is infinite only where there is no pressure.
+    where_positive(p, p * overlap.abs())
 }
 
 /// λ in two parts: where loads are small, h − Bλ is far less than either.
@@ -197,17 +221,19 @@ impl Multipliers {
         [0, 1, 2].map(|k| self.base[k] + self.change[k])
     }
 
-    /// The gap g = u + h − Bλ of cells in a row, from u, h and their coordinates.
-    fn gap_of(self, row: Row) -> impl Fn([Lanes; 3]) -> Lanes {
+    /// How deep cells in a row overlap, −g = Bλ − (u + h), from u, h and their coordinates.
+    fn overlap(self, row: Row) -> impl Fn([Lanes; 3]) -> Lanes {
         let [[a, b], [c, d]] =
             [self.base, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
-        move |[u, h, y]| (h - (a + b * y)) + u - (c + d * y)
+        move |[u, h, y]| (c + d * y) - ((h - (a + b * y)) + u)
     }
 
     /// The gap in a row.
     pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
-        let gap = self.gap_of(row);
-        update([u, h, row.y], [g], |fields, _| ([gap(fields)], []));
+        let overlap = self.overlap(row);
+        update([u, h, row.y], [g], |fields, _| {
+            ([ZERO - overlap(fields)], [])
+        });
     }
 }
 

@@ -7,7 +7,7 @@ use super::fields::slice;
 use super::freedoms::Motion;
 use super::patch::{Window, block};
 use super::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Warning};
-use super::sums::{largest, sum};
+use super::sums::update_with_largest;
 use crate::grid::Grid;
 use crate::surface::{Extent, Surface};
 
@@ -28,8 +28,8 @@ impl Carried {
         for (i, x) in window[0].clone().zip(x) {
             let start = i * grid.shape()[1] + window[1].start;
             let row = &pressure[start..start + y.len()];
-            let [force, moment] = sum([row, &y], |[p, y]| [p, p * y]);
-            let [peak] = largest([row], |[p]| [p]);
+            let ([peak], [force, moment]) =
+                update_with_largest([row, &y], [], |[p, y], []| ([], [p], [p, p * y]));
             carried.force += force;
             carried.moment[0] += force * x;
             carried.moment[1] += moment;

@@ -31,68 +31,35 @@ pub(super) fn sum<const M: usize, const N: usize>(
     inputs: [&[f64]; M],
     term: impl Fn([Lanes; M]) -> [Lanes; N],
 ) -> [f64; N] {
-    let lanes = fold(inputs, |_, sum, value| sum + value, term);
-    lanes.map(total)
-}
-
-/// The largest of `term` and 0 over the elements of `inputs`, which are equally long.
-pub(super) fn largest<const M: usize, const N: usize>(
-    inputs: [&[f64]; M],
-    term: impl Fn([Lanes; M]) -> [Lanes; N],
-) -> [f64; N] {
-    // Not max, which looks for NaN: a field with NaN shows in the sums.
-    let lanes = fold(inputs, |_, a, b| a.fast_max(b), term);
-    lanes.map(top)
-}
-
-/// Σ of the last `term`, and the largest of the others and 0.
-pub(super) fn largest_and_sum<const M: usize, const N: usize>(
-    inputs: [&[f64]; M],
-    term: impl Fn([Lanes; M]) -> [Lanes; N],
-) -> [f64; N] {
-    let join = |k, a: Lanes, b| if k + 1 < N { a.fast_max(b) } else { a + b };
-    let lanes = fold(inputs, join, term);
-    std::array::from_fn(|k| {
-        if k + 1 < N {
-            top(lanes[k])
-        } else {
-            total(lanes[k])
-        }
-    })
-}
-
-/// `join` is told which of the terms it joins.
-fn fold<const M: usize, const N: usize>(
-    inputs: [&[f64]; M],
-    join: impl Fn(usize, Lanes, Lanes) -> Lanes,
-    term: impl Fn([Lanes; M]) -> [Lanes; N],
-) -> [Lanes; N] {
-    let mut joined = [ZERO; N];
-    let chunks = inputs.map(|input| input.as_chunks::<LANES>().0);
-    let count = chunks.iter().map(|chunks| chunks.len()).min();
-    for k in 0..count.unwrap_or(0) {
-        let values = term(chunks.map(|chunks| Lanes::new(chunks[k])));
-        for (k, value) in values.into_iter().enumerate() {
-            joined[k] = join(k, joined[k], value);
-        }
-    }
-    let rest = inputs.map(|input| input.as_chunks::<LANES>().1);
-    let keep = first(rest.iter().map(|rest| rest.len()).min().unwrap_or(0));
-    let values = term(rest.map(padded));
-    for (k, value) in values.into_iter().enumerate() {
-        joined[k] = join(k, joined[k], keep & value);
-    }
-    joined
+    update(inputs, [], |values, []| ([], term(values)))
 }
 
 /// Replaces the elements of `outputs` by the first of what `step` makes of those of `inputs` and of
 /// their own, and sums the second. All are equally long.
 pub(super) fn update<const M: usize, const N: usize, const S: usize>(
     inputs: [&[f64]; M],
-    mut outputs: [&mut [f64]; N],
+    outputs: [&mut [f64]; N],
     step: impl Fn([Lanes; M], [Lanes; N]) -> ([Lanes; N], [Lanes; S]),
 ) -> [f64; S] {
-    let mut sums = [ZERO; S];
+    let ([], sums) = update_with_largest(inputs, outputs, |from, old| {
+        let (new, values) = step(from, old);
+        (new, [], values)
+    });
+    sums
+}
+
+/// [`update`] where `step` makes, before what is summed, some of which the largest is found, and 0.
+pub(super) fn update_with_largest<
+    const M: usize,
+    const N: usize,
+    const L: usize,
+    const S: usize,
+>(
+    inputs: [&[f64]; M],
+    mut outputs: [&mut [f64]; N],
+    step: impl Fn([Lanes; M], [Lanes; N]) -> ([Lanes; N], [Lanes; L], [Lanes; S]),
+) -> ([f64; L], [f64; S]) {
+    let (mut largest, mut sums) = ([ZERO; L], [ZERO; S]);
     let from = inputs.map(|input| input.as_chunks::<LANES>().0);
     let mut to = outputs
         .each_mut()
@@ -101,9 +68,13 @@ pub(super) fn update<const M: usize, const N: usize, const S: usize>(
     let count = ends.chain(to.iter().map(|chunks| chunks.len())).min();
     for k in 0..count.unwrap_or(0) {
         let old = to.each_ref().map(|chunks| Lanes::new(chunks[k]));
-        let (new, values) = step(from.map(|chunks| Lanes::new(chunks[k])), old);
+        let (new, tops, values) = step(from.map(|chunks| Lanes::new(chunks[k])), old);
         for (chunks, new) in to.iter_mut().zip(new) {
             chunks[k] = new.to_array();
+        }
+        // Not max, which looks for NaN: a field with NaN shows in the sums.
+        for (largest, value) in largest.iter_mut().zip(tops) {
+            *largest = largest.fast_max(value);
         }
         for (sum, value) in sums.iter_mut().zip(values) {
             *sum += value;
@@ -116,16 +87,19 @@ pub(super) fn update<const M: usize, const N: usize, const S: usize>(
     let ends = from.iter().map(|rest| rest.len());
     let rest = ends.chain(to.iter().map(|rest| rest.len())).min();
     let old = to.each_ref().map(|rest| padded(rest));
-    let (new, values) = step(from.map(padded), old);
+    let (new, tops, values) = step(from.map(padded), old);
     for (rest, new) in to.iter_mut().zip(new) {
         let length = rest.len();
         rest.copy_from_slice(&new.to_array()[..length]);
     }
     let keep = first(rest.unwrap_or(0));
+    for (largest, value) in largest.iter_mut().zip(tops) {
+        *largest = largest.fast_max(keep & value);
+    }
     for (sum, value) in sums.iter_mut().zip(values) {
         *sum += keep & value;
     }
-    sums.map(total)
+    (largest.map(top), sums.map(total))
 }
 
 /// Fewer elements than lanes.
@@ -160,7 +134,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{ONE, all, dot, largest, largest_and_sum, sum, update};
+    use super::{ONE, all, dot, sum, update, update_with_largest};
 
     #[test]
     fn sums_and_largest_of_any_length() {
@@ -179,14 +153,14 @@ mod tests {
                 second.to_bits(),
                 a.iter().fold(0.0, |s: f64, a| s + a * a).to_bits()
             );
-            let [top] = largest([&a, &b], |[a, b]| [a + all(3.0) * b]);
+            let ([top], [product]) =
+                update_with_largest([&a, &b], [], |[a, b], []| ([], [a + all(3.0) * b], [a * b]));
             let expected = a
                 .iter()
                 .zip(&b)
                 .fold(0.0, |t: f64, (a, b)| t.max(a + 3.0 * b));
             assert_eq!(top.to_bits(), expected.to_bits());
-            let both = largest_and_sum([&a, &b], |[a, b]| [a + all(3.0) * b, a * b]);
-            assert_eq!(both.map(f64::to_bits), [top, dot(&a, &b)].map(f64::to_bits));
+            assert_eq!(product.to_bits(), dot(&a, &b).to_bits());
         }
     }
 

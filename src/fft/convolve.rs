@@ -40,20 +40,20 @@ fn each_part(
 }
 
 impl PaddedTransform {
-    /// `output` = kernel ∗ `input`, both (nx, ny) in C order; `input` is read in the rows of
-    /// `occupied`, and zero elsewhere. Allocates nothing.
+    /// `output` = kernel ∗ `input`, both (nx, ny) in C order. Allocates nothing.
     pub(crate) fn convolve_into(
         &self,
         spectrum: &EvenSpectrum,
-        (input, occupied): (&[f64], Range<usize>),
+        input: &[f64],
         output: &mut [f64],
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
+        let rows = || 0..self.shape[0];
         // Handed over once, rather than for each of the three parts.
         self.divided(threads, || {
-            self.rows_in((input, occupied.clone()), workspace, threads);
-            self.columns_through(spectrum, occupied, workspace, threads);
+            self.rows_in((input, rows()), workspace, threads);
+            self.columns_through(spectrum, rows(), workspace, threads);
             let ny = self.shape[1];
             let of_a_task = self.shape[0].div_ceil(self.tasks);
             let workspace = &*workspace;

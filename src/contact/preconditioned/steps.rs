@@ -89,6 +89,7 @@ impl Preconditioned<'_> {
             });
         let [lost, f, fx, fy, fit @ ..] = sums;
         let (done, factor) = self.restored(p, lost, [f, fx, fy]);
+        self.changed |= done != Step::Whole;
         if done == Step::Whole {
             self.fit = Some(fit);
             return done;
@@ -192,6 +193,7 @@ impl Preconditioned<'_> {
             p.copy_from_slice(before);
             return Step::None;
         }
+        self.changed |= done != Step::Whole;
         self.curvature_ratio = (self.curvature_ratio / best.clamp(0.8, 1.25)).clamp(0.5, 2.0);
         self.pending = if best < AS_PLANNED.start { best } else { 1.0 };
         if best < AS_PLANNED.start {
