@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use super::freedoms::Freedoms;
 use super::passes::Row;
-use super::sums::{ONE, all, sum, update, where_member, where_positive};
+use super::sums::{Lanes, ONE, sum, update, where_member, where_positive};
 
-/// Sums over rows of which [`Freedoms::fitted`] makes a motion: Bᵀv, and the upper half of BᵀB.
-pub(super) type FitSums = [f64; 9];
+/// Sums over cells, in this order: what [`Freedoms::fit_of`] counts; force and moments of the pressure; and
+/// of which [`Freedoms::fitted`] makes a motion, Bᵀv, and the upper half of BᵀB.
+pub(super) type FitSums = [f64; 13];
 
 impl Freedoms {
     /// Rows of the grid: x, and which cells.
@@ -74,29 +75,55 @@ impl Freedoms {
         [s, s * row.x, sy, now, last]
     }
 
-    /// What one row adds to the fit of u + h − Bλ over the cells with pressure, where λ is `near`.
-    pub(super) fn fit_of(&self, row: Row, [p, u, h]: [&[f64]; 3], near: [f64; 3]) -> FitSums {
-        let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
-        let [s, sy, syy, f, fy] = if self.loaded[2] {
-            sum([p, u, h, row.y], |[p, u, h, y]| {
-                let weight = where_positive(p, ONE);
-                let value = where_positive(p, (h - (base + slope * y)) + u);
-                [weight, weight * y, weight * y * y, value, value * y]
+    /// Updates fields of a row by `step`, from those of `inputs` and y, and returns what the row adds to the
+    /// fit over the cells with pressure. Beside the fields `step` makes pressure, what is fitted, and
+    /// something to count.
+    pub(super) fn fit_of<const N: usize>(
+        &self,
+        row: Row,
+        [a, b, c]: [&[f64]; 3],
+        fields: [&mut [f64]; N],
+        step: impl Fn([Lanes; 4], [Lanes; N]) -> ([Lanes; N], [Lanes; 3]),
+    ) -> FitSums {
+        let terms = |from, old| {
+            let (new, [p, value, counted]) = step(from, old);
+            let [weight, value] = [ONE, value].map(|value| where_positive(p, value));
+            (new, [counted, p, weight, value])
+        };
+        let inputs = [a, b, c, row.y];
+        let [counted, p, py, s, sy, syy, f, fy] = if self.loaded[2] {
+            update(inputs, fields, |from, old| {
+                let y = from[3];
+                let (new, [counted, p, weight, value]) = terms(from, old);
+                let [sy, syy] = [weight * y, weight * y * y];
+                (new, [counted, p, p * y, weight, sy, syy, value, value * y])
             })
         } else {
-            let [s, f] = sum([p, u, h, row.y], |[p, u, h, y]| {
-                let value = where_positive(p, (h - (base + slope * y)) + u);
-                [where_positive(p, ONE), value]
-            });
-            [s, 0.0, 0.0, f, 0.0]
+            let [counted, p, s, f] = update(inputs, fields, terms);
+            [counted, p, 0.0, s, 0.0, 0.0, f, 0.0]
         };
         let x = row.x;
-        [f, f * x, fy, s, s * x, sy, s * x * x, sy * x, syy]
+        let (sx, sxx, sxy) = (s * x, s * x * x, sy * x);
+        [
+            counted,
+            p,
+            p * x,
+            py,
+            f,
+            f * x,
+            fy,
+            s,
+            sx,
+            sy,
+            sxx,
+            sxy,
+            syy,
+        ]
     }
 
     /// The change of λ that the sums of [`Freedoms::fit_of`] give.
     pub(super) fn fitted(&self, sums: FitSums) -> [f64; 3] {
-        let [f, fx, fy, s, sx, sy, sxx, sxy, syy] = sums;
+        let [_, _, _, _, f, fx, fy, s, sx, sy, sxx, sxy, syy] = sums;
         let gram = [[s, sx, sy], [sx, sxx, sxy], [sy, sxy, syy]];
         self.solve(&gram, [f, fx, fy])
     }

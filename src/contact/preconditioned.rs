@@ -16,9 +16,7 @@ mod steps;
 use super::direct;
 use super::fit::FitSums;
 use super::passes::{Passes, add};
-use super::problem::{
-    Limits, Outcome, Problem, Quality, Termination, Watch, depths, join, mismatch,
-};
+use super::problem::{Limits, Outcome, Problem, Quality, Termination, Watch, depths, join};
 use super::sums::{
     Lanes, ONE, ZERO, all, dot, update, update_with_largest, where_member, where_positive,
 };
@@ -185,42 +183,49 @@ impl<'a> Preconditioned<'a> {
         let Arrays { u, r, response, .. } = self.memory.arrays(self.problem.gap.len());
         let pending = all(std::mem::take(&mut self.pending));
         let fit = self.fit.take().unwrap_or_else(|| {
-            let inputs = [p, problem.gap, response];
+            let inputs = [p, response, problem.gap];
             self.passes
                 .each(inputs, [&mut *u], add, |row, inputs, [u]| {
-                    let [p, h, response] = inputs;
-                    update([response], [&mut *u], |[response], [u]| {
-                        ([u + where_positive(pending, pending * response)], [])
-                    });
-                    freedoms.fit_of(row, [p, u, h], [0.0; 3])
+                    freedoms.fit_of(row, inputs, [u], |[p, response, h, _], [u]| {
+                        let u = u + where_positive(pending, pending * response);
+                        ([u], [p, u + h, ZERO])
+                    })
                 })
         });
+        let [_, f, fx, fy, ..] = fit;
         let lambda = freedoms.fitted(fit);
         let inputs = [p, u, problem.gap];
         let sums = self.passes.each(inputs, [r], join, |row, [p, u, h], [r]| {
             let (base, slope) = (all(lambda[0] + lambda[1] * row.x), all(lambda[2]));
-            let step = |[p, u, h, y]: [Lanes; 4], _| {
-                let overlap = (base + slope * y) - (h + u);
+            let step = |p: Lanes, u: Lanes, h: Lanes, motion: Lanes| {
+                let overlap = motion - (h + u);
                 let pressed = p.simd_gt(ZERO);
                 let inside = pressed | overlap.simd_gt(ZERO);
-                let sums = [p * u, mismatch(p, overlap), pressed & ONE, inside & ONE];
                 // A gap of 0 is told from a cell outside.
                 let residual = inside & (overlap + all(f64::MIN_POSITIVE));
+                let sums = [p * u, p * residual.abs(), pressed & ONE, inside & ONE];
                 ([residual], depths(u, overlap), sums)
             };
-            let (largest, sums) = update_with_largest([p, u, h, row.y], [r], step);
+            let (largest, sums) = if freedoms.loaded[2] {
+                let inputs = [p, u, h, row.y];
+                update_with_largest(inputs, [r], |[p, u, h, y], _| {
+                    step(p, u, h, base + slope * y)
+                })
+            } else {
+                update_with_largest([p, u, h], [r], |[p, u, h], _| step(p, u, h, base))
+            };
             let [deepest, most] = largest;
             let [work, mismatch, pressed, inside] = sums;
-            let [f, fx, fy] = freedoms.moments_of(row, p);
-            [deepest, most, work, mismatch, f, fx, fy, pressed, inside]
+            [deepest, most, work, mismatch, pressed, inside]
         });
-        let [quality @ .., pressed, inside] = sums;
+        let [sums @ .., pressed, inside] = sums;
+        let quality = problem.quality(sums, [f, fx, fy]);
         let joined = inside - pressed;
         if MANY * joined > pressed {
             self.conjugate = false;
         }
         self.changed |= joined > 0.0;
-        (lambda, problem.quality(quality))
+        (lambda, quality)
     }
 
     /// Makes the direction of the next step, of which the rows are then in `convolution`; returns its

@@ -1,5 +1,6 @@
 //! The contact problem in the form that the algorithms solve.
 
+use super::fit::FitSums;
 use super::freedoms::Freedoms;
 use super::passes::{Passes, Row, add};
 use super::patch::Window;
@@ -61,9 +62,17 @@ impl Problem<'_> {
     /// these do not determine (one or two cells have no tilt) stay as they are.
     pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64], near: [f64; 3]) -> [f64; 3] {
         let sums = self.passes().each([p, u, h], [], add, |row, fields, []| {
-            self.freedoms.fit_of(row, fields, near)
+            self.fit_near(near, row, fields)
         });
         self.freedoms.fitted(sums)
+    }
+
+    /// What one row adds to that fit.
+    fn fit_near(&self, near: [f64; 3], row: Row, fields: [&[f64]; 3]) -> FitSums {
+        let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
+        self.freedoms.fit_of(row, fields, [], |[p, u, h, y], []| {
+            ([], [p, (h - (base + slope * y)) + u, ZERO])
+        })
     }
 
     /// Computes the displacement `u` of a pressure, which is zero outside `window` and not read there; λ
@@ -85,19 +94,19 @@ impl Problem<'_> {
         };
         let inputs = [p, self.gap];
         // Rows of the window first: what λ depends on.
-        let sums = passes.parts(inputs, [&mut *u], add, |part, [p, h], [u]| {
+        let fit = passes.parts(inputs, [&mut *u], add, |part, [p, h], [u]| {
             let [start, end] = part.within(&window[0]);
             displace(part.first + start, &mut u[start * ny..end * ny]);
             part.each([p, u, h], [], add, |row, fields, []| {
-                row.part(window, fields).map_or([0.0; 9], |(row, fields)| {
-                    self.freedoms.fit_of(row, fields, near)
-                })
+                row.part(window, fields)
+                    .map_or([0.0; 13], |(row, fields)| self.fit_near(near, row, fields))
             })
         });
         let motion = Multipliers {
             base: near,
-            change: self.freedoms.fitted(sums),
+            change: self.freedoms.fitted(fit),
         };
+        let [_, f, fx, fy, ..] = fit;
         let sums = passes.parts(inputs, [u], join, |part, [p, h], [u]| {
             let [start, end] = part.within(&window[0]);
             displace(part.first, &mut u[..start * ny]);
@@ -105,16 +114,16 @@ impl Problem<'_> {
             part.each([p, u, h], [], join, |row, fields, []| {
                 let [deepest, most, lost] = overlap_of(motion, row, fields);
                 let carried = row.part(window, fields);
-                let carried = carried.map(|(row, fields)| self.carried_of(motion, row, fields));
-                let [work, mismatch, f, fx, fy] = carried.unwrap_or_default();
-                [deepest, most, work, mismatch, f, fx, fy, lost]
+                let [work, mismatch] =
+                    carried.map_or([0.0; 2], |(row, fields)| mismatch_of(motion, row, fields));
+                [deepest, most, work, mismatch, lost]
             })
         });
         let [sums @ .., lost] = sums;
         let quality = Quality {
             // The sum is 0, unless one is not finite.
             finite: lost <= 0.0,
-            ..self.quality(sums)
+            ..self.quality(sums, [f, fx, fy])
         };
         (motion, quality)
     }
@@ -143,20 +152,13 @@ impl Problem<'_> {
         self.freedoms.balance(p);
     }
 
-    /// What one row adds to the work, the mismatch and the moments of the pressure.
-    fn carried_of(&self, motion: Multipliers, row: Row, fields: [&[f64]; 3]) -> [f64; 5] {
-        let overlap = motion.overlap(row);
-        let [p, u, h] = fields;
-        let [work, mismatch] = sum([p, u, h, row.y], |[p, u, h, y]| {
-            [p * u, mismatch(p, overlap([u, h, y]))]
-        });
-        let [f, fx, fy] = self.freedoms.moments_of(row, p);
-        [work, mismatch, f, fx, fy]
-    }
-
-    /// The quality of which these are the sums.
-    pub(super) fn quality(&self, sums: QualitySums) -> Quality {
-        let [deepest, most, work, mismatch, f, fx, fy] = sums;
+    /// The quality of a pressure with these `moments`: the deepest overlap, the largest displacement, the
+    /// work and the mismatch.
+    pub(super) fn quality(
+        &self,
+        [deepest, most, work, mismatch]: [f64; 4],
+        moments: [f64; 3],
+    ) -> Quality {
         // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
         let over = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
             _ if !(a + scale).is_finite() => f64::INFINITY,
@@ -167,14 +169,11 @@ impl Problem<'_> {
         Quality {
             residual: over(mismatch, work),
             overlap: over(deepest, most),
-            balanced: self.freedoms.on_target([f, fx, fy]),
+            balanced: self.freedoms.on_target(moments),
             finite: true,
         }
     }
 }
-
-/// Of which [`Problem::quality`] makes the quality: two largest values, and sums.
-pub(super) type QualitySums = [f64; 7];
 
 /// Joins two largest values, and sums.
 pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
@@ -188,24 +187,33 @@ pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
 /// The deepest overlap of one row, and the largest displacement where it can touch; and 0, unless a
 /// displacement is not finite.
 fn overlap_of(motion: Multipliers, row: Row, [_, u, h]: [&[f64]; 3]) -> [f64; 3] {
+    let step = |u, overlap| ([], depths(u, overlap), [u * ZERO]);
     let overlap = motion.overlap(row);
-    let (largest, [lost]) = update_with_largest([u, h, row.y], [], |[u, h, y], []| {
-        ([], depths(u, overlap([u, h, y])), [u * ZERO])
-    });
+    let (largest, [lost]) = if motion.tilts() {
+        update_with_largest([u, h, row.y], [], |[u, h, y], []| {
+            step(u, overlap([u, h, y]))
+        })
+    } else {
+        update_with_largest([u, h], [], |[u, h], []| step(u, overlap([u, h, ZERO])))
+    };
     let [deepest, most] = largest;
     [deepest, most, lost]
+}
+
+/// What one row adds to the work and the mismatch.
+fn mismatch_of(motion: Multipliers, row: Row, [p, u, h]: [&[f64]; 3]) -> [f64; 2] {
+    let overlap = motion.overlap(row);
+    sum([p, u, h, row.y], |[p, u, h, y]| {
+        // The gap is infinite only where there is no pressure.
+        let mismatch = where_positive(p, p * overlap([u, h, y]).abs());
+        [p * u, mismatch]
+    })
 }
 
 /// How deep cells overlap, and their displacement where they can touch.
 pub(super) fn depths(u: Lanes, overlap: Lanes) -> [Lanes; 2] {
     let touches = overlap.simd_gt(all(f64::NEG_INFINITY));
     [overlap, touches & u.abs()]
-}
-
-/// p |g|
-pub(super) fn mismatch(p: Lanes, overlap: Lanes) -> Lanes {
-    // The gap is infinite only where there is no pressure.
-    where_positive(p, p * overlap.abs())
 }
 
 /// λ in two parts: where loads are small, h − Bλ is far less than either.
@@ -219,6 +227,11 @@ impl Multipliers {
     /// λ
     pub(super) fn lambda(self) -> [f64; 3] {
         [0, 1, 2].map(|k| self.base[k] + self.change[k])
+    }
+
+    /// Whether the motion depends on y.
+    fn tilts(self) -> bool {
+        self.base[2] != 0.0 || self.change[2] != 0.0
     }
 
     /// How deep cells in a row overlap, −g = Bλ − (u + h), from u, h and their coordinates.

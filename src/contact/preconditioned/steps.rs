@@ -71,25 +71,17 @@ impl Preconditioned<'_> {
             ..
         } = self.memory.arrays(problem.gap.len());
         let (inputs, outputs) = ([&*direction, response, problem.gap], [&mut *p, u]);
-        let sums = self
+        let fit = self
             .passes
-            .each(inputs, outputs, add, |row, [d, response, h], [p, u]| {
-                let fields = [&mut *p, &mut *u];
-                let [lost] = update([d, response], fields, |[d, response], [p, u]| {
+            .each(inputs, outputs, add, |row, inputs, fields| {
+                freedoms.fit_of(row, inputs, fields, |[d, response, h, _], [p, u]| {
                     let (p, lost) = moved(p, length * d);
-                    ([p, u + length * response], [lost])
-                });
-                let [f, fx, fy] = freedoms.moments_of(row, p);
-                let fit = freedoms.fit_of(row, [p, u, h], [0.0; 3]);
-                let carried = [lost, f, fx, fy];
-                std::array::from_fn::<_, 13, _>(|k| match k.checked_sub(carried.len()) {
-                    None => carried[k],
-                    Some(k) => fit[k],
+                    let u = u + length * response;
+                    ([p, u], [p, u + h, lost])
                 })
             });
-        let [lost, f, fx, fy, fit @ ..] = sums;
+        let [lost, f, fx, fy, ..] = fit;
         let (done, factor) = self.restored(p, lost, [f, fx, fy]);
-        self.changed |= done != Step::Whole;
         if done == Step::Whole {
             self.fit = Some(fit);
             return done;
@@ -103,14 +95,16 @@ impl Preconditioned<'_> {
 
     /// [`Step::Whole`] where a pressure of these `moments`, of which so many cells were `lost`, is balanced;
     /// else balance is restored, but for the factor on `p` that is returned with [`Step::Truncated`].
-    fn restored(&self, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
+    fn restored(&mut self, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
         let freedoms = self.problem.freedoms;
+        self.changed |= lost > 0.0;
         // A direction that lost cells since it was made is out of balance, too.
         if lost <= 0.0 && freedoms.on_target(moments) {
             return (Step::Whole, 1.0);
         }
         let factor = freedoms.to_load(moments[0]);
         let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {
+            self.changed = true;
             self.problem.rebalance(p);
             1.0
         });
@@ -193,7 +187,6 @@ impl Preconditioned<'_> {
             p.copy_from_slice(before);
             return Step::None;
         }
-        self.changed |= done != Step::Whole;
         self.curvature_ratio = (self.curvature_ratio / best.clamp(0.8, 1.25)).clamp(0.5, 2.0);
         self.pending = if best < AS_PLANNED.start { best } else { 1.0 };
         if best < AS_PLANNED.start {
