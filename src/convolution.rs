@@ -178,9 +178,8 @@ impl Convolution {
             idle,
             Arc::clone(&self.clock),
         );
-        let inverse = periodic
-            .transform
-            .inverse_spectrum(&periodic.spectrum, FLOOR);
+        let inverse = || (periodic.transform).inverse_spectrum(&periodic.spectrum, FLOOR);
+        let inverse = periodic.clock.during(inverse);
         let inverse = Self {
             spectrum: Arc::new(inverse),
             transform: periodic.transform.clone(),

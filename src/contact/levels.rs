@@ -12,10 +12,11 @@ use super::direct;
 use super::discretisation::Figures;
 use super::freedoms::Freedoms;
 use super::passes::Passes;
-use super::patch::{Patch, block, copied, hull, widened};
+use super::patch::{Patch, block, copied, hull, rows, widened};
 use super::preconditioned::{Approximation, Memory, Preconditioned};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
 use super::start::checked_gaps;
+use super::sums::{all, update, update_with_largest};
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -199,23 +200,21 @@ impl Level<'_> {
 
     /// What a solution of this grid gives.
     pub(super) fn figures(&self, patch: &Patch, lambda: [f64; 3]) -> Figures {
+        let ([peak], [sum]) = update_with_largest([&patch.values], [], |[p], []| ([], [p], [p]));
         Figures {
-            peak_pressure: patch.values.iter().fold(0.0, |a, &p| a.max(p)),
+            peak_pressure: peak,
             approach: self.freedoms.motion(lambda).0,
-            load: patch.values.iter().sum::<f64>() * self.freedoms.cell_area,
+            load: sum * self.freedoms.cell_area,
         }
     }
 
     /// Makes a pressure one that cells can carry and that is balanced. False where that cannot be.
     pub(super) fn balance(&self, patch: &mut Patch) -> bool {
-        let gaps = block(&self.gap, &patch.window);
-        let rows = patch.values.chunks_exact_mut(patch.window[1].len());
-        for (row, gaps) in rows.zip(gaps.rows()) {
-            for (p, h) in row.iter_mut().zip(gaps) {
-                if !h.is_finite() {
-                    *p = 0.0;
-                }
-            }
+        let pressures = patch.values.chunks_exact_mut(patch.window[1].len().max(1));
+        for (p, gaps) in pressures.zip(rows(&self.gap, &patch.window)) {
+            update([gaps], [p], |[h], [p]| {
+                ([h.simd_lt(all(f64::INFINITY)) & p], [])
+            });
         }
         self.freedoms
             .part(patch.window.clone())

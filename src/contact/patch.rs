@@ -59,14 +59,22 @@ fn filled([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> 
     values
 }
 
-/// Values of an array, in C order.
+/// Rows of a window of an array in C order.
+pub(super) fn rows<'a>(
+    array: &'a ArrayRef2<f64>,
+    [x, y]: &Window,
+) -> impl Iterator<Item = &'a [f64]> {
+    let (columns, y) = (array.ncols().max(1), y.clone());
+    let rows = array.as_slice().unwrap_or(&[]).chunks_exact(columns);
+    let rows = rows.skip(x.start).take(x.len());
+    rows.map(move |row| &row[y.clone()])
+}
+
+/// Values of an array in C order, in that order.
 pub(super) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
     filled(window, |i, row| {
-        let values = array.row(i);
-        let values = values.slice_axis(Axis(0), Slice::from(window[1].clone()));
-        row.iter_mut()
-            .zip(values)
-            .for_each(|(to, from)| *to = *from);
+        let here = [i..i + 1, window[1].clone()];
+        rows(array, &here).for_each(|values| row.copy_from_slice(values));
     })
 }
 

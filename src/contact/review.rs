@@ -3,9 +3,8 @@
 use ndarray::Array2;
 
 use super::discretisation::Figures;
-use super::fields::slice;
 use super::freedoms::Motion;
-use super::patch::{Window, block};
+use super::patch::{Window, rows};
 use super::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Warning};
 use super::sums::update_with_largest;
 use crate::grid::Grid;
@@ -22,12 +21,9 @@ pub(super) struct Carried {
 impl Carried {
     /// By the pressure of a window, outside of which there is none.
     pub(super) fn by(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
-        let pressure = slice(pressure);
         let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
         let mut carried = Self::default();
-        for (i, x) in window[0].clone().zip(x) {
-            let start = i * grid.shape()[1] + window[1].start;
-            let row = &pressure[start..start + y.len()];
+        for (row, x) in rows(pressure, window).zip(x) {
             let ([peak], [force, moment]) =
                 update_with_largest([row, &y], [], |[p, y], []| ([], [p], [p, p * y]));
             carried.force += force;
@@ -92,16 +88,22 @@ pub(super) fn warnings(
             .gap(x[i] + beyond(i, nx, dx), y[j] + beyond(j, ny, dy))
             .is_finite()
     };
-    let across = !grid.is_line();
-    let on_edge = |i: usize, j: usize| j == 0 || j == ny - 1 || (across && (i == 0 || i == nx - 1));
-    // Lines of cells across each axis that hold some of the contact.
-    let mut held = [vec![false; nx], vec![false; ny]];
     let mut at_edge = false;
-    for (i, row) in window[0].clone().zip(block(pressure, window).rows()) {
-        for (j, _) in window[1].clone().zip(row).filter(|(_, p)| **p > 0.0) {
-            (held[0][i], held[1][j]) = (true, true);
-            at_edge |= on_edge(i, j) && goes_on(i, j);
-        }
+    // Largest pressures of the lines of cells across each axis.
+    let mut highest = [vec![0.0; nx], vec![0.0; ny]];
+    for (i, row) in window[0].clone().zip(rows(pressure, window)) {
+        let columns = &mut highest[1][window[1].clone()];
+        let ([top], []) = update_with_largest([row], [columns], |[p], [highest]| {
+            ([highest.fast_max(p)], [p], [])
+        });
+        highest[0][i] = top;
+        let reaches = |j: usize| row[j - window[1].start] > 0.0 && goes_on(i, j);
+        let mut ends = [0, ny - 1].into_iter().filter(|j| window[1].contains(j));
+        at_edge |= if !grid.is_line() && (i == 0 || i == nx - 1) {
+            window[1].clone().any(reaches)
+        } else {
+            ends.any(reaches)
+        };
     }
     if at_edge {
         warnings.push(Warning::GridEdge);
@@ -109,11 +111,8 @@ pub(super) fn warnings(
 
     let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
     for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
-        for (at, _) in coordinates
-            .iter()
-            .zip(&held[axis])
-            .filter(|(_, held)| **held)
-        {
+        let lines = coordinates.iter().zip(&highest[axis]);
+        for (at, _) in lines.filter(|(_, highest)| **highest > 0.0) {
             cells[axis] += 1;
             ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
         }
