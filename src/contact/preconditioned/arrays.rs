@@ -20,9 +20,10 @@ pub(super) struct Arrays<'a> {
     pub(super) u: &'a mut [f64],
     /// −g on the contact, which are the cells that may have a pressure, and not 0 there; 0 elsewhere.
     pub(super) r: &'a mut [f64],
-    /// That of the iteration before; once the direction is known, the pressure before a step.
+    /// That of the iteration before.
     pub(super) r_before: &'a mut [f64],
-    /// The inverse applied to the residual; once the direction is known, the change of the pressure.
+    /// The inverse applied to the residual; once the direction is known, the next pressure, and then how far
+    /// that is from the last.
     pub(super) z: &'a mut [f64],
     pub(super) direction: &'a mut [f64],
     /// K applied to the last direction or change.

@@ -10,6 +10,7 @@ use std::ops::Range;
 use super::arrays::Arrays;
 use super::{Preconditioned, Step};
 use crate::contact::passes::add;
+use crate::contact::problem::Problem;
 use crate::contact::sums::{Lanes, ONE, all, sum, update, where_positive};
 use crate::convolution::Convolution;
 
@@ -81,7 +82,12 @@ impl Preconditioned<'_> {
                 })
             });
         let [lost, f, fx, fy, ..] = fit;
-        let (done, factor) = self.restored(p, lost, [f, fx, fy]);
+        let Balanced {
+            step: done,
+            factor,
+            changed,
+        } = balanced(problem, p, lost, [f, fx, fy]);
+        self.changed |= changed;
         if done == Step::Whole {
             self.fit = Some(fit);
             return done;
@@ -93,26 +99,8 @@ impl Preconditioned<'_> {
         done
     }
 
-    /// [`Step::Whole`] where a pressure of these `moments`, of which so many cells were `lost`, is balanced;
-    /// else balance is restored, but for the factor on `p` that is returned with [`Step::Truncated`].
-    fn restored(&mut self, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
-        let freedoms = self.problem.freedoms;
-        self.changed |= lost > 0.0;
-        // A direction that lost cells since it was made is out of balance, too.
-        if lost <= 0.0 && freedoms.on_target(moments) {
-            return (Step::Whole, 1.0);
-        }
-        let factor = freedoms.to_load(moments[0]);
-        let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {
-            self.changed = true;
-            self.problem.rebalance(p);
-            1.0
-        });
-        (Step::Truncated, factor)
-    }
-
     /// A step of approximate length, exactly displaced however many cells leave. None,
-    /// with the pressure as it was, where it would not descend.
+    /// with the pressure as it was but for rounding, where it would not descend.
     fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
         // Where the best length along the change is further from the planned one, so many cells have
         // left that the plan was worth little. Beyond twice the best length the energy would rise.
@@ -124,48 +112,46 @@ impl Preconditioned<'_> {
         }
         let length = all(slope / curvature);
         let Arrays {
-            direction,
-            r_before: before,
-            ..
+            direction, z: next, ..
         } = self.memory.arrays(problem.gap.len());
-        let outputs = [&mut *p, before];
+        let inputs = [&*direction, p];
         let sums = self
             .passes
-            .each([direction], outputs, add, |row, [d], [p, before]| {
-                let [lost] = update([d], [&mut *p, before], |[d], [p, _]| {
+            .each(inputs, [next], add, |row, [d, p], [next]| {
+                let [lost] = update([d, p], [&mut *next], |[d, p], _| {
                     let (next, lost) = moved(p, length * d);
-                    ([next, p], [lost])
+                    ([next], [lost])
                 });
-                let [f, fx, fy] = freedoms.moments_of(row, p);
+                let [f, fx, fy] = freedoms.moments_of(row, next);
                 [lost, f, fx, fy]
             });
         let [lost, moments @ ..] = sums;
-        let (done, factor) = self.restored(p, lost, moments);
+        let Balanced {
+            step: done,
+            factor,
+            changed,
+        } = balanced(problem, next, lost, moments);
+        self.changed |= changed;
         let Arrays {
             r,
             z: change,
             response,
-            r_before: before,
             ..
         } = self.memory.arrays(problem.gap.len());
         let (inwards, rows) = problem.convolution.inwards(&mut self.workspace);
         let outputs = ([&mut *p, &mut *change], rows);
-        self.passes.parts(
-            [&*before],
-            outputs,
-            add,
-            |part, inputs, ([p, change], halves)| {
+        self.passes
+            .parts([], outputs, add, |part, [], ([p, change], halves)| {
                 let fields = [p, &mut *change];
-                let sums = part.each(inputs, fields, add, |_, [before], fields| {
-                    update([before], fields, |[before], [p, _]| {
-                        let p = all(factor) * p;
-                        ([p, p - before], [])
+                let sums = part.each([], fields, add, |_, [], fields| {
+                    update([], fields, |[], [p, next]| {
+                        let next = all(factor) * next;
+                        ([next, next - p], [])
                     })
                 });
                 inwards.rows(change, halves);
                 sums
-            },
-        );
+            });
         self.work += problem.convolution.work();
         let outwards = problem.convolution.outwards(&mut self.workspace);
         // The best length along the change.
@@ -183,23 +169,61 @@ impl Preconditioned<'_> {
             },
         );
         let best = slope / curvature;
-        if !(best > 0.0 && best.is_finite()) {
-            p.copy_from_slice(before);
+        let back = match best {
+            _ if !(best > 0.0 && best.is_finite()) => 1.0,
+            _ if best < AS_PLANNED.start => 1.0 - best,
+            _ => 0.0,
+        };
+        if back > 0.0 {
+            self.passes.each([&*change], [p], add, |_, [change], [p]| {
+                update([change], [p], |[change], [p]| {
+                    ([p - all(back) * change], [])
+                })
+            });
+        }
+        if back >= 1.0 {
             return Step::None;
         }
         self.curvature_ratio = (self.curvature_ratio / best.clamp(0.8, 1.25)).clamp(0.5, 2.0);
-        self.pending = if best < AS_PLANNED.start { best } else { 1.0 };
-        if best < AS_PLANNED.start {
-            for ((p, before), change) in p.iter_mut().zip(&*before).zip(&*change) {
-                *p = before + best * change;
-            }
-        }
+        self.pending = 1.0 - back;
         if AS_PLANNED.contains(&best) {
             done
         } else {
             // The next step is an exact one.
             Step::Whole
         }
+    }
+}
+
+/// What became of a step whose pressure is in balance again.
+struct Balanced {
+    step: Step,
+    /// By which the pressure must still be multiplied.
+    factor: f64,
+    /// Whether the contact may be another.
+    changed: bool,
+}
+
+/// Restores balance, where a pressure of these `moments`, of which so many cells were `lost`, has none.
+fn balanced(problem: &Problem, p: &mut [f64], lost: f64, moments: [f64; 3]) -> Balanced {
+    let freedoms = problem.freedoms;
+    // A direction that lost cells since it was made is out of balance, too.
+    if lost <= 0.0 && freedoms.on_target(moments) {
+        return Balanced {
+            step: Step::Whole,
+            factor: 1.0,
+            changed: false,
+        };
+    }
+    let factor = freedoms.to_load(moments[0]);
+    let factor = factor.filter(|_| freedoms.only_force());
+    if factor.is_none() {
+        problem.rebalance(p);
+    }
+    Balanced {
+        step: Step::Truncated,
+        factor: factor.unwrap_or(1.0),
+        changed: lost > 0.0 || factor.is_none(),
     }
 }
 
