@@ -3,7 +3,6 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101.
 
-use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -11,11 +10,11 @@ use std::time::Instant;
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result};
-use crate::fft::{
-    EvenSpectrum, HalfSpectra, PaddedTransform, Scratches, Workspace as FftWorkspace,
-};
+use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
 use crate::pool::{Lease, Pool};
 use crate::threads::Threads;
+
+mod parts;
 
 /// Influence coefficients, transformed once to be applied often.
 ///
@@ -295,100 +294,6 @@ impl Convolution {
                 .convolve_into(&self.spectrum, input, output, memory, &self.threads);
         });
     }
-
-    /// The first of the three parts of an application: what takes its rows, as they are made, and where
-    /// they go.
-    pub(crate) fn inwards<'a>(
-        &'a self,
-        workspace: &'a mut Workspace,
-    ) -> (Inwards<'a>, HalfSpectra<'a>) {
-        self.transform.fit(&mut workspace.0);
-        let (rows, scratches) = self.transform.half_spectra(&mut workspace.0);
-        let inwards = Inwards {
-            convolution: self,
-            scratches,
-        };
-        (inwards, rows)
-    }
-
-    /// The first part, of rows that are there.
-    pub(crate) fn rows_in(&self, input: &[f64], workspace: &mut Workspace) {
-        let input = (input, 0..self.shape[0]);
-        self.some_rows_in(input, workspace);
-    }
-
-    fn some_rows_in(&self, input: (&[f64], Range<usize>), workspace: &mut Workspace) {
-        let memory = &mut workspace.0;
-        self.transform.fit(memory);
-        let work = || self.transform.rows_in(input, memory, &self.threads);
-        self.clock.during(work);
-    }
-
-    /// The second part, after all rows are in; returns the last, which gives them.
-    pub(crate) fn outwards<'a>(&'a self, workspace: &'a mut Workspace) -> Outwards<'a> {
-        self.some_outwards(0..self.shape[0], workspace)
-    }
-
-    fn some_outwards<'a>(
-        &'a self,
-        rows: Range<usize>,
-        workspace: &'a mut Workspace,
-    ) -> Outwards<'a> {
-        let (transform, memory) = (&self.transform, &mut *workspace.0);
-        self.clock
-            .during(|| transform.columns_through(&self.spectrum, rows, memory, &self.threads));
-        Outwards {
-            convolution: self,
-            memory,
-        }
-    }
-
-    /// Both, of an input that is zero but in the rows of `occupied`, which alone are read.
-    pub(crate) fn through<'a>(
-        &'a self,
-        input: &[f64],
-        occupied: Range<usize>,
-        workspace: &'a mut Workspace,
-    ) -> Outwards<'a> {
-        self.some_rows_in((input, occupied.clone()), workspace);
-        self.some_outwards(occupied, workspace)
-    }
-}
-
-/// Takes the rows of what a convolution is applied to.
-pub(crate) struct Inwards<'a> {
-    convolution: &'a Convolution,
-    scratches: &'a Scratches,
-}
-
-impl Inwards<'_> {
-    /// Takes some rows, of which these are the `halves`.
-    pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
-        let Convolution {
-            transform, clock, ..
-        } = self.convolution;
-        clock.during_part(transform.scratches(), || {
-            transform.some_rows_in(values, halves, self.scratches);
-        });
-    }
-}
-
-/// Gives the rows of what a convolution made.
-pub(crate) struct Outwards<'a> {
-    convolution: &'a Convolution,
-    memory: &'a FftWorkspace,
-}
-
-impl Outwards<'_> {
-    /// Those from `first` on, as many as `values` have room for.
-    pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
-        let Convolution {
-            transform, clock, ..
-        } = self.convolution;
-        clock.during_part(transform.scratches(), || {
-            transform.rows_out(first, values, self.memory);
-        });
-    }
 }
 
 /// Idle memory, large enough for `transform`.
@@ -396,59 +301,4 @@ fn lease(idle: &Pool<FftWorkspace>, transform: &PaddedTransform) -> Workspace {
     let mut memory = idle.lease();
     transform.fit(&mut memory);
     Workspace(memory)
-}
-
-#[cfg(test)]
-mod tests {
-    use ndarray::Array2;
-
-    use super::Convolution;
-    use crate::error::Result;
-
-    fn field([nx, ny]: [usize; 2]) -> Array2<f64> {
-        Array2::from_shape_fn((nx, ny), |(i, j)| {
-            ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0
-        })
-    }
-
-    /// In parts of any size, and where only some rows are occupied: the same bits as at once.
-    #[test]
-    fn rows_in_parts_give_the_same_bits() -> Result<()> {
-        for shape in [[1, 9], [7, 1], [23, 18], [150, 130]] {
-            let convolution = Convolution::plan(&field(shape), Some(2))?;
-            let mut workspace = convolution.workspace();
-            let [nx, ny] = shape;
-            let occupied = nx / 3..nx - nx / 4;
-            let mut input = field(shape);
-            for (i, mut row) in input.rows_mut().into_iter().enumerate() {
-                if !occupied.contains(&i) {
-                    row.fill(0.0);
-                }
-            }
-            let at_once = convolution.apply(&input)?.into_raw_vec_and_offset().0;
-            let input = input.into_raw_vec_and_offset().0;
-            let mut of_occupied = vec![f64::NAN; nx * ny];
-            let outwards = convolution.through(&input, occupied, &mut workspace);
-            outwards.rows(0, &mut of_occupied);
-            let mut in_parts = vec![f64::NAN; nx * ny];
-            for length in [1, 3, 8, 11] {
-                let (inwards, mut halves) = convolution.inwards(&mut workspace);
-                for part in input.chunks(length * ny) {
-                    let (here, rest) = halves.split(part.len() / ny);
-                    inwards.rows(part, here);
-                    halves = rest;
-                }
-                let outwards = convolution.outwards(&mut workspace);
-                for (k, part) in in_parts.chunks_mut(length * ny).enumerate() {
-                    outwards.rows(k * length, part);
-                }
-                for values in [&of_occupied, &in_parts] {
-                    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
-                    assert!(values.iter().zip(&at_once).all(same), "{shape:?} {length}");
-                }
-                in_parts.fill(f64::NAN);
-            }
-        }
-        Ok(())
-    }
 }

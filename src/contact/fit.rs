@@ -7,7 +7,8 @@ use super::passes::Row;
 use super::sums::{Lanes, ONE, sum, update, where_member, where_positive};
 
 /// Sums over cells, in this order: what [`Freedoms::fit_of`] counts; force and moments of the pressure; and
-/// of which [`Freedoms::fitted`] makes a motion, Bᵀv, and the upper half of BᵀB.
+/// of which [`Freedoms::fitted`] makes a motion, Bᵀv, and the upper half of BᵀB. Those with y are 0 where the
+/// tilt along y is not loaded.
 pub(super) type FitSums = [f64; 13];
 
 impl Freedoms {
@@ -75,9 +76,9 @@ impl Freedoms {
         [s, s * row.x, sy, now, last]
     }
 
-    /// Updates fields of a row by `step`, from those of `inputs` and y, and returns what the row adds to the
-    /// fit over the cells with pressure. Beside the fields `step` makes pressure, what is fitted, and
-    /// something to count.
+    /// Updates fields of a row by `step`, from three others and y, and returns what the row adds to the fit
+    /// over the cells with pressure. Beside the fields `step` makes pressure, what is fitted, and something
+    /// to count.
     pub(super) fn fit_of<const N: usize>(
         &self,
         row: Row,
@@ -91,7 +92,7 @@ impl Freedoms {
             (new, [counted, p, weight, value])
         };
         let inputs = [a, b, c, row.y];
-        let [counted, p, py, s, sy, syy, f, fy] = if self.loaded[2] {
+        let [counted, p, py, s, sy, syy, v, vy] = if self.loaded[2] {
             update(inputs, fields, |from, old| {
                 let y = from[3];
                 let (new, [counted, p, weight, value]) = terms(from, old);
@@ -99,8 +100,8 @@ impl Freedoms {
                 (new, [counted, p, p * y, weight, sy, syy, value, value * y])
             })
         } else {
-            let [counted, p, s, f] = update(inputs, fields, terms);
-            [counted, p, 0.0, s, 0.0, 0.0, f, 0.0]
+            let [counted, p, s, v] = update(inputs, fields, terms);
+            [counted, p, 0.0, s, 0.0, 0.0, v, 0.0]
         };
         let x = row.x;
         let (sx, sxx, sxy) = (s * x, s * x * x, sy * x);
@@ -109,9 +110,9 @@ impl Freedoms {
             p,
             p * x,
             py,
-            f,
-            f * x,
-            fy,
+            v,
+            v * x,
+            vy,
             s,
             sx,
             sy,
@@ -123,9 +124,9 @@ impl Freedoms {
 
     /// The change of λ that the sums of [`Freedoms::fit_of`] give.
     pub(super) fn fitted(&self, sums: FitSums) -> [f64; 3] {
-        let [_, _, _, _, f, fx, fy, s, sx, sy, sxx, sxy, syy] = sums;
+        let [_, _, _, _, v, vx, vy, s, sx, sy, sxx, sxy, syy] = sums;
         let gram = [[s, sx, sy], [sx, sxx, sxy], [sy, sxy, syy]];
-        self.solve(&gram, [f, fx, fy])
+        self.solve(&gram, [v, vx, vy])
     }
 
     /// Takes from `values` what is nearest to them of the form Bλ over the cells of which `member` is

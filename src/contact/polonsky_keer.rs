@@ -80,7 +80,7 @@ pub(super) fn solve(
 
         problem.apply(&direction, &mut response, workspace);
         work += problem.convolution.work();
-        let mean = problem.fit(p, &response, &none, [0.0; 3]);
+        let mean = problem.fit(p, &response, &none);
         freedoms.for_each(mean, |k, b| response[k] -= b);
         let (mut slope, mut curvature) = (0.0, 0.0);
         for (k, &t) in direction.iter().enumerate() {

@@ -44,7 +44,9 @@ pub(super) struct Preconditioned<'a> {
     pending: f64,
     /// Of the gap, where a step has made them.
     fit: Option<FitSums>,
-    /// Whether the contact may have changed since the images of the freedoms were made, or last seen.
+    /// Cells of the contact.
+    members: f64,
+    /// Whether the contact has changed since the images of the freedoms were made, or last seen.
     changed: bool,
     /// Whether the images are those of another contact.
     stale: bool,
@@ -79,7 +81,7 @@ enum Step {
     Whole,
     /// Cells left on the way.
     Truncated,
-    /// None: nothing descends any more, and the pressure is what it was.
+    /// None: nothing descends any more, and the pressure is what it was but for rounding.
     None,
 }
 
@@ -97,6 +99,7 @@ impl<'a> Preconditioned<'a> {
             memory,
             pending: 0.0,
             fit: None,
+            members: 0.0,
             changed: false,
             stale: false,
             conjugate: false,
@@ -142,8 +145,11 @@ impl<'a> Preconditioned<'a> {
     /// Takes the cells with a pressure for the contact.
     fn start(&mut self, p: &[f64]) {
         let Arrays { r, .. } = self.memory.arrays(self.problem.gap.len());
-        self.passes.each([p], [r], add, |_, [p], [r]| {
-            update([p], [r], |[p], _| ([where_positive(p, ONE)], []))
+        [self.members] = self.passes.each([p], [r], add, |_, [p], [r]| {
+            update([p], [r], |[p], _| {
+                let pressed = where_positive(p, ONE);
+                ([pressed], [pressed])
+            })
         });
         self.invert_freedoms();
         self.displace(p);
@@ -224,7 +230,9 @@ impl<'a> Preconditioned<'a> {
         if MANY * joined > pressed {
             self.conjugate = false;
         }
-        self.changed |= joined > 0.0;
+        // None gets a pressure in a step that was not in the contact before.
+        let left = std::mem::replace(&mut self.members, inside) - pressed;
+        self.changed |= joined > 0.0 || left.abs() > 0.0;
         (lambda, quality)
     }
 
@@ -275,7 +283,9 @@ impl<'a> Preconditioned<'a> {
             ..
         } = self.memory.arrays(self.problem.gap.len());
         let inverse = &self.approximation.inverse;
-        let outwards = inverse.through(r, 0..inverse.shape()[0], &mut self.workspace);
+        let rows = || 0..inverse.shape()[0];
+        inverse.rows_in(r, rows(), &mut self.workspace);
+        let outwards = inverse.outwards(rows(), &mut self.workspace);
         self.work += inverse.work();
         let [i0, i1, i2] = with_weight(freedoms.loaded, images, r);
         // Of z and of each image.

@@ -58,16 +58,16 @@ impl Problem<'_> {
         Passes::new(&self.freedoms.columns, self.convolution.own_threads())
     }
 
-    /// Change of λ from `near` that makes u + h − Bλ least over the cells with pressure. Freedoms that
-    /// these do not determine (one or two cells have no tilt) stay as they are.
-    pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64], near: [f64; 3]) -> [f64; 3] {
+    /// λ that makes u + h − Bλ least over the cells with pressure. Freedoms that these do not determine (one
+    /// or two cells have no tilt) are 0.
+    pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64]) -> [f64; 3] {
         let sums = self.passes().each([p, u, h], [], add, |row, fields, []| {
-            self.fit_near(near, row, fields)
+            self.fit_near([0.0; 3], row, fields)
         });
         self.freedoms.fitted(sums)
     }
 
-    /// What one row adds to that fit.
+    /// What one row adds to the fit of the change of λ from `near`.
     fn fit_near(&self, near: [f64; 3], row: Row, fields: [&[f64]; 3]) -> FitSums {
         let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
         self.freedoms.fit_of(row, fields, [], |[p, u, h, y], []| {
@@ -75,8 +75,9 @@ impl Problem<'_> {
         })
     }
 
-    /// Computes the displacement `u` of a pressure, which is zero outside `window` and not read there; λ
-    /// that makes the gap least over the contact, as [`Problem::fit`] does, and how good `p` is.
+    /// Computes the displacement `u` of a pressure that is zero outside `window`, of which the rows alone are
+    /// read; λ that makes the gap least over the contact, and how good `p` is. Freedoms that the contact does
+    /// not determine stay as they are in `near`.
     pub(super) fn judge(
         &self,
         p: &[f64],
@@ -86,7 +87,9 @@ impl Problem<'_> {
         workspace: &mut Workspace,
     ) -> (Multipliers, Quality) {
         let (passes, ny) = (self.passes(), self.convolution.shape()[1]);
-        let outwards = self.convolution.through(p, window[0].clone(), workspace);
+        let rows = || window[0].clone();
+        self.convolution.rows_in(p, rows(), workspace);
+        let outwards = self.convolution.outwards(rows(), workspace);
         let displace = |first: usize, u: &mut [f64]| {
             if !u.is_empty() {
                 outwards.rows(first, u);
@@ -113,9 +116,9 @@ impl Problem<'_> {
             displace(part.first + end, &mut u[end * ny..]);
             part.each([p, u, h], [], join, |row, fields, []| {
                 let [deepest, most, lost] = overlap_of(motion, row, fields);
-                let carried = row.part(window, fields);
-                let [work, mismatch] =
-                    carried.map_or([0.0; 2], |(row, fields)| mismatch_of(motion, row, fields));
+                let part = row.part(window, fields);
+                let carried = part.map(|(row, fields)| mismatch_of(motion, row, fields));
+                let [work, mismatch] = carried.unwrap_or_default();
                 [deepest, most, work, mismatch, lost]
             })
         });

@@ -26,7 +26,7 @@ impl Preconditioned<'_> {
         match self.step_with_losses(p, slope) {
             Step::None => {
                 let Arrays { direction, .. } = self.memory.arrays(self.problem.gap.len());
-                exact.rows_in(direction, &mut self.workspace);
+                exact.rows_in(direction, 0..exact.shape()[0], &mut self.workspace);
                 self.exact_step(p, slope)
             }
             done => done,
@@ -42,7 +42,8 @@ impl Preconditioned<'_> {
             ..
         } = self.memory.arrays(self.problem.gap.len());
         self.work += convolution.work();
-        let outwards = convolution.outwards(&mut self.workspace);
+        let rows = 0..convolution.shape()[0];
+        let outwards = convolution.outwards(rows, &mut self.workspace);
         let [curvature] = self.passes.parts(
             [direction],
             [response],
@@ -61,10 +62,9 @@ impl Preconditioned<'_> {
     fn exact_step(&mut self, p: &mut [f64], slope: f64) -> Step {
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
         let curvature = self.respond(problem.convolution);
-        if !(curvature > 0.0 && slope > 0.0) {
+        let Some(length) = best_length(slope, curvature).map(all) else {
             return Step::None;
-        }
-        let length = all(slope / curvature);
+        };
         let Arrays {
             u,
             direction,
@@ -82,12 +82,7 @@ impl Preconditioned<'_> {
                 })
             });
         let [lost, f, fx, fy, ..] = fit;
-        let Balanced {
-            step: done,
-            factor,
-            changed,
-        } = balanced(problem, p, lost, [f, fx, fy]);
-        self.changed |= changed;
+        let (done, factor) = balanced(problem, p, lost, [f, fx, fy]);
         if done == Step::Whole {
             self.fit = Some(fit);
             return done;
@@ -107,10 +102,9 @@ impl Preconditioned<'_> {
         const AS_PLANNED: Range<f64> = 0.6..1.8;
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
         let curvature = self.respond(&self.approximation.periodic) * self.curvature_ratio;
-        if !(curvature > 0.0 && slope > 0.0) {
+        let Some(length) = best_length(slope, curvature).map(all) else {
             return Step::None;
-        }
-        let length = all(slope / curvature);
+        };
         let Arrays {
             direction, z: next, ..
         } = self.memory.arrays(problem.gap.len());
@@ -126,12 +120,7 @@ impl Preconditioned<'_> {
                 [lost, f, fx, fy]
             });
         let [lost, moments @ ..] = sums;
-        let Balanced {
-            step: done,
-            factor,
-            changed,
-        } = balanced(problem, next, lost, moments);
-        self.changed |= changed;
+        let (done, factor) = balanced(problem, next, lost, moments);
         let Arrays {
             r,
             z: change,
@@ -153,7 +142,8 @@ impl Preconditioned<'_> {
                 sums
             });
         self.work += problem.convolution.work();
-        let outwards = problem.convolution.outwards(&mut self.workspace);
+        let rows = 0..problem.convolution.shape()[0];
+        let outwards = problem.convolution.outwards(rows, &mut self.workspace);
         // The best length along the change.
         let [slope, curvature] = self.passes.parts(
             [&*change, r],
@@ -168,11 +158,11 @@ impl Preconditioned<'_> {
                 })
             },
         );
-        let best = slope / curvature;
-        let back = match best {
-            _ if !(best > 0.0 && best.is_finite()) => 1.0,
-            _ if best < AS_PLANNED.start => 1.0 - best,
-            _ => 0.0,
+        let best = best_length(slope, curvature).unwrap_or(0.0);
+        let back = if best < AS_PLANNED.start {
+            1.0 - best
+        } else {
+            0.0
         };
         if back > 0.0 {
             self.passes.each([&*change], [p], add, |_, [change], [p]| {
@@ -195,36 +185,26 @@ impl Preconditioned<'_> {
     }
 }
 
-/// What became of a step whose pressure is in balance again.
-struct Balanced {
-    step: Step,
-    /// By which the pressure must still be multiplied.
-    factor: f64,
-    /// Whether the contact may be another.
-    changed: bool,
-}
-
-/// Restores balance, where a pressure of these `moments`, of which so many cells were `lost`, has none.
-fn balanced(problem: &Problem, p: &mut [f64], lost: f64, moments: [f64; 3]) -> Balanced {
+/// [`Step::Whole`] where a pressure of these `moments`, of which so many cells were `lost`, is balanced; else
+/// balance is restored, but for the factor on `p` that is returned with [`Step::Truncated`].
+fn balanced(problem: &Problem, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
     let freedoms = problem.freedoms;
     // A direction that lost cells since it was made is out of balance, too.
     if lost <= 0.0 && freedoms.on_target(moments) {
-        return Balanced {
-            step: Step::Whole,
-            factor: 1.0,
-            changed: false,
-        };
+        return (Step::Whole, 1.0);
     }
     let factor = freedoms.to_load(moments[0]);
-    let factor = factor.filter(|_| freedoms.only_force());
-    if factor.is_none() {
+    let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {
         problem.rebalance(p);
-    }
-    Balanced {
-        step: Step::Truncated,
-        factor: factor.unwrap_or(1.0),
-        changed: lost > 0.0 || factor.is_none(),
-    }
+        1.0
+    });
+    (Step::Truncated, factor)
+}
+
+/// The best length of a step along which the energy falls with this slope. None where it does not.
+fn best_length(slope: f64, curvature: f64) -> Option<f64> {
+    let length = slope / curvature;
+    (slope > 0.0 && curvature > 0.0 && length.is_finite()).then_some(length)
 }
 
 /// A pressure moved as far as it stays ≥ 0; and 1 where it would not, 0 elsewhere.

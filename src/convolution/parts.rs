@@ -1,0 +1,139 @@
+//! A convolution in three parts, so that what makes its rows, or uses them, finds them in the caches.
+
+use std::ops::Range;
+
+use super::{Convolution, Workspace};
+use crate::fft::{HalfSpectra, Scratches, Workspace as FftWorkspace};
+
+impl Convolution {
+    /// The first part, for rows as they are made: what takes them, and where they go.
+    pub(crate) fn inwards<'a>(
+        &'a self,
+        workspace: &'a mut Workspace,
+    ) -> (Inwards<'a>, HalfSpectra<'a>) {
+        self.transform.fit(&mut workspace.0);
+        let (rows, scratches) = self.transform.half_spectra(&mut workspace.0);
+        let inwards = Inwards {
+            convolution: self,
+            scratches,
+        };
+        (inwards, rows)
+    }
+
+    /// The first part, of an input that is zero but in the rows of `occupied`, which alone are read.
+    pub(crate) fn rows_in(&self, input: &[f64], occupied: Range<usize>, workspace: &mut Workspace) {
+        let memory = &mut workspace.0;
+        self.transform.fit(memory);
+        let input = (input, occupied);
+        let work = || self.transform.rows_in(input, memory, &self.threads);
+        self.clock.during(work);
+    }
+
+    /// The second part, after the rows of `occupied` are in; returns the last, which gives all rows.
+    pub(crate) fn outwards<'a>(
+        &'a self,
+        occupied: Range<usize>,
+        workspace: &'a mut Workspace,
+    ) -> Outwards<'a> {
+        let (transform, memory) = (&self.transform, &mut *workspace.0);
+        let work = || transform.columns_through(&self.spectrum, occupied, memory, &self.threads);
+        self.clock.during(work);
+        Outwards {
+            convolution: self,
+            memory,
+        }
+    }
+}
+
+/// Takes the rows of what a convolution is applied to.
+pub(crate) struct Inwards<'a> {
+    convolution: &'a Convolution,
+    scratches: &'a Scratches,
+}
+
+impl Inwards<'_> {
+    /// Takes some rows, of which these are the `halves`.
+    pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
+        let Convolution {
+            transform, clock, ..
+        } = self.convolution;
+        clock.during_part(transform.scratches(), || {
+            transform.some_rows_in(values, halves, self.scratches);
+        });
+    }
+}
+
+/// Gives the rows of what a convolution made.
+pub(crate) struct Outwards<'a> {
+    convolution: &'a Convolution,
+    memory: &'a FftWorkspace,
+}
+
+impl Outwards<'_> {
+    /// Those from `first` on, as many as `values` have room for.
+    pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
+        let Convolution {
+            transform, clock, ..
+        } = self.convolution;
+        clock.during_part(transform.scratches(), || {
+            transform.rows_out(first, values, self.memory);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array2;
+
+    use crate::convolution::Convolution;
+    use crate::error::Result;
+
+    fn field([nx, ny]: [usize; 2]) -> Array2<f64> {
+        Array2::from_shape_fn((nx, ny), |(i, j)| {
+            ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0
+        })
+    }
+
+    /// In parts of any size, on two threads, and where only some rows are occupied: the same bits as at once.
+    #[test]
+    fn rows_in_parts_give_the_same_bits() -> Result<()> {
+        for shape in [[1, 9], [7, 1], [23, 18], [150, 130], [230, 150]] {
+            let convolution = Convolution::plan(&field(shape), Some(2))?;
+            let mut workspace = convolution.workspace();
+            let [nx, ny] = shape;
+            let occupied = nx / 3..nx - nx / 4;
+            let mut input = field(shape);
+            for (i, mut row) in input.rows_mut().into_iter().enumerate() {
+                if !occupied.contains(&i) {
+                    row.fill(0.0);
+                }
+            }
+            let alone = Convolution::plan(&field(shape), Some(1))?;
+            let at_once = alone.apply(&input)?.into_raw_vec_and_offset().0;
+            let input = input.into_raw_vec_and_offset().0;
+            let mut of_occupied = vec![f64::NAN; nx * ny];
+            convolution.rows_in(&input, occupied.clone(), &mut workspace);
+            let outwards = convolution.outwards(occupied, &mut workspace);
+            outwards.rows(0, &mut of_occupied);
+            let mut in_parts = vec![f64::NAN; nx * ny];
+            for length in [1, 3, 8, 11] {
+                let (inwards, mut halves) = convolution.inwards(&mut workspace);
+                for part in input.chunks(length * ny) {
+                    let (here, rest) = halves.split(part.len() / ny);
+                    inwards.rows(part, here);
+                    halves = rest;
+                }
+                let outwards = convolution.outwards(0..nx, &mut workspace);
+                for (k, part) in in_parts.chunks_mut(length * ny).enumerate() {
+                    outwards.rows(k * length, part);
+                }
+                for values in [&of_occupied, &in_parts] {
+                    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+                    assert!(values.iter().zip(&at_once).all(same), "{shape:?} {length}");
+                }
+                in_parts.fill(f64::NAN);
+            }
+        }
+        Ok(())
+    }
+}
