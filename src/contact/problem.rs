@@ -101,8 +101,9 @@ impl Problem<'_> {
             let [start, end] = part.within(&window[0]);
             displace(part.first + start, &mut u[start * ny..end * ny]);
             part.each([p, u, h], [], add, |row, fields, []| {
-                row.part(window, fields)
-                    .map_or([0.0; 13], |(row, fields)| self.fit_near(near, row, fields))
+                let part = row.part(window, fields);
+                let sums = part.map(|(row, fields)| self.fit_near(near, row, fields));
+                sums.unwrap_or_default()
             })
         });
         let motion = Multipliers {
