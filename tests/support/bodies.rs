@@ -3,7 +3,7 @@
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 use serde_json::Value;
 
-use crate::reference::{list, number};
+use crate::support::reference::{list, number};
 
 /// The body of a case with `layers` and `substrate`.
 pub(crate) fn body(case: &Value) -> Result<HalfSpace> {

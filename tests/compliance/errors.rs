@@ -9,10 +9,7 @@ use nacre::{
 };
 use ndarray::{Array2, array};
 
-#[path = "support/messages.rs"]
-mod messages;
-
-use messages::{check, message};
+use crate::support::messages::{check, message};
 
 const NAN: f64 = f64::NAN;
 const INFINITY: f64 = f64::INFINITY;

@@ -5,10 +5,7 @@ use nacre::influence::{Method, influence_coefficients};
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result};
 use ndarray::Array2;
 
-#[path = "support/reference.rs"]
-mod reference;
-
-use reference::{cases, list, number};
+use crate::support::reference::{cases, list, number};
 
 /// The reference errors at the loaded cell have this many digits in common with ours, relative,
 /// and absolute where they are themselves near the accuracy of the reference coefficients.

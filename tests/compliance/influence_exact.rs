@@ -7,12 +7,7 @@ use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Substrate};
 use serde_json::Value;
 
-#[path = "support/bodies.rs"]
-mod bodies;
-#[path = "support/reference.rs"]
-mod reference;
-
-use reference::{cases, list, number};
+use crate::support::reference::{cases, list, number};
 
 /// Error over the larger of |C| and the bare substrate's coefficient at that offset; on a rigid
 /// base, 1e-3 of the bare coating's.
@@ -71,7 +66,7 @@ fn scale(body: &HalfSpace, cell: [f64; 2], offset: [f64; 2], c: f64) -> f64 {
 
 /// A case of the reference data: its body, its cell, and its plan.
 fn planned(case: &Value) -> Result<(HalfSpace, [f64; 2], CellInfluence)> {
-    let body = bodies::body(case)?;
+    let body = crate::support::bodies::body(case)?;
     let cell = [0, 1].map(|k| case["cell"][k].as_f64().unwrap_or(f64::NAN));
     let reach = rows(case, cell).fold(0.0_f64, |reach, row| reach.max(row.distance));
     let planned = CellInfluence::plan(&body, cell, reach.max(cell[0]))?;

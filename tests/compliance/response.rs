@@ -7,15 +7,8 @@ use nacre::response::{Compliance, frequency_response, surface_compliance};
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 use proptest::prelude::*;
 
-#[path = "support/bodies.rs"]
-mod bodies;
-#[path = "support/reference.rs"]
-mod reference;
-#[path = "support/seeded.rs"]
-mod seeded;
-
-use reference::{cases, list, number};
-use seeded::seeded;
+use crate::support::reference::{cases, list, number};
+use crate::support::seeded::seeded;
 
 /// One layer: a few dozen operations without cancellation, and data of 15 digits.
 const ONE_LAYER: f64 = 1e-12;
@@ -48,7 +41,7 @@ fn difference(a: Compliance, b: Compliance) -> f64 {
 fn difference_from(file: &str, select: impl Fn(&HalfSpace) -> bool) -> Result<(f64, usize)> {
     let (mut worst, mut compared) = (0.0_f64, 0);
     for case in cases(file) {
-        let body = bodies::body(&case)?;
+        let body = crate::support::bodies::body(&case)?;
         if !select(&body) {
             continue;
         }

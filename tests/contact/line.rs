@@ -11,10 +11,7 @@ use nacre::{
 };
 use serde_json::Value;
 
-#[path = "support/reference.rs"]
-mod reference;
-
-use reference::{cases, list, number};
+use crate::support::reference::{cases, list, number};
 
 /// Peak pressure, extrapolated from 256 and 512 cells by the second order of the discretisation.
 const EXTRAPOLATED: f64 = 1e-4;

@@ -7,10 +7,7 @@ use nacre::{
     Setup, Solution,
 };
 
-#[path = "support/random.rs"]
-mod random;
-
-use random::uniform;
+use crate::support::random::uniform;
 
 /// The same sums in another order.
 const ROUNDING: f64 = 1e-12;

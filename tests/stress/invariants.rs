@@ -1,9 +1,6 @@
 //! What stress fields must satisfy whatever the body: independence of cells, domain and artificial
 //! interfaces, surface conditions, continuity.
 
-#[path = "support/random.rs"]
-mod random;
-
 use nacre::{
     Elastic, Grid, HalfSpace, Interface, Layer, Result, Side, Stress, StressOptions, Substrate,
     stress,
@@ -147,7 +144,7 @@ fn the_cut_into_cells_does_not_matter() -> Result<()> {
     let (n, m) = (12, 9);
     let coarse = Grid::new([n, m], [12.0, 5.4])?;
     let fine = Grid::new([3 * n, 5 * m], [12.0, 5.4])?;
-    let pressure = random::uniform([n, m], 1);
+    let pressure = crate::support::random::uniform([n, m], 1);
     let cut = Array2::from_shape_fn((3 * n, 5 * m), |(i, j)| pressure[[i / 3, j / 5]]);
     for (name, body, friction) in every_body()? {
         let depths = depths(&body);
@@ -168,7 +165,7 @@ fn the_cut_into_cells_does_not_matter_far_off() -> Result<()> {
     let (n, m) = (200, 4);
     let coarse = Grid::new([n, m], [200.0, 4.0])?;
     let fine = Grid::new([3 * n, 3 * m], [200.0, 4.0])?;
-    let pressure = random::uniform([n, m], 1);
+    let pressure = crate::support::random::uniform([n, m], 1);
     let cut = Array2::from_shape_fn((3 * n, 3 * m), |(i, j)| pressure[[i / 3, j / 3]]);
     for (name, body, friction) in every_body()? {
         let depths = depths(&body);
@@ -188,7 +185,7 @@ const ROUNDING: f64 = 1e-12;
 #[test]
 fn surface_tractions_are_those_that_are_given() -> Result<()> {
     let grid = Grid::new([24, 15], [24.0, 9.0])?;
-    let pressure = random::uniform([24, 15], 2);
+    let pressure = crate::support::random::uniform([24, 15], 2);
     for (name, body, friction) in every_body()? {
         let field = stress(&body, &grid, &pressure, &[0.0], &options(friction))?;
         for ((i, j), p) in pressure.indexed_iter() {
@@ -208,7 +205,7 @@ fn tractions_and_displacements_are_continuous() -> Result<()> {
     // Displacements, over the largest: series of 1e-13 each.
     const SERIES: f64 = 1e-11;
     let grid = Grid::new([24, 15], [24.0, 9.0])?;
-    let pressure = random::uniform([24, 15], 3);
+    let pressure = crate::support::random::uniform([24, 15], 3);
     let largest = |field: &Array3<f64>| field.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     for (name, body, friction) in every_body()? {
         let at_surface = stress(&body, &grid, &pressure, &[0.0], &options(friction))?;
@@ -261,7 +258,7 @@ fn a_larger_domain_changes_nothing() -> Result<()> {
         Grid::new([24, 15], [24.0, 9.0])?,
         Grid::new([48, 31], [48.0, 18.6])?,
     );
-    let pressure = random::uniform([24, 15], 4);
+    let pressure = crate::support::random::uniform([24, 15], 4);
     let mut padded = Array2::zeros((48, 31));
     for ((i, j), p) in pressure.indexed_iter() {
         padded[[i + 12, j + 8]] = *p;
@@ -281,7 +278,7 @@ fn a_larger_domain_changes_nothing() -> Result<()> {
 #[test]
 fn layers_of_the_substrates_material_change_nothing() -> Result<()> {
     let grid = Grid::new([24, 15], [24.0, 9.0])?;
-    let pressure = random::uniform([24, 15], 5);
+    let pressure = crate::support::random::uniform([24, 15], 5);
     let base = Elastic::new(1.0, 0.3)?;
     for h in [0.05, 1.0, 30.0] {
         let body = HalfSpace::new(base, [Layer::new(base, h)?, Layer::new(base, 2.0 * h)?])?;
@@ -301,7 +298,7 @@ fn layers_of_the_substrates_material_change_nothing() -> Result<()> {
 fn splitting_a_layer_changes_nothing() -> Result<()> {
     const SERIES: f64 = 1e-10;
     let grid = Grid::new([16, 10], [16.0, 6.0])?;
-    let pressure = random::uniform([16, 10], 6);
+    let pressure = crate::support::random::uniform([16, 10], 6);
     for base in [Substrate::from(Elastic::new(1.0, 0.3)?), Substrate::Rigid] {
         let whole = HalfSpace::new(base, [layer(5.0, 0.2, 0.6)?, layer(0.3, 0.45, 2.0)?])?;
         let parts = [
@@ -329,7 +326,7 @@ fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
     let (n, m) = (41, 12);
     let long = Grid::new([n, m], [41.0 * 2000.0, 12.0])?;
     let line = Grid::line(m, 12.0)?;
-    let profile = random::uniform([1, m], 7);
+    let profile = crate::support::random::uniform([1, m], 7);
     let pressure = Array2::from_shape_fn((n, m), |(_, j)| profile[[0, j]]);
     for (name, body, friction) in every_body()? {
         let depths = depths(&body);
@@ -350,7 +347,7 @@ fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
 #[test]
 fn axes_can_be_exchanged() -> Result<()> {
     const EXCHANGED: [usize; 9] = [1, 0, 2, 3, 5, 4, 7, 6, 8];
-    let pressure = random::uniform([14, 9], 8);
+    let pressure = crate::support::random::uniform([14, 9], 8);
     let (grid, turned) = (
         Grid::new([14, 9], [14.0, 5.0])?,
         Grid::new([9, 14], [5.0, 14.0])?,

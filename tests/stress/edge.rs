@@ -1,14 +1,9 @@
 //! Stress of solved contacts near their edge, where pressure falls as a square root: against Huber's
 //! and McEwen's closed forms, and against solutions on finer cells.
 
-#[path = "support/huber.rs"]
-mod huber;
-#[path = "support/random.rs"]
-mod random;
-
 use std::f64::consts::PI;
 
-use huber::huber;
+use crate::support::huber::huber;
 use nacre::{
     Contact, Elastic, FlatPunch, Grid, HalfSpace, Member, Motion, Options, Paraboloid, Result,
     Setup, Solution, Stress, StressOptions, Surface, stress,
@@ -227,7 +222,7 @@ struct Rough {
 
 impl Rough {
     fn new(radius: f64, amplitude: f64) -> Self {
-        let phases = random::uniform([12, 25], 5);
+        let phases = crate::support::random::uniform([12, 25], 5);
         let mut waves = Vec::new();
         for m in 0..12_u8 {
             for n in -12..=12_i8 {

@@ -8,10 +8,7 @@ use nacre::{
 };
 use ndarray::Array2;
 
-#[path = "support/random.rs"]
-mod random;
-
-use random::uniform;
+use crate::support::random::uniform;
 
 /// Forces that three equations determine.
 const STATICS: f64 = 1e-9;

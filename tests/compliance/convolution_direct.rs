@@ -6,13 +6,8 @@ use nacre::{Convolution, Elastic, Grid, Result};
 use ndarray::{Array2, ArrayRef2, Axis, ShapeBuilder, Slice};
 use proptest::prelude::*;
 
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/seeded.rs"]
-mod seeded;
-
-use random::uniform;
-use seeded::seeded;
+use crate::support::random::uniform;
+use crate::support::seeded::seeded;
 
 /// Error over the largest displacement.
 const ROUNDING: f64 = 1e-12;

@@ -10,13 +10,8 @@ use nacre::{
 use ndarray::Array2;
 use proptest::prelude::*;
 
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/seeded.rs"]
-mod seeded;
-
-use random::uniform;
-use seeded::seeded;
+use crate::support::random::uniform;
+use crate::support::seeded::seeded;
 
 /// Balance of force and moments, over W and W × half side.
 const BALANCE: f64 = 1e-12;

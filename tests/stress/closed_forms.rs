@@ -2,12 +2,9 @@
 //! sliding line contact, all of pressure that is uniform over cells; equilibrium and Hooke's law on a
 //! coated one.
 
-#[path = "support/huber.rs"]
-mod huber;
-
 use std::f64::consts::PI;
 
-use huber::huber;
+use crate::support::huber::huber;
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, stress};
 use ndarray::{Array2, Array3};
 

@@ -4,13 +4,8 @@
 use nacre::{Elastic, HalfSpace, Layer, Method, Result, Substrate};
 use serde_json::Value;
 
-#[path = "support/reference.rs"]
-mod reference;
-#[path = "support/sphere.rs"]
-mod sphere;
-
-use reference::{cases, number};
-use sphere::{Measures, measures, solve};
+use crate::support::reference::{cases, number};
+use crate::support::sphere::{Measures, measures, solve};
 
 /// Peak pressure and approach with 512² cells, side 6 a_H: discretisation of second order.
 const AT_512: f64 = 2e-4;

@@ -1,0 +1,21 @@
+//! Contacts: every algorithm, control, domain and body, and what cannot be solved.
+
+mod support {
+    pub(crate) mod messages;
+    pub(crate) mod random;
+    pub(crate) mod reference;
+    pub(crate) mod seeded;
+}
+
+mod contact {
+    mod algorithms;
+    mod batch;
+    mod discretisation;
+    mod errors;
+    mod few_cells;
+    mod invariants;
+    mod line;
+    mod stiffness;
+    mod thin_layers;
+    mod two_bodies;
+}

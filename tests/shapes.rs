@@ -1,0 +1,13 @@
+//! Contacts of named shapes against closed forms and published numbers.
+
+mod support {
+    pub(crate) mod reference;
+    pub(crate) mod sphere;
+}
+
+mod shapes {
+    mod coated_sphere;
+    mod hertz;
+    mod roller;
+    mod roller_profiles;
+}

@@ -1,0 +1,16 @@
+//! Stress and displacement below the surface.
+
+mod support {
+    pub(crate) mod huber;
+    pub(crate) mod random;
+    pub(crate) mod reference;
+}
+
+mod stress {
+    mod closed_forms;
+    mod coated;
+    mod edge;
+    mod invariants;
+    mod patch;
+    mod threads;
+}
