@@ -11,51 +11,36 @@ use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::coefficients_on;
-use crate::memory::check_memory;
+use crate::parallel::Threads;
+use crate::parallel::check_memory;
 use crate::surface::Surface;
-use crate::threads::Threads;
 
 mod automatic;
-mod balance;
 mod batch;
 mod cascade;
-mod direct;
-mod discretisation;
-mod fields;
-mod fit;
-mod freedoms;
-mod gap;
-mod hull;
-mod levels;
 mod options;
-mod passes;
-mod patch;
-mod polonsky_keer;
-mod preconditioned;
 mod problem;
-mod review;
 mod solution;
+mod solver;
 mod start;
-mod stiffness;
-mod sums;
 
 pub use automatic::{choose_grid, solve};
 pub use batch::Case;
-pub use discretisation::Discretisation;
-pub use freedoms::Motion;
+pub use cascade::discretisation::Discretisation;
 pub use options::{Algorithm, Options, Setup};
 pub use problem::Termination;
+pub use problem::freedoms::Motion;
 pub use solution::{Balance, Report, Solution, Warning};
 
+use crate::parallel::Passes;
+use cascade::discretisation::estimate;
+use cascade::levels::Levels;
 use cascade::{Cascade, Coarser};
-use discretisation::estimate;
-use fields::{Fields, slice};
-use freedoms::{Freedoms, OVERFLOW};
-use gap::Gap;
-use levels::Levels;
-use passes::Passes;
+use problem::freedoms::{Freedoms, OVERFLOW};
 use problem::{Limits, Outcome, Problem, Quality, Watch};
-use review::{Carried, warnings};
+use solution::fields::{Fields, slice};
+use solution::gap::Gap;
+use solution::warnings::{Carried, warnings};
 use start::{Sampled, checked_gaps, given_pressure, uniform_pressure};
 
 /// Is told of each iteration, perhaps on one of the plan's threads, and breaks to stop.
@@ -246,7 +231,7 @@ impl Contact {
             }
             None => {
                 fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
-                polonsky_keer::solve(&problem, &mut fields, limits, &mut watch)
+                solver::polonsky_keer::solve(&problem, &mut fields, limits, &mut watch)
             }
         };
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, solved.lambda));
@@ -361,9 +346,10 @@ fn solve_in_window(
             // It broke down, by rounding: the reference goes on from there.
             let left = limits.after(iterations);
             let before = cascade.work;
-            let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
-                watch(iterations + more, before + work, quality)
-            });
+            let end =
+                solver::polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
+                    watch(iterations + more, before + work, quality)
+                });
             fields.certify(problem, end.lambda);
             let (iterations, work) = (iterations + end.iterations, before + end.work);
             return Outcome {

@@ -11,8 +11,8 @@ use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result};
 use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
-use crate::pool::{Lease, Pool};
-use crate::threads::Threads;
+use crate::parallel::Threads;
+use crate::parallel::{Lease, Pool};
 
 mod parts;
 

@@ -11,7 +11,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-use crate::threads::{self, Threads, each_chunk};
+use crate::parallel::{Threads, each_chunk, number};
 
 mod convolve;
 mod cosine;
@@ -258,7 +258,7 @@ impl PaddedTransform {
 
     /// That of this thread: nobody else's, as what is done with it is done without waiting.
     fn scratch<'a>(&self, scratches: &'a Scratches) -> MutexGuard<'a, Scratch> {
-        let scratch = &scratches.0[threads::number() % self.scratches()];
+        let scratch = &scratches.0[number() % self.scratches()];
         scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -3,7 +3,7 @@
 use ndarray::Array1;
 
 use crate::error::{Error, Result, finite, positive};
-use crate::memory::check_memory;
+use crate::parallel::check_memory;
 
 /// A uniform grid: `shape` cells over a rectangle of `size` around `center`.
 ///

@@ -13,14 +13,13 @@ use ndarray::{Array2, Zip};
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::memory::check_memory;
-use crate::threads::Threads;
+use crate::parallel::Threads;
+use crate::parallel::check_memory;
 
 mod conversion;
 mod exact;
 mod line;
 mod potential;
-pub(crate) mod quadrature;
 mod radial;
 
 pub use exact::CellInfluence;

@@ -46,17 +46,15 @@
 
 pub mod error;
 
+mod parallel;
+
 pub mod material;
 
 pub mod body;
 
-mod memory;
-
 pub mod grid;
 
 pub mod hertz;
-
-mod threads;
 
 pub mod surface;
 
@@ -64,9 +62,9 @@ pub mod response;
 
 mod graded;
 
-mod pool;
-
 mod fft;
+
+mod kernel;
 
 pub mod influence;
 

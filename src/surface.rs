@@ -9,7 +9,7 @@ use ndarray::Array2;
 
 use crate::error::{Result, finite};
 use crate::grid::Grid;
-use crate::threads::each_row;
+use crate::parallel::each_row;
 
 mod height_map;
 mod profile;

@@ -7,15 +7,15 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::freedoms::Motion;
 use super::problem::Termination;
 use super::solution::Solution;
 use super::start::Sampled;
 use super::{Contact, Options, memory};
+use crate::contact::problem::freedoms::Motion;
 use crate::error::Result;
-use crate::memory::check_memory;
+use crate::parallel::check_memory;
+use crate::parallel::{SetOnDrop, Threads};
 use crate::surface::Surface;
-use crate::threads::{SetOnDrop, Threads};
 
 /// One of many load cases.
 #[derive(Debug, Clone, Copy)]

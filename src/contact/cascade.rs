@@ -5,14 +5,18 @@
 //! outside is seen afterwards, when the displacement is computed on the whole grid: where something
 //! overlaps there, the window opens.
 
+pub(super) mod discretisation;
+pub(super) mod levels;
+pub(super) mod patch;
+
 use ndarray::Array2;
 
-use super::discretisation::Figures;
-use super::fields::{Fields, slice};
-use super::freedoms::Freedoms;
-use super::levels::{Level, Levels, halved};
-use super::patch::{Patch, bounds, hull, whole, widened};
 use super::problem::{Limits, Outcome, Problem, Termination, Watch};
+use crate::contact::cascade::discretisation::Figures;
+use crate::contact::cascade::levels::{Level, Levels, halved};
+use crate::contact::cascade::patch::{Patch, bounds, hull, whole, widened};
+use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::solution::fields::{Fields, slice};
 use crate::surface::Surface;
 
 /// Tolerance of the last but one of the grids, with which the finest is compared.

@@ -1,11 +1,16 @@
 //! The contact problem in the form that the algorithms solve.
 
-use super::fit::FitSums;
-use super::freedoms::Freedoms;
-use super::passes::{Passes, Row, add};
-use super::patch::Window;
-use super::sums::{Lanes, ZERO, all, sum, update, update_with_largest, where_positive};
+pub(super) mod balance;
+pub(super) mod fit;
+pub(super) mod freedoms;
+pub(super) mod load_point;
+
+use crate::contact::cascade::patch::Window;
+use crate::contact::problem::fit::FitSums;
+use crate::contact::problem::freedoms::Freedoms;
 use crate::convolution::{Convolution, Workspace};
+use crate::parallel::{Lanes, ZERO, all, sum, update, update_with_largest, where_positive};
+use crate::parallel::{Passes, Row, add};
 
 /// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
 ///

@@ -1,14 +1,19 @@
 //! What a solved contact returns.
 
+pub(super) mod fields;
+pub(super) mod gap;
+pub(super) mod stiffness;
+pub(super) mod warnings;
+
 use std::fmt;
 
 use ndarray::{Array1, Array2};
 
-use super::discretisation::Discretisation;
-use super::freedoms::Motion;
-use super::gap::Gap;
 use super::problem::Termination;
 use crate::body::HalfSpace;
+use crate::contact::cascade::discretisation::Discretisation;
+use crate::contact::problem::freedoms::Motion;
+use crate::contact::solution::gap::Gap;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Method;

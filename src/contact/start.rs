@@ -4,12 +4,12 @@ use std::sync::{Arc, Weak};
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::fields::{array, slice};
-use super::passes::{Passes, add};
 use super::problem::Problem;
-use super::sums::{ONE, all, sum};
+use crate::contact::solution::fields::{array, slice};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+use crate::parallel::{ONE, all, sum};
+use crate::parallel::{Passes, add};
 use crate::surface::Surface;
 
 /// The gaps of the shape that was sampled last, on one grid, while a solution has them.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{Convolution, Workspace};
 use crate::fft::{HalfSpectra, Scratches, Workspace as FftWorkspace};
+use crate::parallel::Written;
 
 impl Convolution {
     /// The first part, for rows as they are made: what takes them, and where they go.
@@ -42,6 +43,14 @@ impl Convolution {
             convolution: self,
             memory,
         }
+    }
+}
+
+/// Fields, and rows on their way into a convolution.
+impl<const N: usize> Written for ([&mut [f64]; N], HalfSpectra<'_>) {
+    fn split(self, rows: usize, ny: usize) -> (Self, Self) {
+        let (fields, halves) = (self.0.split(rows, ny), self.1.split(rows));
+        ((fields.0, halves.0), (fields.1, halves.1))
     }
 }
 

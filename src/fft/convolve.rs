@@ -6,7 +6,7 @@ use ndarray::{ArrayViewMut2, Axis};
 use rustfft::num_complex::Complex64;
 
 use super::{BLOCK, EvenSpectrum, GROUP, PaddedTransform, Scratch, Scratches, Workspace, ZERO};
-use crate::threads::{Threads, each_chunk, join};
+use crate::parallel::{Threads, each_chunk, join};
 
 /// Half spectra of some rows of a mesh, by blocks of columns.
 pub(crate) struct HalfSpectra<'a>(ArrayViewMut2<'a, [Complex64; BLOCK]>);

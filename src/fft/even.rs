@@ -4,7 +4,7 @@ use ndarray::ArrayRef2;
 use rustfft::num_complex::Complex64;
 
 use super::{BLOCK, EvenSpectrum, PaddedTransform, Scratch, Workspace, ZERO};
-use crate::threads::Threads;
+use crate::parallel::Threads;
 
 impl PaddedTransform {
     /// Transform of the kernel whose values at offsets (i, j) ≥ 0 are `quarter` (nx, ny); on a

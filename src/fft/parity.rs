@@ -8,7 +8,7 @@ use super::convolve::scatter;
 use super::cosine::unfold_pair;
 use super::quarter::{KernelRows, QuarterTransform};
 use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
-use crate::threads::Threads;
+use crate::parallel::Threads;
 
 /// The transform of padded data: columns of the half spectrum, one after another. Scaled by
 /// 1/(mx my).

@@ -15,7 +15,7 @@ use rustfft::{Fft, FftPlanner};
 
 use super::cosine::{Angles, fold, fold_lines, unfold};
 use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
-use crate::threads::Threads;
+use crate::parallel::Threads;
 
 /// Takes row i of kernel k: (i, k, values).
 pub(crate) type Keep<'a> = dyn FnMut(usize, usize, &[f64]) + 'a;

@@ -9,7 +9,7 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
 use super::ZERO;
-use crate::threads::Threads;
+use crate::parallel::Threads;
 
 /// Inverse transform of a real and even spectrum of (mx, my) points, of which `value(k, l)` gives
 /// the entries 0 ≤ k ≤ mx/2, 0 ≤ l ≤ my/2 (mx, my even); its corner (nx, ny) is returned.

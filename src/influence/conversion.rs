@@ -16,9 +16,9 @@ use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::fft::inverse_even;
 use crate::grid::Grid;
-use crate::memory::check_memory;
+use crate::parallel::Threads;
+use crate::parallel::check_memory;
 use crate::response::{alpha_compliance, limits};
-use crate::threads::Threads;
 
 pub(super) fn coefficients(
     body: &HalfSpace,

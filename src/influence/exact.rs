@@ -23,12 +23,12 @@ use std::f64::consts::PI;
 use rayon::prelude::*;
 
 use super::potential::Rectangle;
-use super::quadrature::{Rule, Rules};
 use super::radial::RadialKernel;
 use crate::body::HalfSpace;
 use crate::error::{Result, positive};
+use crate::kernel::quadrature::{Rule, Rules};
+use crate::parallel::Threads;
 use crate::response::limits;
-use crate::threads::Threads;
 
 /// Displacement around one uniformly loaded cell: influence coefficients without aliasing, at any
 /// offset.

@@ -15,12 +15,12 @@ use std::f64::consts::PI;
 use ndarray::Array2;
 
 use super::exact::Tables;
-use super::quadrature::Rule;
 use super::radial::RadialKernel;
 use crate::body::HalfSpace;
 use crate::grid::Grid;
+use crate::kernel::quadrature::Rule;
+use crate::parallel::Threads;
 use crate::response::limits;
-use crate::threads::Threads;
 
 /// Beyond this many thicknesses of the coating, η − η(∞) is its leading term, of order 1/R; the
 /// next one is of relative order R^{−2}.

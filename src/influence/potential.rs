@@ -1,6 +1,6 @@
 //! The potential of a uniformly loaded rectangle.
 
-use super::quadrature::Rules;
+use crate::kernel::quadrature::Rules;
 
 /// Rectangles dx × dy, at any offset and depth.
 #[derive(Debug)]

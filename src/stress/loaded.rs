@@ -5,20 +5,22 @@ use std::ops::Range;
 use ndarray::ArrayRef2;
 
 use super::StressOptions;
-use super::cells::Source;
-use super::components::{self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress};
 use super::friction::friction;
-use super::kernel::{Kernel, Plan};
-use super::kernels::Kernels;
-use super::line::{self, LinePlan};
-use super::near::{NearTable, STRESSES};
-use super::within::Within;
+use super::subcell::Within;
+use super::subcell::{NearTable, STRESSES};
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::fft::{Keep, KernelRows, PaddedTransform, QuarterTransform, Transformed, Workspace};
 use crate::grid::Grid;
+use crate::kernel::cells::Source;
+use crate::kernel::loads::{
+    self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress,
+};
+use crate::kernel::plane::{Kernel, Plan};
+use crate::kernel::plans::Kernels;
+use crate::kernel::strip::{self, LinePlan};
+use crate::parallel::Threads;
 use crate::response::interior::Place;
-use crate::threads::Threads;
 
 /// Components that are convolved together: the more, the less often the load is read; the fewer, the
 /// less memory is written and read in between.
@@ -115,9 +117,7 @@ impl Loaded {
         let [lx, ly] = grid.size();
         let (reach, slides) = (1.01 * lx.hypot(ly), friction != [0.0, 0.0]);
         let kind = threads.run(|| {
-            Kernels::new::<6, 9, components::Pressure, components::Traction>(
-                body, grid, 1.0, reach, slides,
-            )
+            Kernels::new::<6, 9, loads::Pressure, loads::Traction>(body, grid, 1.0, reach, slides)
         });
         let uniform = within.as_ref().map_or(input.as_slice(), Within::uniform);
         let offsets = offsets(shape, [&input, uniform]);
@@ -199,11 +199,11 @@ impl Loaded {
     ) {
         // Stresses alone need fewer radial functions.
         if self.displacement {
-            let normal = Kernel::new::<components::Pressure>(plan, pressure, place);
-            self.fill::<6, COMPONENTS, components::Pressure>(&normal, scratch, place, false);
+            let normal = Kernel::new::<loads::Pressure>(plan, pressure, place);
+            self.fill::<6, COMPONENTS, loads::Pressure>(&normal, scratch, place, false);
             if self.slides() {
-                let lateral = Kernel::new::<components::Traction>(plan, traction, place);
-                self.fill::<9, COMPONENTS, components::Traction>(&lateral, scratch, place, true);
+                let lateral = Kernel::new::<loads::Traction>(plan, traction, place);
+                self.fill::<9, COMPONENTS, loads::Traction>(&lateral, scratch, place, true);
             }
         } else {
             let normal = Kernel::new::<PressureStress>(plan, pressure, place);
@@ -222,9 +222,9 @@ impl Loaded {
         } = scratch;
         for LoadRows { axis, rows, .. } in loads {
             let values = match axis {
-                None => plan.coefficients::<6, line::Pressure>(place),
-                Some(0) => plan.coefficients::<3, line::Along>(place),
-                Some(_) => plan.coefficients::<6, line::Across>(place),
+                None => plan.coefficients::<6, strip::Pressure>(place),
+                Some(0) => plan.coefficients::<3, strip::Along>(place),
+                Some(_) => plan.coefficients::<6, strip::Across>(place),
             };
             let components = rows.count();
             let source = |rows: Range<usize>, keep: &mut Keep| {

@@ -12,7 +12,7 @@ use super::{Side, StressOptions, StressProgress, residual};
 use crate::body::HalfSpace;
 use crate::error::{Result, positive};
 use crate::grid::Grid;
-use crate::memory::check_memory;
+use crate::parallel::check_memory;
 use crate::response::interior::Place;
 
 /// What the layers bear: of each from the surface down, and of the substrate. Those that are left

@@ -1,12 +1,12 @@
 //! Stress below contacts on one coating, and below a loaded disc on several layers, against Hankel
 //! and Fourier integrals of their exact pressures.
 
+use crate::support::reference::{cases, list, number};
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, Interface, Layer, Member, Motion, Options, Paraboloid,
     Result, Section, Setup, Side, Solution, Stress, StressOptions, stress,
 };
 use ndarray::{Array1, Array2, Array3};
-use crate::support::reference::{cases, list, number};
 use serde_json::Value;
 
 /// Poisson's ratio of every case of contact, and the radius of curvature in contact radii.

@@ -1,9 +1,9 @@
 //! Stress and displacement under a uniform square of pressure or traction, on layered bodies:
 //! double Fourier integrals, eleven digits.
 
+use crate::support::reference::{cases, list, number};
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Side, Stress, StressOptions, stress};
 use ndarray::Array2;
-use crate::support::reference::{cases, list, number};
 use serde_json::Value;
 
 /// The reference's traction acts alone: that of friction 1, less the pressure's.

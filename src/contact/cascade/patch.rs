@@ -1,0 +1,184 @@
+//! Pressures in a window of a grid.
+
+use std::ops::Range;
+
+use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
+
+use crate::parallel::each_row;
+
+/// Cells around the contact in a window.
+const MARGIN: usize = 6;
+
+/// A window that covers more of the grid than this is not worth its planning.
+const WORTH_WINDOW: f64 = 0.6;
+
+/// Cells i0..i1, j0..j1 of a grid.
+pub(crate) type Window = [Range<usize>; 2];
+
+/// A pressure that is zero outside a window.
+#[derive(Debug, Clone)]
+pub(crate) struct Patch {
+    pub(crate) window: Window,
+    pub(crate) values: Vec<f64>,
+}
+
+/// All cells of a grid of `shape`.
+pub(crate) fn whole(shape: [usize; 2]) -> Window {
+    shape.map(|n| 0..n)
+}
+
+/// `cells` and a margin around them; the whole grid where that is not worth a window.
+pub(crate) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
+    let window = [0, 1]
+        .map(|k| cells[k].start.saturating_sub(MARGIN)..(cells[k].end + MARGIN).min(shape[k]));
+    let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
+    if part > WORTH_WINDOW {
+        whole(shape)
+    } else {
+        window
+    }
+}
+
+/// The smallest window that holds both.
+pub(crate) fn hull(a: &Window, b: &Window) -> Window {
+    [0, 1].map(|k| a[k].start.min(b[k].start)..a[k].end.max(b[k].end))
+}
+
+/// Rows and columns of an array.
+pub(crate) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> {
+    let mut view = array.view();
+    view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
+    view.slice_axis_inplace(Axis(1), Slice::from(y.clone()));
+    view
+}
+
+/// Values of a window in C order: `fill` writes those of each of its rows.
+fn filled([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
+    let mut values = vec![0.0; x.len() * y.len()];
+    each_row(&mut values, y.len(), |k, row| fill(x.start + k, row));
+    values
+}
+
+/// Rows of a window of an array in C order.
+pub(crate) fn rows<'a>(
+    array: &'a ArrayRef2<f64>,
+    [x, y]: &Window,
+) -> impl Iterator<Item = &'a [f64]> {
+    let (columns, y) = (array.ncols().max(1), y.clone());
+    let rows = array.as_slice().unwrap_or(&[]).chunks_exact(columns);
+    let rows = rows.skip(x.start).take(x.len());
+    rows.map(move |row| &row[y.clone()])
+}
+
+/// Values of an array in C order, in that order.
+pub(crate) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
+    filled(window, |i, row| {
+        let here = [i..i + 1, window[1].clone()];
+        rows(array, &here).for_each(|values| row.copy_from_slice(values));
+    })
+}
+
+/// The smallest window that holds all cells of which `member` holds; none without any.
+pub(crate) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
+    let mut found: Option<Window> = None;
+    for i in window[0].clone() {
+        let row = window[1].clone();
+        let Some(first) = row.clone().find(|&j| member(i, j)) else {
+            continue;
+        };
+        let last = row.rev().find(|&j| member(i, j)).unwrap_or(first);
+        let line = [i..i + 1, first..last + 1];
+        found = Some(found.map_or(line.clone(), |found| hull(&found, &line)));
+    }
+    found
+}
+
+impl Patch {
+    /// All of a grid.
+    pub(crate) fn whole(pressure: &Array2<f64>) -> Self {
+        let window = [0..pressure.nrows(), 0..pressure.ncols()];
+        Self {
+            window,
+            values: pressure.iter().copied().collect(),
+        }
+    }
+
+    pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
+        let [x, y] = &self.window;
+        if x.contains(&i) && y.contains(&j) {
+            self.values[(i - x.start) * y.len() + j - y.start]
+        } else {
+            0.0
+        }
+    }
+
+    /// The smallest window around its contact.
+    pub(crate) fn contact(&self) -> Option<Window> {
+        bounds(&self.window, |i, j| self.at(i, j) > 0.0)
+    }
+
+    /// The same pressure in another window.
+    pub(crate) fn moved(&self, window: Window) -> Self {
+        let values = filled(&window, |i, row| {
+            for (value, j) in row.iter_mut().zip(window[1].clone()) {
+                *value = self.at(i, j);
+            }
+        });
+        Self { window, values }
+    }
+
+    /// Writes it into values of a grid with so many columns, which are zero outside its window.
+    pub(crate) fn paste(&self, values: &mut [f64], columns: usize) {
+        let [x, y] = &self.window;
+        let rows = &mut values[x.start * columns..x.end * columns];
+        each_row(rows, columns, |k, row| {
+            row[y.clone()].copy_from_slice(&self.values[k * y.len()..][..y.len()]);
+        });
+    }
+
+    /// Linear interpolation between the centres of its cells, on a grid of `shape` of which the
+    /// directions of `halved` have half as many cells here; in a window around the contact.
+    pub(crate) fn interpolated(&self, shape: [usize; 2], halved: [bool; 2]) -> Self {
+        let none = || [0..0, 0..0];
+        let contact = self.contact().unwrap_or_else(none);
+        let fine = [0, 1].map(|k| {
+            let factor = if halved[k] { 2 } else { 1 };
+            factor * contact[k].start..(factor * contact[k].end).min(shape[k])
+        });
+        let window = widened(&fine, shape);
+        let taps = |k: usize, i: usize| -> [(usize, f64); 2] {
+            if !halved[k] {
+                return [(i, 1.0), (i, 0.0)];
+            }
+            let (near, last) = (i / 2, shape[k].div_ceil(2) - 1);
+            let next = if i.is_multiple_of(2) {
+                near.saturating_sub(1)
+            } else {
+                (near + 1).min(last)
+            };
+            [(near, 0.75), (next, 0.25)]
+        };
+        let [x, y] = &self.window;
+        let line = |i: usize| {
+            let inside = x.contains(&i);
+            inside.then(|| &self.values[(i - x.start) * y.len()..][..y.len()])
+        };
+        let value = |line: Option<&[f64]>, j: usize| match line {
+            Some(line) if y.contains(&j) => line[j - y.start],
+            _ => 0.0,
+        };
+        let columns: Vec<_> = window[1].clone().map(|j| taps(1, j)).collect();
+        let values = filled(&window, |i, row| {
+            let [(near, wide), (next, narrow)] = taps(0, i).map(|(i, part)| (line(i), part));
+            for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
+                let here = value(near, *j);
+                // Interpolation would widen the contact by half a cell on every side.
+                if here > 0.0 {
+                    *fine = wide * (a * here + b * value(near, *k))
+                        + narrow * (a * value(next, *j) + b * value(next, *k));
+                }
+            }
+        });
+        Self { window, values }
+    }
+}

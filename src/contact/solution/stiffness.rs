@@ -1,0 +1,212 @@
+//! The tangent stiffness of a solved contact.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use crate::contact::cascade::patch::{Window, block, bounds};
+use crate::contact::solution::Solution;
+use crate::convolution::{Convolution, Workspace};
+use crate::error::{Error, Result};
+use crate::influence::{coefficients_on, memory};
+use crate::parallel::Threads;
+use crate::parallel::check_memory;
+use crate::parallel::dot;
+
+/// Residual of the linear systems. What it leaves in the stiffness is its square.
+const TOLERANCE: f64 = 1e-9;
+
+const MAX_ITERATIONS: usize = 10_000;
+
+impl Solution {
+    /// The exact tangent of (Σ p dA, Σ p x dA, Σ p y dA) with respect to (δ, s_x, s_y), of the
+    /// discrete contact: symmetric, in N/m, N and N m.
+    ///
+    /// The second row is the couple about y in which force at positive x is positive. While the
+    /// contact C stays, K p = δ + s_x x + s_y y − h on it, so that the tangent is
+    /// dA Bᵀ K_CC⁻¹ B, where B = (1, x, y) on C. All zero where nothing touches.
+    ///
+    /// # Errors
+    /// Too little memory, or [`Error::NotConverged`].
+    ///
+    /// ```
+    /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
+    /// // A rigid flat punch of radius a on a half-space: dW/dδ = 2 E* a.
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
+    /// let solution = contact.solve(&FlatPunch::new(1.0)?, &Motion::load(1.0), &Options::default())?;
+    /// let [[normal, coupled, _], ..] = solution.stiffness()?;
+    /// assert!((normal / 2.0 - 1.0).abs() < 0.02 && coupled.abs() < 1e-9);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn stiffness(&self) -> Result<[[f64; 3]; 3]> {
+        let never = &mut || ControlFlow::Continue(());
+        Ok(self.stiffness_watched(never)?.unwrap_or_default())
+    }
+
+    /// [`Solution::stiffness`], asking `watch` after each iteration whether to go on; `None` where
+    /// it broke off.
+    ///
+    /// # Errors
+    /// Too little memory, or [`Error::NotConverged`].
+    pub fn stiffness_watched(
+        &self,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<[[f64; 3]; 3]>> {
+        let touching = |i: usize, j: usize| self.pressure[[i, j]] > 0.0;
+        let Some(window) = bounds(&self.grid().shape().map(|n| 0..n), touching) else {
+            return Ok(Some([[0.0; 3]; 3]));
+        };
+        let tangent = Tangent::plan(self, window)?;
+        let mut columns: Vec<[Vec<f64>; 2]> = Vec::new();
+        for freedom in 0..3 {
+            let right = tangent.column(freedom);
+            let Some(pressure) = tangent.solve(&right, watch)? else {
+                return Ok(None);
+            };
+            columns.push([right, pressure]);
+        }
+        // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
+        let mut workspace = tangent.convolution.workspace();
+        let mut stiffness = [[0.0; 3]; 3];
+        for (j, [b, x]) in columns.iter().enumerate() {
+            let mut rest = vec![0.0; b.len()];
+            tangent.apply(x, &mut rest, &mut workspace);
+            rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+            for (i, [b, y]) in columns.iter().enumerate() {
+                stiffness[i][j] = dot(b, x) + dot(y, &rest);
+            }
+        }
+        Ok(Some(tangent.about_origin(stiffness)))
+    }
+}
+
+/// K on the contact, and the columns of B, which are centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
+struct Tangent {
+    convolution: Convolution,
+    inverse: Convolution,
+    contact: Vec<bool>,
+    coordinates: [Vec<f64>; 2],
+    origin: [f64; 2],
+    scale: [f64; 2],
+    cell_area: f64,
+}
+
+impl Tangent {
+    fn plan(solution: &Solution, window: Window) -> Result<Self> {
+        let (report, grid) = (&solution.report, solution.grid());
+        let [x, y] = &window;
+        let shape = [x.len(), y.len()];
+        check_memory(
+            grid.shape(),
+            2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
+        )?;
+        let threads = Arc::new(Threads::new(None)?);
+        let mut coefficients = coefficients_on(&report.body, grid, report.method, &threads)?;
+        if let Some(counterbody) = &report.counterbody {
+            coefficients += &coefficients_on(counterbody, grid, report.method, &threads)?;
+        }
+        let corner = block(&coefficients, &shape.map(|n| 0..n)).to_owned();
+        let convolution = Convolution::plan_on(&corner, threads)?;
+        let [_, inverse] = convolution.periodic(&corner);
+        let contact = block(&solution.pressure, &window);
+        let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
+        let coordinates = [part(0), part(1)];
+        let middle = |line: &Vec<f64>| 0.5 * (line[0] + line[line.len() - 1]);
+        let half = |axis: usize| 0.5 * shape[axis] as f64 * grid.spacing()[axis];
+        Ok(Self {
+            inverse,
+            convolution,
+            contact: contact.iter().map(|&p| p > 0.0).collect(),
+            origin: [middle(&coordinates[0]), middle(&coordinates[1])],
+            scale: [half(0), half(1)],
+            coordinates,
+            cell_area: grid.cell_area(),
+        })
+    }
+
+    /// A column of B.
+    fn column(&self, freedom: usize) -> Vec<f64> {
+        let [x, y] = &self.coordinates;
+        let cells = x.iter().flat_map(|&x| y.iter().map(move |&y| [x, y]));
+        let value = |at: [f64; 2]| match freedom {
+            0 => 1.0,
+            k => (at[k - 1] - self.origin[k - 1]) / self.scale[k - 1],
+        };
+        let inside = cells.zip(&self.contact);
+        inside
+            .map(|(at, &inside)| if inside { value(at) } else { 0.0 })
+            .collect()
+    }
+
+    /// Aᵀ S A dA, where (1, x, y) = (columns of B) A.
+    fn about_origin(&self, scaled: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        let ([x, y], [lx, ly]) = (self.origin, self.scale);
+        let columns = [[1.0, 0.0, 0.0], [x, lx, 0.0], [y, 0.0, ly]];
+        let form = |a: [f64; 3], b: [f64; 3]| -> f64 {
+            let row = |i: usize| (0..3).map(|j| scaled[i][j] * b[j]).sum::<f64>();
+            (0..3).map(|i| a[i] * row(i)).sum::<f64>() * self.cell_area
+        };
+        columns.map(|a| columns.map(|b| form(a, b)))
+    }
+
+    /// `out` = `operator` `input` on the contact, 0 elsewhere.
+    fn restricted(
+        &self,
+        operator: &Convolution,
+        input: &[f64],
+        out: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
+        operator.apply_slices(input, out, workspace);
+        for (out, inside) in out.iter_mut().zip(&self.contact) {
+            if !inside {
+                *out = 0.0;
+            }
+        }
+    }
+
+    fn apply(&self, pressure: &[f64], out: &mut [f64], workspace: &mut Workspace) {
+        self.restricted(&self.convolution, pressure, out, workspace);
+    }
+
+    /// K_CC⁻¹ `right`, by preconditioned conjugate gradients.
+    fn solve(
+        &self,
+        right: &[f64],
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<Vec<f64>>> {
+        let cells = right.len();
+        let mut workspace = self.convolution.workspace();
+        let (mut x, mut r) = (vec![0.0; cells], right.to_vec());
+        let (mut z, mut image) = (vec![0.0; cells], vec![0.0; cells]);
+        let mut direction = vec![0.0; cells];
+        let mut descent_before = f64::INFINITY;
+        let target = TOLERANCE * dot(right, right).sqrt();
+        for _ in 0..MAX_ITERATIONS {
+            if dot(&r, &r).sqrt() <= target {
+                return Ok(Some(x));
+            }
+            if watch().is_break() {
+                return Ok(None);
+            }
+            self.restricted(&self.inverse, &r, &mut z, &mut workspace);
+            let descent = dot(&r, &z);
+            let beta = descent / descent_before;
+            descent_before = descent;
+            for (d, z) in direction.iter_mut().zip(&z) {
+                *d = z + beta * *d;
+            }
+            self.apply(&direction, &mut image, &mut workspace);
+            let step = descent / dot(&direction, &image);
+            for k in 0..cells {
+                x[k] += step * direction[k];
+                r[k] -= step * image[k];
+            }
+        }
+        Err(Error::NotConverged {
+            iterations: MAX_ITERATIONS,
+            residual: dot(&r, &r).sqrt() / dot(right, right).sqrt(),
+            overlap: 0.0,
+            tolerance: TOLERANCE,
+        })
+    }
+}

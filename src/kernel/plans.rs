@@ -1,0 +1,45 @@
+//! What makes the coefficients of a body under pressure and traction.
+
+use super::loads::Load;
+use super::plane::Plan;
+use super::strip::LinePlan;
+use crate::body::HalfSpace;
+use crate::grid::Grid;
+
+/// Plans of cells, or of strips of line contact.
+#[derive(Debug)]
+pub(crate) enum Kernels {
+    Plane {
+        plan: Box<Plan>,
+        pressure: Vec<Vec<(f64, f64)>>,
+        /// Empty without friction.
+        traction: Vec<Vec<(f64, f64)>>,
+    },
+    Line(LinePlan),
+}
+
+impl Kernels {
+    /// For loads P and T of pieces down to `finest` of a cell, at offsets up to `reach`. On the
+    /// threads of the caller.
+    pub(crate) fn new<const N: usize, const M: usize, P: Load<N>, T: Load<M>>(
+        body: &HalfSpace,
+        grid: &Grid,
+        finest: f64,
+        reach: f64,
+        slides: bool,
+    ) -> Self {
+        if grid.is_line() {
+            return Self::Line(LinePlan::new(body, grid, finest));
+        }
+        let plan = Plan::new(body, grid.spacing(), finest, reach);
+        Self::Plane {
+            pressure: plan.multipliers::<N, P>(),
+            traction: if slides {
+                plan.multipliers::<M, T>()
+            } else {
+                Vec::new()
+            },
+            plan: Box::new(plan),
+        }
+    }
+}
