@@ -129,6 +129,11 @@ impl HalfSpace {
             .collect()
     }
 
+    /// Thickness of all layers together \[m\].
+    pub fn thickness(&self) -> f64 {
+        self.layers.iter().map(Layer::thickness).sum()
+    }
+
     /// The material at the surface: the top layer's, or the substrate's.
     pub fn surface_material(&self) -> Elastic {
         match (self.layers.first(), self.substrate) {

@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use ndarray::Array2;
 
-use crate::body::HalfSpace;
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::coefficients_on;
 use crate::parallel::Threads;
 use crate::parallel::check_memory;
+use crate::response::Body;
 use crate::surface::Surface;
 
 mod automatic;
@@ -55,7 +55,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
 ///
 /// // Hertz: δ = (9 W² / 16 R E*²)^{1/3}
-/// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+/// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
 /// let solution = contact.solve(&Paraboloid::new(1e3, 1e3)?, &Motion::load(1e-3), &Options::default())?;
 /// let hertz = (9.0 * 1e-6 / (16.0 * 1e3_f64)).powf(1.0 / 3.0);
 /// assert!((solution.approach / hertz - 1.0).abs() < 2e-3);
@@ -63,7 +63,7 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 /// ```
 #[derive(Debug)]
 pub struct Contact {
-    body: HalfSpace,
+    body: Body,
     grid: Grid,
     setup: Setup,
     convolution: Convolution,
@@ -75,13 +75,14 @@ impl Contact {
     ///
     /// # Errors
     /// A method that does not suit, no threads, too little memory.
-    pub fn plan(body: &HalfSpace, grid: Grid, setup: Setup) -> Result<Self> {
+    pub fn plan(body: impl Into<Body>, grid: Grid, setup: Setup) -> Result<Self> {
+        let body = body.into();
         check_memory(grid.shape(), memory(&grid))?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let both = |grid: &Grid| -> Result<Array2<f64>> {
-            let mut coefficients = coefficients_on(body, grid, setup.method, &threads)?;
+            let mut coefficients = coefficients_on(&*body, grid, setup.method, &threads)?;
             if let Some(counterbody) = &setup.counterbody {
-                coefficients += &coefficients_on(counterbody, grid, setup.method, &threads)?;
+                coefficients += &coefficients_on(&**counterbody, grid, setup.method, &threads)?;
             }
             Ok(coefficients)
         };
@@ -89,7 +90,7 @@ impl Contact {
         let convolution = Convolution::plan_on(&coefficients, Arc::clone(&threads))?;
         let levels = Levels::plan(grid, coefficients, &convolution, both)?;
         Ok(Self {
-            body: body.clone(),
+            body,
             grid,
             setup,
             convolution,
@@ -110,7 +111,7 @@ impl Contact {
     }
 
     /// The body that shapes are pressed into.
-    pub fn body(&self) -> &HalfSpace {
+    pub fn body(&self) -> &Body {
         &self.body
     }
 

@@ -10,11 +10,11 @@
 
 use ndarray::{Array2, Zip};
 
-use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::parallel::Threads;
 use crate::parallel::check_memory;
+use crate::response::{Body, Response};
 
 mod conversion;
 mod exact;
@@ -69,24 +69,24 @@ pub enum Method {
 /// use nacre::influence::{Method, influence_coefficients};
 /// let steel = nacre::Elastic::new(210e9, 0.3)?;
 /// let grid = nacre::Grid::new([8, 8], [8.0, 8.0])?;
-/// let c = influence_coefficients(&steel.into(), &grid, Method::Exact)?;
+/// let c = influence_coefficients(&steel, &grid, Method::Exact)?;
 /// // Mean of 1/r over a unit square, from its centre: 4 asinh(1)
 /// let loaded = 4.0 * 1.0_f64.asinh() / (std::f64::consts::PI * steel.plane_strain_modulus());
 /// assert!((c[[0, 0]] / loaded - 1.0).abs() < 1e-14);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 pub fn influence_coefficients(
-    body: &HalfSpace,
+    body: impl Into<Body>,
     grid: &Grid,
     method: Method,
 ) -> Result<Array2<f64>> {
     check_memory(grid.shape(), memory(grid))?;
-    coefficients_on(body, grid, method, &Threads::new(None)?)
+    coefficients_on(&*body.into(), grid, method, &Threads::new(None)?)
 }
 
 /// The same on given threads, memory having been checked.
 pub(crate) fn coefficients_on(
-    body: &HalfSpace,
+    body: &dyn Response,
     grid: &Grid,
     method: Method,
     threads: &Threads,

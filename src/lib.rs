@@ -88,6 +88,7 @@ pub use graded::graded_layers;
 pub use grid::Grid;
 pub use influence::Method;
 pub use material::Elastic;
+pub use response::{Body, Response};
 pub use stress::{Member, Section, Side, Stress, StressOptions, stress};
 pub use surface::{
     Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,

@@ -16,8 +16,11 @@ use crate::body::{HalfSpace, Interface, Substrate};
 use crate::error::{Result, positive};
 use crate::material::Elastic;
 
+mod body;
 pub(crate) mod interior;
 mod layer;
+
+pub use body::{Body, Response};
 
 use layer::Slab;
 
@@ -124,13 +127,13 @@ pub(crate) fn alpha_compliance(body: &HalfSpace, alpha: f64) -> Compliance {
 /// c11 → long/α + constant   (α → 0)        c11 → short/α   (α → ∞)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Limits {
+pub struct Asymptotes {
     /// α c11 at α → 0: the substrate's \[1/Pa\]; 0 on a rigid base.
-    pub(crate) long: f64,
+    pub long: f64,
     /// The next term \[m/Pa\]: the layers' own compression.
-    pub(crate) constant: f64,
+    pub constant: f64,
     /// α c11 at α → ∞: the surface material's \[1/Pa\].
-    pub(crate) short: f64,
+    pub short: f64,
 }
 
 /// Limits of the normal response of `body`.
@@ -149,7 +152,7 @@ pub(crate) struct Limits {
 /// ```text
 /// h [(1−2ν)/2G + ν e] / (1−ν)
 /// ```
-pub(crate) fn limits(body: &HalfSpace) -> Limits {
+pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
     let layers = body.layers();
     let substrate = match body.substrate() {
         Substrate::Elastic(material) => Some(material),
@@ -188,7 +191,7 @@ pub(crate) fn limits(body: &HalfSpace) -> Limits {
                 .sum::<f64>();
         }
     }
-    Limits {
+    Asymptotes {
         long: substrate.map_or(0.0, |material| Compliance::homogeneous(material).c11),
         constant,
         short: Compliance::homogeneous(body.surface_material()).c11,

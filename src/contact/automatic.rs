@@ -3,10 +3,9 @@
 use std::ops::ControlFlow;
 
 use super::{Contact, Motion, Options, Progress, Setup, Solution};
-use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::response::limits;
+use crate::response::Body;
 use crate::surface::{Extent, Surface};
 
 /// Cells across the narrower width of the contact, and some more, since the coarse grid takes the
@@ -38,12 +37,13 @@ const REDUCTIONS: usize = 40;
 /// ```
 /// use nacre::{Elastic, Motion, Sphere, solve};
 /// let steel = Elastic::new(210e9, 0.3)?;
-/// let solution = solve(&Sphere::new(5e-3)?, &steel.into(), &Motion::load(10.0))?;
+/// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
 /// let hertz = nacre::hertz::Point::new(5e-3, steel.plane_strain_modulus(), 10.0)?;
 /// assert!((solution.peak_pressure() / hertz.peak_pressure - 1.0).abs() < 2e-3);
 /// # Ok::<(), nacre::Error>(())
 /// ```
-pub fn solve(shape: &dyn Surface, body: &HalfSpace, motion: &Motion) -> Result<Solution> {
+pub fn solve(shape: &dyn Surface, body: impl Into<Body>, motion: &Motion) -> Result<Solution> {
+    let body = &body.into();
     let (setup, options) = (Setup::default(), Options::default());
     let grid = choose_grid(shape, body, &setup, motion, &options, &mut |_| {
         ControlFlow::Continue(())
@@ -63,7 +63,7 @@ pub fn solve(shape: &dyn Surface, body: &HalfSpace, motion: &Motion) -> Result<S
 /// Bad input; a shape without end in a direction; [`Error::NoGrid`].
 pub fn choose_grid(
     shape: &dyn Surface,
-    body: &HalfSpace,
+    body: &Body,
     setup: &Setup,
     motion: &Motion,
     options: &Options,
@@ -80,7 +80,7 @@ type Frame = [[f64; 2]; 2];
 
 fn search(
     shape: &dyn Surface,
-    body: &HalfSpace,
+    body: &Body,
     setup: &Setup,
     motion: &Motion,
     options: &Options,
@@ -160,14 +160,9 @@ fn search(
 
 /// Around the load point, as far as the undeformed shape overlaps at the approach that carries the
 /// load by the estimate W = 2 E* δ √(a b) (exact for a flat square punch within 10 %).
-fn first_frame(
-    shape: &dyn Surface,
-    body: &HalfSpace,
-    setup: &Setup,
-    motion: &Motion,
-) -> Result<Frame> {
+fn first_frame(shape: &dyn Surface, body: &Body, setup: &Setup, motion: &Motion) -> Result<Frame> {
     let (extent, radii) = (shape.extent(), shape.radii());
-    let compliance = |body: &HalfSpace| limits(body).short.max(limits(body).long);
+    let compliance = |body: &Body| body.asymptotes().short.max(body.asymptotes().long);
     let compliance = compliance(body) + setup.counterbody.as_ref().map_or(0.0, compliance);
     let modulus = 2.0 / compliance;
     let center: [f64; 2] = std::array::from_fn(|axis| {

@@ -45,7 +45,7 @@ impl Contact {
     /// use std::ops::ControlFlow;
     /// use nacre::{Case, Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
     ///
-    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     /// let shape = Paraboloid::new(1e3, 1e3)?;
     /// let cases = [1e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
     /// let solved = contact.solve_many(&cases, &Options::default(), &mut |_| ControlFlow::Continue(()))?;
@@ -90,7 +90,7 @@ impl Contact {
     /// use std::sync::Mutex;
     /// use nacre::{Case, Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
     ///
-    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     /// let shape = Paraboloid::new(1e3, 1e3)?;
     /// let cases = [1e-3, 2e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
     /// let peak = Mutex::new(0.0_f64);

@@ -3,15 +3,15 @@
 use ndarray::Array2;
 
 use super::problem::Limits;
-use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::influence::Method;
+use crate::response::Body;
 
 /// What is planned beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
     /// The body that carries the shape; `None` is rigid.
-    pub counterbody: Option<HalfSpace>,
+    pub counterbody: Option<Body>,
     /// How influence coefficients are computed. Default: [`Method::Exact`].
     pub method: Method,
     /// Threads of the plan. Default: all of the machine's.

@@ -10,13 +10,13 @@ use std::fmt;
 use ndarray::{Array1, Array2};
 
 use super::problem::Termination;
-use crate::body::HalfSpace;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::problem::freedoms::Motion;
 use crate::contact::solution::gap::Gap;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Method;
+use crate::response::Body;
 
 /// Something about a solution that its user should know.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,9 +115,9 @@ pub struct Report {
     /// The grid.
     pub grid: Grid,
     /// The body that the shape was pressed into.
-    pub body: HalfSpace,
+    pub body: Body,
     /// The body that carries the shape; rigid where `None`.
-    pub counterbody: Option<HalfSpace>,
+    pub counterbody: Option<Body>,
     /// How the influence coefficients were computed.
     pub method: Method,
     /// What was asked: load or approach, and of the tilts.
@@ -171,7 +171,7 @@ impl Solution {
     /// ```
     /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup, Solution};
     ///
-    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     /// let solution = contact.solve(&Paraboloid::new(1e3, 1e3)?, &Motion::load(1e-3), &Options::default())?;
     /// let fields = [solution.pressure.clone(), solution.gap(), solution.displacement.clone()];
     /// let again = Solution::from_fields(fields, solution.approach, solution.tilt, solution.report.clone())?;

@@ -12,16 +12,15 @@ use rayon::prelude::*;
 
 use super::Method;
 use super::potential::Rectangle;
-use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::fft::inverse_even;
 use crate::grid::Grid;
 use crate::parallel::Threads;
 use crate::parallel::check_memory;
-use crate::response::{alpha_compliance, limits};
+use crate::response::Response;
 
 pub(super) fn coefficients(
-    body: &HalfSpace,
+    body: &dyn Response,
     grid: &Grid,
     method: Method,
     refinement: usize,
@@ -49,8 +48,8 @@ pub(super) fn coefficients(
         2.0 * PI / (mesh[0] as f64 * dx),
         2.0 * PI / (mesh[1] as f64 * dy),
     ];
-    let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
-    let limits = limits(body);
+    let thickness = body.lengths().map_or(0.0, |[_, longest]| longest);
+    let limits = body.asymptotes();
     let rest = limits.long - limits.short;
     let mean = mean_of_inverse(step);
     let image_depth = 2.0 * thickness;
@@ -66,7 +65,7 @@ pub(super) fn coefficients(
         }
         let (m, n) = (k as f64 * step[0], l as f64 * step[1]);
         let alpha = m.hypot(n);
-        let response = alpha_compliance(body, alpha).c11;
+        let response = body.normal(alpha);
         let sampled = match method {
             Method::Difference { .. } => response - limits.short,
             Method::Image { .. } => response - limits.short - rest * (-alpha * image_depth).exp(),

@@ -24,11 +24,10 @@ use rayon::prelude::*;
 
 use super::potential::Rectangle;
 use super::radial::RadialKernel;
-use crate::body::HalfSpace;
 use crate::error::{Result, positive};
 use crate::kernel::quadrature::{Rule, Rules};
 use crate::parallel::Threads;
-use crate::response::limits;
+use crate::response::{Body, Response};
 
 /// Displacement around one uniformly loaded cell: influence coefficients without aliasing, at any
 /// offset.
@@ -74,14 +73,20 @@ impl CellInfluence {
     ///
     /// # Errors
     /// Unless the lengths are finite and above 0.
-    pub fn plan(body: &HalfSpace, spacing: [f64; 2], reach: f64) -> Result<Self> {
-        Self::plan_on(body, spacing, NEAREST_RIM, reach, &Threads::new(None)?)
+    pub fn plan(body: impl Into<Body>, spacing: [f64; 2], reach: f64) -> Result<Self> {
+        Self::plan_on(
+            &*body.into(),
+            spacing,
+            NEAREST_RIM,
+            reach,
+            &Threads::new(None)?,
+        )
     }
 
     /// The same for offsets of which no corner of the cell is nearer than `nearest` shorter sides:
     /// half a side, for whole cells.
     pub(super) fn plan_on(
-        body: &HalfSpace,
+        body: &dyn Response,
         spacing @ [dx, dy]: [f64; 2],
         nearest: f64,
         reach: f64,
@@ -90,7 +95,7 @@ impl CellInfluence {
         positive("spacing", dx)?;
         positive("spacing", dy)?;
         positive("reach", reach)?;
-        let limits = limits(body);
+        let limits = body.asymptotes();
         // Nodes of the quadratures lie inside the cells.
         let range = [nearest * dx.min(dy), 1.01 * (reach + dx.hypot(dy))];
         let kernel = RadialKernel::new(body, range[0], range[1]);

@@ -16,23 +16,22 @@ use ndarray::Array2;
 
 use super::exact::Tables;
 use super::radial::RadialKernel;
-use crate::body::HalfSpace;
 use crate::grid::Grid;
 use crate::kernel::quadrature::Rule;
 use crate::parallel::Threads;
-use crate::response::limits;
+use crate::response::Response;
 
 /// Beyond this many thicknesses of the coating, η − η(∞) is its leading term, of order 1/R; the
 /// next one is of relative order R^{−2}.
 const FAR: f64 = 1e7;
 
 /// Coefficients (1, ny) \[m/Pa\].
-pub(super) fn coefficients(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Array2<f64> {
+pub(super) fn coefficients(body: &dyn Response, grid: &Grid, threads: &Threads) -> Array2<f64> {
     let [_, ny] = grid.shape();
     let dy = grid.spacing()[1];
     let datum = grid.size()[1];
-    let limits = limits(body);
-    let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
+    let limits = body.asymptotes();
+    let thickness = body.lengths().map_or(0.0, |[_, longest]| longest);
     let far = FAR * thickness.max(datum);
     let range = [0.49 * dy, 1.01 * far];
     let tables = RadialKernel::new(body, range[0], range[1])

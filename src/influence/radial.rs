@@ -20,9 +20,8 @@
 //! sector around the positive axis. Talman, J. Comput. Phys. 29 (1978) 35; Hamilton, Mon. Not. R.
 //! Astron. Soc. 312 (2000) 257, appendix B ("FFTLog").
 
-use crate::body::HalfSpace;
 use crate::fft::{fast_length, fourier_coefficients};
-use crate::response::{alpha_compliance, limits};
+use crate::response::Response;
 
 /// Series of κ and η, as functions of ln r.
 #[derive(Debug)]
@@ -53,13 +52,11 @@ const HALVINGS: usize = 4;
 impl RadialKernel {
     /// The kernels of `body` for distances from `shortest` to `longest`; none where its response
     /// is homogeneous.
-    pub(super) fn new(body: &HalfSpace, shortest: f64, longest: f64) -> Option<Self> {
-        let limits = limits(body);
+    pub(super) fn new(body: &dyn Response, shortest: f64, longest: f64) -> Option<Self> {
+        let limits = body.asymptotes();
         let scale = limits.short.max(limits.long);
         let rest = limits.long - limits.short;
-        let layers = body.layers();
-        let top = layers.first()?.thickness();
-        let thickness: f64 = layers.iter().map(crate::Layer::thickness).sum();
+        let [top, thickness] = body.lengths()?;
         // This depth takes the term of first order in α as well, where it is a depth at all.
         let matched = -limits.constant / rest;
         let image_depth = if (0.1 * top..1e3 * thickness).contains(&matched) {
@@ -67,9 +64,8 @@ impl RadialKernel {
         } else {
             2.0 * thickness
         };
-        let remainder = |alpha: f64| {
-            alpha_compliance(body, alpha).c11 - limits.short - rest * (-alpha * image_depth).exp()
-        };
+        let remainder =
+            |alpha: f64| body.normal(alpha) - limits.short - rest * (-alpha * image_depth).exp();
         // Where the remainder has vanished: from there on, it is below rounding.
         let (mut low, mut high) = ((1.0 / thickness).ln(), (1.0 / top).ln());
         let vanished =

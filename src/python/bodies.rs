@@ -8,6 +8,7 @@ use super::arrays::{Repr, hash};
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::error::Error;
 use crate::material::Elastic;
+use crate::response::Body;
 
 /// An isotropic linear elastic material.
 ///
@@ -210,6 +211,16 @@ impl PyLayer {
 #[pyclass(name = "HalfSpace", module = "nacre", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyHalfSpace(pub(super) HalfSpace);
+
+impl PyHalfSpace {
+    /// The stack of layers that a body is, as all bodies of Python are.
+    pub(super) fn of(body: &Body) -> Self {
+        match body.half_space() {
+            Some(layers) => Self(layers.clone()),
+            None => unreachable!("Python makes no other bodies"),
+        }
+    }
+}
 
 #[pymethods]
 impl PyHalfSpace {

@@ -15,6 +15,7 @@ use crate::body::HalfSpace;
 use crate::contact::{Contact, Setup, choose_grid};
 use crate::error::Error;
 use crate::influence::Method;
+use crate::response::Body;
 
 /// The method of that name.
 pub(super) fn method(word: &str, refinement: usize) -> PyResult<Method> {
@@ -90,7 +91,7 @@ fn setup(
 ) -> PyResult<Setup> {
     let refinement = refinement.map_or(Ok(REFINEMENT), |r| count("refinement", 1, r))?;
     Ok(Setup {
-        counterbody: counterbody.map(body).transpose()?,
+        counterbody: counterbody.map(body).transpose()?.map(Body::from),
         method: self::method(method, refinement)?,
         threads: threads
             .map(|value| count("threads", 1, value))
@@ -126,13 +127,17 @@ impl PyContact {
     /// The body that the shape is pressed into.
     #[getter]
     fn body(&self) -> PyHalfSpace {
-        PyHalfSpace(self.contact.body().clone())
+        PyHalfSpace::of(self.contact.body())
     }
 
     /// The body that carries the shape; rigid where `None`.
     #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
-        self.contact.setup().counterbody.clone().map(PyHalfSpace)
+        self.contact
+            .setup()
+            .counterbody
+            .as_ref()
+            .map(PyHalfSpace::of)
     }
 
     /// The cells.
@@ -455,6 +460,7 @@ pub(super) fn solve<'py>(
         progress,
         check,
     )?;
+    let body = Body::from(body);
     call.run(py, move |shape, motion, options, progress| {
         let grid = match grid {
             Some(PyGrid(grid)) => grid,

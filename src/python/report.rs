@@ -126,13 +126,13 @@ impl PyReport {
     /// The body that the shape was pressed into.
     #[getter]
     fn body(&self) -> PyHalfSpace {
-        PyHalfSpace(self.0.body.clone())
+        PyHalfSpace::of(&self.0.body)
     }
 
     /// The body that carries the shape; rigid where `None`.
     #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
-        self.0.counterbody.clone().map(PyHalfSpace)
+        self.0.counterbody.as_ref().map(PyHalfSpace::of)
     }
 
     /// How the influence coefficients were computed.
@@ -292,8 +292,8 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
             }),
         warnings: warnings.collect::<PyResult<_>>()?,
         grid: grid.0,
-        body: body.0,
-        counterbody: counterbody.map(|body| body.0),
+        body: body.0.into(),
+        counterbody: counterbody.map(|body| body.0.into()),
         method: method(&word, refinement)?,
         motion: Motion {
             load,

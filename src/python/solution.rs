@@ -594,7 +594,7 @@ impl PySolution {
     fn __repr__(&self) -> String {
         let s = &self.solution;
         let [nx, ny] = s.grid().shape();
-        let counterbody = s.report.counterbody.clone().map(PyHalfSpace);
+        let counterbody = s.report.counterbody.as_ref().map(PyHalfSpace::of);
         let counterbody = counterbody.map_or_else(|| "rigid".into(), |body| body.__repr__());
         format!(
             "<nacre.Solution on {nx} x {ny} cells, counterbody {counterbody}: load {:.6e} N, peak pressure {:.6e} Pa, \

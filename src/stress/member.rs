@@ -8,6 +8,7 @@ use super::{Stress, StressOptions, StressProgress, watched};
 use crate::body::HalfSpace;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
+use crate::response::Body;
 
 /// One of the two bodies of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,7 +33,7 @@ impl Solution {
     /// ```
     /// use nacre::{Elastic, Member, Motion, Sphere, StressOptions, solve};
     /// let steel = Elastic::new(210e9, 0.3)?;
-    /// let solution = solve(&Sphere::new(5e-3)?, &steel.into(), &Motion::load(10.0))?;
+    /// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
     /// let a = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus()).cbrt();
     /// let field = solution.stress(&[0.48 * a], Member::Body, &StressOptions::default())?;
     /// let shear = field.max_shear().fold(0.0_f64, |m, s| m.max(*s));
@@ -102,8 +103,8 @@ impl Solution {
     /// Where it is rigid.
     pub fn member(&self, member: Member) -> Result<&HalfSpace> {
         match (member, &self.report.counterbody) {
-            (Member::Body, _) => Ok(&self.report.body),
-            (Member::Counterbody, Some(counterbody)) => Ok(counterbody),
+            (Member::Body, _) => layered(&self.report.body),
+            (Member::Counterbody, Some(counterbody)) => layered(counterbody),
             (Member::Counterbody, None) => Err(Error::Inconsistent(
                 "body must be \"body\" where the counterbody is rigid",
             )),
@@ -123,4 +124,11 @@ impl Solution {
         }
         Ok((body, options))
     }
+}
+
+/// The layers of a body.
+fn layered(body: &Body) -> Result<&HalfSpace> {
+    body.half_space().ok_or(Error::Inconsistent(
+        "stresses need a body that is a stack of layers: this one tells its normal response alone",
+    ))
 }

@@ -158,7 +158,7 @@ fn only_image_serves_a_long_thin_domain() -> Result<()> {
 #[test]
 fn conversions_of_a_bare_body_are_its_closed_form() -> Result<()> {
     // Nothing is left to transform but rounding.
-    let body = Elastic::new(1.0, 0.3)?.into();
+    let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
     for method in [
         Method::Difference { refinement: 2 },
         Method::Image { refinement: 2 },

@@ -105,7 +105,7 @@ fn stiffness_of_a_tilted_roller_is_that_of_central_differences() -> Result<()> {
 fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
     // W = 2 E* a δ; M = 4/3 E* a³ s (Johnson, Contact Mechanics, eqs 3.36 and 5.46 f.). The radius
     // of a punch of cells is right to a fraction of a cell: π a² is their area.
-    let body = Elastic::new(1.0, 0.0)?.into();
+    let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
     let radius: f64 = 1.0;
     let mut errors = Vec::new();
     for cells in [64, 128] {
@@ -135,7 +135,7 @@ fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
 
 #[test]
 fn nothing_touching_has_no_stiffness() -> Result<()> {
-    let body = Elastic::new(1.0, 0.0)?.into();
+    let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
     let grid = Grid::new([16, 16], [1.0, 1.0])?;
     let contact = Contact::plan(&body, grid, Setup::default())?;
     let motion = Motion::approach(-1.0);

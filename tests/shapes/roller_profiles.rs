@@ -159,7 +159,7 @@ fn a_fine_sampling_is_the_profile() -> Result<()> {
     assert_relative_eq!(drop(lopsided.clone(), -0.5), 0.25);
     assert!(drop(lopsided, 2.1).is_infinite());
 
-    let body = steel()?.into();
+    let body: HalfSpace = steel()?.into();
     let grid = Grid::new([100, 32], [1.02 * LENGTH, 0.25e-3])?;
     let smooth = press(
         &body,
@@ -237,7 +237,7 @@ fn end_force(solution: &Solution) -> f64 {
 #[test]
 fn ends_do_not_depend_on_where_cells_fall() -> Result<()> {
     // Contacts to 96 % of the length, and to its very end; cells of L/200, moved by parts of one.
-    let body = steel()?.into();
+    let body: HalfSpace = steel()?.into();
     let cell = LENGTH / 200.0;
     let lundberg =
         LogarithmicProfile::lundberg(LENGTH, load(1.5e9)?, steel()?.plane_strain_modulus())?;

@@ -31,7 +31,7 @@ impl Solution {
     /// ```
     /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
     /// // A rigid flat punch of radius a on a half-space: dW/dδ = 2 E* a.
-    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?.into(), Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
+    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
     /// let solution = contact.solve(&FlatPunch::new(1.0)?, &Motion::load(1.0), &Options::default())?;
     /// let [[normal, coupled, _], ..] = solution.stiffness()?;
     /// assert!((normal / 2.0 - 1.0).abs() < 0.02 && coupled.abs() < 1e-9);
@@ -100,9 +100,9 @@ impl Tangent {
             2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
         )?;
         let threads = Arc::new(Threads::new(None)?);
-        let mut coefficients = coefficients_on(&report.body, grid, report.method, &threads)?;
+        let mut coefficients = coefficients_on(&*report.body, grid, report.method, &threads)?;
         if let Some(counterbody) = &report.counterbody {
-            coefficients += &coefficients_on(counterbody, grid, report.method, &threads)?;
+            coefficients += &coefficients_on(&**counterbody, grid, report.method, &threads)?;
         }
         let corner = block(&coefficients, &shape.map(|n| 0..n)).to_owned();
         let convolution = Convolution::plan_on(&corner, threads)?;
