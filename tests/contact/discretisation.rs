@@ -58,7 +58,7 @@ fn estimates_are_of_the_size_of_the_errors() -> Result<()> {
 #[test]
 fn what_is_prescribed_has_no_error() -> Result<()> {
     let contact = Contact::plan(
-        &Elastic::new(1.0, 0.0)?.into(),
+        &Elastic::new(1.0, 0.0)?,
         Grid::new([128, 100], [2.0, 2.0])?,
         Setup::default(),
     )?;
@@ -76,7 +76,7 @@ fn what_is_prescribed_has_no_error() -> Result<()> {
 #[test]
 fn peak_at_a_sharp_edge_is_seen_not_to_converge() -> Result<()> {
     let contact = Contact::plan(
-        &Elastic::new(1.0, 0.0)?.into(),
+        &Elastic::new(1.0, 0.0)?,
         Grid::new([256, 256], [2.5, 2.5])?,
         Setup::default(),
     )?;
@@ -95,7 +95,7 @@ fn peak_at_a_sharp_edge_is_seen_not_to_converge() -> Result<()> {
 #[test]
 fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
     let shape = Sphere::new(100.0)?;
-    let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
+    let body = Elastic::new(1.0, 0.0)?;
     for (cells, initial) in [([40, 40], false), ([100, 40], false), ([128, 128], true)] {
         let contact = Contact::plan(&body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
         let motion = Motion::load(5e-4);
