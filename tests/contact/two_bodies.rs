@@ -3,8 +3,8 @@
 use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
-    Contact, Convolution, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result,
-    Setup, Solution,
+    Body, Contact, Convolution, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid,
+    Result, Setup, Solution,
 };
 
 use crate::support::random::uniform;
@@ -33,7 +33,7 @@ fn bodies() -> Result<[HalfSpace; 2]> {
 
 fn plan(body: &HalfSpace, counterbody: Option<HalfSpace>) -> Result<Contact> {
     let setup = Setup {
-        counterbody,
+        counterbody: counterbody.map(Body::from),
         ..Setup::default()
     };
     Contact::plan(body, grid()?, setup)
