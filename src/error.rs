@@ -65,6 +65,21 @@ pub enum Error {
         /// Smallest and largest y of the cells that can touch.
         y_range: [f64; 2],
     },
+    /// A moment that no pressure can have.
+    #[error(
+        "no pressure p >= 0 on the cells that can touch has this moment: moment ({:.6e}, {:.6e}), cells \
+         in x {x_range:?}, y {y_range:?}; a moment has the direction of the point where the force acts",
+        moment[0],
+        moment[1]
+    )]
+    Moment {
+        /// Moments (M_x, M_y) \[N m\] that were asked for; 0 where the tilt is prescribed.
+        moment: [f64; 2],
+        /// Smallest and largest x of the cells that can touch.
+        x_range: [f64; 2],
+        /// Smallest and largest y of the cells that can touch.
+        y_range: [f64; 2],
+    },
     /// More memory than there is.
     #[error(
         "a grid of {shape:?} cells needs about {} MiB, and {} MiB are available; take fewer cells",

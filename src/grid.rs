@@ -1,5 +1,7 @@
 //! The grid of rectangular cells over which pressure is piecewise constant.
 
+use std::ops::Range;
+
 use ndarray::Array1;
 
 use crate::error::{Error, Result, finite, positive};
@@ -150,4 +152,12 @@ impl Grid {
             self.center[axis] + (i as f64 - 0.5 * (n - 1) as f64) * spacing
         })
     }
+}
+
+/// A rectangle of cells of a grid: rows i0..i1 and columns j0..j1.
+pub(crate) type Window = [Range<usize>; 2];
+
+/// The window of all cells of a grid of `shape`.
+pub(crate) fn full_window(shape: [usize; 2]) -> Window {
+    shape.map(|n| 0..n)
 }

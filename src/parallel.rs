@@ -10,9 +10,9 @@ mod rows;
 mod threads;
 
 pub(crate) use lanes::{
-    Lanes, ONE, ZERO, all, dot, sum, update, update_with_largest, where_member, where_positive,
+    Lanes, ONE, ZERO, all, dot, sum, update, update_with_largest, where_positive,
 };
 pub(crate) use memory::check_memory;
 pub(crate) use pool::{Lease, Pool};
-pub(crate) use rows::{Passes, Row, Written, add};
+pub(crate) use rows::{Row, Rows, Total, Written};
 pub(crate) use threads::{LEAF, SetOnDrop, Threads, each_chunk, each_row, join, number};

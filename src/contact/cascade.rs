@@ -1,9 +1,9 @@
-//! The contact window on nested grids, around preconditioned conjugate gradients.
+//! The contact window on nested grids, around preconditioned conjugate gradients: a method of nacre's own.
 //!
 //! The problem is solved on a grid of a few cells first; each solution, interpolated, is where the
-//! next finer grid starts. On each grid only a window around the contact is solved. What happens
-//! outside is seen afterwards, when the displacement is computed on the whole grid: where something
-//! overlaps there, the window opens.
+//! next finer grid starts. On each grid only a window around the contact is solved. The outside is checked
+//! afterwards, when the displacement is computed on the whole grid: where something overlaps there, the
+//! window opens.
 
 pub(super) mod discretisation;
 pub(super) mod levels;
@@ -11,124 +11,129 @@ pub(super) mod patch;
 
 use ndarray::Array2;
 
-use super::problem::{Limits, Outcome, Problem, Termination, Watch};
-use crate::contact::cascade::discretisation::Figures;
-use crate::contact::cascade::levels::{Level, Levels, halved};
-use crate::contact::cascade::patch::{Patch, bounds, hull, whole, widened};
-use crate::contact::problem::freedoms::Freedoms;
-use crate::contact::solution::fields::{Fields, slice};
+use super::problem::Problem;
+use super::problem::freedoms::Freedoms;
+use super::solution::fields::{Fields, slice};
+use super::solver::{Outcome, StopCriteria, Termination, Watch};
+use crate::grid::full_window;
 use crate::surface::Surface;
+use discretisation::GridResult;
+use levels::{Level, Levels, halved};
+use patch::{Patch, bounds, enclosing, widened};
 
-/// Tolerance of the last but one of the grids, with which the finest is compared.
+/// Tolerance on level 1, with which the finest grid is compared; chosen by trial.
 const COARSE_TOLERANCE: f64 = 1e-5;
 
-/// Tolerance of the grids before: somewhat below their discretisation error.
+/// Tolerance on the levels above: somewhat below their discretisation error; chosen by trial.
 const COARSER_TOLERANCE: f64 = 1e-4;
 
-/// Solutions of the coarser grids, from the coarsest on.
+/// Solutions on the coarser grids.
 pub(super) struct Coarser {
-    /// That of the last.
+    /// Pressure on the last grid that was solved.
     pressure: Option<Patch>,
-    figures: Vec<Figures>,
+    /// Results from the coarsest grid on.
+    results: Vec<GridResult>,
     work: f64,
-    /// How it ended where the caller stopped it.
+    /// The outcome on the grid where the caller stopped the solve.
     stopped: Option<Outcome>,
 }
 
 impl Coarser {
-    /// Solves on the coarser grids of `planned`; `freedoms` and `gap` are those of the finest. None where
-    /// `shape` has no gaps for coarser cells, and that `gap`, which serves instead, is not known yet.
+    /// Solves on the coarser grids of `planned`, for the degrees of freedom and the `gap` of the finest.
+    /// `None` where `shape` has no gap for coarser cells, and the `gap` that serves instead is not given.
     pub(super) fn solve(
         freedoms: &Freedoms,
         gap: Option<&Array2<f64>>,
         shape: &dyn Surface,
         planned: &Levels,
-        limits: Limits,
+        criteria: StopCriteria,
         watch: &mut Watch,
     ) -> Option<Self> {
         let levels = planned.coarser(freedoms, gap, shape)?;
         let mut solved = Self {
             pressure: None,
-            figures: Vec::new(),
+            results: Vec::new(),
             work: 0.0,
             stopped: None,
         };
-        for (coarser, level) in levels.iter().enumerate().rev() {
-            let tolerance = match coarser {
+        for (number, level) in levels.iter().enumerate().rev() {
+            let tolerance = match number {
                 0 => COARSE_TOLERANCE,
                 _ => COARSER_TOLERANCE,
             };
-            let limits = Limits {
-                tolerance: limits.tolerance.max(tolerance),
-                ..limits
+            let criteria = StopCriteria {
+                tolerance: criteria.tolerance.max(tolerance),
+                ..criteria
             };
             let Some(mut patch) = solved.start(level) else {
                 continue;
             };
             if solved.stopped.is_none() {
-                let outcome = level.solve(&mut patch, limits, &mut solved.work, watch);
+                let outcome = level.solve(&mut patch, criteria, &mut solved.work, watch);
                 if outcome.termination == Termination::Stopped {
                     solved.stopped = Some(outcome);
                 }
-                let figures = level.figures(&patch, outcome.lambda);
-                solved.figures.push(figures);
+                solved.results.push(level.result(&patch, outcome.lambda));
             }
             solved.pressure = Some(patch);
         }
         Some(solved)
     }
 
-    /// What the next grid starts from: the interpolated pressure, or else a uniform one, balanced.
-    /// None where that cannot be: coarse cells may not carry the moments that fine ones can.
+    /// The balanced pressure that `level` starts from: the interpolated one, or else a uniform one. `None`
+    /// where coarse cells cannot carry the moments that fine ones can.
     fn start(&mut self, level: &Level) -> Option<Patch> {
         let shape = level.shape();
         let halved = halved(shape);
         if (halved.iter().zip(shape)).any(|(halved, n)| !halved && n > 1) {
-            // Grids are compared where all their directions were halved.
-            self.figures.clear();
+            // Results are comparable only between grids of which all directions were halved.
+            self.results.clear();
         }
         let mut patch = match self.pressure.take() {
             Some(coarse) => coarse.interpolated(shape, halved),
             None => {
                 let uniform = level.freedoms.typical_pressure(level.gap.len());
-                Patch::whole(&Array2::from_elem(shape, uniform))
+                Patch::of_grid(&Array2::from_elem(shape, uniform))
             }
         };
         let balanced = level.balance(&mut patch);
         if !balanced {
-            self.figures.clear();
+            self.results.clear();
         }
         balanced.then_some(patch)
     }
 }
 
-/// The finest grid, and where its contact is.
+/// The finest grid, and a window around its contact.
 pub(super) struct Cascade<'a> {
     finest: Level<'a>,
     patch: Patch,
-    /// Of the coarser grids, from the coarsest on.
-    pub(super) figures: Vec<Figures>,
+    /// Results of the coarser grids, from the coarsest on.
+    pub(super) results: Vec<GridResult>,
+    /// Work done so far, in the unit of `Convolution::work`.
     pub(super) work: f64,
+    /// The outcome where the caller stopped the solve on a coarser grid.
+    stopped: Option<Outcome>,
 }
 
 impl<'a> Cascade<'a> {
-    /// Starts the finest grid from what was solved on the coarser ones, and says how that ended where the
-    /// caller stopped it. None where no balanced pressure was found.
+    /// Starts the finest grid from the solutions on the coarser ones; `None` where no balanced pressure was
+    /// found.
     pub(super) fn after(
         mut coarser: Coarser,
         problem: &Problem<'a>,
         gap: &'a Array2<f64>,
         planned: &'a Levels,
-    ) -> Option<(Self, Option<Outcome>)> {
+    ) -> Option<Self> {
         let finest = planned.finest(problem, gap);
         let patch = coarser.start(&finest)?;
-        let cascade = Self {
+        Some(Self {
             finest,
             patch,
-            figures: coarser.figures,
+            results: coarser.results,
             work: coarser.work,
-        };
-        Some((cascade, coarser.stopped))
+            stopped: coarser.stopped,
+        })
     }
 
     /// Starts the finest grid from a `given` pressure.
@@ -139,52 +144,48 @@ impl<'a> Cascade<'a> {
         planned: &'a Levels,
     ) -> Self {
         let finest = planned.finest(problem, gap);
-        let mut patch = Patch::whole(given);
+        let mut patch = Patch::of_grid(given);
         if let Some(contact) = patch.contact() {
             patch = patch.moved(widened(&contact, finest.shape()));
         }
         Self {
             finest,
             patch,
-            figures: Vec::new(),
+            results: Vec::new(),
             work: 0.0,
+            stopped: None,
         }
     }
 
-    /// Gives the pressure that it starts from.
-    pub(super) fn give(&self, fields: &mut Fields) {
-        fields.take(&self.patch);
-    }
-
-    /// Solves on the finest grid; its pressure goes into `fields`.
+    /// Solves on the finest grid; its pressure goes into `fields`. A solve that was stopped before stays
+    /// where it was.
     pub(super) fn solve(
         &mut self,
         fields: &mut Fields,
-        limits: Limits,
+        criteria: StopCriteria,
         watch: &mut Watch,
     ) -> Outcome {
-        let outcome = self
-            .finest
-            .solve(&mut self.patch, limits, &mut self.work, watch);
+        let outcome = self.stopped.unwrap_or_else(|| {
+            self.finest
+                .solve(&mut self.patch, criteria, &mut self.work, watch)
+        });
         fields.take(&self.patch);
         outcome
     }
 
-    /// Opens the window around the cells of which the gap is negative. False where there is none
-    /// outside it.
+    /// Opens the window around the cells that overlap outside it; false where there are none.
     pub(super) fn open(&mut self, problem: &Problem, fields: &Fields) -> bool {
         let shape = self.finest.shape();
         let [x, y] = self.patch.window.clone();
         let outside = |i: usize, j: usize| !(x.contains(&i) && y.contains(&j));
         let mut g = vec![0.0; problem.gap.len()];
-        problem.gap_into(slice(&fields.displacement), fields.motion, &mut g);
-        let found = bounds(&whole(shape), |i, j| {
+        problem.gap_into(slice(&fields.displacement), fields.multipliers, &mut g);
+        let found = bounds(&full_window(shape), |i, j| {
             outside(i, j) && g[i * shape[1] + j] < 0.0
         });
         if let Some(cells) = &found {
-            self.patch = self
-                .patch
-                .moved(widened(&hull(cells, &self.patch.window), shape));
+            let window = enclosing(cells, &self.patch.window);
+            self.patch = self.patch.moved(widened(&window, shape));
         }
         found.is_some()
     }

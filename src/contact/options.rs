@@ -1,42 +1,42 @@
-//! What is planned, and how a solution is found.
+//! Options of a plan and of a solve.
 
 use ndarray::Array2;
 
-use super::problem::Limits;
+use super::solver::StopCriteria;
 use crate::error::{Error, Result};
 use crate::influence::Method;
 use crate::response::Body;
 
-/// What is planned beside body and grid.
+/// Options of a plan, beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
-    /// The body that carries the shape; `None` is rigid.
+    /// Body that carries the shape; `None` is rigid.
     pub counterbody: Option<Body>,
-    /// How influence coefficients are computed. Default: [`Method::Exact`].
+    /// Method by which influence coefficients are computed. Default: [`Method::Exact`].
     pub method: Method,
     /// Threads of the plan. Default: all of the machine's.
     pub threads: Option<usize>,
 }
 
-/// How a solution is found.
+/// Algorithm that a solve starts with; [`Report::solver`](super::Report::solver) says which one ended it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Algorithm {
     /// Preconditioned conjugate gradients on nested grids, in a window around the contact.
     #[default]
     Cascade,
-    /// The constrained conjugate gradient method of the paper, as a reference.
+    /// The constrained conjugate gradients of Polonsky & Keer, which the paper uses, as a reference.
     PolonskyKeer,
 }
 
-/// When to end an iteration, and where to start it.
+/// Options of a solve: where it starts and when it ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// Largest residual and overlap of a converged solution. Default: 1e-8.
     pub tolerance: f64,
     /// Iterations after which to give up. Default: 10 000.
     pub max_iterations: Option<usize>,
-    /// Default: [`Algorithm::Cascade`].
+    /// Algorithm that the solve starts with. Default: [`Algorithm::Cascade`].
     pub algorithm: Algorithm,
     /// Pressure to start from (nx, ny) \[Pa\]. Default: uniform.
     pub initial: Option<Array2<f64>>,
@@ -53,10 +53,12 @@ impl Default for Options {
     }
 }
 
+/// Default of [`Options::max_iterations`]: far above the 10 … 300 that solvable problems take.
 const MAX_ITERATIONS: usize = 10_000;
 
 impl Options {
-    pub(super) fn limits(&self) -> Result<Limits> {
+    /// The criteria that end an iteration, checked.
+    pub(super) fn stop_criteria(&self) -> Result<StopCriteria> {
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::Parameter {
                 name: "tolerance",
@@ -64,7 +66,7 @@ impl Options {
                 value: self.tolerance,
             });
         }
-        Ok(Limits {
+        Ok(StopCriteria {
             tolerance: self.tolerance,
             max_iterations: self.max_iterations.unwrap_or(MAX_ITERATIONS),
         })

@@ -1,23 +1,31 @@
 //! The contact problem in the form that the algorithms solve.
+//!
+//! ```text
+//! minimise ½ pᵀK p + pᵀh     over the pressures p that the constraint allows,     subject to Bᵀp = F
+//! ```
+//!
+//! Its multipliers λ are the loaded degrees of freedom of the rigid motion: g = K p + h − Bλ ≥ 0, p g = 0.
+//! Polonsky & Keer, Wear 231 (1999) 206, eqs (1)–(4), doi:10.1016/S0043-1648(99)00113-1, have one column
+//! of B, the approach.
 
 pub(super) mod balance;
+pub(super) mod constraint;
 pub(super) mod fit;
 pub(super) mod freedoms;
 pub(super) mod load_point;
 
-use crate::contact::cascade::patch::Window;
-use crate::contact::problem::fit::FitSums;
-use crate::contact::problem::freedoms::Freedoms;
 use crate::convolution::{Convolution, Workspace};
-use crate::parallel::{Lanes, ZERO, all, sum, update, update_with_largest, where_positive};
-use crate::parallel::{Passes, Row, add};
+use crate::grid::Window;
+use crate::parallel::{Lanes, Row, Rows, Total, ZERO, all, sum, update, update_with_largest};
+use constraint::NonNegative;
+use fit::FitSums;
+use freedoms::Freedoms;
 
-/// Minimise ½ pᵀK p + pᵀh over p ≥ 0 subject to Bᵀp = F.
-///
-/// Its multipliers are the loaded freedoms of the rigid motion: g = K p + h − Bλ ≥ 0, p g = 0.
-/// Polonsky & Keer, Wear 231 (1999) 206, eqs (1)–(4), with one column of B a loaded freedom.
+/// One contact problem: operator, degrees of freedom and undeformed gap.
 pub(super) struct Problem<'a> {
+    /// K
     pub(super) convolution: &'a Convolution,
+    /// B and F
     pub(super) freedoms: &'a Freedoms,
     /// h, less the prescribed motion; +∞ where the shape cannot touch.
     pub(super) gap: &'a [f64],
@@ -28,61 +36,107 @@ pub(super) struct Problem<'a> {
 pub(super) struct Quality {
     /// Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
     pub(super) residual: f64,
-    /// max(−g, 0) / max u over them.
+    /// max(−g, 0) / max u over the cells that can touch.
     pub(super) overlap: f64,
     /// Whether force and moments are balanced.
     pub(super) balanced: bool,
-    /// Whether all displacements are finite; [`Problem::judge`] alone looks.
+    /// Whether all displacements are finite; only [`Problem::judge`] checks it.
     pub(super) finite: bool,
 }
 
 impl Quality {
+    /// Whether the pressure is a solution within `tolerance`.
     pub(super) fn meets(&self, tolerance: f64) -> bool {
         let close = self.residual <= tolerance && self.overlap <= tolerance;
         self.balanced && self.finite && close
     }
 
-    /// Whether sums overflowed: such numbers do not come back.
+    /// Whether sums overflowed, which no further iteration can mend.
     pub(super) fn overflows(&self) -> bool {
         self.residual.is_infinite()
     }
 }
 
+/// Extremes and sums over cells from which [`Problem::quality`] is found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct QualitySums {
+    /// Deepest overlap −g; 0 where nothing overlaps.
+    overlap: f64,
+    /// Largest displacement where the shape can touch.
+    displacement: f64,
+    /// Σ p u
+    work: f64,
+    /// Σ p|g|
+    mismatch: f64,
+}
+
+impl Total for QualitySums {
+    const ZERO: Self = Self {
+        overlap: 0.0,
+        displacement: 0.0,
+        work: 0.0,
+        mismatch: 0.0,
+    };
+
+    fn joined(self, other: Self) -> Self {
+        let larger = |a: f64, b: f64| if b > a { b } else { a };
+        Self {
+            overlap: larger(self.overlap, other.overlap),
+            displacement: larger(self.displacement, other.displacement),
+            work: self.work + other.work,
+            mismatch: self.mismatch + other.mismatch,
+        }
+    }
+}
+
+impl QualitySums {
+    /// The sums from their values in one row: overlap and displacement, work and mismatch.
+    pub(super) fn of_row([overlap, displacement]: [f64; 2], [work, mismatch]: [f64; 2]) -> Self {
+        Self {
+            overlap,
+            displacement,
+            work,
+            mismatch,
+        }
+    }
+}
+
 impl Problem<'_> {
-    pub(super) fn apply(&self, p: &[f64], out: &mut [f64], workspace: &mut Workspace) {
-        self.convolution.apply_slices(p, out, workspace);
+    /// u = K p
+    pub(super) fn apply(&self, p: &[f64], u: &mut [f64], workspace: &mut Workspace) {
+        self.convolution.apply_slices(p, u, workspace);
     }
 
-    /// The displacement of a cell under its own unit pressure.
+    /// Displacement of a cell under its own unit pressure.
     pub(super) fn self_influence(&self) -> f64 {
         self.convolution.self_influence()
     }
 
-    /// The rows of its arrays.
-    pub(super) fn passes(&self) -> Passes<'_> {
-        Passes::new(&self.freedoms.columns, self.convolution.own_threads())
+    /// The rows of the problem's arrays.
+    pub(super) fn rows(&self) -> Rows<'_> {
+        Rows::new(&self.freedoms.columns, self.convolution.own_threads())
     }
 
-    /// λ that makes u + h − Bλ least over the cells with pressure. Freedoms that these do not determine (one
-    /// or two cells have no tilt) are 0.
+    /// λ that makes u + h − Bλ least over the cells with pressure. Degrees of freedom that these cells do
+    /// not determine are 0: one or two cells have no tilt.
     pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64]) -> [f64; 3] {
-        let sums = self.passes().each([p, u, h], [], add, |row, fields, []| {
+        let sums = self.rows().each([p, u, h], [], |row, fields, []| {
             self.fit_near([0.0; 3], row, fields)
         });
         self.freedoms.fitted(sums)
     }
 
-    /// What one row adds to the fit of the change of λ from `near`.
+    /// The sums of one row for the fit of λ − `near`.
     fn fit_near(&self, near: [f64; 3], row: Row, fields: [&[f64]; 3]) -> FitSums {
         let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
-        self.freedoms.fit_of(row, fields, [], |[p, u, h, y], []| {
+        self.freedoms.fit_row(row, fields, [], |[p, u, h, y], []| {
             ([], [p, (h - (base + slope * y)) + u, ZERO])
         })
     }
 
-    /// Computes the displacement `u` of a pressure that is zero outside `window`, of which the rows alone are
-    /// read; λ that makes the gap least over the contact, and how good `p` is. Freedoms that the contact does
-    /// not determine stay as they are in `near`.
+    /// Computes the displacement `u` of a pressure that is zero outside `window`. Returns λ that makes the
+    /// gap least over the contact, and the quality of `p`. Degrees of freedom that the contact does not
+    /// determine stay as they are in `near`.
     pub(super) fn judge(
         &self,
         p: &[f64],
@@ -91,68 +145,70 @@ impl Problem<'_> {
         near: [f64; 3],
         workspace: &mut Workspace,
     ) -> (Multipliers, Quality) {
-        let (passes, ny) = (self.passes(), self.convolution.shape()[1]);
-        let rows = || window[0].clone();
-        self.convolution.rows_in(p, rows(), workspace);
-        let outwards = self.convolution.outwards(rows(), workspace);
+        let (rows, ny) = (self.rows(), self.convolution.shape()[1]);
+        let occupied = || window[0].clone();
+        self.convolution.rows_in(p, occupied(), workspace);
+        let outwards = self.convolution.outwards(occupied(), workspace);
         let displace = |first: usize, u: &mut [f64]| {
             if !u.is_empty() {
                 outwards.rows(first, u);
             }
         };
         let inputs = [p, self.gap];
-        // Rows of the window first: what λ depends on.
-        let fit = passes.parts(inputs, [&mut *u], add, |part, [p, h], [u]| {
-            let [start, end] = part.within(&window[0]);
-            displace(part.first + start, &mut u[start * ny..end * ny]);
-            part.each([p, u, h], [], add, |row, fields, []| {
-                let part = row.part(window, fields);
-                let sums = part.map(|(row, fields)| self.fit_near(near, row, fields));
-                sums.unwrap_or_default()
+        // λ depends on the window's rows alone: they come first.
+        let fit = rows.blocks(inputs, [&mut *u], |block, [p, h], [u]| {
+            let local = block.local(&window[0]);
+            displace(
+                block.first + local.start,
+                &mut u[local.start * ny..local.end * ny],
+            );
+            block.each([p, u, h], [], |row, fields, []| {
+                let inside = row.within(window, fields);
+                inside.map_or(FitSums::ZERO, |(row, fields)| {
+                    self.fit_near(near, row, fields)
+                })
             })
         });
-        let motion = Multipliers {
+        let multipliers = Multipliers {
             base: near,
             change: self.freedoms.fitted(fit),
         };
-        let [_, f, fx, fy, ..] = fit;
-        let sums = passes.parts(inputs, [u], join, |part, [p, h], [u]| {
-            let [start, end] = part.within(&window[0]);
-            displace(part.first, &mut u[..start * ny]);
-            displace(part.first + end, &mut u[end * ny..]);
-            part.each([p, u, h], [], join, |row, fields, []| {
-                let [deepest, most, lost] = overlap_of(motion, row, fields);
-                let part = row.part(window, fields);
-                let carried = part.map(|(row, fields)| mismatch_of(motion, row, fields));
-                let [work, mismatch] = carried.unwrap_or_default();
-                [deepest, most, work, mismatch, lost]
+        let (sums, not_finite) = rows.blocks(inputs, [u], |block, [p, h], [u]| {
+            let local = block.local(&window[0]);
+            displace(block.first, &mut u[..local.start * ny]);
+            displace(block.first + local.end, &mut u[local.end * ny..]);
+            block.each([p, u, h], [], |row, fields, []| {
+                let (extremes, not_finite) = overlap_of(multipliers, row, fields);
+                let inside = row.within(window, fields);
+                let carried = inside.map(|(row, fields)| mismatch_of(multipliers, row, fields));
+                let sums = QualitySums::of_row(extremes, carried.unwrap_or_default());
+                (sums, not_finite)
             })
         });
-        let [sums @ .., lost] = sums;
         let quality = Quality {
-            // The sum is 0, unless one is not finite.
-            finite: lost <= 0.0,
-            ..self.quality(sums, [f, fx, fy])
+            finite: not_finite <= 0.0,
+            ..self.quality(sums, fit.moments)
         };
-        (motion, quality)
+        (multipliers, quality)
     }
 
     /// g = u + h − Bλ
-    pub(super) fn gap_into(&self, u: &[f64], motion: Multipliers, g: &mut [f64]) {
+    pub(super) fn gap_into(&self, u: &[f64], multipliers: Multipliers, g: &mut [f64]) {
         let fields = [u, self.gap];
-        self.passes().each(fields, [g], add, |row, fields, [g]| {
-            motion.gap(row, fields, g);
-            []
+        self.rows().each(fields, [g], |row, fields, [g]| {
+            multipliers.gap(row, fields, g);
         });
     }
 
     /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
     /// that can touch join it.
     pub(super) fn rebalance(&self, p: &mut [f64]) {
+        /// Pressure of the cells that join, relative to the mean one.
+        const LITTLE: f64 = 1e-3;
         if self.freedoms.balance(p) {
             return;
         }
-        let little = 1e-3 * self.freedoms.typical_pressure(p.len());
+        let little = LITTLE * self.freedoms.typical_pressure(p.len());
         for (p, h) in p.iter_mut().zip(self.gap) {
             if h.is_finite() {
                 *p += little;
@@ -161,71 +217,57 @@ impl Problem<'_> {
         self.freedoms.balance(p);
     }
 
-    /// The quality of a pressure with these `moments`: the deepest overlap, the largest displacement, the
-    /// work and the mismatch.
-    pub(super) fn quality(
-        &self,
-        [deepest, most, work, mismatch]: [f64; 4],
-        moments: [f64; 3],
-    ) -> Quality {
+    /// The quality of a pressure with these sums and `moments`.
+    pub(super) fn quality(&self, sums: QualitySums, moments: [f64; 3]) -> Quality {
         // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
-        let over = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
+        let relative = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
             _ if !(a + scale).is_finite() => f64::INFINITY,
             (true, true) => a / scale,
             (true, false) => f64::INFINITY,
             (false, _) => 0.0,
         };
         Quality {
-            residual: over(mismatch, work),
-            overlap: over(deepest, most),
+            residual: relative(sums.mismatch, sums.work),
+            overlap: relative(sums.overlap, sums.displacement),
             balanced: self.freedoms.on_target(moments),
             finite: true,
         }
     }
 }
 
-/// Joins two largest values, and sums.
-pub(super) fn join<const S: usize>(a: [f64; S], b: [f64; S]) -> [f64; S] {
-    std::array::from_fn(|k| match k {
-        0 | 1 if b[k] > a[k] => b[k],
-        0 | 1 => a[k],
-        _ => a[k] + b[k],
-    })
-}
-
-/// The deepest overlap of one row, and the largest displacement where it can touch; and 0, unless a
+/// Deepest overlap of one row and largest displacement where it can touch; and a number that is 0 unless a
 /// displacement is not finite.
-fn overlap_of(motion: Multipliers, row: Row, [_, u, h]: [&[f64]; 3]) -> [f64; 3] {
+fn overlap_of(multipliers: Multipliers, row: Row, [_, u, h]: [&[f64]; 3]) -> ([f64; 2], f64) {
     let step = |u, overlap| ([], depths(u, overlap), [u * ZERO]);
-    let overlap = motion.overlap(row);
-    let (largest, [lost]) = if motion.tilts() {
+    let overlap = multipliers.overlap(row);
+    let (extremes, [not_finite]) = if multipliers.tilts_along_y() {
         update_with_largest([u, h, row.y], [], |[u, h, y], []| {
             step(u, overlap([u, h, y]))
         })
     } else {
         update_with_largest([u, h], [], |[u, h], []| step(u, overlap([u, h, ZERO])))
     };
-    let [deepest, most] = largest;
-    [deepest, most, lost]
+    (extremes, not_finite)
 }
 
-/// What one row adds to the work and the mismatch.
-fn mismatch_of(motion: Multipliers, row: Row, [p, u, h]: [&[f64]; 3]) -> [f64; 2] {
-    let overlap = motion.overlap(row);
+/// Work Σ p u and mismatch Σ p|g| of one row.
+fn mismatch_of(multipliers: Multipliers, row: Row, [p, u, h]: [&[f64]; 3]) -> [f64; 2] {
+    let overlap = multipliers.overlap(row);
     sum([p, u, h, row.y], |[p, u, h, y]| {
         // The gap is infinite only where there is no pressure.
-        let mismatch = where_positive(p, p * overlap([u, h, y]).abs());
+        let mismatch = NonNegative.where_free(p, p * overlap([u, h, y]).abs());
         [p * u, mismatch]
     })
 }
 
-/// How deep cells overlap, and their displacement where they can touch.
+/// Overlap of cells, and the magnitude of their displacement where they can touch.
 pub(super) fn depths(u: Lanes, overlap: Lanes) -> [Lanes; 2] {
     let touches = overlap.simd_gt(all(f64::NEG_INFINITY));
     [overlap, touches & u.abs()]
 }
 
-/// λ in two parts: where loads are small, h − Bλ is far less than either.
+/// Multipliers λ in two parts: at small loads h − Bλ is far smaller than either term, and taking the larger
+/// part of λ from h first keeps its digits.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Multipliers {
     pub(super) base: [f64; 3],
@@ -239,64 +281,22 @@ impl Multipliers {
     }
 
     /// Whether the motion depends on y.
-    fn tilts(self) -> bool {
+    fn tilts_along_y(self) -> bool {
         self.base[2] != 0.0 || self.change[2] != 0.0
     }
 
-    /// How deep cells in a row overlap, −g = Bλ − (u + h), from u, h and their coordinates.
+    /// The overlap −g = Bλ − (u + h) of cells in a row, as a function of u, h and y.
     fn overlap(self, row: Row) -> impl Fn([Lanes; 3]) -> Lanes {
         let [[a, b], [c, d]] =
             [self.base, self.change].map(|l| [all(l[0] + l[1] * row.x), all(l[2])]);
         move |[u, h, y]| (c + d * y) - ((h - (a + b * y)) + u)
     }
 
-    /// The gap in a row.
+    /// Writes the gap of a row.
     pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
         let overlap = self.overlap(row);
         update([u, h, row.y], [g], |fields, _| {
             ([ZERO - overlap(fields)], [])
         });
-    }
-}
-
-/// How an iteration ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Termination {
-    /// The tolerance was met.
-    Converged,
-    /// It was not, within the iterations allowed.
-    IterationLimit,
-    /// The caller asked to stop.
-    Stopped,
-}
-
-/// Counts of an iteration that ended.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Outcome {
-    pub(super) termination: Termination,
-    pub(super) iterations: usize,
-    /// In the unit of [`Convolution::work`].
-    pub(super) work: f64,
-    /// Multipliers of the loaded freedoms.
-    pub(super) lambda: [f64; 3],
-}
-
-/// Is told an iteration's number, the work done and the quality; true asks to stop.
-pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> bool + Send + 'a;
-
-/// When to end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
-    pub(super) tolerance: f64,
-    pub(super) max_iterations: usize,
-}
-
-impl Limits {
-    /// Those that are left after so many iterations.
-    pub(super) fn after(self, iterations: usize) -> Self {
-        Self {
-            max_iterations: self.max_iterations - iterations,
-            ..self
-        }
     }
 }

@@ -1,139 +1,18 @@
-//! What a solved contact returns.
+//! The solution of a contact.
 
+pub(super) mod carried;
 pub(super) mod fields;
 pub(super) mod gap;
-pub(super) mod stiffness;
+pub(super) mod report;
+mod stiffness;
 pub(super) mod warnings;
-
-use std::fmt;
 
 use ndarray::{Array1, Array2};
 
-use super::problem::Termination;
-use crate::contact::cascade::discretisation::Discretisation;
-use crate::contact::problem::freedoms::Motion;
-use crate::contact::solution::gap::Gap;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::influence::Method;
-use crate::response::Body;
-
-/// Something about a solution that its user should know.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Warning {
-    /// The contact touches the edge of the grid, and the shape goes on beyond it.
-    GridEdge,
-    /// The contact reaches the end of a shape of finite length.
-    SharpEnd {
-        /// 0 along x, 1 along y.
-        axis: usize,
-    },
-    /// Fewer than eight cells resolve the contact.
-    Coarse {
-        /// 0 along x, 1 along y.
-        axis: usize,
-        /// How many there are.
-        cells: usize,
-    },
-    /// The contact is not small against a radius of curvature.
-    LargeContact {
-        /// 0 along x, 1 along y.
-        axis: usize,
-        /// Half-width over radius.
-        ratio: f64,
-    },
-}
-
-/// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
-pub(super) const LARGE_CONTACT: f64 = 0.2;
-
-/// Cells across the contact below which pressure errs by some per cent.
-pub(super) const FEW_CELLS: usize = 8;
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let along = |axis: &usize| if *axis == 0 { "x" } else { "y" };
-        match self {
-            Self::GridEdge => {
-                write!(
-                    f,
-                    "the contact touches the edge of the grid; take a larger grid"
-                )
-            }
-            Self::SharpEnd { axis } => write!(
-                f,
-                "the contact reaches the end of the shape along {}: the pressure there is that of \
-                 a sharp edge on a half-space that goes on, and grows as the grid is refined",
-                along(axis)
-            ),
-            Self::Coarse { axis, cells } => write!(
-                f,
-                "the contact is only {cells} cells wide along {}; take a finer grid",
-                along(axis)
-            ),
-            Self::LargeContact { axis, ratio } => write!(
-                f,
-                "the contact is not small against the radius along {}: half-width/radius = \
-                 {ratio:.2}; the bodies are taken as half-spaces",
-                along(axis)
-            ),
-        }
-    }
-}
-
-/// Mismatch of force and moments.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Balance {
-    /// |Σ p dA − W| / W; 0 where the force is not given.
-    pub force: f64,
-    /// |Σ p x dA − M_x| / (W × half side), along y alike; 0 where the moment is not given.
-    pub moment: [f64; 2],
-}
-
-/// How a solution came about, and how good it is. All figures are computed afresh at the end.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Report {
-    /// How the iteration ended.
-    pub termination: Termination,
-    /// Iterations done.
-    pub iterations: usize,
-    /// Work done, in convolutions of the whole grid: those of coarser grids, of windows and of the
-    /// preconditioner count by the points P of their meshes, as P log P.
-    pub convolutions: f64,
-    /// Complementarity: Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
-    pub residual: f64,
-    /// max(−g, 0) / max u over them.
-    pub overlap: f64,
-    /// Mismatch of force and moments.
-    pub balance: Balance,
-    /// What the size of the cells leaves, estimated from coarser grids. None where none was solved:
-    /// on small grids, from a given pressure, by another algorithm, before the end.
-    pub discretisation: Option<Discretisation>,
-    /// What the user should know.
-    pub warnings: Vec<Warning>,
-    /// The grid.
-    pub grid: Grid,
-    /// The body that the shape was pressed into.
-    pub body: Body,
-    /// The body that carries the shape; rigid where `None`.
-    pub counterbody: Option<Body>,
-    /// How the influence coefficients were computed.
-    pub method: Method,
-    /// What was asked: load or approach, and of the tilts.
-    pub motion: Motion,
-    /// The tolerance that was asked.
-    pub tolerance: f64,
-    /// Seconds the solve took, planning excluded.
-    pub seconds: f64,
-}
-
-impl Report {
-    /// Whether the tolerance was met.
-    pub fn converged(&self) -> bool {
-        self.termination == Termination::Converged
-    }
-}
+use gap::Gap;
+use report::Report;
 
 /// A solved contact. Arrays are (nx, ny), at cell centres.
 #[derive(Debug, Clone)]
@@ -146,7 +25,7 @@ pub struct Solution {
     pub approach: f64,
     /// Tilt (s_x, s_y).
     pub tilt: [f64; 2],
-    /// How it came about.
+    /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
 }
@@ -163,15 +42,15 @@ impl PartialEq for Solution {
 }
 
 impl Solution {
-    /// A solution from its parts, as a file has them: pressure, gap and displacement, approach and tilt.
+    /// A solution from the parts that a file has: pressure, gap and displacement, approach and tilt.
     ///
     /// # Errors
-    /// A field of another shape than that of the report's grid.
+    /// A field whose shape is not that of the report's grid.
     ///
     /// ```
     /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup, Solution};
     ///
-    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     /// let solution = contact.solve(&Paraboloid::new(1e3, 1e3)?, &Motion::load(1e-3), &Options::default())?;
     /// let fields = [solution.pressure.clone(), solution.gap(), solution.displacement.clone()];
     /// let again = Solution::from_fields(fields, solution.approach, solution.tilt, solution.report.clone())?;
@@ -206,10 +85,10 @@ impl Solution {
         })
     }
 
-    /// Itself, if the tolerance was met.
+    /// The solution itself, if the tolerance was met.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] where it was not; `tolerance` is quoted.
+    /// [`Error::NotConverged`] where it was not met; the message quotes `tolerance`.
     pub fn require_converged(self, tolerance: f64) -> Result<Self> {
         if self.report.converged() {
             return Ok(self);
@@ -234,7 +113,7 @@ impl Solution {
     }
 
     /// Gap \[m\], h + u − δ − s_x x − s_y y: 0 in contact within the tolerance, +∞ where the shape
-    /// cannot touch. Computed at each call, of the displacement that the solution has then.
+    /// cannot touch. It is computed at each call from the displacement that the solution has then.
     pub fn gap(&self) -> Array2<f64> {
         self.gap.field(&self.displacement)
     }
@@ -259,7 +138,7 @@ impl Solution {
         [by_axis(0), by_axis(1)]
     }
 
-    /// Where the force acts \[m\]; the origin where there is none.
+    /// Point where the force acts \[m\]; the origin where there is no force.
     pub fn eccentricity(&self) -> [f64; 2] {
         let load = self.load();
         self.moment()
@@ -359,12 +238,14 @@ fn line_ends(pressure: ndarray::ArrayView1<f64>) -> Option<[f64; 2]> {
     ])
 }
 
-/// How far the contact ends beyond the centre of its outermost cell, in cells: from p² of the cells
-/// from the edge inwards, `square(k)`.
+/// Distance by which the contact ends beyond the centre of its outermost cell, in cells; `square(k)` is p²
+/// of the k-th cell from the edge inwards.
 fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
+    // The end of the outermost cell.
     const OUTER_CELL: f64 = 0.5;
     // The outer two cells carry the discretisation of the edge.
     const FIRST: usize = 2;
+    // Cells that the parabola is fitted to; chosen by trial.
     const POINTS: usize = 5;
     if width < 2 * (FIRST + POINTS) {
         return OUTER_CELL;
@@ -380,7 +261,7 @@ fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
         slope += t * s / 10.0;
         bend += (t * t - 2.0) * s / 14.0;
     }
-    // The outer zero of it: t = −2c/(slope + √…), which holds for bend = 0 too.
+    // The outer zero of the parabola: t = −2c/(slope + √…), which holds for bend = 0 too.
     let constant = mean - 2.0 * bend;
     let discriminant = slope * slope - 4.0 * bend * constant;
     if slope <= 0.0 || discriminant < 0.0 {

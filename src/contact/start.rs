@@ -1,23 +1,22 @@
-//! What a solve starts from: the gaps of a shape, and a pressure.
+//! The start of a solve: the gaps of a shape, and a pressure.
 
 use std::sync::{Arc, Weak};
 
 use ndarray::{Array2, ArrayRef2};
 
 use super::problem::Problem;
-use crate::contact::solution::fields::{array, slice};
+use super::solution::fields::{array, slice};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::parallel::{ONE, all, sum};
-use crate::parallel::{Passes, add};
+use crate::parallel::{ONE, Rows, all, sum};
 use crate::surface::Surface;
 
-/// The gaps of the shape that was sampled last, on one grid, while a solution has them.
+/// Gaps of the shape that was sampled last on one grid, kept while a solution has them.
 #[derive(Default)]
 pub(super) struct Sampled<'a>(Option<(&'a dyn Surface, Weak<Array2<f64>>)>);
 
 impl<'a> Sampled<'a> {
-    /// Those of `shape`: what `sample` returns, where that is another one.
+    /// The gaps of `shape`; `sample` computes them where another shape was sampled last.
     pub(super) fn gaps(
         &mut self,
         shape: &'a dyn Surface,
@@ -36,11 +35,7 @@ impl<'a> Sampled<'a> {
 }
 
 /// Gaps of `shape` on `grid`, finite or +∞.
-pub(super) fn checked_gaps(
-    shape: &dyn Surface,
-    grid: &Grid,
-    passes: &Passes,
-) -> Result<Array2<f64>> {
+pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Result<Array2<f64>> {
     let gaps = shape.gaps(grid)?;
     let found = [gaps.nrows(), gaps.ncols()];
     if found != grid.shape() {
@@ -56,7 +51,7 @@ pub(super) fn checked_gaps(
         gaps.as_standard_layout().into_owned()
     };
     let lowest = f64::NEG_INFINITY;
-    let [good] = passes.each([slice(&gaps)], [], add, |_, gaps, []| {
+    let [good] = rows.each([slice(&gaps)], [], |_, gaps, []| {
         sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE])
     });
     // Numbers of cells are exact.
@@ -71,7 +66,7 @@ pub(super) fn checked_gaps(
     Ok(gaps)
 }
 
-/// The pressure to start from that the caller gave, balanced.
+/// The pressure that the caller gave to start from, balanced; `None` where it cannot carry the load.
 pub(super) fn given_pressure(
     problem: &Problem,
     initial: Option<&ArrayRef2<f64>>,
@@ -105,7 +100,6 @@ pub(super) fn given_pressure(
     let mut p: Vec<f64> = cells
         .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
         .collect();
-    // One that cannot carry the load is no help.
     Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))
 }
 

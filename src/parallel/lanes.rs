@@ -1,5 +1,5 @@
-//! Passes over the elements of arrays, four at a time: element by element they would take twice as
-//! long. Sums are made in a fixed order.
+//! Elements of arrays, four at a time: element by element, a pass would take twice as long. Sums are made
+//! in a fixed order.
 
 pub(crate) use wide::f64x4 as Lanes;
 
@@ -11,19 +11,14 @@ pub(crate) const ZERO: Lanes = Lanes::ZERO;
 /// One in all lanes.
 pub(crate) const ONE: Lanes = Lanes::ONE;
 
-/// The same number in all lanes.
+/// `value` in all lanes.
 pub(crate) fn all(value: f64) -> Lanes {
     Lanes::splat(value)
 }
 
-/// `value` where `p` is above 0, and 0 elsewhere, whatever `value` is there.
+/// `value` where `p` is above 0, and 0 elsewhere, even where `value` is not a number.
 pub(crate) fn where_positive(p: Lanes, value: Lanes) -> Lanes {
     p.simd_gt(ZERO) & value
-}
-
-/// `value` where `member` is not 0, and 0 elsewhere, whatever `value` is there.
-pub(crate) fn where_member(member: Lanes, value: Lanes) -> Lanes {
-    member.simd_ne(ZERO) & value
 }
 
 /// Σ `term` over the elements of `inputs`, which are equally long.
@@ -34,8 +29,8 @@ pub(crate) fn sum<const M: usize, const N: usize>(
     update(inputs, [], |values, []| ([], term(values)))
 }
 
-/// Replaces the elements of `outputs` by the first of what `step` makes of those of `inputs` and of
-/// their own, and sums the second. All are equally long.
+/// Calls `step` with the elements of `inputs` and of `outputs`, which are equally long. It returns the new
+/// elements of `outputs`, and terms that are summed.
 pub(crate) fn update<const M: usize, const N: usize, const S: usize>(
     inputs: [&[f64]; M],
     outputs: [&mut [f64]; N],
@@ -48,7 +43,8 @@ pub(crate) fn update<const M: usize, const N: usize, const S: usize>(
     sums
 }
 
-/// [`update`] where `step` makes, before what is summed, some of which the largest is found, and 0.
+/// [`update`] where `step` also returns, before the terms, values of which the largest is found; it is at
+/// least 0.
 pub(crate) fn update_with_largest<
     const M: usize,
     const N: usize,
@@ -72,7 +68,7 @@ pub(crate) fn update_with_largest<
         for (chunks, new) in to.iter_mut().zip(new) {
             chunks[k] = new.to_array();
         }
-        // Not max, which looks for NaN: a field with NaN shows in the sums.
+        // `max` would look for NaN, which a field with NaN shows in its sums anyway.
         for (largest, value) in largest.iter_mut().zip(tops) {
             *largest = largest.fast_max(value);
         }
@@ -102,14 +98,14 @@ pub(crate) fn update_with_largest<
     (largest.map(top), sums.map(total))
 }
 
-/// Fewer elements than lanes.
+/// The last elements, fewer than lanes; 0 in the lanes that are left.
 fn padded(rest: &[f64]) -> Lanes {
     let mut lanes = [0.0; LANES];
     lanes[..rest.len()].copy_from_slice(rest);
     Lanes::new(lanes)
 }
 
-/// Keeps so many lanes, and makes the others 0.
+/// A mask of the first `count` lanes.
 fn first(count: usize) -> Lanes {
     let number = Lanes::new([0.0, 1.0, 2.0, 3.0]);
     number.simd_lt(all(count as f64))
@@ -121,12 +117,12 @@ fn total(lanes: Lanes) -> f64 {
     (a + c) + (b + d)
 }
 
-/// The largest of the lanes and 0.
+/// The largest lane, or 0 where all are negative.
 fn top(lanes: Lanes) -> f64 {
     lanes.to_array().into_iter().fold(0.0, f64::max)
 }
 
-/// Σ a b
+/// The sum Σ a b.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let [dot] = sum([a, b], |[a, b]| [a * b]);
     dot

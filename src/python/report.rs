@@ -275,6 +275,7 @@ pub(super) fn restore_report(state: State) -> PyResult<PyReport> {
         });
     Ok(PyReport(Report {
         termination,
+        solver: None,
         iterations: counts.0,
         convolutions: counts.1,
         residual: quality[0],

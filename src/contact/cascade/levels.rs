@@ -1,6 +1,5 @@
-//! Nested grids: one grid's coefficients, its problem, and its solution in a window around the contact.
-//!
-//! Its influence coefficients are a corner of the grid's.
+//! Nested grids. Each level has its influence coefficients, its problem, and a solution in a window around
+//! the contact; the coefficients of a window are a corner of those of its grid.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -8,30 +7,29 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use crate::contact::cascade::discretisation::Figures;
-use crate::contact::cascade::patch::{Patch, block, copied, hull, rows, widened};
+use super::discretisation::GridResult;
+use super::patch::{self, Patch, block, copied, enclosing, widened};
+use crate::contact::problem::Problem;
 use crate::contact::problem::freedoms::Freedoms;
-use crate::contact::problem::{Limits, Outcome, Problem, Termination, Watch};
-use crate::contact::solver::active_set;
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
+use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
 use crate::contact::start::checked_gaps;
 use crate::convolution::Convolution;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::parallel::Passes;
-use crate::parallel::Pool;
-use crate::parallel::{all, update, update_with_largest};
+use crate::grid::{Grid, full_window};
+use crate::parallel::{Pool, Rows, all, update, update_with_largest};
 use crate::surface::Surface;
 
-/// A direction with fewer cells is not halved.
+/// Cells of the coarsest grid along each direction, at least. A direction with fewer than twice as many is
+/// not halved; chosen by trial.
 const COARSEST: usize = 32;
 
-/// Which directions of a grid are halved for the next coarser one; none at the coarsest.
+/// Directions of a grid that are halved for the next coarser one; none at the coarsest.
 pub(crate) fn halved(shape: [usize; 2]) -> [bool; 2] {
     shape.map(|n| n >= 2 * COARSEST)
 }
 
-/// The grid of cells twice as long in the directions of `halved`, which starts where `fine` does.
+/// The grid whose cells are twice as long in the directions of `halved`; it starts where `fine` does.
 fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
     let (shape, spacing, center) = (fine.shape(), fine.spacing(), fine.center());
     let cells = [0, 1].map(|k| {
@@ -55,16 +53,17 @@ fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
 /// A grid and all coarser ones, each with its own influence coefficients.
 #[derive(Debug)]
 pub(crate) struct Levels {
-    /// From the finest on.
+    /// Coefficients of levels 0 (the finest), 1, 2, …
     coefficients: Arc<Vec<Array2<f64>>>,
-    /// Of the coarser ones.
+    /// Convolutions of levels 1, 2, …; level 0 uses the contact's own.
     convolutions: Vec<Convolution>,
+    /// Grids of levels 0, 1, 2, …
     grids: Vec<Grid>,
     memory: Pool<Memory>,
 }
 
 impl Levels {
-    /// Plans the coarser grids of `finest`, which has the coefficients `of` gives and `convolution`.
+    /// Plans the grids that are coarser than `finest`; `of` computes the coefficients of a grid.
     pub(crate) fn plan(
         finest: Grid,
         coefficients: Array2<f64>,
@@ -89,7 +88,7 @@ impl Levels {
         })
     }
 
-    /// The same levels on the threads of `finest`; they share all that is large.
+    /// These levels on the threads of `finest`; all large arrays are shared.
     pub(crate) fn beside(&self, finest: &Convolution) -> Self {
         let convolutions = self.convolutions.iter();
         Self {
@@ -100,7 +99,7 @@ impl Levels {
         }
     }
 
-    /// The finest level, of `problem`, which has this `gap`.
+    /// The finest level, for `problem` with this `gap`.
     pub(crate) fn finest<'a>(&'a self, problem: &Problem<'a>, gap: &'a Array2<f64>) -> Level<'a> {
         Level {
             coefficients: &self.coefficients[0],
@@ -111,8 +110,8 @@ impl Levels {
         }
     }
 
-    /// The coarser levels, from the finest of them on; `freedoms` and `gap` are those of the finest level.
-    /// None where a gap must be made of that one, and it is not given.
+    /// Levels 1, 2, … for the degrees of freedom and the gap of level 0. `None` where `shape` has no gap
+    /// for coarser cells and the `gap` of level 0, from which it would be averaged, is not given.
     pub(crate) fn coarser(
         &self,
         freedoms: &Freedoms,
@@ -128,9 +127,9 @@ impl Levels {
             let halved = halved(finer);
             let fine = levels.last();
             let freedoms = fine.map_or(freedoms, |fine| &fine.freedoms).coarse(halved);
-            let passes = Passes::new(&freedoms.columns, convolution.own_threads());
-            // A measured surface has no values for cells that are much larger than its own.
-            let gap = match checked_gaps(shape, grid, &passes) {
+            let rows = Rows::new(&freedoms.columns, convolution.own_threads());
+            // A measured surface has no gap for cells that are much larger than its own.
+            let gap = match checked_gaps(shape, grid, &rows) {
                 Ok(mut gap) => {
                     if freedoms.any_prescribed() {
                         freedoms.prescribe(&mut gap);
@@ -150,13 +149,13 @@ impl Levels {
         Some(levels)
     }
 
-    /// Of iterations, and how many cells they may have.
+    /// Memory of iterations, and the largest number of cells of one.
     fn memory(&self) -> (&Pool<Memory>, usize) {
         (&self.memory, self.coefficients[0].len())
     }
 }
 
-/// Mean gap over coarse cells; of the fine cells that can touch.
+/// Mean gap over each coarse cell, from its fine cells that can touch.
 fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
     let (nx, ny) = fine.dim();
     let span = |i: usize, n: usize, halved: bool| -> Range<usize> {
@@ -183,50 +182,51 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
     })
 }
 
-/// One grid: its coefficients, and its problem.
+/// One grid with its coefficients and its problem.
 pub(crate) struct Level<'a> {
     coefficients: &'a Array2<f64>,
     convolution: &'a Convolution,
     pub(crate) freedoms: Freedoms,
     pub(crate) gap: Cow<'a, Array2<f64>>,
-    /// Of iterations, and how many cells they may have.
+    /// Memory of iterations, and the largest number of cells of one.
     memory: (&'a Pool<Memory>, usize),
 }
 
 impl Level<'_> {
+    /// Numbers of cells.
     pub(crate) fn shape(&self) -> [usize; 2] {
         [self.gap.nrows(), self.gap.ncols()]
     }
 
-    /// What a solution of this grid gives.
-    pub(crate) fn figures(&self, patch: &Patch, lambda: [f64; 3]) -> Figures {
+    /// Peak pressure, approach and load of a solution on this grid.
+    pub(crate) fn result(&self, patch: &Patch, lambda: [f64; 3]) -> GridResult {
         let ([peak], [sum]) = update_with_largest([&patch.values], [], |[p], []| ([], [p], [p]));
-        Figures {
+        GridResult {
             peak_pressure: peak,
-            approach: self.freedoms.motion(lambda).0,
+            approach: self.freedoms.rigid_motion(lambda).0,
             load: sum * self.freedoms.cell_area,
         }
     }
 
-    /// Makes a pressure one that cells can carry and that is balanced. False where that cannot be.
+    /// Takes the pressure from cells that cannot touch, and balances it. False where that is impossible.
     pub(crate) fn balance(&self, patch: &mut Patch) -> bool {
         let pressures = patch.values.chunks_exact_mut(patch.window[1].len().max(1));
-        for (p, gaps) in pressures.zip(rows(&self.gap, &patch.window)) {
+        for (p, gaps) in pressures.zip(patch::rows(&self.gap, &patch.window)) {
             update([gaps], [p], |[h], [p]| {
                 ([h.simd_lt(all(f64::INFINITY)) & p], [])
             });
         }
         self.freedoms
-            .part(patch.window.clone())
+            .in_window(patch.window.clone())
             .balance(&mut patch.values)
     }
 
-    /// Solves in the window of `patch`, which opens while the contact reaches its edge; `patch`
-    /// becomes the solution.
+    /// Solves in the window of `patch`, and in larger windows while the contact reaches the edge; `patch`
+    /// becomes the solution. Where the preconditioned iteration ends early, the active set goes on.
     pub(crate) fn solve(
         &self,
         patch: &mut Patch,
-        limits: Limits,
+        criteria: StopCriteria,
         work: &mut f64,
         watch: &mut Watch,
     ) -> Outcome {
@@ -234,26 +234,26 @@ impl Level<'_> {
         let mut done = 0;
         loop {
             let window = &patch.window;
-            let whole = *window == shape.map(|n| 0..n);
+            let whole = *window == full_window(shape);
             let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
-            let freedoms = self.freedoms.part(window.clone());
-            let passes = Passes::new(&freedoms.columns, self.convolution.own_threads());
-            // Planning transforms leaves the other threads idle in part: meanwhile they get the memory.
-            let ((part, [periodic, inverse]), (gap, memory)) = passes.both(
+            let freedoms = self.freedoms.in_window(window.clone());
+            let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
+            // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
+            let ((windowed, [periodic, inverse]), (gap, memory)) = rows.both(
                 || {
-                    let part = (!whole).then(|| self.convolution.part(&corner));
-                    (part, self.convolution.periodic(&corner))
+                    let windowed = (!whole).then(|| self.convolution.part(&corner));
+                    (windowed, self.convolution.periodic(&corner))
                 },
                 || {
                     let (memory, most) = self.memory;
                     let mut memory = memory.lease();
-                    memory.fit(&passes, most, freedoms.loaded);
+                    memory.reserve(&rows, most, freedoms.loaded);
                     (copied(&self.gap, window), memory)
                 },
             );
             let approximation = Approximation { inverse, periodic };
             let problem = Problem {
-                convolution: part.as_ref().unwrap_or(self.convolution),
+                convolution: windowed.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
                 gap: &gap,
             };
@@ -261,21 +261,22 @@ impl Level<'_> {
             let before = *work;
             let mut outcome = solver.solve(
                 &mut patch.values,
-                limits.after(done),
+                criteria.after(done),
                 &mut |iterations, spent, quality| watch(done + iterations, before + spent, quality),
             );
             *work += solver.work;
             done += outcome.iterations;
             // Its workspace serves the next.
             drop(solver);
-            if outcome.termination == Termination::IterationLimit && done < limits.max_iterations {
+            let limited = outcome.termination == Termination::IterationLimit;
+            if limited && done < criteria.max_iterations && active_set::is_small(&patch.values) {
                 let before = *work;
                 outcome = active_set::solve(
                     &problem,
                     &corner,
                     &mut patch.values,
                     outcome.lambda,
-                    limits.after(done),
+                    criteria.after(done),
                     &mut |more, spent, quality| watch(done + more, before + spent, quality),
                 );
                 *work += outcome.work;
@@ -296,7 +297,7 @@ impl Level<'_> {
             if whole || !reached || outcome.termination != Termination::Converged {
                 return outcome;
             }
-            *patch = patch.moved(widened(&hull(&contact, &patch.window), shape));
+            *patch = patch.moved(widened(&enclosing(&contact, &patch.window), shape));
         }
     }
 }

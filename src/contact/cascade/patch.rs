@@ -1,19 +1,16 @@
 //! Pressures in a window of a grid.
 
-use std::ops::Range;
-
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
 use crate::parallel::each_row;
 
-/// Cells around the contact in a window.
+use crate::grid::{Window, full_window};
+
+/// Cells around the contact that a window holds; chosen by trial.
 const MARGIN: usize = 6;
 
-/// A window that covers more of the grid than this is not worth its planning.
-const WORTH_WINDOW: f64 = 0.6;
-
-/// Cells i0..i1, j0..j1 of a grid.
-pub(crate) type Window = [Range<usize>; 2];
+/// Part of the grid above which a window saves less than its planning costs; chosen by trial.
+const LARGEST_PART: f64 = 0.6;
 
 /// A pressure that is zero outside a window.
 #[derive(Debug, Clone)]
@@ -22,29 +19,24 @@ pub(crate) struct Patch {
     pub(crate) values: Vec<f64>,
 }
 
-/// All cells of a grid of `shape`.
-pub(crate) fn whole(shape: [usize; 2]) -> Window {
-    shape.map(|n| 0..n)
-}
-
-/// `cells` and a margin around them; the whole grid where that is not worth a window.
+/// `cells` and a margin around them; the whole grid where a window would cover most of it.
 pub(crate) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
     let window = [0, 1]
         .map(|k| cells[k].start.saturating_sub(MARGIN)..(cells[k].end + MARGIN).min(shape[k]));
     let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
-    if part > WORTH_WINDOW {
-        whole(shape)
+    if part > LARGEST_PART {
+        full_window(shape)
     } else {
         window
     }
 }
 
 /// The smallest window that holds both.
-pub(crate) fn hull(a: &Window, b: &Window) -> Window {
+pub(crate) fn enclosing(a: &Window, b: &Window) -> Window {
     [0, 1].map(|k| a[k].start.min(b[k].start)..a[k].end.max(b[k].end))
 }
 
-/// Rows and columns of an array.
+/// The cells of a window of an array.
 pub(crate) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView2<'a, f64> {
     let mut view = array.view();
     view.slice_axis_inplace(Axis(0), Slice::from(x.clone()));
@@ -52,7 +44,7 @@ pub(crate) fn block<'a>(array: &'a ArrayRef2<f64>, [x, y]: &Window) -> ArrayView
     view
 }
 
-/// Values of a window in C order: `fill` writes those of each of its rows.
+/// Values of a window in C order, each row written by `fill`.
 fn filled([x, y]: &Window, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
     let mut values = vec![0.0; x.len() * y.len()];
     each_row(&mut values, y.len(), |k, row| fill(x.start + k, row));
@@ -70,7 +62,7 @@ pub(crate) fn rows<'a>(
     rows.map(move |row| &row[y.clone()])
 }
 
-/// Values of an array in C order, in that order.
+/// Values of a window of an array, in C order as the array.
 pub(crate) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
     filled(window, |i, row| {
         let here = [i..i + 1, window[1].clone()];
@@ -78,7 +70,7 @@ pub(crate) fn copied(array: &ArrayRef2<f64>, window: &Window) -> Vec<f64> {
     })
 }
 
-/// The smallest window that holds all cells of which `member` holds; none without any.
+/// The smallest window that holds all cells for which `member` is true; `None` where there is no such cell.
 pub(crate) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> Option<Window> {
     let mut found: Option<Window> = None;
     for i in window[0].clone() {
@@ -88,14 +80,14 @@ pub(crate) fn bounds(window: &Window, member: impl Fn(usize, usize) -> bool) -> 
         };
         let last = row.rev().find(|&j| member(i, j)).unwrap_or(first);
         let line = [i..i + 1, first..last + 1];
-        found = Some(found.map_or(line.clone(), |found| hull(&found, &line)));
+        found = Some(found.map_or(line.clone(), |found| enclosing(&found, &line)));
     }
     found
 }
 
 impl Patch {
-    /// All of a grid.
-    pub(crate) fn whole(pressure: &Array2<f64>) -> Self {
+    /// The pressure of a whole grid.
+    pub(crate) fn of_grid(pressure: &Array2<f64>) -> Self {
         let window = [0..pressure.nrows(), 0..pressure.ncols()];
         Self {
             window,
@@ -103,6 +95,7 @@ impl Patch {
         }
     }
 
+    /// Pressure of a cell of the grid.
     pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         let [x, y] = &self.window;
         if x.contains(&i) && y.contains(&j) {
@@ -127,7 +120,7 @@ impl Patch {
         Self { window, values }
     }
 
-    /// Writes it into values of a grid with so many columns, which are zero outside its window.
+    /// Writes the pressure into the values of a grid of `columns` columns.
     pub(crate) fn paste(&self, values: &mut [f64], columns: usize) {
         let [x, y] = &self.window;
         let rows = &mut values[x.start * columns..x.end * columns];
@@ -136,11 +129,10 @@ impl Patch {
         });
     }
 
-    /// Linear interpolation between the centres of its cells, on a grid of `shape` of which the
-    /// directions of `halved` have half as many cells here; in a window around the contact.
+    /// Linear interpolation between cell centres to a finer grid of `shape`, in a window around the contact.
+    /// The finer grid has twice as many cells in the directions of `halved`.
     pub(crate) fn interpolated(&self, shape: [usize; 2], halved: [bool; 2]) -> Self {
-        let none = || [0..0, 0..0];
-        let contact = self.contact().unwrap_or_else(none);
+        let contact = self.contact().unwrap_or([0..0, 0..0]);
         let fine = [0, 1].map(|k| {
             let factor = if halved[k] { 2 } else { 1 };
             factor * contact[k].start..(factor * contact[k].end).min(shape[k])
@@ -169,7 +161,7 @@ impl Patch {
         };
         let columns: Vec<_> = window[1].clone().map(|j| taps(1, j)).collect();
         let values = filled(&window, |i, row| {
-            let [(near, wide), (next, narrow)] = taps(0, i).map(|(i, part)| (line(i), part));
+            let [(near, wide), (next, narrow)] = taps(0, i).map(|(i, weight)| (line(i), weight));
             for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
                 let here = value(near, *j);
                 // Interpolation would widen the contact by half a cell on every side.

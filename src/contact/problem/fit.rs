@@ -1,18 +1,73 @@
-//! Moments of fields, and the motion of the loaded freedoms that fits them best.
+//! Moments of fields, and the rigid motion that fits a gap best in the sense of least squares.
 
 use std::ops::Range;
 
-use crate::contact::problem::freedoms::Freedoms;
-use crate::parallel::Row;
-use crate::parallel::{Lanes, ONE, sum, update, where_member, where_positive};
+use super::constraint::NonNegative;
+use super::freedoms::Freedoms;
+use crate::parallel::{Lanes, ONE, Row, Total, sum, update};
 
-/// Sums over cells, in this order: what [`Freedoms::fit_of`] counts; force and moments of the pressure; and
-/// of which [`Freedoms::fitted`] makes a motion, Bᵀv, and the upper half of BᵀB. Those with y are 0 where the
-/// tilt along y is not loaded.
-pub(crate) type FitSums = [f64; 13];
+/// Sums over cells from which [`Freedoms::fitted`] finds the multipliers of the rigid motion.
+///
+/// Sums with y are 0 where the tilt along y is not loaded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FitSums {
+    /// Number of cells that the step of the pass counted.
+    pub(crate) counted: f64,
+    /// Force and scaled moments Bᵀp of the pressure.
+    pub(crate) moments: [f64; 3],
+    /// Bᵀv of the fitted values v over the contact.
+    right: [f64; 3],
+    /// Elements 11, 12, 13, 22, 23, 33 of BᵀB over the contact.
+    gram: [f64; 6],
+}
+
+impl Total for FitSums {
+    const ZERO: Self = Self {
+        counted: 0.0,
+        moments: [0.0; 3],
+        right: [0.0; 3],
+        gram: [0.0; 6],
+    };
+
+    fn joined(self, other: Self) -> Self {
+        Self {
+            counted: self.counted + other.counted,
+            moments: self.moments.joined(other.moments),
+            right: self.right.joined(other.right),
+            gram: self.gram.joined(other.gram),
+        }
+    }
+}
+
+/// Sums over the contact of a field that is to be made orthogonal to the loaded degrees of freedom.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Products {
+    /// Force and scaled moments of the field.
+    pub(crate) moments: [f64; 3],
+    /// Product with the residual.
+    pub(crate) with_residual: f64,
+    /// Product with the residual of the iteration before.
+    pub(crate) with_last: f64,
+}
+
+impl Total for Products {
+    const ZERO: Self = Self {
+        moments: [0.0; 3],
+        with_residual: 0.0,
+        with_last: 0.0,
+    };
+
+    fn joined(self, other: Self) -> Self {
+        Self {
+            moments: self.moments.joined(other.moments),
+            with_residual: self.with_residual + other.with_residual,
+            with_last: self.with_last + other.with_last,
+        }
+    }
+}
 
 impl Freedoms {
-    /// Rows of the grid: x, and which cells.
+    /// Rows of the grid: the coordinate x, and the range of cells.
     pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, Range<usize>)> {
         let ny = self.columns[1].len();
         let x = self.columns[0].iter().enumerate();
@@ -32,7 +87,7 @@ impl Freedoms {
         }
     }
 
-    /// Σ over cells of `values` · (1, x, y).
+    /// Force and scaled moments Bᵀv of `values` v.
     pub(crate) fn moments(&self, values: &[f64]) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for (x, row) in self.rows() {
@@ -42,7 +97,7 @@ impl Freedoms {
         sums
     }
 
-    /// The same of one row; without what is not loaded.
+    /// Force and scaled moments of one row; the moment along y is left out where it is not loaded.
     pub(crate) fn moments_of(&self, row: Row, values: &[f64]) -> [f64; 3] {
         let [s, sy] = if self.loaded[2] {
             sum([values, row.y], |[v, y]| [v, v * y])
@@ -53,33 +108,40 @@ impl Freedoms {
         [s, s * row.x, sy]
     }
 
-    /// Moments over the cells of which the residual `r` is not 0, as [`Freedoms::moments_of`] gives them;
-    /// and the products with the residual, and over the same cells with the one `before`.
-    pub(crate) fn products_on(
+    /// Sums over the contact cells of one row of a field; `p` is the pressure, `r` the residual and
+    /// `before` the residual of the iteration before.
+    pub(crate) fn products(
         &self,
         row: Row,
-        [r, before]: [&[f64]; 2],
+        [p, r, before]: [&[f64]; 3],
         values: &[f64],
-    ) -> [f64; 5] {
-        let [s, sy, now, last] = if self.loaded[2] {
-            sum([r, before, values, row.y], |[r, before, v, y]| {
-                let v = where_member(r, v);
+    ) -> Products {
+        let inside = |p, r, v| NonNegative.where_in_contact(p, r, v);
+        let [s, sy, with_residual, with_last] = if self.loaded[2] {
+            sum([p, r, before, values, row.y], |[p, r, before, v, y]| {
+                let v = inside(p, r, v);
                 [v, v * y, r * v, before * v]
             })
         } else {
-            let [s, now, last] = sum([r, before, values], |[r, before, v]| {
-                let v = where_member(r, v);
+            let [s, now, last] = sum([p, r, before, values], |[p, r, before, v]| {
+                let v = inside(p, r, v);
                 [v, r * v, before * v]
             });
             [s, 0.0, now, last]
         };
-        [s, s * row.x, sy, now, last]
+        Products {
+            moments: [s, s * row.x, sy],
+            with_residual,
+            with_last,
+        }
     }
 
-    /// Updates fields of a row by `step`, from three others and y, and returns what the row adds to the fit
-    /// over the cells with pressure. Beside the fields `step` makes pressure, what is fitted, and something
-    /// to count.
-    pub(crate) fn fit_of<const N: usize>(
+    /// Updates `fields` of one row by `step`, and returns the row's sums for a fit over the cells with
+    /// pressure.
+    ///
+    /// `step` gets the cells of three inputs and y. It returns the new fields, and pressure, value to be
+    /// fitted, and a number to be counted.
+    pub(crate) fn fit_row<const N: usize>(
         &self,
         row: Row,
         [a, b, c]: [&[f64]; 3],
@@ -88,7 +150,7 @@ impl Freedoms {
     ) -> FitSums {
         let terms = |from, old| {
             let (new, [p, value, counted]) = step(from, old);
-            let [weight, value] = [ONE, value].map(|value| where_positive(p, value));
+            let [weight, value] = [ONE, value].map(|value| NonNegative.where_free(p, value));
             (new, [counted, p, weight, value])
         };
         let inputs = [a, b, c, row.y];
@@ -104,67 +166,58 @@ impl Freedoms {
             [counted, p, 0.0, s, 0.0, 0.0, v, 0.0]
         };
         let x = row.x;
-        let (sx, sxx, sxy) = (s * x, s * x * x, sy * x);
-        [
+        FitSums {
             counted,
-            p,
-            p * x,
-            py,
-            v,
-            v * x,
-            vy,
-            s,
-            sx,
-            sy,
-            sxx,
-            sxy,
-            syy,
-        ]
-    }
-
-    /// The change of λ that the sums of [`Freedoms::fit_of`] give.
-    pub(crate) fn fitted(&self, sums: FitSums) -> [f64; 3] {
-        let [_, _, _, _, v, vx, vy, s, sx, sy, sxx, sxy, syy] = sums;
-        let gram = [[s, sx, sy], [sx, sxx, sxy], [sy, sxy, syy]];
-        self.solve(&gram, [v, vx, vy])
-    }
-
-    /// Takes from `values` what is nearest to them of the form Bλ over the cells of which `member` is
-    /// not 0, and all of them outside.
-    pub(crate) fn project(&self, values: &mut [f64], member: &[f64]) {
-        let (mut right, mut gram) = ([0.0; 3], [[0.0; 3]; 3]);
-        for (x, row) in self.rows() {
-            let (values, member) = (&mut values[row.clone()], &member[row]);
-            let sums = update(
-                [member, &self.columns[1]],
-                [values],
-                |[member, y], [value]| {
-                    let member = where_member(member, ONE);
-                    let value = member * value;
-                    let sums = [value, value * y, member, member * y, member * y * y];
-                    ([value], sums)
-                },
-            );
-            let [f, fy, s, sy, syy] = sums;
-            add_moments(&mut right, x, [f, fy]);
-            add_gram(&mut gram, x, [s, sy, syy]);
+            moments: [p, p * x, py],
+            right: [v, v * x, vy],
+            gram: [s, s * x, sy, s * x * x, sy * x, syy],
         }
-        let mean = self.solve(&symmetric(gram), right);
+    }
+
+    /// Multipliers λ that make v − Bλ least over the contact, from the sums of [`Freedoms::fit_row`].
+    /// Degrees of freedom that the contact does not determine are 0.
+    pub(crate) fn fitted(&self, sums: FitSums) -> [f64; 3] {
+        let [s, sx, sy, sxx, sxy, syy] = sums.gram;
+        let gram = [[s, sx, sy], [sx, sxx, sxy], [sy, sxy, syy]];
+        self.solve(&gram, sums.right)
+    }
+
+    /// Subtracts from the residual `values` their best fit Bλ over the contact cells of pressure `p`, and
+    /// makes all others 0.
+    pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64]) {
+        let mut sums = FitSums::ZERO;
+        for (x, cells) in self.rows() {
+            let row = Row {
+                number: 0,
+                x,
+                y: &self.columns[1],
+            };
+            let inputs = [&p[cells.clone()], &r[cells.clone()], row.y];
+            let here = self.fit_row(row, inputs, [&mut values[cells]], |[p, r, ..], [value]| {
+                let [member, value] =
+                    [ONE, value].map(|value| NonNegative.where_in_contact(p, r, value));
+                ([value], [member, value, member])
+            });
+            sums = sums.joined(here);
+        }
+        let mean = self.fitted(sums);
         self.for_each(mean, |k, b| {
-            if member[k] != 0.0 {
+            if NonNegative.is_in_contact(p[k], r[k]) {
                 values[k] -= b;
             }
         });
     }
 
-    /// Solves for the loaded freedoms; one that the others determine (a contact of one cell has no
-    /// tilt) stays 0.
+    /// Solves for the loaded degrees of freedom by elimination; one that the others determine (a contact
+    /// of one cell has no tilt) stays 0.
     pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
+        // A pivot below this part of its diagonal is rounding: 450 ε.
+        const SMALLEST_PIVOT: f64 = 1e-13;
         let mut a = *matrix;
         let mut b = right;
         let mut pivots = self.loaded;
         for k in 0..3 {
-            pivots[k] = pivots[k] && a[k][k] > 1e-13 * matrix[k][k];
+            pivots[k] = pivots[k] && a[k][k] > SMALLEST_PIVOT * matrix[k][k];
             if !pivots[k] {
                 continue;
             }
@@ -186,26 +239,21 @@ impl Freedoms {
     }
 }
 
-/// Adds the sums of a row, of 1 and y, to those of 1, x and y.
+/// Adds a row's sums of 1 and y to the sums of 1, x and y.
 pub(crate) fn add_moments(sums: &mut [f64; 3], x: f64, [s, sy]: [f64; 2]) {
     sums[0] += s;
     sums[1] += s * x;
     sums[2] += sy;
 }
 
-/// Adds the sums of a row, of 1, y and y², to the upper half of those of b bᵀ, b = (1, x, y).
+/// Adds a row's sums of 1, y and y² to the symmetric matrix Σ b bᵀ, b = (1, x, y).
 pub(crate) fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3]) {
-    sums[0][0] += s;
-    sums[0][1] += s * x;
-    sums[0][2] += sy;
-    sums[1][1] += s * x * x;
-    sums[1][2] += sy * x;
-    sums[2][2] += syy;
-}
-
-pub(crate) fn symmetric(mut upper: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    upper[1][0] = upper[0][1];
-    upper[2][0] = upper[0][2];
-    upper[2][1] = upper[1][2];
-    upper
+    let row = [
+        [s, s * x, sy],
+        [s * x, s * x * x, sy * x],
+        [sy, sy * x, syy],
+    ];
+    for (sum, value) in sums.as_flattened_mut().iter_mut().zip(row.as_flattened()) {
+        *sum += value;
+    }
 }

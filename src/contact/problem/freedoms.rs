@@ -1,69 +1,30 @@
-//! The rigid motion of the body that is pressed on: what is prescribed, what is loaded.
+//! Degrees of freedom of the rigid motion on a grid: a [`Motion`] that was checked.
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayRef2};
+use ndarray::Array2;
 
-use crate::contact::problem::load_point::{hull_half_planes, interval, outline};
+use crate::contact::motion::Motion;
 use crate::error::{Error, Result, finite, positive};
 use crate::grid::Grid;
 
-/// What is asked of the rigid motion (δ, s_x, s_y), in g = h + u − δ − s_x x − s_y y.
-///
-/// Each of the three freedoms is prescribed or loaded. Exactly one of `load` and `approach`; along
-/// x and along y at most one of `eccentricity` (which needs a load), `moment` and `tilt`, and a
-/// tilt of 0 where there is none. Lengths and moments are about the origin x = y = 0.
-///
-/// ```
-/// use nacre::Motion;
-/// // Free to tilt along x only, under a force at x = 2.87 mm.
-/// let motion = Motion { eccentricity: [Some(2.87e-3), None], ..Motion::load(1e3) };
-/// assert_eq!(motion.load, Some(1e3));
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
-    /// Σ p dA \[N\], above 0.
-    pub load: Option<f64>,
-    /// Approach δ \[m\] of the origin, from the datum h = 0.
-    pub approach: Option<f64>,
-    /// Where the load acts \[m\]: Σ p x dA = W e_x, along y alike.
-    pub eccentricity: [Option<f64>; 2],
-    /// First moments of the pressure \[N m\]: Σ p x dA = M_x, along y alike.
-    pub moment: [Option<f64>; 2],
-    /// Slopes s_x, s_y.
-    pub tilt: [Option<f64>; 2],
-}
-
-impl Motion {
-    /// A force `load` \[N\], the tilt locked at 0.
-    pub fn load(load: f64) -> Self {
-        Self {
-            load: Some(load),
-            ..Self::default()
-        }
-    }
-
-    /// A prescribed `approach` \[m\], the tilt locked at 0.
-    pub fn approach(approach: f64) -> Self {
-        Self {
-            approach: Some(approach),
-            ..Self::default()
-        }
-    }
-}
-
-/// A [`Motion`] that was checked, on a grid: g = h + u − Bλ, where the columns of B are the loaded
-/// freedoms 1, (x − x0)/ℓx, (y − y0)/ℓy, and the prescribed ones are part of h.
+/// The degrees of freedom in g = h + u − Bλ: the columns of B are the loaded ones 1, (x − x0)/ℓx,
+/// (y − y0)/ℓy, and the prescribed ones are part of h.
 #[derive(Debug, Clone)]
 pub(crate) struct Freedoms {
+    /// Whether approach, tilt along x and tilt along y are loaded.
     pub(crate) loaded: [bool; 3],
-    /// Bᵀp for the loaded freedoms.
+    /// Bᵀp that is asked for; 0 where prescribed.
     pub(crate) target: [f64; 3],
-    /// δ, s_x, s_y of the prescribed freedoms, 0 of the loaded ones.
+    /// Prescribed δ, s_x, s_y; 0 where loaded.
     prescribed: [f64; 3],
-    origin: [f64; 2],
-    scale: [f64; 2],
+    /// (x0, y0)
+    pub(super) origin: [f64; 2],
+    /// (ℓx, ℓy)
+    pub(super) scale: [f64; 2],
+    /// Scaled coordinates (x − x0)/ℓx and (y − y0)/ℓy of the lines of cells.
     pub(crate) columns: [Vec<f64>; 2],
+    /// Coordinates of the lines of cells.
     coordinates: [Vec<f64>; 2],
     pub(crate) cell_area: f64,
 }
@@ -73,12 +34,13 @@ const DIRECTIONS: [&str; 2] = [
     "along y at most one of eccentricity, moment and tilt can be a number",
 ];
 
-/// Numbers that are too large to be computed with.
+/// The error for numbers that are too large to be computed with.
 pub(crate) const OVERFLOW: Error = Error::Inconsistent(
     "load, lengths and moduli must be in units in which their products do not overflow",
 );
 
 impl Freedoms {
+    /// Checks `motion` and expresses it on `grid`.
     pub(crate) fn new(motion: &Motion, grid: &Grid) -> Result<Self> {
         let mut prescribed = [0.0; 3];
         let mut loaded = [false; 3];
@@ -123,16 +85,14 @@ impl Freedoms {
             loaded[k + 1] = true;
             target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
         }
-        // Σ p u and its like are products of two of these and a coefficient.
+        // Products like Σ p u are of second degree in the target.
         if target.iter().any(|sum| !(sum * sum).is_finite()) {
             return Err(OVERFLOW);
         }
         let coordinates = [0, 1].map(|k| grid.coordinates(k).to_vec());
         let columns = [0, 1].map(|k| {
-            coordinates[k]
-                .iter()
-                .map(|x| (x - origin[k]) / scale[k])
-                .collect::<Vec<_>>()
+            let line = coordinates[k].iter();
+            line.map(|x| (x - origin[k]) / scale[k]).collect()
         });
         Ok(Self {
             loaded,
@@ -146,72 +106,7 @@ impl Freedoms {
         })
     }
 
-    /// An error unless some p ≥ 0 on the cells of finite `gap` carries the load and the moments,
-    /// with room on every side.
-    ///
-    /// The load point M/W must lie strictly inside the convex hull of those cells; where there are
-    /// moments without a load, the ray along M must cross its inside.
-    pub(crate) fn check_feasible(&self, gap: &ArrayRef2<f64>) -> Result<()> {
-        let points = outline(gap, &self.columns);
-        if points.is_empty() {
-            return Err(Error::Inconsistent(
-                "no cell of the grid can touch: the gap is infinite",
-            ));
-        }
-        let half_planes = match (self.loaded[1], self.loaded[2]) {
-            (false, false) => return Ok(()),
-            (true, true) => hull_half_planes(&points),
-            (true, false) => interval(points.iter().map(|p| p[0]))
-                .map(|(s, c)| [s, 0.0, c])
-                .into(),
-            (false, true) => interval(points.iter().map(|p| p[1]))
-                .map(|(s, c)| [0.0, s, c])
-                .into(),
-        };
-        // n · (t M) > c for some t > 0, or at t = 1/W.
-        let (mut low, mut high) = if self.loaded[0] {
-            (1.0 / self.target[0], 1.0 / self.target[0])
-        } else {
-            (0.0, f64::MAX)
-        };
-        let mut inside = !half_planes.is_empty();
-        for [nx, ny, c] in half_planes {
-            let slope = nx * self.target[1] + ny * self.target[2];
-            let margin = 1e-9;
-            if self.loaded[0] || slope.abs() <= f64::MIN_POSITIVE {
-                inside &= slope * low > c + margin * c.abs().max(1.0) * f64::EPSILON.sqrt();
-            } else if slope > 0.0 {
-                low = low.max(c / slope);
-            } else {
-                high = high.min(c / slope);
-            }
-        }
-        if inside && (self.loaded[0] || low < high) {
-            return Ok(());
-        }
-        if !self.loaded[0] {
-            return Err(Error::Inconsistent(
-                "moment must be one that a pressure on the cells that can touch can have",
-            ));
-        }
-        let range = |k: usize| {
-            let map = |c: f64| self.origin[k] + self.scale[k] * c;
-            points
-                .iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
-                    [a.min(map(p[k])), b.max(map(p[k]))]
-                })
-        };
-        let at = |k: usize| self.origin[k] + self.scale[k] * self.target[k + 1] / self.target[0];
-        Err(Error::LoadPoint {
-            x: at(0),
-            y: at(1),
-            x_range: range(0),
-            y_range: range(1),
-        })
-    }
-
-    /// A uniform pressure whose sum is of the size of what is asked.
+    /// A uniform pressure on `cells` cells whose sum is of the size of the target.
     pub(crate) fn typical_pressure(&self, cells: usize) -> f64 {
         let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         if asked > 0.0 {
@@ -221,12 +116,12 @@ impl Freedoms {
         }
     }
 
-    /// Whether the prescribed freedoms change the gap.
+    /// Whether the prescribed motion changes the gap.
     pub(crate) fn any_prescribed(&self) -> bool {
         self.prescribed.iter().any(|&freedom| freedom != 0.0)
     }
 
-    /// Takes the prescribed freedoms from the gap: h − δ − s_x x − s_y y.
+    /// Subtracts the prescribed motion from the gap: h − δ − s_x x − s_y y.
     pub(crate) fn prescribe(&self, gap: &mut Array2<f64>) {
         let [delta, sx, sy] = self.prescribed;
         let [x, y] = &self.coordinates;
@@ -238,26 +133,26 @@ impl Freedoms {
         }
     }
 
-    /// (δ, s_x, s_y) of all freedoms, from the multipliers λ of the loaded ones.
-    pub(crate) fn motion(&self, lambda: [f64; 3]) -> (f64, [f64; 2]) {
+    /// Approach δ and tilt (s_x, s_y), from the multipliers λ of the loaded degrees of freedom.
+    pub(crate) fn rigid_motion(&self, lambda: [f64; 3]) -> (f64, [f64; 2]) {
         let slope = [0, 1].map(|k| lambda[k + 1] / self.scale[k]);
         let tilt = [0, 1].map(|k| self.prescribed[k + 1] + slope[k]);
         let shift = slope[0] * self.origin[0] + slope[1] * self.origin[1];
         (self.prescribed[0] + lambda[0] - shift, tilt)
     }
 
-    /// Those of a part of the grid.
-    pub(crate) fn part(&self, [x, y]: [Range<usize>; 2]) -> Self {
-        let part =
+    /// These degrees of freedom on the cells of a window of the grid.
+    pub(crate) fn in_window(&self, [x, y]: [Range<usize>; 2]) -> Self {
+        let cut =
             |lines: &[Vec<f64>; 2]| [lines[0][x.clone()].to_vec(), lines[1][y.clone()].to_vec()];
         Self {
-            columns: part(&self.columns),
-            coordinates: part(&self.coordinates),
+            columns: cut(&self.columns),
+            coordinates: cut(&self.coordinates),
             ..self.clone()
         }
     }
 
-    /// Those of a grid of cells twice as long in the directions of `halved`.
+    /// These degrees of freedom on a grid whose cells are twice as long in the directions of `halved`.
     pub(crate) fn coarse(&self, halved: [bool; 2]) -> Self {
         let coarse = |lines: &[Vec<f64>; 2]| {
             [0, 1].map(|k| {
@@ -268,10 +163,7 @@ impl Freedoms {
                 lines[k].iter().step_by(2).map(|x| x + 0.5 * step).collect()
             })
         };
-        let cells = halved
-            .iter()
-            .map(|&h| if h { 2.0 } else { 1.0 })
-            .product::<f64>();
+        let cells: f64 = halved.iter().map(|&h| if h { 2.0 } else { 1.0 }).product();
         Self {
             columns: coarse(&self.columns),
             coordinates: coarse(&self.coordinates),
@@ -281,8 +173,13 @@ impl Freedoms {
         }
     }
 
-    /// Whether any freedom is loaded.
+    /// Whether any degree of freedom is loaded.
     pub(crate) fn any_loaded(&self) -> bool {
         self.loaded.contains(&true)
+    }
+
+    /// Whether the force is the only loaded degree of freedom.
+    pub(crate) fn only_force(&self) -> bool {
+        self.loaded == [true, false, false]
     }
 }

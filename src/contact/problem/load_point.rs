@@ -1,9 +1,93 @@
-//! Where a load point may lie: the convex hull of the cells that can touch.
+//! Points at which a load may act: the inside of the convex hull of the cells that can touch.
 
 use ndarray::ArrayRef2;
 
+use super::freedoms::Freedoms;
+use crate::error::{Error, Result};
+
+/// Distance from the rim, in half sides of the grid, below which a load point counts as being on it: some
+/// units of rounding of scaled coordinates.
+const RIM: f64 = 4.0 * f64::EPSILON;
+
+/// Twice the area, in half sides of the grid, of a triangle whose corners count as lying on a line:
+/// rounding of products of scaled coordinates, 45 ε.
+const COLLINEAR: f64 = 1e-14;
+
+/// The half-plane n · v > c, as (n_x, n_y, c).
+type HalfPlane = [f64; 3];
+
+impl Freedoms {
+    /// An error unless some p ≥ 0 on the cells of finite `gap` carries the load and the moments,
+    /// with room on every side.
+    ///
+    /// The load point M/W must lie strictly inside the convex hull of those cells. Where there are
+    /// moments without a load, the ray along M must cross its inside.
+    pub(crate) fn check_feasible(&self, gap: &ArrayRef2<f64>) -> Result<()> {
+        let points = outline(gap, &self.columns);
+        if points.is_empty() {
+            return Err(Error::Inconsistent(
+                "no cell of the grid can touch: the gap is infinite",
+            ));
+        }
+        let half_planes = match (self.loaded[1], self.loaded[2]) {
+            (false, false) => return Ok(()),
+            (true, true) => convex_hull(&points),
+            (true, false) => interval(points.iter().map(|p| p[0]))
+                .map(|(s, c)| [s, 0.0, c])
+                .into(),
+            (false, true) => interval(points.iter().map(|p| p[1]))
+                .map(|(s, c)| [0.0, s, c])
+                .into(),
+        };
+        // n · (t M) > c for some t > 0, or at t = 1/W.
+        let (mut low, mut high) = if self.loaded[0] {
+            (1.0 / self.target[0], 1.0 / self.target[0])
+        } else {
+            (0.0, f64::MAX)
+        };
+        let mut inside = !half_planes.is_empty();
+        for [nx, ny, c] in half_planes {
+            let slope = nx * self.target[1] + ny * self.target[2];
+            if self.loaded[0] || slope.abs() <= f64::MIN_POSITIVE {
+                inside &= slope * low > c + RIM * c.abs().max(1.0);
+            } else if slope > 0.0 {
+                low = low.max(c / slope);
+            } else {
+                high = high.min(c / slope);
+            }
+        }
+        if inside && (self.loaded[0] || low < high) {
+            return Ok(());
+        }
+        let range = |k: usize| {
+            let at = |c: f64| self.origin[k] + self.scale[k] * c;
+            points
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+                    [a.min(at(p[k])), b.max(at(p[k]))]
+                })
+        };
+        let [x_range, y_range] = [range(0), range(1)];
+        if !self.loaded[0] {
+            let moment = |k: usize| self.target[k + 1] * self.scale[k] * self.cell_area;
+            return Err(Error::Moment {
+                moment: [moment(0), moment(1)],
+                x_range,
+                y_range,
+            });
+        }
+        let at = |k: usize| self.origin[k] + self.scale[k] * self.target[k + 1] / self.target[0];
+        Err(Error::LoadPoint {
+            x: at(0),
+            y: at(1),
+            x_range,
+            y_range,
+        })
+    }
+}
+
 /// First and last cell of finite gap in each row, as scaled coordinates.
-pub(crate) fn outline(gap: &ArrayRef2<f64>, [x, y]: &[Vec<f64>; 2]) -> Vec<[f64; 2]> {
+fn outline(gap: &ArrayRef2<f64>, [x, y]: &[Vec<f64>; 2]) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for (row, &x) in gap.rows().into_iter().zip(x) {
         let touches = |h: &f64| h.is_finite();
@@ -20,17 +104,19 @@ pub(crate) fn outline(gap: &ArrayRef2<f64>, [x, y]: &[Vec<f64>; 2]) -> Vec<[f64;
     points
 }
 
-/// The interval's inside as s · v > c, from both ends.
-pub(crate) fn interval(values: impl Iterator<Item = f64>) -> [(f64, f64); 2] {
+/// The inside of the interval that holds `values`, as s · v > c from both ends.
+fn interval(values: impl Iterator<Item = f64>) -> [(f64, f64); 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
         (a.min(v), b.max(v))
     });
     [(1.0, low), (-1.0, -high)]
 }
 
-/// The inside of the convex hull as n · v > c for each edge; none where the hull has no inside.
-/// Points come in order of x, then y. Andrew, Inf. Process. Lett. 9 (1979) 216.
-pub(crate) fn hull_half_planes(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
+/// The inside of the convex hull of `points`, as one half-plane for each edge; none where the hull has no
+/// inside. Points come in order of x, then y.
+///
+/// Andrew, Inf. Process. Lett. 9 (1979) 216, doi:10.1016/0020-0190(79)90072-3.
+fn convex_hull(points: &[[f64; 2]]) -> Vec<HalfPlane> {
     let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };
@@ -38,7 +124,7 @@ pub(crate) fn hull_half_planes(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
         let mut chain: Vec<[f64; 2]> = Vec::new();
         for point in points {
             while let [.., a, b] = chain[..] {
-                if turn(a, b, point) > 1e-14 {
+                if turn(a, b, point) > COLLINEAR {
                     break;
                 }
                 chain.pop();
@@ -52,9 +138,8 @@ pub(crate) fn hull_half_planes(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     if lower.len() + upper.len() < 5 {
         return Vec::new();
     }
-    lower
-        .windows(2)
-        .chain(upper.windows(2))
+    let edges = lower.windows(2).chain(upper.windows(2));
+    edges
         .map(|edge| {
             // Counter-clockwise: the inside is to the left.
             let [a, b] = [edge[0], edge[1]];

@@ -2,50 +2,53 @@
 
 use ndarray::Array2;
 
-use crate::contact::cascade::patch::{Patch, Window};
+use crate::contact::cascade::patch::Patch;
 use crate::contact::problem::{Multipliers, Problem, Quality};
-use crate::parallel::Passes;
+use crate::grid::Window;
+use crate::parallel::Rows;
 
-/// Pressure and displacement of a problem, and how good they are, once that was seen.
+/// Pressure and displacement of a problem, and their quality once it was checked.
 pub(crate) struct Fields {
     pub(crate) pressure: Array2<f64>,
-    /// The pressure is zero outside it.
+    /// Window outside which the pressure is zero.
     pub(crate) window: Window,
     pub(crate) displacement: Array2<f64>,
-    pub(crate) motion: Multipliers,
+    pub(crate) multipliers: Multipliers,
     pub(crate) quality: Option<Quality>,
 }
 
 impl Fields {
-    /// The system hands out its memory as it is written, most of it when that of the iteration is no
-    /// longer needed.
-    pub(crate) fn new(shape: [usize; 2], passes: &Passes) -> Self {
+    /// Fields of zeros.
+    ///
+    /// The system hands out their memory as it is written, most of it when the memory of the iteration is
+    /// free again.
+    pub(crate) fn new(shape: [usize; 2], rows: &Rows) -> Self {
         let zeros = || Array2::zeros(shape);
-        let (pressure, displacement) = passes.both(zeros, zeros);
+        let (pressure, displacement) = rows.both(zeros, zeros);
         Self {
             pressure,
             window: [0..0, 0..0],
             displacement,
-            motion: Multipliers::default(),
+            multipliers: Multipliers::default(),
             quality: None,
         }
     }
 
-    /// Takes the pressure of a window that holds the one before.
+    /// Takes the pressure of a window that holds the window before.
     pub(crate) fn take(&mut self, patch: &Patch) {
         let columns = self.pressure.ncols();
         patch.paste(slice_mut(&mut self.pressure), columns);
         self.window = patch.window.clone();
     }
 
-    /// Computes displacement, rigid motion and quality of the pressure afresh. Where the contact
-    /// does not determine a freedom, it stays as in `near`.
+    /// Computes displacement, rigid motion and quality of the pressure afresh. Degrees of freedom that the
+    /// contact does not determine stay as they are in `near`.
     pub(crate) fn certify(&mut self, problem: &Problem, near: [f64; 3]) -> Quality {
         let (p, window) = (slice(&self.pressure), &self.window);
         let workspace = &mut problem.convolution.workspace();
         let u = slice_mut(&mut self.displacement);
-        let (motion, quality) = problem.judge(p, window, u, near, workspace);
-        self.motion = motion;
+        let (multipliers, quality) = problem.judge(p, window, u, near, workspace);
+        self.multipliers = multipliers;
         self.quality = Some(quality);
         quality
     }
@@ -56,11 +59,12 @@ pub(crate) fn array(shape: [usize; 2], values: Vec<f64>) -> Array2<f64> {
     Array2::from_shape_vec(shape, values).unwrap_or_else(|_| Array2::zeros(shape))
 }
 
-/// Arrays here are made in C order, and stay so.
+/// The values of an array that was made in C order.
 pub(crate) fn slice(array: &Array2<f64>) -> &[f64] {
     array.as_slice().unwrap_or(&[])
 }
 
+/// The values of an array that was made in C order, to be written.
 pub(crate) fn slice_mut(array: &mut Array2<f64>) -> &mut [f64] {
     array.as_slice_mut().unwrap_or(&mut [])
 }

@@ -8,12 +8,12 @@ use crate::contact::problem::Multipliers;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::parallel::Row;
 
-/// What the gap of a solution is made of.
+/// The gap of a solution, or what it is computed from.
 #[derive(Debug, Clone)]
 pub(crate) enum Gap {
-    /// g = h + u − Bλ, of the displacement u.
+    /// g = h + u − Bλ, with the displacement u of the solution.
     Computed {
-        /// h, less the prescribed motion; other solutions of the shape may share it.
+        /// h, less the prescribed motion; solutions of one shape may share it.
         undeformed: Arc<Array2<f64>>,
         /// B
         freedoms: Box<Freedoms>,
@@ -25,7 +25,7 @@ pub(crate) enum Gap {
 }
 
 impl Gap {
-    /// The gap of a solution with that displacement.
+    /// The gap of the solution, for its `displacement`.
     pub(crate) fn field(&self, displacement: &Array2<f64>) -> Array2<f64> {
         let (undeformed, freedoms, multipliers) = match self {
             Self::Computed {
@@ -36,7 +36,7 @@ impl Gap {
             Self::Known(gap) => return gap.clone(),
         };
         let mut gap = Array2::zeros(undeformed.dim());
-        // It is the user's own, who may have replaced it.
+        // A user may have replaced the displacement.
         let displacement = displacement.as_standard_layout();
         let fields = gap.rows_mut().into_iter().zip(displacement.rows());
         let rows = fields.zip(undeformed.rows()).enumerate();

@@ -3,19 +3,20 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::contact::cascade::patch::{Window, block, bounds};
-use crate::contact::solution::Solution;
+use crate::contact::Solution;
+use crate::contact::cascade::patch::{block, bounds};
+use crate::contact::options::Setup;
+use crate::contact::plan::total_coefficients;
+use crate::contact::problem::constraint::NonNegative;
+use crate::contact::solver::linear_cg;
 use crate::convolution::{Convolution, Workspace};
-use crate::error::{Error, Result};
-use crate::influence::{coefficients_on, memory};
-use crate::parallel::Threads;
-use crate::parallel::check_memory;
-use crate::parallel::dot;
+use crate::error::Result;
+use crate::grid::{Window, full_window};
+use crate::influence::memory;
+use crate::parallel::{Threads, check_memory, dot};
 
-/// Residual of the linear systems. What it leaves in the stiffness is its square.
+/// Residual of the linear systems. The error of the stiffness is its square.
 const TOLERANCE: f64 = 1e-9;
-
-const MAX_ITERATIONS: usize = 10_000;
 
 impl Solution {
     /// The exact tangent of (Σ p dA, Σ p x dA, Σ p y dA) with respect to (δ, s_x, s_y), of the
@@ -31,7 +32,7 @@ impl Solution {
     /// ```
     /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
     /// // A rigid flat punch of radius a on a half-space: dW/dδ = 2 E* a.
-    /// let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
+    /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
     /// let solution = contact.solve(&FlatPunch::new(1.0)?, &Motion::load(1.0), &Options::default())?;
     /// let [[normal, coupled, _], ..] = solution.stiffness()?;
     /// assert!((normal / 2.0 - 1.0).abs() < 0.02 && coupled.abs() < 1e-9);
@@ -42,8 +43,8 @@ impl Solution {
         Ok(self.stiffness_watched(never)?.unwrap_or_default())
     }
 
-    /// [`Solution::stiffness`], asking `watch` after each iteration whether to go on; `None` where
-    /// it broke off.
+    /// [`Solution::stiffness`] that asks `watch` before each iteration whether to go on; `None` where
+    /// `watch` breaks.
     ///
     /// # Errors
     /// Too little memory, or [`Error::NotConverged`].
@@ -51,8 +52,8 @@ impl Solution {
         &self,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<[[f64; 3]; 3]>> {
-        let touching = |i: usize, j: usize| self.pressure[[i, j]] > 0.0;
-        let Some(window) = bounds(&self.grid().shape().map(|n| 0..n), touching) else {
+        let touching = |i: usize, j: usize| NonNegative.is_free(self.pressure[[i, j]]);
+        let Some(window) = bounds(&full_window(self.grid().shape()), touching) else {
             return Ok(Some([[0.0; 3]; 3]));
         };
         let tangent = Tangent::plan(self, window)?;
@@ -69,7 +70,7 @@ impl Solution {
         let mut stiffness = [[0.0; 3]; 3];
         for (j, [b, x]) in columns.iter().enumerate() {
             let mut rest = vec![0.0; b.len()];
-            tangent.apply(x, &mut rest, &mut workspace);
+            tangent.restricted(&tangent.convolution, x, &mut rest, &mut workspace);
             rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
             for (i, [b, y]) in columns.iter().enumerate() {
                 stiffness[i][j] = dot(b, x) + dot(y, &rest);
@@ -79,7 +80,7 @@ impl Solution {
     }
 }
 
-/// K on the contact, and the columns of B, which are centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
+/// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
 struct Tangent {
     convolution: Convolution,
     inverse: Convolution,
@@ -100,11 +101,13 @@ impl Tangent {
             2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
         )?;
         let threads = Arc::new(Threads::new(None)?);
-        let mut coefficients = coefficients_on(&*report.body, grid, report.method, &threads)?;
-        if let Some(counterbody) = &report.counterbody {
-            coefficients += &coefficients_on(&**counterbody, grid, report.method, &threads)?;
-        }
-        let corner = block(&coefficients, &shape.map(|n| 0..n)).to_owned();
+        let setup = Setup {
+            counterbody: report.counterbody.clone(),
+            method: report.method,
+            threads: None,
+        };
+        let coefficients = total_coefficients(&report.body, &setup, grid, &threads)?;
+        let corner = block(&coefficients, &full_window(shape)).to_owned();
         let convolution = Convolution::plan_on(&corner, threads)?;
         let [_, inverse] = convolution.periodic(&corner);
         let contact = block(&solution.pressure, &window);
@@ -115,7 +118,7 @@ impl Tangent {
         Ok(Self {
             inverse,
             convolution,
-            contact: contact.iter().map(|&p| p > 0.0).collect(),
+            contact: contact.iter().map(|&p| NonNegative.is_free(p)).collect(),
             origin: [middle(&coordinates[0]), middle(&coordinates[1])],
             scale: [half(0), half(1)],
             coordinates,
@@ -164,49 +167,19 @@ impl Tangent {
         }
     }
 
-    fn apply(&self, pressure: &[f64], out: &mut [f64], workspace: &mut Workspace) {
-        self.restricted(&self.convolution, pressure, out, workspace);
-    }
-
-    /// K_CC⁻¹ `right`, by preconditioned conjugate gradients.
+    /// K_CC⁻¹ `right`; `None` where `watch` breaks.
     fn solve(
         &self,
         right: &[f64],
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<Vec<f64>>> {
-        let cells = right.len();
-        let mut workspace = self.convolution.workspace();
-        let (mut x, mut r) = (vec![0.0; cells], right.to_vec());
-        let (mut z, mut image) = (vec![0.0; cells], vec![0.0; cells]);
-        let mut direction = vec![0.0; cells];
-        let mut descent_before = f64::INFINITY;
-        let target = TOLERANCE * dot(right, right).sqrt();
-        for _ in 0..MAX_ITERATIONS {
-            if dot(&r, &r).sqrt() <= target {
-                return Ok(Some(x));
-            }
-            if watch().is_break() {
-                return Ok(None);
-            }
-            self.restricted(&self.inverse, &r, &mut z, &mut workspace);
-            let descent = dot(&r, &z);
-            let beta = descent / descent_before;
-            descent_before = descent;
-            for (d, z) in direction.iter_mut().zip(&z) {
-                *d = z + beta * *d;
-            }
-            self.apply(&direction, &mut image, &mut workspace);
-            let step = descent / dot(&direction, &image);
-            for k in 0..cells {
-                x[k] += step * direction[k];
-                r[k] -= step * image[k];
-            }
-        }
-        Err(Error::NotConverged {
-            iterations: MAX_ITERATIONS,
-            residual: dot(&r, &r).sqrt() / dot(right, right).sqrt(),
-            overlap: 0.0,
-            tolerance: TOLERANCE,
-        })
+        let [mut first, mut second] = [self.convolution.workspace(), self.convolution.workspace()];
+        linear_cg::solve(
+            right,
+            |input, out| self.restricted(&self.convolution, input, out, &mut first),
+            |input, out| self.restricted(&self.inverse, input, out, &mut second),
+            TOLERANCE,
+            watch,
+        )
     }
 }

@@ -1,66 +1,74 @@
-//! A finished solution, looked at: balance and warnings.
+//! Warnings about a finished solution.
+
+use std::fmt;
 
 use ndarray::Array2;
 
-use crate::contact::cascade::discretisation::Figures;
-use crate::contact::cascade::patch::{Window, rows};
-use crate::contact::problem::freedoms::Motion;
-use crate::contact::solution::{Balance, FEW_CELLS, LARGE_CONTACT, Warning};
-use crate::grid::Grid;
+use crate::contact::cascade::patch::rows;
+use crate::grid::{Grid, Window};
 use crate::parallel::update_with_largest;
 use crate::surface::{Extent, Surface};
 
-/// What a pressure carries.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Carried {
-    force: f64,
-    moment: [f64; 2],
-    peak: f64,
+/// A warning: something about a solution that its user should know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// The contact touches the edge of the grid, and the shape goes on beyond it.
+    GridEdge,
+    /// The contact reaches the end of a shape of finite length.
+    SharpEnd {
+        /// 0 along x, 1 along y.
+        axis: usize,
+    },
+    /// Fewer than eight cells resolve the contact.
+    Coarse {
+        /// 0 along x, 1 along y.
+        axis: usize,
+        /// Number of cells across the contact.
+        cells: usize,
+    },
+    /// The contact is not small compared with a radius of curvature.
+    LargeContact {
+        /// 0 along x, 1 along y.
+        axis: usize,
+        /// Half-width over radius.
+        ratio: f64,
+    },
 }
 
-impl Carried {
-    /// By the pressure of a window, outside of which there is none.
-    pub(crate) fn by(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
-        let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
-        let mut carried = Self::default();
-        for (row, x) in rows(pressure, window).zip(x) {
-            let ([peak], [force, moment]) =
-                update_with_largest([row, &y], [], |[p, y], []| ([], [p], [p, p * y]));
-            carried.force += force;
-            carried.moment[0] += force * x;
-            carried.moment[1] += moment;
-            carried.peak = carried.peak.max(peak);
-        }
-        let area = grid.cell_area();
-        Self {
-            force: carried.force * area,
-            moment: carried.moment.map(|m| m * area),
-            ..carried
-        }
-    }
+/// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
+const LARGE_CONTACT: f64 = 0.2;
 
-    /// What is compared with coarser grids.
-    pub(crate) fn figures(&self, approach: f64) -> Figures {
-        Figures {
-            peak_pressure: self.peak,
-            approach,
-            load: self.force,
-        }
-    }
+/// Cells across the contact below which pressure errs by some per cent.
+const FEW_CELLS: usize = 8;
 
-    /// Mismatch of force and moments against what was asked.
-    pub(crate) fn balance(&self, grid: &Grid, motion: &Motion) -> Balance {
-        let scale = motion.load.unwrap_or(self.force);
-        let over = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
-        let half = grid.size().map(|length| 0.5 * length);
-        let moment = [0, 1].map(|k| {
-            let eccentricity = || Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0));
-            let asked = motion.moment[k].or_else(eccentricity);
-            asked.map_or(0.0, |m| over((self.moment[k] - m).abs(), scale * half[k]))
-        });
-        Balance {
-            force: motion.load.map_or(0.0, |w| over((self.force - w).abs(), w)),
-            moment,
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let along = |axis: &usize| if *axis == 0 { "x" } else { "y" };
+        match self {
+            Self::GridEdge => {
+                write!(
+                    f,
+                    "the contact touches the edge of the grid; take a larger grid"
+                )
+            }
+            Self::SharpEnd { axis } => write!(
+                f,
+                "the contact reaches the end of the shape along {}: the pressure there is that of \
+                 a sharp edge on a half-space that goes on, and grows as the grid is refined",
+                along(axis)
+            ),
+            Self::Coarse { axis, cells } => write!(
+                f,
+                "the contact is only {cells} cells wide along {}; take a finer grid",
+                along(axis)
+            ),
+            Self::LargeContact { axis, ratio } => write!(
+                f,
+                "the contact is not small compared with the radius along {}: half-width/radius = \
+                 {ratio:.2}; the bodies are taken as half-spaces",
+                along(axis)
+            ),
         }
     }
 }

@@ -1,106 +1,112 @@
-//! A direct method for contacts of a few cells.
+//! An active-set method for contacts of a few cells.
 //!
-//! Where three or four cells carry the load and moments are given, what each of them carries is a
-//! matter of statics: the contact walks from cell to cell, and conjugate gradients may walk in
-//! circles. This active-set method cannot. Lawson & Hanson, Solving Least Squares Problems (1974),
-//! ch. 23, in the form for a given matrix:
+//! Where moments are given and three or four cells carry the load, statics decides what each cell carries.
+//! The contact then moves from cell to cell, and conjugate gradients may move in circles. This method
+//! cannot: Lawson & Hanson, Solving Least Squares Problems (1974), ch. 23, in the form for a given matrix:
 //!
-//! 1. solve on the cells of the contact; while pressures come out negative, go as far towards that
-//!    solution as none does, and drop the cells that reach zero;
+//! 1. solve on the cells of the contact; while pressures come out negative, go towards that solution as
+//!    far as no pressure is negative, and drop the cells that reach zero;
 //! 2. add the cell that overlaps most; end where none overlaps.
 //!
 //! Each solution of step 1 has less energy than the one before, so that no contact comes twice and the
-//! walk ends.
+//! iteration ends.
 //!
-//! Force and moments are not constraints of it, but costs:
+//! Force and moments are costs here, not constraints:
 //!
 //! ```text
 //! minimise ½ pᵀK p + pᵀh + λ₀ᵀ(F − Bᵀp) + |F − Bᵀp|² / 2ε     over p ≥ 0
 //! ```
 //!
-//! of which the multipliers are λ = λ₀ + (F − Bᵀp)/ε. With λ₀ ← λ, again and again, p comes into balance
-//! (Rockafellar, Math. Oper. Res. 1 (1976) 97, doi:10.1287/moor.1.2.97). Thus no start need be
-//! balanced, and λ is defined on every contact, also on one or two cells that leave tilts free: they
-//! keep those of λ₀, unless a moment or an overlap turns them.
+//! The multipliers are λ = λ₀ + (F − Bᵀp)/ε. Repeating λ₀ ← λ brings p into balance (Rockafellar, Math.
+//! Oper. Res. 1 (1976) 97, doi:10.1287/moor.1.2.97). No start need be balanced, and λ is defined on
+//! every contact: one or two cells, which leave tilts free, keep the tilts of λ₀ unless a moment or an
+//! overlap changes them.
 
 use ndarray::ArrayRef2;
 
-use crate::contact::cascade::patch::whole;
-use crate::contact::problem::{Limits, Outcome, Problem, Termination, Watch};
+use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use crate::contact::problem::Problem;
+use crate::contact::problem::constraint::NonNegative;
+use crate::grid::full_window;
 use crate::parallel::dot;
 
-/// Cells of the largest contact that is solved so: factors of its matrix cost less than a convolution
-/// on 64 × 64 cells.
-const FEW: usize = 100;
+/// Cells of the largest contact that this method takes: to factorise its matrix costs less than a
+/// convolution on 64 × 64 cells.
+const LARGEST_CONTACT: usize = 100;
 
-/// Whether a pressure is on so few cells that it may be solved so.
-pub(crate) fn few(p: &[f64]) -> bool {
-    p.iter().filter(|&&p| p > 0.0).take(FEW + 1).count() <= FEW
+/// Whether so few cells carry the pressure `p` that this method may solve the problem.
+pub(crate) fn is_small(p: &[f64]) -> bool {
+    let loaded = p.iter().filter(|&&p| NonNegative.is_free(p));
+    loaded.take(LARGEST_CONTACT + 1).count() <= LARGEST_CONTACT
 }
 
-/// ε times the displacement of a cell under its own unit pressure. Each λ₀ brings balance nearer by
-/// this factor, times the square of cells per half side where the contact is of adjacent cells. With
-/// much less, λ would be rounding alone where the contact does not determine it.
+/// ε times the displacement of a cell under its own unit pressure. Each renewal of λ₀ brings the balance
+/// nearer by this factor, times the square of cells per half side where the cells of the contact are
+/// adjacent. With a much smaller value, λ would be rounding alone where the contact does not determine it.
 const SOFTNESS: f64 = 1e-9;
 
-/// λ₀ without a cell that joins; two or three do, unless rounding is all that is left.
+/// Renewals of λ₀ without a new cell; two or three suffice, unless rounding is all that is left.
 const RENEWALS: usize = 10;
 
-/// Solves from the pressure `p` ≥ 0, which becomes the solution. `coefficients` are those of the
-/// problem's convolution, and λ₀ is `lambda` at first.
+/// Solves from the pressure `p` ≥ 0, which becomes the solution. The problem's convolution was planned
+/// from `coefficients`, and λ₀ starts at `lambda`.
 ///
-/// It ends with [`Termination::IterationLimit`], too, where there are too many cells, or where
-/// rounding is all that is left.
+/// Where there are too many cells, or rounding is all that is left, it ends with
+/// [`Termination::IterationLimit`] as well.
 pub(crate) fn solve(
     problem: &Problem,
     coefficients: &ArrayRef2<f64>,
     p: &mut [f64],
     lambda: [f64; 3],
-    limits: Limits,
+    criteria: StopCriteria,
     watch: &mut Watch,
 ) -> Outcome {
     let mut system = System {
         problem,
         coefficients,
         softness: SOFTNESS / problem.self_influence(),
-        contact: (0..p.len()).filter(|&k| p[k] > 0.0).collect(),
+        contact: (0..p.len())
+            .filter(|&k| NonNegative.is_free(p[k]))
+            .collect(),
         lambda,
     };
     let mut workspace = problem.convolution.workspace();
     let (mut u, mut g) = (vec![0.0; p.len()], vec![0.0; p.len()]);
-    let everywhere = whole(problem.convolution.shape());
+    let everywhere = full_window(problem.convolution.shape());
     let (mut work, mut renewals) = (0.0, 0);
     for iterations in 0.. {
         let Some(lambda) = system.descend(p) else {
             return Outcome {
+                solver: Solver::ActiveSet,
                 termination: Termination::IterationLimit,
                 iterations,
                 work,
                 lambda: system.lambda,
             };
         };
-        let (motion, quality) = problem.judge(p, &everywhere, &mut u, lambda, &mut workspace);
+        let (multipliers, quality) = problem.judge(p, &everywhere, &mut u, lambda, &mut workspace);
         work += problem.convolution.work();
-        let lambda = motion.lambda();
-        problem.gap_into(&u, motion, &mut g);
-        let termination = if quality.meets(limits.tolerance) {
+        let lambda = multipliers.lambda();
+        problem.gap_into(&u, multipliers, &mut g);
+        let termination = if quality.meets(criteria.tolerance) {
             Some(Termination::Converged)
-        } else if watch(iterations, work, quality) {
+        } else if watch(iterations, work, quality).is_break() {
             Some(Termination::Stopped)
         } else {
-            let limited = renewals == RENEWALS || iterations >= limits.max_iterations;
+            let limited = renewals == RENEWALS || iterations >= criteria.max_iterations;
             (limited || quality.overflows()).then_some(Termination::IterationLimit)
         };
         if let Some(termination) = termination {
             return Outcome {
+                solver: Solver::ActiveSet,
                 termination,
                 iterations,
                 work,
                 lambda,
             };
         }
-        if quality.overlap > limits.tolerance {
-            let outside = (0..p.len()).filter(|&k| p[k] <= 0.0);
+        if quality.overlap > criteria.tolerance {
+            let outside = (0..p.len()).filter(|&k| !NonNegative.is_free(p[k]));
             let deepest = outside.min_by(|&a, &b| g[a].total_cmp(&g[b]));
             system.contact.extend(deepest);
             renewals = 0;
@@ -112,38 +118,39 @@ pub(crate) fn solve(
     unreachable!("the loop ends by its limit")
 }
 
-/// The problem on its contact.
+/// The problem on the cells of a contact.
 struct System<'a> {
     problem: &'a Problem<'a>,
     coefficients: &'a ArrayRef2<f64>,
     /// ε
     softness: f64,
-    /// The cells that may have a pressure.
+    /// Cells that may have a pressure.
     contact: Vec<usize>,
     /// λ₀
     lambda: [f64; 3],
 }
 
 impl System<'_> {
-    /// λ₀ ← `lambda`, the multipliers of the last solution, with gap `g`; and further, until the next
-    /// cell touches, where the contact cannot carry the moments and does not hinder that motion.
+    /// λ₀ ← `lambda`, the multipliers of the last solution, whose gap is `g`. Where the contact cannot carry
+    /// the moments and does not hinder the motion, λ₀ goes on until the next cell touches.
     fn renew(&mut self, lambda: [f64; 3], g: &[f64]) {
-        // Of a motion that a contact hinders: far more than rounding leaves.
+        // Motion of a contact cell, relative to the largest, above which the contact hinders it: far more
+        // than rounding leaves.
         const HINDERED: f64 = 1e-6;
         let change = [0, 1, 2].map(|k| lambda[k] - self.lambda[k]);
         let mut closing = vec![0.0; g.len()];
         self.problem
             .freedoms
             .for_each(change, |k, b| closing[k] = b);
-        let most = closing.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let largest = closing.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let free = self
             .contact
             .iter()
-            .all(|&k| closing[k].abs() <= HINDERED * most);
+            .all(|&k| closing[k].abs() <= HINDERED * largest);
         let touching = g
             .iter()
             .zip(&closing)
-            .filter(|(_, c)| **c > HINDERED * most);
+            .filter(|(_, c)| **c > HINDERED * largest);
         let further = touching
             .map(|(g, c)| (g / c).max(0.0))
             .fold(f64::INFINITY, f64::min);
@@ -155,40 +162,40 @@ impl System<'_> {
         self.lambda = [0, 1, 2].map(|k| lambda[k] + further * change[k]);
     }
 
-    /// Step 1: from `p` to the solution on the contact, less the cells that lose their pressure on the
-    /// way. Returns λ; nothing where there are too many cells, or rounding is all that is left.
+    /// Step 1: from `p` to the solution on the contact, without the cells that lose their pressure on the
+    /// way. Returns λ, or `None` where there are too many cells or rounding is all that is left.
     fn descend(&mut self, p: &mut [f64]) -> Option<[f64; 3]> {
-        if self.contact.len() > FEW {
+        if self.contact.len() > LARGEST_CONTACT {
             return None;
         }
         loop {
             let (aim, lambda) = self.solve()?;
-            // The part of the way to it on which a pressure that is to vanish stays positive.
-            let parts = self.contact.iter().zip(&aim).map(|(&k, &aim)| match p[k] {
+            // Fraction of the way to the solution after which the pressure of each cell is 0.
+            let ends = self.contact.iter().zip(&aim).map(|(&k, &aim)| match p[k] {
                 _ if aim > 0.0 => f64::INFINITY,
                 p => p / (p - aim).max(f64::MIN_POSITIVE),
             });
-            let parts: Vec<f64> = parts.collect();
-            let length = parts.iter().fold(1.0, |a: f64, &b| a.min(b));
-            // A cell that overlaps takes a pressure, but where the overlap is rounding.
+            let ends: Vec<f64> = ends.collect();
+            let length = ends.iter().fold(1.0, |a: f64, &b| a.min(b));
+            // A cell that overlaps takes a pressure, unless the overlap is rounding.
             if length <= 0.0 {
                 return None;
             }
-            for ((&k, aim), &part) in self.contact.iter().zip(aim).zip(&parts) {
-                p[k] = if part <= length {
+            for ((&k, aim), &end) in self.contact.iter().zip(aim).zip(&ends) {
+                p[k] = if end <= length {
                     0.0
                 } else {
                     p[k] + length * (aim - p[k])
                 };
             }
-            if parts.iter().all(|part| part.is_infinite()) {
+            if ends.iter().all(|end| end.is_infinite()) {
                 return Some(lambda);
             }
-            self.contact.retain(|&k| p[k] > 0.0);
+            self.contact.retain(|&k| NonNegative.is_free(p[k]));
         }
     }
 
-    /// Pressure on the contact and λ where the gap vanishes on all of it, of either sign.
+    /// Pressure of either sign on the contact, and λ, for which the gap vanishes on all of it.
     ///
     /// ```text
     /// K p = Bλ − h,  Bᵀp + ε (λ − λ₀) = F     K = L Lᵀ, Y = L⁻¹B, y = L⁻¹(h − Bλ₀)
@@ -228,7 +235,7 @@ impl System<'_> {
     }
 }
 
-/// L of K = L Lᵀ, by rows up to the diagonal; none where a pivot is not positive.
+/// Cholesky factor L of K = L Lᵀ, by rows up to the diagonal; `None` where a pivot is not positive.
 fn cholesky(cells: usize, matrix: impl Fn(usize, usize) -> f64) -> Option<Vec<Vec<f64>>> {
     let mut lower: Vec<Vec<f64>> = Vec::with_capacity(cells);
     for a in 0..cells {

@@ -1,6 +1,6 @@
 //! Memory of an iteration.
 
-use crate::parallel::Passes;
+use crate::parallel::Rows;
 
 /// Memory of the arrays of an iteration; it may be larger than needed.
 #[derive(Debug, Default)]
@@ -11,31 +11,35 @@ pub(crate) struct Memory {
     z: Vec<f64>,
     direction: Vec<f64>,
     response: Vec<f64>,
+    trial: Vec<f64>,
     images: [Vec<f64>; 3],
 }
 
 /// Arrays of an iteration, as long as there are cells.
-pub(crate) struct Arrays<'a> {
+pub(super) struct Arrays<'a> {
     /// Displacement K p.
-    pub(crate) u: &'a mut [f64],
-    /// −g on the contact, which are the cells that may have a pressure, and not 0 there; 0 elsewhere.
-    pub(crate) r: &'a mut [f64],
-    /// That of the iteration before.
-    pub(crate) r_before: &'a mut [f64],
-    /// The inverse applied to the residual; once the direction is known, the next pressure, and then how far
-    /// that is from the last.
-    pub(crate) z: &'a mut [f64],
-    pub(crate) direction: &'a mut [f64],
-    /// K applied to the last direction or change.
-    pub(crate) response: &'a mut [f64],
-    /// The inverse applied to the loaded freedoms on a contact; of the others whatever there is.
-    pub(crate) images: [&'a mut [f64]; 3],
+    pub(super) u: &'a mut [f64],
+    /// Residual −g on contact cells, 0 elsewhere.
+    pub(super) r: &'a mut [f64],
+    /// Residual of the iteration before.
+    pub(super) r_before: &'a mut [f64],
+    /// Preconditioned residual M r.
+    pub(super) z: &'a mut [f64],
+    /// Search direction.
+    pub(super) direction: &'a mut [f64],
+    /// K applied to the last direction, or to the last change of the pressure.
+    pub(super) response: &'a mut [f64],
+    /// Trial pressure of a step on which cells leave, and then the change to it.
+    pub(super) trial: &'a mut [f64],
+    /// M applied to each loaded degree of freedom on a contact; the others are not read.
+    pub(super) images: [&'a mut [f64]; 3],
 }
 
 impl Memory {
-    /// Makes it large enough for the cells of `passes`. Whatever a solve may need, up to `most` cells, is
-    /// asked for at once, as the plan's memory was checked for; most systems hand it out as it is written.
-    pub(crate) fn fit(&mut self, passes: &Passes, most: usize, loaded: [bool; 3]) {
+    /// Makes the arrays long enough for the cells of `rows`. A new array gets room for `most` cells, the
+    /// largest number that a solve may need, which the plan's memory was checked for; most systems hand
+    /// memory out only as it is written.
+    pub(crate) fn reserve(&mut self, rows: &Rows, most: usize, loaded: [bool; 3]) {
         let Self {
             u,
             r,
@@ -43,22 +47,24 @@ impl Memory {
             z,
             direction,
             response,
+            trial,
             images,
         } = self;
-        let arrays = [u, r, r_before, z, direction, response];
+        let arrays = [u, r, r_before, z, direction, response, trial];
         let images = images.iter_mut().zip(loaded);
         let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
-        let short = |array: &&mut Vec<f64>| array.len() < passes.cells();
+        let short = |array: &&mut Vec<f64>| array.len() < rows.cells();
         let mut short: Vec<_> = arrays.into_iter().chain(images).filter(short).collect();
         for array in &mut short {
-            if array.capacity() < passes.cells() {
-                **array = Vec::with_capacity(most.max(passes.cells()));
+            if array.capacity() < rows.cells() {
+                **array = Vec::with_capacity(most.max(rows.cells()));
             }
         }
-        passes.zero(&mut short);
+        rows.zero(&mut short);
     }
 
-    pub(crate) fn arrays(&mut self, cells: usize) -> Arrays<'_> {
+    /// The first `cells` elements of each array.
+    pub(super) fn arrays(&mut self, cells: usize) -> Arrays<'_> {
         Arrays {
             u: &mut self.u[..cells],
             r: &mut self.r[..cells],
@@ -66,6 +72,7 @@ impl Memory {
             z: &mut self.z[..cells],
             direction: &mut self.direction[..cells],
             response: &mut self.response[..cells],
+            trial: &mut self.trial[..cells],
             images: self.images.each_mut().map(|image| {
                 let kept = cells.min(image.len());
                 &mut image[..kept]
@@ -73,8 +80,8 @@ impl Memory {
         }
     }
 
-    /// The residual becomes that of the iteration before.
-    pub(crate) fn keep_residual(&mut self) {
+    /// Makes the residual that of the iteration before.
+    pub(super) fn keep_residual(&mut self) {
         std::mem::swap(&mut self.r, &mut self.r_before);
     }
 }

@@ -1,0 +1,190 @@
+//! One solve, as named steps in order.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use ndarray::Array2;
+
+use super::cascade::discretisation::{GridResult, estimate};
+use super::cascade::{Cascade, Coarser};
+use super::motion::Motion;
+use super::options::{Algorithm, Options};
+use super::plan::Plan;
+use super::problem::freedoms::{Freedoms, OVERFLOW};
+use super::problem::{Problem, Quality};
+use super::solution::Solution;
+use super::solution::carried::Carried;
+use super::solution::fields::{Fields, slice};
+use super::solution::gap::Gap;
+use super::solution::report::{Progress, Report};
+use super::solution::warnings::warnings;
+use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
+use super::start::{Sampled, checked_gaps, given_pressure, uniform_pressure};
+use crate::error::Result;
+use crate::parallel::Rows;
+use crate::surface::Surface;
+
+/// Certificates that may fail on a window that need not open, by rounding of the displacement.
+const RETRIES: usize = 2;
+
+impl Plan {
+    /// Presses `shape` into the body, on this thread and on threads of the plan that are free. Where `shape`
+    /// was sampled last, its gaps are not computed again.
+    pub(super) fn solve<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        let start = Instant::now();
+        let freedoms = Freedoms::new(motion, &self.grid)?;
+        let criteria = options.stop_criteria()?;
+        let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
+        let mut report = Report::planned(self, motion, criteria.tolerance);
+        let unit = self.convolution.work();
+        let mut watch = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
+            report.count(iterations, work / unit, quality);
+            report.seconds = start.elapsed().as_secs_f64();
+            progress(&report)
+        };
+
+        // The gap on the finest grid; at the same time coarser solutions, since fetching memory may take
+        // long and the coarsest grids are too small for several threads.
+        let cascades = options.algorithm == Algorithm::Cascade;
+        let mut coarser = |gap: Option<&Array2<f64>>| {
+            Coarser::solve(&freedoms, gap, shape, &self.levels, criteria, &mut watch)
+        };
+        let (finest, ahead) = rows.both(
+            || self.finest_gap(shape, sampled, &freedoms, &rows),
+            || (cascades && options.initial.is_none()).then(|| coarser(None)),
+        );
+        let (gap, mut fields) = finest?;
+        let problem = Problem {
+            convolution: &self.convolution,
+            freedoms: &freedoms,
+            gap: slice(&gap),
+        };
+
+        // The start: a given pressure, or the coarser solutions.
+        let initial = given_pressure(&problem, options.initial.as_deref())?;
+        let cascade = match &initial {
+            _ if !cascades => None,
+            Some(given) => Some(Cascade::from(given, &problem, &gap, &self.levels)),
+            None => (ahead.flatten())
+                .or_else(|| coarser(Some(&gap)))
+                .and_then(|coarser| Cascade::after(coarser, &problem, &gap, &self.levels)),
+        };
+
+        // The iteration.
+        let mut results = Vec::new();
+        let outcome = if let Some(mut cascade) = cascade {
+            results = std::mem::take(&mut cascade.results);
+            solve_in_window(&problem, cascade, &mut fields, criteria, &mut watch)
+        } else {
+            fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
+            polonsky_keer::solve(&problem, &mut fields, criteria, &mut watch)
+        };
+
+        // The certificate: everything that is reported is computed afresh from the pressure.
+        let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
+        if !quality.finite || quality.overflows() {
+            return Err(OVERFLOW);
+        }
+        let (approach, tilt) = freedoms.rigid_motion(fields.multipliers.lambda());
+        let (pressure, window) = (&fields.pressure, &fields.window);
+        let (carried, warnings) = rows.both(
+            || Carried::by(pressure, window, &self.grid),
+            || warnings(pressure, window, &self.grid, shape),
+        );
+        report.count(outcome.iterations, outcome.work / unit, quality);
+        report.termination = outcome.termination;
+        report.solver = Some(outcome.solver);
+        if report.converged() {
+            results.push(GridResult {
+                peak_pressure: carried.peak,
+                approach,
+                load: carried.force,
+            });
+            report.discretisation = estimate(&results);
+        }
+        report.balance = carried.balance(&self.grid, motion);
+        report.warnings = warnings;
+        report.seconds = start.elapsed().as_secs_f64();
+        Ok(Solution {
+            pressure: fields.pressure,
+            displacement: fields.displacement,
+            approach,
+            tilt,
+            report,
+            gap: Gap::Computed {
+                undeformed: gap,
+                freedoms: Box::new(freedoms),
+                multipliers: fields.multipliers,
+            },
+        })
+    }
+
+    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution.
+    fn finest_gap<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        freedoms: &Freedoms,
+        rows: &Rows,
+    ) -> Result<(Arc<Array2<f64>>, Fields)> {
+        let mut gap = sampled.gaps(shape, || checked_gaps(shape, &self.grid, rows))?;
+        freedoms.check_feasible(&gap)?;
+        if freedoms.any_prescribed() {
+            freedoms.prescribe(Arc::make_mut(&mut gap));
+        }
+        Ok((gap, Fields::new(self.grid.shape(), rows)))
+    }
+}
+
+/// Solves in a window, which opens until nothing overlaps on the whole grid. Where the cascade breaks down
+/// by rounding, the reference algorithm goes on from there.
+fn solve_in_window(
+    problem: &Problem,
+    mut cascade: Cascade,
+    fields: &mut Fields,
+    criteria: StopCriteria,
+    watch: &mut Watch,
+) -> Outcome {
+    let (mut iterations, mut retries) = (0, 0);
+    loop {
+        let outcome = cascade.solve(fields, criteria.after(iterations), watch);
+        let quality = fields.certify(problem, outcome.lambda);
+        cascade.work += problem.convolution.work();
+        iterations += outcome.iterations;
+        let outcome = Outcome {
+            iterations,
+            work: cascade.work,
+            ..outcome
+        };
+        if outcome.termination == Termination::Stopped || quality.meets(criteria.tolerance) {
+            return outcome;
+        }
+        if iterations >= criteria.max_iterations {
+            return Outcome {
+                termination: Termination::IterationLimit,
+                ..outcome
+            };
+        }
+        let converged = outcome.termination == Termination::Converged;
+        if converged && cascade.open(problem, fields) {
+            continue;
+        }
+        retries += 1;
+        if !converged || retries > RETRIES {
+            let (left, before) = (criteria.after(iterations), cascade.work);
+            let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
+                watch(iterations + more, before + work, quality)
+            });
+            fields.certify(problem, end.lambda);
+            return end.after(iterations, before);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The report of a solve.
+
+use std::ops::ControlFlow;
+
+use super::carried::Balance;
+use super::warnings::Warning;
+use crate::contact::cascade::discretisation::Discretisation;
+use crate::contact::motion::Motion;
+use crate::contact::plan::Plan;
+use crate::contact::problem::Quality;
+use crate::contact::solver::{Solver, Termination};
+use crate::grid::Grid;
+use crate::influence::Method;
+use crate::response::Body;
+
+/// Course of a solve and quality of its solution. All numbers are computed afresh at the end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// How the iteration ended.
+    pub termination: Termination,
+    /// Iteration that produced the solution, also where the algorithm that was asked for fell back to
+    /// another. `None` where it is not known, as in solutions from files of format 0.
+    pub solver: Option<Solver>,
+    /// Iterations done.
+    pub iterations: usize,
+    /// Work done, in convolutions of the whole grid. Convolutions of coarser grids, of windows and of the
+    /// preconditioner count by the points P of their meshes, as P log P.
+    pub convolutions: f64,
+    /// Complementarity: Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
+    pub residual: f64,
+    /// max(−g, 0) / max u over the cells that can touch.
+    pub overlap: f64,
+    /// Errors of force and moments.
+    pub balance: Balance,
+    /// Discretisation errors, estimated from coarser grids. `None` where no coarser grid was solved: on
+    /// small grids, from a given pressure, by another algorithm, or without convergence.
+    pub discretisation: Option<Discretisation>,
+    /// Warnings: what the user should know.
+    pub warnings: Vec<Warning>,
+    /// The grid.
+    pub grid: Grid,
+    /// The body that the shape was pressed into.
+    pub body: Body,
+    /// The body that carries the shape; rigid where `None`.
+    pub counterbody: Option<Body>,
+    /// How the influence coefficients were computed.
+    pub method: Method,
+    /// Load or approach and tilts that were asked for.
+    pub motion: Motion,
+    /// The tolerance that was asked for.
+    pub tolerance: f64,
+    /// Seconds that the solve took, without planning.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// Whether the tolerance was met.
+    pub fn converged(&self) -> bool {
+        self.termination == Termination::Converged
+    }
+
+    /// A report with nothing iterated yet.
+    pub(in crate::contact) fn planned(plan: &Plan, motion: &Motion, tolerance: f64) -> Self {
+        Self {
+            termination: Termination::IterationLimit,
+            solver: None,
+            iterations: 0,
+            convolutions: 0.0,
+            residual: 0.0,
+            overlap: 0.0,
+            balance: Balance::default(),
+            discretisation: None,
+            warnings: Vec::new(),
+            grid: plan.grid,
+            body: plan.body.clone(),
+            counterbody: plan.setup.counterbody.clone(),
+            method: plan.setup.method,
+            motion: *motion,
+            tolerance,
+            seconds: 0.0,
+        }
+    }
+
+    /// Counts work and quality so far.
+    pub(in crate::contact) fn count(
+        &mut self,
+        iterations: usize,
+        convolutions: f64,
+        quality: Quality,
+    ) {
+        self.iterations = iterations;
+        self.convolutions = convolutions;
+        self.residual = quality.residual;
+        self.overlap = quality.overlap;
+    }
+}
+
+/// Callback that gets the report of each iteration and breaks to stop. It may be called on one of the
+/// plan's threads.
+pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;

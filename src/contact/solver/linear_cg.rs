@@ -1,0 +1,59 @@
+//! Preconditioned conjugate gradients for a linear system, without constraints.
+//!
+//! Hestenes & Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409, doi:10.6028/jres.049.044.
+
+use std::ops::ControlFlow;
+
+use super::conjugacy::Conjugacy;
+use crate::error::{Error, Result};
+use crate::parallel::dot;
+
+/// Iterations after which a system counts as unsolvable; solvable ones take some tens.
+const MAX_ITERATIONS: usize = 10_000;
+
+/// Solves A x = `right` to a residual of `tolerance`, relative to `right`. `apply` computes A v, and
+/// `precondition` an approximation of A⁻¹ v. Both must be symmetric and positive definite. `None` where
+/// `watch`, which is asked before each iteration, breaks.
+///
+/// # Errors
+/// [`Error::NotConverged`].
+pub(crate) fn solve(
+    right: &[f64],
+    mut apply: impl FnMut(&[f64], &mut [f64]),
+    mut precondition: impl FnMut(&[f64], &mut [f64]),
+    tolerance: f64,
+    watch: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<Option<Vec<f64>>> {
+    let cells = right.len();
+    let (mut x, mut r) = (vec![0.0; cells], right.to_vec());
+    let (mut z, mut image) = (vec![0.0; cells], vec![0.0; cells]);
+    let mut direction = vec![0.0; cells];
+    let mut conjugacy = Conjugacy::default();
+    let size = dot(right, right).sqrt();
+    for _ in 0..MAX_ITERATIONS {
+        if dot(&r, &r).sqrt() <= tolerance * size {
+            return Ok(Some(x));
+        }
+        if watch().is_break() {
+            return Ok(None);
+        }
+        precondition(&r, &mut z);
+        let descent = dot(&r, &z);
+        let beta = conjugacy.beta(descent, 0.0);
+        for (d, z) in direction.iter_mut().zip(&z) {
+            *d = z + beta * *d;
+        }
+        apply(&direction, &mut image);
+        let step = descent / dot(&direction, &image);
+        for k in 0..cells {
+            x[k] += step * direction[k];
+            r[k] -= step * image[k];
+        }
+    }
+    Err(Error::NotConverged {
+        iterations: MAX_ITERATIONS,
+        residual: dot(&r, &r).sqrt() / size,
+        overlap: 0.0,
+        tolerance,
+    })
+}

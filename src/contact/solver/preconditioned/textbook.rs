@@ -1,0 +1,1 @@
+//! The iteration of [`super`] with one operation a line, as an oracle.
