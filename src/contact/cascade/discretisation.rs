@@ -55,3 +55,67 @@ pub(crate) fn estimate(results: &[GridResult]) -> Option<Discretisation> {
         load: error(|f| f.load)?,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{GridResult, estimate};
+
+    /// Results of grids, from the coarsest on: of the peak as they are, of approach and load scaled.
+    fn error(values: &[f64]) -> Option<[f64; 3]> {
+        let figures: Vec<GridResult> = (values.iter())
+            .map(|&value| GridResult {
+                peak_pressure: 5.0 + value,
+                approach: 1.0 - 0.1 * value,
+                load: 3.0 * value,
+            })
+            .collect();
+        estimate(&figures)
+            .map(|found| [found.peak_pressure, 10.0 * found.approach, found.load / 3.0])
+    }
+
+    fn assert_error(values: &[f64], expected: f64) {
+        for found in error(values).expect("two grids or more") {
+            assert!(
+                (found - expected).abs() < 1e-12 * expected.max(1e-2),
+                "{values:?}: {found} {expected}"
+            );
+        }
+    }
+
+    /// Values f + c dx^q, with dx = 8, 4, 2, 1: the error of the last is c.
+    #[test]
+    fn known_rates_give_the_error_that_remains() {
+        for rate in [1.0, 1.5, 2.0] {
+            for c in [0.02, -0.02] {
+                let values = [8.0_f64, 4.0, 2.0, 1.0].map(|dx| 0.3 + c * dx.powf(rate));
+                assert_error(&values, c.abs());
+                assert_error(&values[1..], c.abs());
+            }
+        }
+    }
+
+    /// A rate above 2 counts as 2, one below 1 as 1, and the one that cannot be seen from two grids as 1.
+    #[test]
+    fn rates_are_between_one_and_two() {
+        // Changes 0.64 and 0.04: over 4 the first is 0.16, and over 2² − 1 that is the larger.
+        assert_error(&[0.0, 0.64, 0.68], 0.16 / 3.0);
+        assert_error(&[0.0, 0.04, 0.68], 0.64);
+        assert_error(&[0.0, 0.04], 0.04);
+    }
+
+    /// Where the last change is small by chance, the two before count, scaled to the finest grid; the fourth does
+    /// not.
+    #[test]
+    fn a_small_change_by_chance_is_no_convergence() {
+        assert_error(&[0.0, 0.64, 0.80, 0.80], 0.16 / 4.0 / 3.0);
+        assert_error(&[0.0, 0.96, 0.97, 0.97], 0.96 / 16.0 / 3.0);
+        assert_error(&[0.0, 9.0, 9.96, 9.97, 9.97], 0.96 / 16.0 / 3.0);
+        assert_error(&[0.5, 0.5, 0.5], 0.0);
+    }
+
+    #[test]
+    fn one_grid_tells_nothing() {
+        assert_eq!(error(&[]), None);
+        assert_eq!(error(&[0.3]), None);
+    }
+}

@@ -174,3 +174,94 @@ impl Patch {
         Self { window, values }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array2;
+
+    use super::{MARGIN, Patch};
+
+    /// A linear field on the coarse grid of a fine one of `shape` is the same linear field on the fine grid, but
+    /// for the outermost cells of a halved direction, which lie beyond all coarse centres.
+    #[test]
+    fn linear_fields_are_reproduced() {
+        for (shape, halved) in [
+            ([24_usize, 30], [true, true]),
+            ([25, 31], [true, true]),
+            ([24, 15], [true, false]),
+            ([9, 30], [false, true]),
+            ([9, 15], [false, false]),
+        ] {
+            // A coordinate in fine cells.
+            let centre = |k: usize, i: usize| {
+                if halved[k] {
+                    2.0 * i as f64 + 0.5
+                } else {
+                    i as f64
+                }
+            };
+            let field = |x: f64, y: f64| 2.0 + 0.25 * x - 0.05 * y;
+            let coarse = [0, 1].map(|k| {
+                if halved[k] {
+                    shape[k].div_ceil(2)
+                } else {
+                    shape[k]
+                }
+            });
+            let values = Array2::from_shape_fn(coarse, |(i, j)| field(centre(0, i), centre(1, j)));
+            let fine = Patch::of_grid(&values).interpolated(shape, halved);
+            assert_eq!(fine.window, shape.map(|n| 0..n));
+            let inside = |k: usize, i: usize| {
+                !halved[k] || (0.5..=centre(k, coarse[k] - 1)).contains(&(i as f64))
+            };
+            for i in (0..shape[0]).filter(|&i| inside(0, i)) {
+                for j in (0..shape[1]).filter(|&j| inside(1, j)) {
+                    let apart = fine.at(i, j) - field(i as f64, j as f64);
+                    assert!(apart.abs() < 1e-14, "{halved:?} {i} {j}: {apart:e}");
+                }
+            }
+        }
+    }
+
+    /// One coarse cell becomes the cells within it alone, with 3/4 of its pressure for each halved direction, in a
+    /// window of [`MARGIN`] more cells on every side.
+    #[test]
+    fn a_contact_is_not_widened() {
+        for halved in [[true, true], [true, false], [false, true]] {
+            let shape = halved.map(|halved| if halved { 96 } else { 48 });
+            let mut values = Array2::zeros([48, 48]);
+            values[[20, 30]] = 16.0;
+            let fine = Patch::of_grid(&values).interpolated(shape, halved);
+            let contact = [0, 1].map(|k| if halved[k] { 2 } else { 1 } * [20, 30][k]);
+            let contact = [0, 1].map(|k| contact[k]..contact[k] + if halved[k] { 2 } else { 1 });
+            assert_eq!(fine.contact(), Some(contact.clone()));
+            assert_eq!(
+                fine.window,
+                contact.clone().map(|c| c.start - MARGIN..c.end + MARGIN)
+            );
+            let expected = if halved == [true; 2] { 9.0_f64 } else { 12.0 };
+            for i in contact[0].clone() {
+                for j in contact[1].clone() {
+                    assert_eq!(fine.at(i, j).to_bits(), expected.to_bits());
+                }
+            }
+        }
+    }
+
+    /// A pressure in a window alone, which ends with the grid, gives what it gives on the whole grid.
+    #[test]
+    fn windows_change_nothing() {
+        let values = Array2::from_shape_fn([40, 33], |(i, j)| {
+            if i > 33 && (5..12).contains(&j) {
+                (i + 3 * j) as f64
+            } else {
+                0.0
+            }
+        });
+        let whole = Patch::of_grid(&values);
+        let part = whole.moved([31..40, 3..15]);
+        let [a, b] = [&whole, &part].map(|p| p.interpolated([79, 66], [true, true]));
+        assert_eq!(a.window, [62..79, 4..30]);
+        assert_eq!((a.window, a.values), (b.window, b.values));
+    }
+}

@@ -121,3 +121,116 @@ impl Freedoms {
 fn largest(values: [f64; 3]) -> f64 {
     values.iter().fold(0.0_f64, |a, b| a.max(b.abs()))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::contact::motion::Motion;
+    use crate::contact::problem::freedoms::Freedoms;
+    use crate::error::Result;
+    use crate::grid::Grid;
+
+    const CELLS: [usize; 2] = [13, 18];
+
+    /// Freedoms under a load of 2 with these eccentricities, on a grid 2 × 3.
+    fn freedoms(eccentricity: [Option<f64>; 2]) -> Result<Freedoms> {
+        let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.4, -0.3])?;
+        let motion = Motion {
+            eccentricity,
+            ..Motion::load(2.0)
+        };
+        Freedoms::new(&motion, &grid)
+    }
+
+    /// Pressures between 0.5 and 2.5 in no order, 0 at every seventh cell.
+    fn pressure() -> Vec<f64> {
+        let p = |k: usize| {
+            if k.is_multiple_of(7) {
+                0.0
+            } else {
+                0.5 + (k * 37 % 101) as f64 / 50.0
+            }
+        };
+        (0..CELLS[0] * CELLS[1]).map(p).collect()
+    }
+
+    #[test]
+    fn a_load_alone_scales_the_pressure() -> Result<()> {
+        let freedoms = freedoms([None, None])?;
+        let before = pressure();
+        let mut p = before.clone();
+        assert!(freedoms.balance(&mut p));
+        let factor = 2.0 / (freedoms.cell_area * before.iter().sum::<f64>());
+        for (p, before) in p.iter().zip(&before) {
+            assert!((p - factor * before).abs() <= 1e-13 * factor * before);
+        }
+        assert!(!freedoms.balance(&mut vec![0.0; before.len()]));
+        Ok(())
+    }
+
+    /// The load is 2 and acts at the eccentricity; p/p_before is affine in x and y where it is positive, and the
+    /// affine function is negative where the pressure vanished. Both to the rounding of a few hundred cells.
+    #[test]
+    fn load_and_moments_by_an_affine_factor() -> Result<()> {
+        let at = [0.95, -0.9];
+        let freedoms = freedoms(at.map(Some))?;
+        let before = pressure();
+        let mut p = before.clone();
+        assert!(freedoms.balance(&mut p));
+        let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.4, -0.3])?;
+        let (x, y) = (grid.x(), grid.y());
+        let place = |k: usize| [x[k / CELLS[1]], y[k % CELLS[1]]];
+        let mut sums = [0.0; 3];
+        for (k, p) in p.iter().enumerate() {
+            let [x, y] = place(k);
+            for (sum, term) in sums.iter_mut().zip([1.0, x, y]) {
+                *sum += p * term * grid.cell_area();
+            }
+        }
+        for (sum, expected) in sums.iter().zip([2.0, 2.0 * at[0], 2.0 * at[1]]) {
+            assert!((sum - expected).abs() < 1e-12, "{sums:?}");
+        }
+        // Slopes from three cells that kept their pressure, in the corner towards the load point.
+        let ratio = |i: usize, j: usize| p[i * CELLS[1] + j] / before[i * CELLS[1] + j];
+        let [i, j] = [CELLS[0] - 2, 1];
+        let sx = (ratio(i, j) - ratio(i - 3, j)) / (x[i] - x[i - 3]);
+        let sy = (ratio(i, j + 3) - ratio(i, j)) / (y[j + 3] - y[j]);
+        let mut lost = 0;
+        for (k, &p) in p.iter().enumerate().filter(|&(k, _)| before[k] > 0.0) {
+            let [a, b] = place(k);
+            let affine = ratio(i, j) + sx * (a - x[i]) + sy * (b - y[j]);
+            let expected = (before[k] * affine).max(0.0);
+            assert!((p - expected).abs() < 1e-11, "{k}: {p} {expected}");
+            lost += usize::from(p <= 0.0);
+        }
+        assert!(lost > 10, "{lost}");
+        Ok(())
+    }
+
+    /// Pressures at x < 0.4 alone carry no load at x = 0.5, and one row of cells no load beside it.
+    #[test]
+    fn impossible_moments_are_refused() -> Result<()> {
+        let half = CELLS[0] / 2 * CELLS[1];
+        let mut p = pressure();
+        p[half..].fill(0.0);
+        assert!(!freedoms([Some(0.5), None])?.balance(&mut p.clone()));
+        assert!(freedoms([Some(0.0), Some(0.1)])?.balance(&mut p.clone()));
+        p[CELLS[1]..].fill(0.0);
+        assert!(!freedoms([Some(0.0), None])?.balance(&mut p));
+        Ok(())
+    }
+
+    /// A mismatch of 2e-13 of the force is rounding, of force and scaled moments alike.
+    #[test]
+    fn on_target_within_rounding() -> Result<()> {
+        let freedoms = freedoms([Some(0.5), None])?;
+        let [f, fx, _] = freedoms.target;
+        for (mismatch, expected) in [(1e-13, true), (4e-13, false)] {
+            assert_eq!(freedoms.on_target([f, fx + mismatch * f, 7.0]), expected);
+            assert_eq!(
+                freedoms.on_target([f * (1.0 - mismatch), fx, 7.0]),
+                expected
+            );
+        }
+        Ok(())
+    }
+}

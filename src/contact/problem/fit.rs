@@ -257,3 +257,124 @@ pub(crate) fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3])
         *sum += value;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::contact::motion::Motion;
+    use crate::contact::problem::freedoms::Freedoms;
+    use crate::error::Result;
+    use crate::grid::Grid;
+    use crate::parallel::{Rows, Threads, ZERO};
+
+    const CELLS: [usize; 2] = [9, 14];
+
+    /// Freedoms of a load that may tilt both ways, on a grid off the origin.
+    fn freedoms() -> Result<Freedoms> {
+        let motion = Motion {
+            eccentricity: [Some(0.1), Some(0.2)],
+            ..Motion::load(1.0)
+        };
+        let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.1, 0.2])?;
+        Freedoms::new(&motion, &grid)
+    }
+
+    /// λ that fits `values` where `p` is positive.
+    fn fit(freedoms: &Freedoms, p: &[f64], values: &[f64]) -> Result<[f64; 3]> {
+        let threads = Threads::new(Some(1))?;
+        let rows = Rows::new(&freedoms.columns, &threads);
+        let sums = rows.each([p, values, values], [], |row, fields, []| {
+            freedoms.fit_row(row, fields, [], |[p, v, _, _], []| ([], [p, v, ZERO]))
+        });
+        Ok(freedoms.fitted(sums))
+    }
+
+    /// An exact plane over the contact is found, whatever there is beside it, and the projection leaves nothing
+    /// of it: 1e-14 is the rounding of a hundred cells.
+    #[test]
+    fn a_plane_is_found() -> Result<()> {
+        let freedoms = freedoms()?;
+        let lambda = [0.7, -1.3, 0.4];
+        let cells = CELLS[0] * CELLS[1];
+        let p: Vec<f64> = (0..cells).map(|k| (k * k % 11) as f64 - 2.0).collect();
+        let mut values = vec![0.0; cells];
+        freedoms.for_each(lambda, |k, b| {
+            values[k] = if p[k] > 0.0 { b } else { f64::INFINITY };
+        });
+        let found = fit(&freedoms, &p, &values)?;
+        for k in 0..3 {
+            assert!((found[k] - lambda[k]).abs() < 1e-14, "{found:?}");
+        }
+        let member: Vec<f64> = p.iter().map(|p| p.max(0.0)).collect();
+        for (value, p) in values.iter_mut().zip(&p) {
+            *value = if *p > 0.0 { *value } else { 3.0 };
+        }
+        freedoms.project(&mut values, &member, &vec![0.0; cells]);
+        assert!(values.iter().all(|v| v.abs() < 1e-14));
+        Ok(())
+    }
+
+    /// Moments are those of plain sums, and the best plane through other values leaves a mismatch without them.
+    #[test]
+    fn the_mismatch_has_no_moments() -> Result<()> {
+        let freedoms = freedoms()?;
+        let cells = CELLS[0] * CELLS[1];
+        let p = vec![1.0; cells];
+        let mut values: Vec<f64> = (0..cells).map(|k| (k * k % 23) as f64).collect();
+        let [x, y] = &freedoms.columns;
+        let mut sums = [0.0; 3];
+        for (k, value) in values.iter().enumerate() {
+            let (x, y) = (x[k / CELLS[1]], y[k % CELLS[1]]);
+            sums = [sums[0] + value, sums[1] + value * x, sums[2] + value * y];
+        }
+        for (found, sum) in freedoms.moments(&values).iter().zip(sums) {
+            assert!((found - sum).abs() < 1e-11, "{found} {sum}");
+        }
+        let lambda = fit(&freedoms, &p, &values)?;
+        let mut projected = values.clone();
+        freedoms.project(&mut projected, &p, &vec![0.0; cells]);
+        freedoms.for_each(lambda, |k, b| values[k] -= b);
+        for moment in freedoms.moments(&values) {
+            assert!(moment.abs() < 1e-11, "{moment:e}");
+        }
+        let apart = values.iter().zip(projected).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f64::max) < 1e-13);
+        Ok(())
+    }
+
+    /// One cell has no tilt; two in a line have one along the line, and none across.
+    #[test]
+    fn few_cells_leave_tilts_alone() -> Result<()> {
+        let freedoms = freedoms()?;
+        let [x, y] = &freedoms.columns;
+        let [cell, along_x, along_y] = [4 * CELLS[1] + 3, 7 * CELLS[1] + 3, 4 * CELLS[1] + 8];
+        let with = |cells: &[(usize, f64)]| {
+            let (mut p, mut values) = (vec![0.0; CELLS[0] * CELLS[1]], Vec::new());
+            values.resize(p.len(), 9.0);
+            for &(k, value) in cells {
+                (p[k], values[k]) = (2.0, value);
+            }
+            fit(&freedoms, &p, &values)
+        };
+        let sx = 0.5 / (x[7] - x[4]);
+        let sy = 0.5 / (y[8] - y[3]);
+        for (found, expected) in [
+            (with(&[(cell, 2.5)])?, [2.5, 0.0, 0.0]),
+            (
+                with(&[(cell, 2.5), (along_x, 3.0)])?,
+                [2.5 - sx * x[4], sx, 0.0],
+            ),
+            (
+                with(&[(cell, 2.5), (along_y, 3.0)])?,
+                [2.5 - sy * y[3], 0.0, sy],
+            ),
+        ] {
+            for k in 0..3 {
+                assert!(
+                    (found[k] - expected[k]).abs() < 1e-13,
+                    "{found:?} {expected:?}"
+                );
+            }
+        }
+        Ok(())
+    }
+}

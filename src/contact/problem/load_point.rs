@@ -149,3 +149,94 @@ fn convex_hull(points: &[[f64; 2]]) -> Vec<HalfPlane> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use ndarray::array;
+
+    use super::{convex_hull, interval, outline};
+
+    /// The triangle of sides 3, 4, 5 has an inscribed circle of radius 1 around (1, 1); points inside it, and on
+    /// its sides, change nothing.
+    #[test]
+    fn half_planes_of_a_triangle() {
+        let corners = [[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]];
+        let more = [
+            [0.0, 0.0],
+            [0.0, 1.0],
+            [0.0, 3.0],
+            [1.0, 1.0],
+            [2.0, 0.0],
+            [4.0, 0.0],
+        ];
+        for points in [&corners[..], &more] {
+            let half_planes = convex_hull(points);
+            assert_eq!(half_planes.len(), 3);
+            for [nx, ny, c] in half_planes {
+                assert!((nx.hypot(ny) - 1.0).abs() < 1e-15);
+                assert!((nx + ny - c - 1.0).abs() < 1e-15, "{nx} {ny} {c}");
+            }
+        }
+    }
+
+    /// A regular hexagon of circumradius 1, with its centre: six sides at a distance √3/2.
+    #[test]
+    fn half_planes_of_a_hexagon() {
+        let corner = |k: i32| (std::f64::consts::FRAC_PI_3 * f64::from(k)).sin_cos();
+        let mut points: Vec<[f64; 2]> = (0..6).map(|k| corner(k).into()).collect();
+        points.push([0.0, 0.0]);
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        let half_planes = convex_hull(&points);
+        assert_eq!(half_planes.len(), 6);
+        for [_, _, c] in half_planes {
+            assert!((c + 0.75_f64.sqrt()).abs() < 1e-14, "{c}");
+        }
+    }
+
+    #[test]
+    fn without_an_inside_there_is_none() {
+        let line: Vec<[f64; 2]> = (0..5).map(|k| [f64::from(k), 0.5 * f64::from(k)]).collect();
+        for points in [&line[..], &line[..2], &line[..1], &[]] {
+            assert!(convex_hull(points).is_empty());
+        }
+    }
+
+    #[test]
+    fn interval_from_both_ends() {
+        let inside = |v: f64| {
+            interval([2.0, -1.0, 0.5].into_iter())
+                .iter()
+                .all(|(s, c)| s * v > *c)
+        };
+        let expected = [
+            (-1.01, false),
+            (-1.0, false),
+            (-0.99, true),
+            (1.99, true),
+            (2.01, false),
+        ];
+        for (v, expected) in expected {
+            assert_eq!(inside(v), expected, "{v}");
+        }
+    }
+
+    #[test]
+    fn outline_of_the_cells_that_touch() {
+        const NO: f64 = f64::INFINITY;
+        let gap = array![
+            [NO, 1.0, 1.0, 1.0],
+            [NO, NO, NO, NO],
+            [0.0, 2.0, NO, NO],
+            [NO, NO, -1.0, NO]
+        ];
+        let columns = [vec![0.0, 1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0, 40.0]];
+        let expected = [
+            [0.0, 20.0],
+            [0.0, 40.0],
+            [2.0, 10.0],
+            [2.0, 20.0],
+            [3.0, 30.0],
+        ];
+        assert_eq!(outline(&gap, &columns), expected);
+    }
+}

@@ -15,6 +15,8 @@
 //! operations that can share a pass do. `textbook.rs` has the same iteration with one operation a line.
 
 mod arrays;
+#[cfg(test)]
+mod comparison;
 mod deflation;
 mod steps;
 #[cfg(test)]
