@@ -110,7 +110,7 @@ impl Patch {
         bounds(&self.window, |i, j| self.at(i, j) > 0.0)
     }
 
-    /// The same pressure in another window.
+    /// This pressure in another window.
     pub(crate) fn moved(&self, window: Window) -> Self {
         let values = filled(&window, |i, row| {
             for (value, j) in row.iter_mut().zip(window[1].clone()) {
