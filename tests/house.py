@@ -111,10 +111,10 @@ def rust_openings(text: str) -> Iterator[tuple[int, str]]:
 
 def python_openings(text: str) -> Iterator[tuple[int, str]]:
     """Yield the first line of each docstring, with its number."""
-    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     for node in ast.walk(ast.parse(text)):
-        if isinstance(node, documented) and (docstring := ast.get_docstring(node)):
-            yield node.body[0].lineno, docstring
+        # A string by itself documents a module, a class, a function or an attribute.
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            yield node.lineno, str(node.value.value).lstrip()
 
 
 def sentences(root: Path) -> Iterator[Violation]:

@@ -32,6 +32,7 @@ def told(root: Path, files: dict[str, str], longer: tuple[str, ...] = ()) -> lis
         ("tests/a.rs", "/// That of this thread.\nfn f() {}\n", "That of"),
         ("python/nacre/a.py", '"""Of a module."""\n', "Of"),
         ("tests/python/a.py", 'def f():\n    """Those of a function."""\n', "Those"),
+        ("benches/peers/a.py", 'SIDE = 2.0\n"""Of the domain."""\n', "Of"),
         ("python/nacre/_core.pyi", 'class A:\n    """The same class."""\n', "The same"),
     ],
 )
