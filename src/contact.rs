@@ -162,7 +162,7 @@ impl Contact {
     /// Calls `work`, a whole solve, on the plan's threads.
     fn whole<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let [nx, ny] = self.grid.shape();
-        self.convolution.own_threads().run_whole(nx * ny, work)
+        self.convolution.own_threads().run_inside(nx * ny, work)
     }
 
     /// [`Contact::solve_watched`] on this thread and those that it finds free; where `shape` is the one

@@ -77,7 +77,7 @@ impl Levels {
         while halved(fine.shape()) != [false; 2] {
             fine = coarse_grid(&fine, halved(fine.shape()))?;
             let coarse = of(&fine)?;
-            convolutions.push(convolution.part(&coarse));
+            convolutions.push(convolution.companion(&coarse));
             coefficients.push(coarse);
             grids.push(fine);
         }
@@ -94,7 +94,7 @@ impl Levels {
         let convolutions = self.convolutions.iter();
         Self {
             coefficients: Arc::clone(&self.coefficients),
-            convolutions: convolutions.map(|c| c.beside(finest)).collect(),
+            convolutions: convolutions.map(|c| c.sharing_with(finest)).collect(),
             grids: self.grids.clone(),
             memory: Pool::default(),
         }
@@ -241,8 +241,8 @@ impl Level<'_> {
             // Planning transforms leaves the other threads idle in part: meanwhile they get the memory.
             let ((part, [periodic, inverse]), (gap, memory)) = passes.both(
                 || {
-                    let part = (!whole).then(|| self.convolution.part(&corner));
-                    (part, self.convolution.periodic(&corner))
+                    let part = (!whole).then(|| self.convolution.companion(&corner));
+                    (part, self.convolution.preconditioner(&corner))
                 },
                 || {
                     let (memory, most) = self.memory;
