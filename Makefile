@@ -1,5 +1,5 @@
-# Every command of the project. Needs Rust (with rustfmt and clippy), Python >= 3.11 and make;
-# everything else goes into .venv, at the first use.
+# All commands of the project. They need Rust (with rustfmt and clippy), Python >= 3.11 and make;
+# everything else is installed into .venv at first use.
 
 PYTHON ?= python3
 OPTIONS ?=
@@ -15,7 +15,7 @@ export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 unexport CONDA_PREFIX PYTHONHOME PYTHONPATH
 
-# Stamps: what .venv holds.
+# Stamps: empty files that record what has been installed into .venv.
 BUILD := $(VENV)/.build
 DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
@@ -29,7 +29,7 @@ help: ## list these commands
 demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under out/
 	$(BIN)/nacre paper --out out
 
-# PYO3_PYTHON=none: had Python any part in the crate that depends on nacre, it would not build.
+# With PYO3_PYTHON=none, the crate that depends on nacre builds only if nacre needs no Python.
 test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre, pytest on the wheel
 	@if cargo nextest --version >/dev/null 2>&1; \
 	then echo cargo nextest run; cargo nextest run; \
@@ -38,7 +38,7 @@ test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre,
 	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
 	$(BIN)/pytest
 
-check: $(WHEEL) $(DEV) ## formatting, lints, types, documentation links and stubs; changes nothing
+check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
 	cargo fmt --check
 	cargo fmt --check --manifest-path tests/dependent/Cargo.toml
 	cargo clippy --all-targets -- -D warnings
@@ -48,32 +48,33 @@ check: $(WHEEL) $(DEV) ## formatting, lints, types, documentation links and stub
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest nacre._core
+	$(BIN)/python tests/house.py
 
-bench: ## time it, print the change since the last run, append to benches/history.csv
+bench: ## time the Rust benchmarks, print the change since the last run, append to benches/history.csv
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true
 	cargo bench --bench '*' -- --save-baseline $(BASELINE)
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
 
-# In an environment of its own under target/peers; OPTIONS=--quick is a first look.
-peers: $(WHEEL) ## nacre beside other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
+# The other solvers are installed into a separate environment under target/peers.
+peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
 	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
 
-develop: $(DEV) ## build in place: Python files are used where they are, Rust after the next make develop
+develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)
 	$(BIN)/maturin develop --release
-	$(BIN)/python -m pip install --quiet 'nacre[all]'  # of the one just installed, the extras
+	$(BIN)/python -m pip install --quiet 'nacre[all]'  # the extras of the nacre just installed
 
 stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 	$(BIN)/python -m mypy.stubtest nacre._core
 
-# The gallery runs; a warning is an error. Rust's own documentation goes beside, under rust/.
-docs: $(WHEEL) $(DOCS) ## the documentation as a site: docs/_build/html/index.html
+# The pictures of the gallery are computed; a warning is an error. The Rust documentation goes to rust/.
+docs: $(WHEEL) $(DOCS) ## build the documentation as a site: docs/_build/html/index.html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -d docs/_build/doctrees docs docs/_build/html
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 	rm -rf docs/_build/html/rust
 	cp -R $(TARGET)/doc docs/_build/html/rust
 
-# pip takes --group since 25.1.
+# pip knows --group since version 25.1.
 $(BUILD): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("nacre needs Python >= 3.11; make PYTHON=..." if sys.version_info < (3, 11) else 0)'
 	$(PYTHON) -m venv $(VENV)
@@ -89,7 +90,7 @@ $(DOCS): $(BUILD)
 	$(BIN)/python -m pip install --quiet --group docs
 	@touch $@
 
-# The wheel as users get it, and not the checkout, is what is tested.
+# Tests run on the wheel, as users get it, and not on the checkout.
 $(WHEEL): $(SOURCES) $(BUILD)
 	rm -rf $(TARGET)/wheels
 	$(BIN)/maturin build --release --interpreter $(BIN)/python --out $(TARGET)/wheels

@@ -1,15 +1,15 @@
-//! A body: a substrate and the layers on it.
+//! Layered half-spaces: a substrate and the layers on it.
 
 use crate::error::{Result, positive};
 use crate::material::Elastic;
 
-/// How a layer is joined to what lies below it.
+/// The kind of interface between a layer and the layer or substrate below it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interface {
-    /// Displacement and traction are continuous.
+    /// Displacements and tractions are continuous.
     #[default]
     Bonded,
-    /// The two sides slip freely and never open: no shear traction on either.
+    /// The two sides slip without shear traction and never separate.
     Frictionless,
 }
 
@@ -22,7 +22,7 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// A layer of `material`, bonded to what lies below it.
+    /// A layer of `material`, bonded to the layer or substrate below it.
     ///
     /// # Errors
     /// Unless `thickness` \[m\] is finite and above 0.
@@ -35,28 +35,28 @@ impl Layer {
         })
     }
 
-    /// The same layer with another interface below it.
+    /// This layer with `interface` below it.
     pub fn with_interface(self, interface: Interface) -> Self {
         Self { interface, ..self }
     }
 
-    /// What it is made of.
+    /// Material of the layer.
     pub fn material(&self) -> Elastic {
         self.material
     }
 
-    /// Its thickness \[m\].
+    /// Thickness of the layer \[m\].
     pub fn thickness(&self) -> f64 {
         self.thickness
     }
 
-    /// The interface below it.
+    /// Interface below the layer.
     pub fn interface(&self) -> Interface {
         self.interface
     }
 }
 
-/// What lies below the layers.
+/// The body below all layers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Substrate {
     /// An elastic half-space.
@@ -89,10 +89,10 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// `layers` from the surface down, on `substrate`.
+    /// A half-space of `layers`, from the surface down, on `substrate`.
     ///
     /// # Errors
-    /// A rigid substrate without a layer: such a body is rigid, and as a counterbody it is `None`.
+    /// Where the substrate is rigid and there is no layer. A rigid counterbody is `None`.
     pub fn new(
         substrate: impl Into<Substrate>,
         layers: impl IntoIterator<Item = Layer>,
@@ -107,7 +107,7 @@ impl HalfSpace {
         Ok(Self { substrate, layers })
     }
 
-    /// What lies below the layers.
+    /// The substrate below the layers.
     pub fn substrate(&self) -> Substrate {
         self.substrate
     }
@@ -129,12 +129,12 @@ impl HalfSpace {
             .collect()
     }
 
-    /// Thickness of all layers together \[m\].
+    /// Total thickness of the layers \[m\].
     pub fn thickness(&self) -> f64 {
         self.layers.iter().map(Layer::thickness).sum()
     }
 
-    /// The material at the surface: the top layer's, or the substrate's.
+    /// Material at the surface, which is that of the top layer or, without layers, of the substrate.
     pub fn surface_material(&self) -> Elastic {
         match (self.layers.first(), self.substrate) {
             (Some(layer), _) => layer.material(),

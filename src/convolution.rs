@@ -1,7 +1,7 @@
-//! Discrete convolution by FFT (DC-FFT): displacement from pressure, exact for any pressure on the
-//! grid, with no periodic images.
+//! Discrete convolution by FFT (DC-FFT): displacement from pressure, exact up to rounding for any
+//! pressure on the grid, without periodic images.
 //!
-//! Liu, Wang & Liu, Wear 243 (2000) 101.
+//! Liu, Wang & Liu, Wear 243 (2000) 101, doi:10.1016/S0043-1648(00)00427-0.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,9 +14,9 @@ use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
 use crate::parallel::Threads;
 use crate::parallel::{Lease, Pool};
 
-mod parts;
+mod stages;
 
-/// Influence coefficients, transformed once to be applied often.
+/// The convolution of a pressure with influence coefficients, planned once and applied many times.
 ///
 /// ```text
 /// u[i, j] = Σ_kl C[|i−k|, |j−l|] p[k, l]
@@ -37,12 +37,13 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
-    /// Shared with its parts, as is the clock.
+    /// Memory that is not in use, shared with companions of this convolution.
     idle: Pool<FftWorkspace>,
+    /// Time spent by this convolution and its companions.
     clock: Arc<Clock>,
 }
 
-/// Time that was spent [ns].
+/// Sum of the time spent in convolutions \[ns\].
 #[derive(Debug, Default)]
 struct Clock(AtomicU64);
 
@@ -54,7 +55,7 @@ impl Clock {
         result
     }
 
-    /// Work that as many threads as `among` do at once, each on a part.
+    /// Counts the time of `work`, one share of work that `among` threads do at the same time.
     fn during_part(&self, among: usize, work: impl FnOnce()) {
         let start = Instant::now();
         work();
@@ -67,14 +68,14 @@ impl Clock {
     }
 }
 
-/// Memory for one application at a time, of a convolution or a part of it. When dropped, it is kept
-/// for the next.
+/// Memory for one application of a convolution at a time. When it is dropped, the convolution keeps the
+/// memory for the next workspace.
 #[derive(Debug)]
 pub struct Workspace(Lease<FftWorkspace>);
 
 impl Convolution {
-    /// Plans the convolution with `coefficients` (nx, ny), those of offsets ≥ 0, on `threads`
-    /// threads (all of the machine's where `None`).
+    /// Plans the convolution with `coefficients` (nx, ny), given at offsets ≥ 0, on `threads`
+    /// threads; `None` stands for all threads of the machine.
     ///
     /// # Errors
     /// Where a coefficient is not finite, the shape is empty, or `threads` is 0.
@@ -128,7 +129,7 @@ impl Convolution {
         }
     }
 
-    /// The same convolution on other threads; it shares the spectrum.
+    /// This convolution on other threads, with the same spectrum.
     pub(crate) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
         Self {
             transform: self.transform.on_threads(threads),
@@ -140,17 +141,18 @@ impl Convolution {
         }
     }
 
-    /// The same convolution with threads, memory and clock of `whole`, as its parts have them.
-    pub(crate) fn beside(&self, whole: &Self) -> Self {
+    /// This convolution with the threads, the memory and the clock of `other`.
+    pub(crate) fn sharing_with(&self, other: &Self) -> Self {
         Self {
-            idle: whole.idle.clone(),
-            clock: Arc::clone(&whole.clock),
-            ..self.on_threads(&whole.threads)
+            idle: other.idle.clone(),
+            clock: Arc::clone(&other.clock),
+            ..self.on_threads(&other.threads)
         }
     }
 
-    /// Convolution with part of the coefficients of this one, for a part of its grid.
-    pub(crate) fn part(&self, coefficients: &ArrayRef2<f64>) -> Self {
+    /// A convolution with other `coefficients`, which shares threads, memory and clock with this one.
+    /// Windows and coarser grids have such companions.
+    pub(crate) fn companion(&self, coefficients: &ArrayRef2<f64>) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan(shape, &self.threads);
         Self::with(
@@ -162,10 +164,14 @@ impl Convolution {
         )
     }
 
-    /// The periodic convolution with `coefficients`, on a mesh that is not padded, at a fifth of the
-    /// cost; and its inverse, symmetric and positive definite.
-    pub(crate) fn periodic(&self, coefficients: &ArrayRef2<f64>) -> [Self; 2] {
-        // Exact coefficients have a positive transform, of which the smallest is above this.
+    /// The periodic convolution with `coefficients`, and its inverse, which is symmetric and positive
+    /// definite and preconditions the exact convolution. The mesh is not padded, and each of them costs
+    /// a fifth of an exact convolution.
+    ///
+    /// Vollebregt, J. Comput. Phys. 257 (2014) 333, doi:10.1016/j.jcp.2013.10.005.
+    pub(crate) fn preconditioner(&self, coefficients: &ArrayRef2<f64>) -> [Self; 2] {
+        // Bound on the smallest entry of the spectrum, as a share of the largest, so that the inverse
+        // is positive for any coefficients. Exact coefficients have larger entries.
         const FLOOR: f64 = 1e-6;
         let shape = [coefficients.nrows(), coefficients.ncols()];
         let transform = PaddedTransform::plan_periodic(shape, &self.threads);
@@ -190,38 +196,38 @@ impl Convolution {
         [periodic, inverse]
     }
 
-    /// Points of the padded mesh, times their logarithm: what an application costs.
+    /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.
     pub(crate) fn work(&self) -> f64 {
         self.transform.work()
     }
 
-    /// Bytes that a plan of `shape` and its workspace hold.
+    /// Bytes of a plan for data of `shape`, with one workspace.
     pub(crate) fn memory(shape: [usize; 2]) -> u64 {
         PaddedTransform::memory(shape)
     }
 
-    /// Shape (nx, ny) of what it is applied to.
+    /// Shape (nx, ny) of pressure and displacement.
     pub fn shape(&self) -> [usize; 2] {
         self.shape
     }
 
-    /// The coefficient of the loaded cell itself.
+    /// Displacement of a loaded cell per unit of its own pressure.
     pub(crate) fn self_influence(&self) -> f64 {
         self.self_influence
     }
 
-    /// Those that it uses.
+    /// Threads that apply this convolution.
     pub(crate) fn own_threads(&self) -> &Threads {
         &self.threads
     }
 
-    /// Threads that it uses.
+    /// Number of threads that apply this convolution.
     pub fn threads(&self) -> usize {
         self.threads.count()
     }
 
-    /// Time that it took so far, with that of parts of it that solves make \[s\]: kernels, transforms
-    /// and products. Of several at once it is the sum.
+    /// Time spent so far in this convolution, and in those that solves derive from it, on planning
+    /// spectra, transforms and products \[s\]. Times of concurrent applications are added.
     pub fn seconds(&self) -> f64 {
         1e-9 * self.clock.0.load(Ordering::Relaxed) as f64
     }
@@ -234,18 +240,18 @@ impl Convolution {
     /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
     ///
     /// # Errors
-    /// Where the shape is another.
+    /// Where `pressure` does not have the shape of the convolution.
     pub fn apply(&self, pressure: &ArrayRef2<f64>) -> Result<Array2<f64>> {
         let mut displacement = Array2::zeros(self.shape);
         self.apply_into(pressure, &mut displacement, &mut self.workspace())?;
         Ok(displacement)
     }
 
-    /// [`Convolution::apply`] into `displacement`. Allocates nothing where both arrays are in C
-    /// order.
+    /// Writes the displacement under `pressure` into `displacement`, as [`Convolution::apply`] computes
+    /// it. No memory is allocated where both arrays are in C order.
     ///
     /// # Errors
-    /// Where a shape is another.
+    /// Where an array does not have the shape of the convolution.
     pub fn apply_into(
         &self,
         pressure: &ArrayRef2<f64>,
@@ -280,7 +286,7 @@ impl Convolution {
         Ok(())
     }
 
-    /// The same on slices in C order, which the solver uses.
+    /// Applies the convolution to slices in C order.
     pub(crate) fn apply_slices(
         &self,
         input: &[f64],
@@ -288,7 +294,7 @@ impl Convolution {
         workspace: &mut Workspace,
     ) {
         let memory = &mut workspace.0;
-        self.transform.fit(memory);
+        self.transform.reserve(memory);
         self.clock.during(|| {
             self.transform
                 .convolve_into(&self.spectrum, input, output, memory, &self.threads);
@@ -296,9 +302,9 @@ impl Convolution {
     }
 }
 
-/// Idle memory, large enough for `transform`.
+/// A workspace from idle memory, large enough for `transform`.
 fn lease(idle: &Pool<FftWorkspace>, transform: &PaddedTransform) -> Workspace {
     let mut memory = idle.lease();
-    transform.fit(&mut memory);
+    transform.reserve(&mut memory);
     Workspace(memory)
 }

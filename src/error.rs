@@ -1,50 +1,50 @@
-//! The one error type: bad input, and an iteration that a caller insisted should converge.
+//! The error type of the crate: invalid input, and iterations that did not converge.
 
-/// Short form of `Result` with [`enum@Error`].
+/// `Result` with the error type [`enum@Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What a caller got wrong, or what this machine cannot do.
+/// Invalid input, a resource that this machine lacks, or an iteration that did not converge.
 ///
-/// Messages name the argument, what it must be and what it was.
+/// Messages name the argument, the requirement and the value that was given.
 #[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number outside its range.
+    /// A number outside its permitted range.
     #[error("{name} must be {requirement}, got {value}")]
     Parameter {
-        /// The argument.
+        /// Name of the argument.
         name: &'static str,
-        /// What it must be.
+        /// The permitted range, in words.
         requirement: &'static str,
-        /// What it was.
+        /// The value that was given.
         value: f64,
     },
     /// A word that is not one of the choices.
     #[error("{name} must be {requirement}, got {value:?}")]
     Choice {
-        /// The argument.
+        /// Name of the argument.
         name: &'static str,
         /// The choices.
         requirement: &'static str,
-        /// What it was.
+        /// The word that was given.
         value: String,
     },
     /// An array of the wrong shape.
     #[error("{name}: expected shape {expected:?}, got {found:?}")]
     Shape {
-        /// The argument.
+        /// Name of the argument.
         name: &'static str,
-        /// The shape it must have.
+        /// The required shape.
         expected: [usize; 2],
-        /// The shape it had.
+        /// The shape that was given.
         found: [usize; 2],
     },
-    /// An array of which one element is infinite or not a number.
+    /// An array with an element that is infinite or not a number.
     #[error("{name} is not finite at {index:?}")]
     NonFinite {
-        /// The argument.
+        /// Name of the argument.
         name: &'static str,
-        /// Where.
+        /// Indices of the first such element.
         index: [usize; 2],
     },
     /// Arguments that contradict each other or do not suffice.
@@ -80,50 +80,50 @@ pub enum Error {
         /// Smallest and largest y of the cells that can touch.
         y_range: [f64; 2],
     },
-    /// More memory than there is.
+    /// A grid that needs more memory than is available.
     #[error(
         "a grid of {shape:?} cells needs about {} MiB, and {} MiB are available; take fewer cells",
         needed >> 20,
         available >> 20
     )]
     Memory {
-        /// The grid.
+        /// Numbers of cells of the grid.
         shape: [usize; 2],
         /// Bytes needed.
         needed: u64,
-        /// Bytes that are available.
+        /// Bytes available.
         available: u64,
     },
-    /// The grid that is chosen where none is given was enlarged ten times, and the contact still
+    /// No automatic grid was found: it was enlarged as often as permitted, and the contact still
     /// reached its edge.
     #[error(
         "no grid found: after {enlargements} enlargements, to {size:?}, the contact still touches \
          the edge; give a grid"
     )]
     NoGrid {
-        /// How often it was enlarged.
+        /// Number of enlargements.
         enlargements: usize,
-        /// Its last size.
+        /// Side lengths of the last grid.
         size: [f64; 2],
     },
-    /// The iteration ended before its tolerance was met.
+    /// An iteration that ended before the tolerance was met.
     #[error(
         "residual {residual:.2e}, overlap {overlap:.2e} above the tolerance {tolerance:.0e} after \
          {iterations} iterations; raise max_iterations or the tolerance"
     )]
     NotConverged {
-        /// Iterations done.
+        /// Number of iterations.
         iterations: usize,
-        /// Complementarity reached.
+        /// Complementarity residual at the end.
         residual: f64,
-        /// Overlap reached.
+        /// Relative overlap at the end.
         overlap: f64,
-        /// The tolerance that was asked.
+        /// Requested tolerance.
         tolerance: f64,
     },
 }
 
-/// `value` if it is finite and above zero.
+/// Returns `value`, or an error unless it is finite and above 0.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
@@ -136,7 +136,7 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
     }
 }
 
-/// `value` if it is finite.
+/// Returns `value`, or an error unless it is finite.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
     if value.is_finite() {
         Ok(value)

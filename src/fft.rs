@@ -1,8 +1,8 @@
-//! Fourier transforms of zero-padded real data, and the product with an even kernel in between.
+//! Fourier transforms of zero-padded real data, and convolutions with kernels of given parity.
 //!
 //! The forward transform is unscaled; the inverse divides by the number of points, here and
-//! nowhere else. Transforms of rows that are zero are skipped, both ways: of the padded mesh
-//! (mx, my) only nx rows are transformed along y, and nothing of the padding is stored.
+//! nowhere else. Rows of the padding are not transformed, in either direction: of a padded mesh
+//! (mx, my), only nx rows are transformed along y, and no padding is stored.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,25 +13,27 @@ use rustfft::{Fft, FftPlanner};
 
 use crate::parallel::{Threads, each_chunk, number};
 
-mod convolve;
 mod cosine;
 mod even;
 mod parity;
 mod quarter;
 mod series;
+mod stages;
 
-pub(crate) use convolve::HalfSpectra;
 pub(crate) use parity::Transformed;
 pub(crate) use quarter::{Keep, KernelRows, QuarterTransform};
 pub(crate) use series::{fourier_coefficients, inverse_even};
+pub(crate) use stages::HalfSpectra;
 
-/// Columns that are transformed together: four complex numbers fill a cache line, and sixteen
-/// columns of a few thousand points stay in the second-level cache.
+/// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
+/// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value
+/// was chosen by trial.
 const BLOCK: usize = 16;
 
-/// Rows whose pieces of a block are read or written together: two kilobytes one after another, where
-/// single ones, each of another page, would have to be waited for.
-const GROUP: usize = 8;
+/// Rows whose entries in a block of columns are read or written together. They are two kilobytes of
+/// contiguous memory; single rows lie on different pages, and each access would have to wait. The
+/// value was chosen by trial.
+const ROW_GROUP: usize = 8;
 
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
@@ -67,44 +69,45 @@ impl fmt::Debug for PaddedTransform {
     }
 }
 
-/// The transform of a kernel that is even along x and along y: real and even, so that a quarter of
-/// it is enough. Scaled by 1/(mx my), and stored by blocks of columns.
+/// The transform of a kernel that is even along x and along y, scaled by 1/(mx my). It is real and
+/// even, so that only a quarter is stored, by blocks of columns.
 #[derive(Debug)]
 pub(crate) struct EvenSpectrum(Vec<f64>);
 
-/// Memory for one convolution at a time; it may be larger than needed.
+/// Memory for one convolution at a time; it may be larger than a transform needs.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
-    /// Half spectra of rows: whole, or by blocks of columns.
+    /// Half spectra of rows, stored by rows or by blocks of columns.
     mesh: Vec<[Complex64; BLOCK]>,
     scratches: Scratches,
 }
 
-/// Of each thread one, for what it does by itself.
+/// Working memory of the threads, one entry for each.
 #[derive(Debug, Default)]
 pub(crate) struct Scratches(Vec<Mutex<Scratch>>);
 
 #[derive(Debug, Default)]
 struct Scratch {
     real: Vec<f64>,
-    /// Of some rows.
+    /// Half spectra of a group of rows.
     spectra: Vec<Complex64>,
     columns: Vec<Complex64>,
     fft: Vec<Complex64>,
 }
 
-/// Into how many tasks a transform of `shape` is divided.
+/// Number of tasks into which a transform of `shape` is divided.
 fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
-    // Many more than threads: all are at work until the last few are done.
+    // Many more tasks than threads keep all threads busy until the last few tasks. The factor 16 was
+    // chosen by trial.
     match threads.divide(shape[0] * shape[1]) {
         true => 16 * threads.count(),
         false => 1,
     }
 }
 
-/// For how many rows a block of columns has room, of which there are `rows`: so many that the same row of
-/// one block after another is an odd number of pages and a row further. Were it a power of two of them, as
-/// many grids would have it, few sets of the caches would have to hold all.
+/// Row capacity of a block of columns: `rows`, rounded up so that consecutive blocks lie an odd number
+/// of pages plus one row apart. A power-of-two stride would put equal rows of all blocks into the same
+/// few cache sets.
 fn block_rows(rows: usize) -> usize {
     const PAGE: usize = 4096 / size_of::<[Complex64; BLOCK]>();
     let beyond = PAGE + 1;
@@ -112,12 +115,12 @@ fn block_rows(rows: usize) -> usize {
 }
 
 impl PaddedTransform {
-    /// Padded so that the convolution has no periodic images: lengths ≥ 2n − 1.
+    /// Transforms padded to lengths ≥ 2n − 1, so that convolutions have no periodic images.
     pub(crate) fn plan(shape: [usize; 2], threads: &Threads) -> Self {
         Self::on(shape, shape.map(|n| fast_length(2 * n - 1)), threads)
     }
 
-    /// Not padded: the data are repeated, with a period of n or somewhat more.
+    /// Transforms that are not padded. Convolutions are periodic, with the fast length ≥ n as period.
     pub(crate) fn plan_periodic(shape: [usize; 2], threads: &Threads) -> Self {
         Self::on(shape, shape.map(fast_length), threads)
     }
@@ -137,7 +140,7 @@ impl PaddedTransform {
         }
     }
 
-    /// The same transform on other threads.
+    /// A copy of this transform for other threads.
     pub(crate) fn on_threads(&self, threads: &Threads) -> Self {
         Self {
             tasks: tasks(self.shape, threads),
@@ -146,25 +149,25 @@ impl PaddedTransform {
         }
     }
 
-    /// Points of the mesh, times their logarithm.
+    /// Cost of a transform, in arbitrary units: points of the mesh times their logarithm.
     pub(crate) fn work(&self) -> f64 {
         let points = self.padded[0] as f64 * self.padded[1] as f64;
         points * points.ln()
     }
 
-    /// Bytes that a transform of `shape` holds: its workspace and one spectrum.
+    /// Bytes of the workspace and one spectrum of a padded transform of `shape`.
     pub(crate) fn memory(shape: [usize; 2]) -> u64 {
         let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
         let half = padded[1] / 2 + 1;
         block_rows(shape[0]) as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
     }
 
-    /// Stored columns of the half spectrum.
+    /// Number of stored columns of the half spectrum.
     fn columns(&self) -> usize {
         self.padded[1] / 2 + 1
     }
 
-    /// Stored rows of the quarter spectrum.
+    /// Number of stored rows of the quarter spectrum.
     fn quarter_rows(&self) -> usize {
         self.padded[0] / 2 + 1
     }
@@ -173,24 +176,24 @@ impl PaddedTransform {
         self.columns().div_ceil(BLOCK)
     }
 
-    /// Rows that a block has room for.
+    /// Row capacity of a block of columns.
     fn block_rows(&self) -> usize {
         block_rows(self.shape[0])
     }
 
-    /// Threads that may be at work at once.
+    /// Number of threads that can work at the same time.
     pub(crate) fn scratches(&self) -> usize {
         self.threads.min(self.tasks)
     }
 
     pub(crate) fn workspace(&self) -> Workspace {
         let mut workspace = Workspace::default();
-        self.fit(&mut workspace);
+        self.reserve(&mut workspace);
         workspace
     }
 
-    /// Makes `workspace` large enough for this transform.
-    pub(crate) fn fit(&self, workspace: &mut Workspace) {
+    /// Enlarges `workspace` where it is too small for this transform.
+    pub(crate) fn reserve(&self, workspace: &mut Workspace) {
         fn at_least<T: Clone>(memory: &mut Vec<T>, length: usize, zero: T) {
             if memory.len() < length {
                 memory.resize(length, zero);
@@ -213,7 +216,11 @@ impl PaddedTransform {
         for scratch in &mut scratches[..self.scratches()] {
             let scratch = scratch.get_mut().unwrap_or_else(PoisonError::into_inner);
             at_least(&mut scratch.real, self.padded[1], 0.0);
-            at_least(&mut scratch.spectra, GROUP * self.blocks() * BLOCK, ZERO);
+            at_least(
+                &mut scratch.spectra,
+                ROW_GROUP * self.blocks() * BLOCK,
+                ZERO,
+            );
             at_least(&mut scratch.columns, BLOCK * self.padded[0], ZERO);
             at_least(&mut scratch.fft, fft, ZERO);
         }
@@ -238,7 +245,7 @@ impl PaddedTransform {
         self.over_items(threads, rows, columns, scratches, forward);
     }
 
-    /// Transforms one row of data, padded.
+    /// Transforms one row of data, padded with zeros.
     fn data_to_spectrum(
         &self,
         values: &[f64],
@@ -256,14 +263,15 @@ impl PaddedTransform {
         self.rows_to_spectrum(&mut real[..self.padded[1]], half, scratch);
     }
 
-    /// That of this thread: nobody else's, as what is done with it is done without waiting.
+    /// Working memory of the current thread. The lock is never contended, since a task never waits
+    /// for another task while it holds the lock.
     fn scratch<'a>(&self, scratches: &'a Scratches) -> MutexGuard<'a, Scratch> {
         let scratch = &scratches.0[number() % self.scratches()];
         scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `work` with some items of `data`, each of `size` elements, and the number of the first, for
-    /// all of them; and the scratch of its thread.
+    /// Divides `data`, items of `size` elements each, into tasks, and calls `work` for each task with
+    /// the index of its first item, its items, and the working memory of the thread.
     fn over_items<T: Send>(
         &self,
         threads: &Threads,
@@ -272,27 +280,28 @@ impl PaddedTransform {
         scratches: &Scratches,
         work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
     ) {
-        let of_a_task = (data.len() / size).div_ceil(self.tasks);
-        self.over_tasks(threads, data, (size, of_a_task), scratches, work);
+        let per_task = (data.len() / size).div_ceil(self.tasks);
+        self.over_tasks(threads, data, (size, per_task), scratches, work);
     }
 
-    /// The same with so many items at a time.
+    /// Divides `data`, items of `size` elements each, into tasks of `per_task` items, and calls `work`
+    /// for each as [`Self::over_items`] does.
     fn over_tasks<T: Send>(
         &self,
         threads: &Threads,
         data: &mut [T],
-        (size, of_a_task): (usize, usize),
+        (size, per_task): (usize, usize),
         scratches: &Scratches,
         work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
     ) {
         let work = |task: usize, part: &mut [T]| {
-            work(task * of_a_task, part, &mut self.scratch(scratches));
+            work(task * per_task, part, &mut self.scratch(scratches));
         };
-        self.divided(threads, || each_chunk(data, size * of_a_task, 0, &work));
+        self.divided(threads, || each_chunk(data, size * per_task, 0, &work));
     }
 
-    /// Calls `work`, which divides itself into tasks, where they are done by `threads`; at once if it
-    /// is one.
+    /// Calls `work`, which divides itself into tasks, on `threads`; a single task runs on the calling
+    /// thread.
     fn divided<R: Send>(&self, threads: &Threads, work: impl FnOnce() -> R + Send) -> R {
         if self.tasks == 1 {
             work()
@@ -301,26 +310,26 @@ impl PaddedTransform {
         }
     }
 
-    /// Rows from `first` on, of as many as `values` have room for, of the data whose columns, transformed
-    /// back, are in `parts` by blocks.
-    fn rows_from_parts<'a>(
+    /// Transforms rows back along y into `values`, from row `first` on and as many as fit. `blocks` are
+    /// the blocks of columns, already transformed back along x.
+    fn rows_from_blocks<'a>(
         &self,
-        parts: impl Iterator<Item = &'a [[Complex64; BLOCK]]> + Clone,
+        blocks: impl Iterator<Item = &'a [[Complex64; BLOCK]]> + Clone,
         first: usize,
         values: &mut [f64],
         scratch: &mut Scratch,
     ) {
-        let (ny, blocks) = (self.shape[1], self.blocks());
-        for (group, values) in values.chunks_mut(GROUP * ny).enumerate() {
-            let rows = first + group * GROUP..first + group * GROUP + values.len() / ny;
+        let (ny, count) = (self.shape[1], self.blocks());
+        for (group, values) in values.chunks_mut(ROW_GROUP * ny).enumerate() {
+            let rows = first + group * ROW_GROUP..first + group * ROW_GROUP + values.len() / ny;
             let (spectra, _) = scratch.spectra.as_chunks_mut();
-            for (block, lines) in parts.clone().enumerate() {
-                let spectra = spectra[block..].iter_mut().step_by(blocks);
+            for (block, lines) in blocks.clone().enumerate() {
+                let spectra = spectra[block..].iter_mut().step_by(count);
                 for (spectrum, line) in spectra.zip(&lines[rows.clone()]) {
                     *spectrum = *line;
                 }
             }
-            let spectra = scratch.spectra.chunks_exact_mut(blocks * BLOCK);
+            let spectra = scratch.spectra.chunks_exact_mut(count * BLOCK);
             for (spectrum, values) in spectra.zip(values.chunks_exact_mut(ny)) {
                 let real = &mut scratch.real[..self.padded[1]];
                 self.spectrum_to_rows(&mut spectrum[..self.columns()], real, &mut scratch.fft);
@@ -337,7 +346,7 @@ impl PaddedTransform {
     ) {
         let scratch = &mut scratch[..self.row_forward.get_scratch_len()];
         let done = self.row_forward.process_with_scratch(real, half, scratch);
-        debug_assert!(done.is_ok(), "lengths are the plan's own");
+        debug_assert!(done.is_ok(), "the lengths are those of the plan");
     }
 
     fn spectrum_to_rows(
@@ -353,6 +362,6 @@ impl PaddedTransform {
         }
         let scratch = &mut scratch[..self.row_inverse.get_scratch_len()];
         let done = self.row_inverse.process_with_scratch(half, real, scratch);
-        debug_assert!(done.is_ok(), "lengths are the plan's own");
+        debug_assert!(done.is_ok(), "the lengths are those of the plan");
     }
 }

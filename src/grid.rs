@@ -1,4 +1,4 @@
-//! The grid of rectangular cells over which pressure is piecewise constant.
+//! Grids of rectangular cells. The pressure is uniform over each cell.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use ndarray::Array1;
 use crate::error::{Error, Result, finite, positive};
 use crate::parallel::check_memory;
 
-/// A uniform grid: `shape` cells over a rectangle of `size` around `center`.
+/// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
 ///
 /// ```text
 /// x_i = center_x − lx/2 + (i + ½) dx,   dx = lx / nx        (y alike)
@@ -28,11 +28,11 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Cells `[nx, ny]` over a rectangle `[lx, ly]` \[m\] around the origin.
+    /// A grid of `[nx, ny]` cells over a rectangle of sides `[lx, ly]` \[m\] around the origin.
     ///
     /// # Errors
-    /// Unless there are at least two cells in each direction, one field of them fits into memory,
-    /// and the size is finite and above 0.
+    /// Unless there are at least two cells in each direction, one array of them fits into memory,
+    /// and the sides are finite and above 0.
     pub fn new(shape: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for n in shape {
             if n < 2 {
@@ -43,7 +43,8 @@ impl Grid {
                 });
             }
         }
-        // Padded meshes have up to (2·9/8)² as many points; 16 bytes each must be countable.
+        // A padded mesh has up to (2·9/8)² ≈ 5 times as many points of 16 bytes each, together below
+        // 128 bytes a cell. This number of bytes must not overflow.
         if shape[0]
             .checked_mul(shape[1])
             .and_then(|n| n.checked_mul(128))
@@ -55,7 +56,7 @@ impl Grid {
                 value: shape[0] as f64 * shape[1] as f64,
             });
         }
-        // One field must fit, at least.
+        // At least one array of f64 must fit.
         check_memory(shape, 8 * shape[0] as u64 * shape[1] as u64)?;
         positive("size", size[0])?;
         positive("size", size[1])?;
@@ -67,15 +68,17 @@ impl Grid {
         })
     }
 
-    /// Cells of a line contact: `cells` strips along y over `width` \[m\], endless along x.
+    /// A grid for line contact in plane strain: `cells` strips over `width` \[m\] along y, of
+    /// infinite length along x.
     ///
-    /// Its shape is (1, `cells`), and loads on it are per unit length along x: the force is in
-    /// \[N/m\]. In plane strain the displacement of an elastic half-space grows without end: here
-    /// it is relative to that of the substrate's surface at a distance `width` from the load, and
-    /// so is the approach.
+    /// The shape of the grid is (1, `cells`). Loads are per unit length along x, so that forces are
+    /// in \[N/m\]. In plane strain the displacement of an elastic half-space grows without limit
+    /// with the distance. Displacement and approach are therefore relative to the surface of the
+    /// substrate at a distance `width` from the load.
     ///
     /// # Errors
-    /// As [`Grid::new`].
+    /// Unless there are at least two cells, one array of them fits into memory, and `width` is
+    /// finite and above 0.
     pub fn line(cells: usize, width: f64) -> Result<Self> {
         positive("width", width)?;
         let grid = Self::new([2, cells], [1.0, width])?;
@@ -86,19 +89,19 @@ impl Grid {
         })
     }
 
-    /// Whether it is that of a line contact.
+    /// Whether this is a grid for line contact in plane strain.
     pub fn is_line(&self) -> bool {
         self.plane_strain
     }
 
-    /// The same grid around `center` \[m\].
+    /// This grid, moved to be centred at `center` \[m\].
     ///
     /// # Errors
     /// Unless `center` is finite.
     pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
         finite("center", center[0])?;
         finite("center", center[1])?;
-        // Not −0.0, which would compare equal and print otherwise.
+        // Adding 0.0 turns −0.0 into 0.0: equal values then print alike.
         Ok(Self {
             center: center.map(|c| c + 0.0),
             ..self
@@ -110,12 +113,12 @@ impl Grid {
         self.shape
     }
 
-    /// Side lengths `[lx, ly]` \[m\].
+    /// Side lengths `[lx, ly]` of the rectangle \[m\].
     pub fn size(&self) -> [f64; 2] {
         self.size
     }
 
-    /// Centre \[m\].
+    /// Centre of the rectangle \[m\].
     pub fn center(&self) -> [f64; 2] {
         self.center
     }
@@ -134,17 +137,18 @@ impl Grid {
         dx * dy
     }
 
-    /// Cell centres along x, (nx,) \[m\].
+    /// Coordinates of cell centres along x, (nx,) \[m\].
     pub fn x(&self) -> Array1<f64> {
         self.coordinates(0)
     }
 
-    /// Cell centres along y, (ny,) \[m\].
+    /// Coordinates of cell centres along y, (ny,) \[m\].
     pub fn y(&self) -> Array1<f64> {
         self.coordinates(1)
     }
 
-    /// Cell centres along `axis`. Counted from the centre, so that they are symmetric to the bit.
+    /// Coordinates of cell centres along `axis`. They are computed from the centre of the grid, so
+    /// that they are exactly symmetric about it.
     pub(crate) fn coordinates(&self, axis: usize) -> Array1<f64> {
         let n = self.shape[axis];
         let spacing = self.spacing()[axis];

@@ -1,12 +1,13 @@
 //! Closed-form solutions on a homogeneous half-space, for documentation, tests and scales.
 //!
-//! E* is the contact modulus: 1/E* = Σ (1−ν²)/E over both bodies.
+//! E* is the contact modulus, with 1/E* = Σ (1−ν²)/E over both bodies. All solutions are from
+//! K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), doi:10.1017/CBO9781139171731.
 
 use std::f64::consts::PI;
 
 use crate::error::{Result, positive};
 
-/// Contact of a paraboloid of revolution. Johnson, Contact Mechanics (1985), eqs (4.22)–(4.24).
+/// Contact of a paraboloid of revolution. Johnson (1985), eqs (4.22)–(4.24).
 ///
 /// ```
 /// let contact = nacre::hertz::Point::new(5e-3, 115e9, 10.0)?;
@@ -26,7 +27,8 @@ pub struct Point {
 }
 
 impl Point {
-    /// For a radius of curvature `radius` \[m\], a `contact_modulus` E* \[Pa\] and a `load` \[N\].
+    /// The contact for a radius of curvature `radius` \[m\], a `contact_modulus` E* \[Pa\] and a
+    /// `load` \[N\].
     ///
     /// # Errors
     /// Unless all are finite and above 0.
@@ -48,7 +50,7 @@ impl Point {
     }
 }
 
-/// Contact of a cylinder, per unit length. Johnson, Contact Mechanics (1985), eqs (4.43)–(4.45).
+/// Contact of a cylinder, per unit length. Johnson (1985), eqs (4.43)–(4.45).
 ///
 /// ```
 /// let contact = nacre::hertz::Line::new(5e-3, 115e9, 1e5)?;
@@ -66,7 +68,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// For a `radius` \[m\], a `contact_modulus` E* \[Pa\] and a `line_load` W' \[N/m\].
+    /// The contact for a `radius` \[m\], a `contact_modulus` E* \[Pa\] and a `line_load` W'
+    /// \[N/m\].
     ///
     /// # Errors
     /// Unless all are finite and above 0.
@@ -86,10 +89,11 @@ impl Line {
 /// whose first moment about the axis is `moment` M \[N m\].
 ///
 /// ```text
-/// δ = W / (2 E* a)        s = 3 M / (4 E* a³)        |M| ≤ W a/3, so that it lies flat
+/// δ = W / (2 E* a)        s = 3 M / (4 E* a³)
 /// ```
 ///
-/// Johnson, Contact Mechanics (1985), eqs (3.36) and (3.37), §5.6.
+/// Valid for |M| ≤ W a/3, where the whole face is in contact. Johnson (1985), eqs (3.36) and (3.37)
+/// and §5.6.
 ///
 /// # Errors
 /// Unless radius, modulus and load are finite and above 0.

@@ -1,7 +1,7 @@
 //! Elastic contact of coated bodies.
 //!
-//! A shape is pressed into a half-space that carries any number of layers, by a force that may act
-//! off-centre. nacre returns the pressure p, the contact area, the approach δ and the tilt s:
+//! A shape is pressed by a centred or off-centre force into a half-space with any number of layers.
+//! nacre computes the pressure p, the contact area, the approach δ and the tilts s:
 //!
 //! ```text
 //! g = h + u(p) − δ − s_x x − s_y y ≥ 0      p ≥ 0      p g = 0      ∬ p {1, x, y} dA = W {1, e_x, e_y}
@@ -21,14 +21,15 @@
 //!
 //! # Modules
 //!
-//! They form one chain; each imports from earlier ones only.
+//! The modules form one chain; each imports from earlier ones only.
 //!
-//! | module | what it makes |
+//! | module | contents |
 //! |---|---|
+//! | [`mod@error`] | the error type |
 //! | [`material`], [`body`] | elastic materials, layers, half-spaces |
 //! | [`hertz`] | closed forms for scales and comparison |
 //! | [`grid`], [`surface`] | cells of uniform pressure, undeformed shapes |
-//! | [`response`] | frequency response û(α)/p̂(α) of a layered half-space |
+//! | [`response`] | frequency response û(α)/p̂(α) of a body |
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
@@ -36,13 +37,13 @@
 //!
 //! # Conventions
 //!
-//! - Any consistent units; documents and tests use m, N, Pa.
-//! - Arrays are (nx, ny), C order, `[i, j]` at the cell centre x_i = center_x − lx/2 + (i + ½) dx;
-//!   z points into the body.
-//! - Pressure is positive in compression, displacement positive into its own body, the gap positive
-//!   when open.
-//! - Fourier pair f̂(m, n) = ∬ f e^{−i(mx+ny)} dx dy; α = √(m² + n²). The discrete forward transform
-//!   is unscaled, and the inverse divides by the number of points.
+//! - Units are any consistent set; documentation and tests use m, N, Pa.
+//! - Arrays are (nx, ny) in C order, with `[i, j]` at the cell centre
+//!   x_i = center_x − lx/2 + (i + ½) dx; z points into the body.
+//! - Pressure is positive in compression, displacement is positive into the body that it belongs to,
+//!   and the gap is positive when open.
+//! - The Fourier transform is f̂(m, n) = ∬ f e^{−i(mx+ny)} dx dy, with α = √(m² + n²). The discrete
+//!   forward transform is unscaled, and the inverse divides by the number of points.
 
 pub mod error;
 
@@ -52,9 +53,9 @@ pub mod material;
 
 pub mod body;
 
-pub mod grid;
-
 pub mod hertz;
+
+pub mod grid;
 
 pub mod surface;
 
@@ -95,7 +96,7 @@ pub use surface::{
     Surface,
 };
 
-/// README's Rust runs as a test.
+/// The Rust program of the README, which runs as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

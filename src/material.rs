@@ -17,7 +17,7 @@ pub struct Elastic {
 }
 
 impl Elastic {
-    /// Young's modulus `young` \[Pa\] and Poisson's ratio `poisson`.
+    /// A material of Young's modulus `young` \[Pa\] and Poisson's ratio `poisson`.
     ///
     /// # Errors
     /// Unless `young` > 0 and −1 < `poisson` ≤ 0.5.
@@ -30,7 +30,7 @@ impl Elastic {
                 value: poisson,
             });
         }
-        // Not −0.0, which would compare equal and print otherwise.
+        // Adding 0.0 turns −0.0 into 0.0: equal values then print alike.
         Ok(Self {
             young,
             poisson: poisson + 0.0,

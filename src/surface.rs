@@ -1,6 +1,6 @@
-//! Undeformed shapes: the gap h(x, y) between the body's flat surface and what is pressed into it.
+//! Undeformed shapes: the gap h(x, y) between a shape and the plane surface that it is pressed on.
 //!
-//! A gap of +∞ means "cannot touch". The approach is measured from h = 0.
+//! A gap of +∞ means "cannot touch". The approach is measured from the plane h = 0.
 
 use std::fmt;
 use std::sync::Arc;
@@ -21,22 +21,22 @@ pub use profile::{CrownedProfile, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
 pub use roller::Roller;
 
-/// How far a shape goes in one direction.
+/// The extent of a shape along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Extent {
-    /// Its gap rises without end.
+    /// A shape whose gap increases without limit in both directions.
     Rising,
-    /// Its gap is the same all along: a contact has no end there.
+    /// A shape whose gap is constant along the axis, so that the contact has no end.
     Endless,
-    /// It ends, by its geometry, at these coordinates \[m\]; its gap is +∞ beyond.
+    /// A shape that ends smoothly at these coordinates \[m\], as a sphere; the gap is +∞ beyond.
     Within([f64; 2]),
-    /// It is cut off at these coordinates \[m\], as a roller by its faces or a map by its rim; its
-    /// gap is +∞ beyond, and a contact that reaches them has a sharp edge.
+    /// A shape that is cut off at these coordinates \[m\], as a roller by its faces or a height map
+    /// by its rim. The gap is +∞ beyond, and a contact that reaches an end has a sharp edge there.
     CutOff([f64; 2]),
 }
 
 impl Extent {
-    /// The range in which the gap can be finite.
+    /// Range of coordinates in which the gap can be finite.
     pub fn range(&self) -> [f64; 2] {
         match *self {
             Self::Rising | Self::Endless => [f64::NEG_INFINITY, f64::INFINITY],
@@ -52,6 +52,7 @@ impl Extent {
         }
     }
 
+    /// Extent of the sum of two shapes.
     fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::Endless, Self::Endless) => Self::Endless,
@@ -68,7 +69,7 @@ impl Extent {
     }
 }
 
-/// Values at the cells of a grid.
+/// Array of `value(i, j)` at the cells of a grid.
 fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {
     let [nx, ny] = grid.shape();
     let mut values = Array2::zeros((nx, ny));
@@ -82,13 +83,14 @@ fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f6
     values
 }
 
-/// An undeformed shape. A new one needs [`Surface::gap`] alone.
+/// An undeformed shape. [`Surface::gap`] is the only function that an implementation must have.
 pub trait Surface: fmt::Debug + Send + Sync {
     /// Gap \[m\] to the plane z = 0 at (x, y) \[m\]; +∞ where the shape cannot touch; never NaN.
     fn gap(&self, x: f64, y: f64) -> f64;
 
-    /// Gaps at the cells of `grid`, (nx, ny) \[m\]: at their centres, unless the shape's own
-    /// documentation says otherwise. On a thread of a plan it uses all threads of that plan.
+    /// Gaps at the cells of `grid`, (nx, ny) \[m\]. They are taken at cell centres, unless the
+    /// documentation of the shape says otherwise. On a thread of a plan, all threads of this plan
+    /// are used.
     ///
     /// # Errors
     /// Where the grid does not suit the shape.
@@ -97,23 +99,23 @@ pub trait Surface: fmt::Debug + Send + Sync {
         Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))
     }
 
-    /// How far it goes along x and along y.
+    /// Extents along x and along y.
     fn extent(&self) -> [Extent; 2] {
         [Extent::Rising; 2]
     }
 
-    /// Smallest radii of curvature of its sections along x and along y \[m\]; ∞ where it has none
-    /// that a contact must be small against.
+    /// Smallest radii of curvature along x and along y \[m\]. nacre warns where the contact is not
+    /// small compared with them. ∞ means that there is no such limit.
     fn radii(&self) -> [f64; 2] {
         [f64::INFINITY; 2]
     }
 
-    /// The grid on which it is given, for measured surfaces.
+    /// The grid of a measured surface; `None` for other shapes.
     fn grid(&self) -> Option<Grid> {
         None
     }
 
-    /// The same shape moved by (x, y) \[m\].
+    /// This shape, moved by (x, y) \[m\].
     ///
     /// # Errors
     /// Unless both are finite.
@@ -127,7 +129,7 @@ pub trait Surface: fmt::Debug + Send + Sync {
         })
     }
 
-    /// This shape with the gap of `other` added, as a rough surface to a sphere.
+    /// The sum of this shape and `other`, for example of a sphere and a rough surface.
     fn plus<S: Surface>(self, other: S) -> Sum<Self, S>
     where
         Self: Sized,
@@ -161,7 +163,7 @@ forward_surface!(&S);
 forward_surface!(Box<S>);
 forward_surface!(Arc<S>);
 
-/// A shape moved in the plane.
+/// A shape that is moved in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shifted<S> {
     shape: S,
@@ -195,7 +197,7 @@ impl<S: Surface> Surface for Shifted<S> {
     }
 }
 
-/// The sum of two gaps.
+/// A shape whose gap is the sum of the gaps of two shapes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sum<A, B>(A, B);
 

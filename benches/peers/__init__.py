@@ -1,15 +1,15 @@
-"""nacre beside other contact solvers: the same problems, to the same residual, in one run.
+"""nacre compared with other contact solvers: equal problems, equal residuals, one run.
 
-``make peers`` runs it; ``benches/README.md`` says what is measured and how.
+``make peers`` runs it; ``benches/README.md`` describes the measurement.
 
 =============  ===================================================================
 `install`      a virtual environment with nacre's wheel and the other programs
-`problems`     what is solved
-`programs`     who solves it, each through its own interface
-`judge`        the residual of anybody's pressure, by nacre's coefficients
-`worker`       one measurement, in a process of its own
-`measure`      starts workers; finds the tolerance that gives the residual asked
-`figures`      the figures that have a bar
+`problems`     the problems that are solved
+`programs`     the programs, each called through its Python interface
+`judge`        the residual of any pressure, by nacre's coefficients
+`worker`       one measurement, in a separate process
+`measure`      starts workers; finds the tolerance for the required residual
+`figures`      the quantities that have a limit
 `report`       CSV, Markdown and plot
 =============  ===================================================================
 """

@@ -1,4 +1,4 @@
-"""The figures that have a bar, from what was measured."""
+"""The quantities that have a required value, from the measurements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from peers.problems import TOLERANCE
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure: what, the most that is allowed, what one would like, what was measured."""
+    """One quantity: name, limit (`bar`), goal (`stretch`) and measured value."""
 
     what: str
     bar: float
@@ -21,25 +21,25 @@ class Figure:
     measured: float | None
     unit: str = ""
     least: bool = False
-    """Whether the bar is the least that is allowed."""
+    """Whether the limit is a lower limit."""
     error: float | None = None
-    """Relative standard error of what was measured, where it is a mean."""
+    """Relative standard error of the measured value, where it is a mean."""
 
     @property
     def met(self) -> str:
-        """The verdict."""
+        """Whether the measured value keeps the limit, in words."""
         if self.measured is None:
             return "not measured"
         if self.error is not None and abs(self.measured - self.bar) <= self.error * self.measured:
-            return "undecided: the bar is within the error"
+            return "undecided: the limit is within the error"
         sign = -1 if self.least else 1
         if self.stretch is not None and sign * self.measured <= sign * self.stretch:
-            return "met, and the stretch"
+            return "met, also the goal"
         return "met" if sign * self.measured <= sign * self.bar else "missed"
 
 
 def ratio(ours: Row | None, theirs: Row | None, field: str = "seconds") -> float | None:
-    """Return one figure of a row over that of another, where both were measured."""
+    """Return the ratio of one field of two rows, where both were measured."""
     if ours is None or theirs is None:
         return None
     a, b = getattr(ours, field), getattr(theirs, field)
@@ -54,18 +54,18 @@ def error(ours: Row | None, theirs: Row | None, field: str = "error") -> float |
 
 
 def value(row: Row | None, field: str) -> float | None:
-    """Return a figure of a row, where it was measured."""
+    """Return a field of a row, where it was measured."""
     found = getattr(row, field) if row is not None else None
     return None if found is None else float(found)
 
 
 def all_figures(bench: Bench) -> list[Figure]:
-    """Return every figure."""
+    """Return all quantities."""
     return [*convolution(bench), *hertz(bench), *rough(bench), *others(bench)]
 
 
 def convolution(bench: Bench) -> Iterator[Figure]:
-    """Return those of one convolution over SciPy's."""
+    """Return the times of one convolution relative to SciPy's."""
     for cells in (1024, 2048):
         for threads, bar, stretch in ((1, 0.9, 0.7), (2, 0.75, 0.6)):
             ours = bench.find("convolution", cells, "nacre", threads)
@@ -77,9 +77,9 @@ def convolution(bench: Bench) -> Iterator[Figure]:
 def against(
     bench: Bench, problem: str, bars: Iterable[tuple[str, float, float | None]]
 ) -> Iterator[Figure]:
-    """Time over the time of others, at 1024² on one thread.
+    """Return times relative to those of other programs, at 1024² on one thread.
 
-    Where one of them misses the tolerance there is nothing to compare.
+    Where a program misses the tolerance, the ratio is not measured.
     """
     ours = bench.find(problem, 1024, "nacre", 1)
     for program, bar, stretch in bars:
@@ -90,7 +90,7 @@ def against(
 
 
 def hertz(bench: Bench) -> Iterator[Figure]:
-    """Return those of the sphere."""
+    """Return the quantities of the sphere."""
     one = bench.find("hertz", 1024, "nacre", 1)
     yield Figure("hertz 1024², 1 thread: work in convolutions", 12, 8, value(one, "work"))
     bars = (
@@ -102,7 +102,7 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     fine = value(bench.find("hertz", 2048, "nacre", 1), "iterations")
     coarse = value(bench.find("hertz", 256, "nacre", 1), "iterations")
     more = None if fine is None or coarse is None else fine - coarse
-    yield Figure("hertz: fine-grid iterations, 2048² less 256²", 3, 1, more)
+    yield Figure("hertz: fine-grid iterations, 2048² minus 256²", 3, 1, more)
     outside = value(bench.find("convolution", 1024, "nacre", 1), "outside")
     yield Figure("hertz 1024², 1 thread: time outside transforms", 0.20, 0.10, outside)
     large = bench.find("hertz", 4096, "nacre", 2)
@@ -116,15 +116,16 @@ def hertz(bench: Bench) -> Iterator[Figure]:
 
 
 def rough(bench: Bench) -> Iterator[Figure]:
-    """Return those of the rough surface."""
+    """Return the quantities of the rough surface."""
     yield from against(bench, "rough", (("ASPHER", 1 / 3, 1 / 6), ("Tamaas", 1 / 50, None)))
 
 
 def others(bench: Bench) -> Iterator[Figure]:
-    """Return those of what nacre alone solves."""
+    """Return the quantities of the problems that nacre alone solves."""
     roller = bench.find("roller", 1024, "nacre", 1)
     work = value(roller, "work")
-    yield Figure("the paper's roller, 1024×128, E1/E2 = 4, e/L = 0.3: work", 30, 20, work)
+    what = "roller of Spinu et al., 1024×128, E1/E2 = 4, e/L = 0.3: work in convolutions"
+    yield Figure(what, 30, 20, work)
     bare, coated = (bench.find(name, 1024, "nacre", 1, "idle") for name in ("hertz", "coated"))
     what = "coated over bare, 1024², 1 thread, with planning"
     more = ratio(coated, bare, "together")

@@ -29,9 +29,9 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 Setting = Literal["", "idle", "shared", "busy"]
 Request = dict[str, Any]
-"""What a worker is asked for."""
+"""A request to a worker, as JSON."""
 Times = dict[str, list[float]]
-"""Of each solve of one process: seconds, planning, both together, processors that were used."""
+"""Seconds, planning, both together and processors in use, for each solve of one process."""
 BESIDE: dict[Setting, str] = {
     "": "",
     "idle": "",
@@ -46,7 +46,7 @@ class Failure(Exception):
 
 @dataclass
 class Row:
-    """One measurement; what was not measured is None, and `note` says why."""
+    """One measurement; a field that was not measured is None, and `note` says why."""
 
     problem: str
     cells: int
@@ -68,14 +68,14 @@ class Row:
     outside: float | None = None
     """Share of a solve of the sphere that is not transforms and products."""
     setting: Setting = ""
-    """The machine, where this was measured in turn with what it is compared with: idle, shared by
-    two processes that do the same at once, or kept busy."""
+    """State of the machine in measurements that alternate with those they are compared with: idle,
+    shared by two processes that do the same, or kept busy."""
     error: float | None = None
     """Relative standard error of the seconds, where these are a mean."""
     error_together: float | None = None
-    """The same of planning and solving together."""
+    """Relative standard error of planning and solving together, where these are a mean."""
     cases: int | None = None
-    """Those of a batch."""
+    """Number of cases of a batch."""
     note: str = ""
 
 
@@ -84,12 +84,12 @@ class Bench:
     """Everything measured in one run."""
 
     folder: Path
-    """For the arrays that every program reads."""
+    """Folder of the arrays that every program reads."""
     limit: float
-    """Seconds after which a measurement is given up, or not begun where it is expected."""
+    """Largest duration [s] of a measurement; a longer one is stopped, or not begun if foreseen."""
     rows: list[Row] = field(default_factory=list)
     load: float = field(default_factory=lambda: os.getloadavg()[0])
-    """Processes that kept the machine busy before it began."""
+    """Load average of the machine before the run."""
     scales: dict[tuple[str, str], float] = field(default_factory=dict)
     """Residual over the program's own tolerance, by program and problem."""
 

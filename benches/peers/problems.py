@@ -18,9 +18,9 @@ Waves = npt.NDArray[np.complex128]
 Name = Literal["hertz", "coated", "rough", "roller"]
 
 SIDE = 2.0
-"""Of the domain."""
+"""Side of the domain."""
 TOLERANCE = 1e-8
-"""Residual asked of everybody."""
+"""Residual that every program must reach."""
 
 HERTZ_RADIUS = 1e3
 CONTACT_RADIUS = SIDE / 6
@@ -28,11 +28,11 @@ HERTZ_LOAD = 4 / 3 * CONTACT_RADIUS**3 / HERTZ_RADIUS
 
 HURST = 0.8
 LONGEST_WAVE = SIDE / 2
-"""The spectrum is zero below the wavenumber of it …"""
+"""Longest wave of the rough surface; longer ones have no amplitude."""
 SHORTEST_CELLS = 8
-"""… and above that of a wave of so many cells; between them its density falls as q^(−2(H+1))."""
+"""Shortest wave in cells. Between both, the spectral density falls as q^(−2(H+1))."""
 MEAN_PRESSURE = 0.04
-"""In units of E*: about 8 % of the cells touch."""
+"""Mean pressure in units of E*, for which about 8 % of the cells touch."""
 SEED = 2026
 
 
@@ -41,8 +41,8 @@ class Problem:
     """One problem on one grid.
 
     `coated` is `hertz` on a layer as thick as the contact radius, of four times the modulus;
-    `roller` is the paper's, on 1024 × 128 cells, under a force at e/L = 0.3. nacre alone solves
-    these two.
+    `roller` is that of Spinu et al., on 1024 × 128 cells, under a force at e/L = 0.3. nacre alone
+    solves these two.
     """
 
     name: Name

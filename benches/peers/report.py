@@ -18,13 +18,13 @@ TITLES = {
     "rough": "Rough: self-affine, Hurst 0.8, rms slope 1, mean pressure 0.04 E*",
     "coated": "Hertz on a layer of four times the modulus, as thick as the contact radius",
     "batch": "1000 coated spheres, load by load; on several threads by `Contact.solve_many`",
-    "roller": "The paper's roller, E1/E2 = 4, e/L = 0.3 (cells along it; an eighth across)",
+    "roller": "Roller of Spinu et al., E1/E2 = 4, e/L = 0.3, with an eighth of the cells across",
 }
 CONVOLUTION = "One zero-padded convolution"
 
 
 def write(bench: Bench, text: Path, image: Path, csv_file: Path) -> None:
-    """Write all three."""
+    """Write the page, the picture and the table of numbers."""
     for file in (text, image, csv_file):
         file.parent.mkdir(parents=True, exist_ok=True)
     with csv_file.open("w", newline="", encoding="utf-8") as opened:
@@ -43,26 +43,26 @@ def markdown(bench: Bench, image: str, data: str) -> str:
     present = {row.program for row in bench.rows if row.seconds is not None}
     versions = ", ".join(f"{name} {release(name)}" for name in names if name in present)
     lines = [
-        "# nacre beside other solvers",
+        "# nacre compared with other solvers",
         "",
-        "Written by `make peers`, all in one run; [`benches/README.md`](../benches/README.md) says",
-        f"what is measured and how. {datetime.now(UTC):%d %B %Y}, {machine()}, load average before",
-        f"the run {bench.load:.2f}: {versions}. All figures: [`{data}`]({data}).",
+        "`make peers` wrote this page in one run; [`benches/README.md`](../benches/README.md)",
+        f"describes the measurement. {datetime.now(UTC):%d %B %Y}, {machine()}, load average",
+        f"before the run {bench.load:.2f}: {versions}. All numbers: [`{data}`]({data}).",
         "",
-        f"![Time over cells]({image})",
+        f"![Time of a solve as a function of the number of cells]({image})",
         "",
-        "## Figures that have a bar",
+        "## Quantities with a limit",
         "",
         *table(
-            ("figure", "measured", "bar", "stretch", ""),
+            ("quantity", "measured", "limit", "goal", ""),
             [
                 (f.what, measured(f), number(f.bar, f), number(f.stretch, f), f.met)
                 for f in all_figures(bench)
             ],
         ),
         "",
-        "The time outside transforms is that of the fastest of some hundred solves, less what the",
-        "plan's clock counted in kernels, transforms and products (`benches/convolution.rs`).",
+        "The time outside transforms is the share of a solve that is not spent in kernels,",
+        "transforms and products, for the fastest of some hundred solves (`benches/convolution.rs`).",
         *shared(bench),
     ]
     for problem, title in TITLES.items():
@@ -84,15 +84,16 @@ def markdown(bench: Bench, image: str, data: str) -> str:
 
 
 def shared(bench: Bench) -> list[str]:
-    """Return lines that say what a second core is worth on this machine."""
+    """Return lines on the gain by a second core on this machine."""
     alone = bench.find("hertz", 1024, "nacre", 1, "idle")
     longer = ratio(bench.find("hertz", 1024, "nacre", 1, "shared"), alone)
     if longer is None:
         return []
     return [
         "",
-        f"Two processes on one thread each, at once, take {longer:.2f} times as long for a solve",
-        f"as one alone: two threads that lose nothing would take {longer / 2:.2f} of one's time.",
+        f"Two simultaneous processes, on one thread each, take {longer:.2f} times as long for a",
+        f"solve as one process alone. An ideal solve on two threads would take {longer / 2:.2f} of",
+        "the time on one thread.",
     ]
 
 
@@ -131,7 +132,7 @@ def cells(row: Row) -> tuple[str, ...]:
 
 
 def convolutions(rows: list[Row]) -> list[str]:
-    """Return the table of one convolution, nacre's beside SciPy's."""
+    """Return the table of one convolution, by nacre and by SciPy."""
     lines = []
     for theirs in (row for row in rows if row.program == "SciPy"):
         same = (theirs.cells, theirs.threads)
@@ -140,11 +141,11 @@ def convolutions(rows: list[Row]) -> list[str]:
         shown = ["–" if time is None else f"{time:.3g}" for time in times]
         share = "–" if None in times else f"{(ours.seconds or 0) / (theirs.seconds or 1):.2f}"
         lines.append((f"{theirs.cells}²", str(theirs.threads), *shown, share))
-    return table(("cells", "threads", "nacre [ms]", "SciPy [ms]", "nacre over SciPy"), lines)
+    return table(("cells", "threads", "nacre [ms]", "SciPy [ms]", "nacre / SciPy"), lines)
 
 
 def number(found: float | None, figure: Figure) -> str:
-    """Return a number of a figure; small ratios as one over something."""
+    """Return a number of a quantity as text, small ratios of times as 1/n."""
     if found is None:
         return "–"
     text = f"{found:.3g}"
@@ -154,7 +155,7 @@ def number(found: float | None, figure: Figure) -> str:
 
 
 def measured(figure: Figure) -> str:
-    """Return what was measured, with its standard error where that is known."""
+    """Return the measured value, with its standard error where it is known."""
     text = number(figure.measured, figure)
     if figure.measured is None or figure.error is None:
         return text
@@ -188,7 +189,7 @@ SHOWN = {"hertz": "Hertz", "rough": "rough, 8 % contact"}
 
 
 def plot(bench: Bench, file: Path) -> None:
-    """Draw the time of a solve over the cells of a side: solid for one thread, dashed for two."""
+    """Draw the time of a solve as a function of the number of cells; dashed for two threads."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -105,7 +105,7 @@ def main() -> None:
     print()
     for figure in all_figures(bench):
         shown = report.measured(figure), report.number(figure.bar, figure)
-        print(f"{figure.what:60}  measured {shown[0]:>10}  bar {shown[1]:>10}  {figure.met}")
+        print(f"{figure.what:60}  measured {shown[0]:>10}  limit {shown[1]:>10}  {figure.met}")
     print(f"written: {', '.join(str(file) for file in files)}")
 
 

@@ -59,7 +59,7 @@ impl Plan {
     /// Calls `work`, a whole solve, on the plan's threads.
     pub(super) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let [nx, ny] = self.grid.shape();
-        self.convolution.own_threads().run_whole(nx * ny, work)
+        self.convolution.own_threads().run_inside(nx * ny, work)
     }
 
     /// Bytes that a plan with its coefficients, and the arrays of one solve take.

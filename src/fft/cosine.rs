@@ -1,5 +1,6 @@
-//! Cosine and sine transforms of half the length of what is even or odd. With f_j, 0 ≤ j ≤ N,
-//! f_N = 0 and M = 2N points in all,
+//! Transforms of even and odd sequences by cosine and sine transforms of half the length.
+//!
+//! A sequence of M = 2N points is even or odd, with the values f_j at 0 ≤ j ≤ N and f_N = 0. Then
 //!
 //! ```text
 //! even: y_j = ½ (f_j + f_{N−j}) − sin(πj/N) (f_j − f_{N−j})
@@ -8,8 +9,9 @@
 //!       S_2k = −Im Y_k   S_{2k+1} = S_{2k−1} + Re Y_k
 //! ```
 //!
-//! where Y is the transform of y over N points, C_1 = ½ f_0 + Σ f_j cos(πj/N) and S_1 = ½ Y_0; the
-//! transform of the whole is 2C, or −2i S. Press et al., Numerical Recipes, 3rd ed., §12.4.
+//! where Y is the transform of y over N points, C_1 = ½ f_0 + Σ f_j cos(πj/N) and S_1 = ½ Y_0. The
+//! transform of the full sequence is 2C where it is even, and −2i S where it is odd. Press et al.,
+//! Numerical Recipes, 3rd ed., Cambridge University Press (2007), §12.4.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -21,8 +23,8 @@ pub(super) struct Angles {
     pub(super) cos: Vec<f64>,
 }
 
-/// y of the module's formula from f, and C_1 of an even sequence. Of the entries j and N − j, which
-/// share a sine, both are made at once.
+/// Computes y of the module's formula from f, and returns C_1 of an even sequence, or 0 of an odd one.
+/// The entries j and N − j have the same sine and are computed together.
 pub(super) fn fold<T>(f: &[T], odd: bool, angles: &Angles, y: &mut [T]) -> T
 where
     T: Copy + Default + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
@@ -53,15 +55,15 @@ where
         y[0] = f[0] * 0.5;
         middle = 1.0;
     }
-    // Where N is even, j = N/2 is its own partner; its sine is 1, its cosine 0.
+    // For even N, the entry j = N/2 has no partner; its sine is 1 and its cosine 0.
     if f.len().is_multiple_of(2) {
         y[f.len() / 2] = f[f.len() / 2] * middle;
     }
     first
 }
 
-/// [`fold`] of W columns at once, of which `line(j)` are the entries j: two of them make one complex
-/// sequence, and as many pairs are made as `y` has room for.
+/// [`fold`] for W columns together, where `line(j)` has the entries j of all columns. Two columns form
+/// one complex sequence of `y`, and as many pairs are computed as fit into `y`.
 pub(super) fn fold_lines<'a, const W: usize>(
     line: impl Fn(usize) -> &'a [f64; W],
     odd: bool,
@@ -112,7 +114,8 @@ pub(super) fn fold_lines<'a, const W: usize>(
     first
 }
 
-/// The transform of the whole, less −i where it is odd, from Y at 0 … N/2.
+/// Computes the transform of the full sequence from Y at 0 … N/2; for an odd sequence without the
+/// factor −i.
 pub(super) fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64]) {
     if odd {
         unfold_with(y, -y[0].re, values, |y| (2.0 * y.im, -2.0 * y.re));
@@ -121,7 +124,8 @@ pub(super) fn unfold(y: &[Complex64], odd: bool, first: f64, values: &mut [f64])
     }
 }
 
-/// The terms 2k and the steps from 2k − 1 to 2k + 1 by `terms`; the term 1 is given.
+/// Computes `values` from the term 1, `first`, and from `terms`, which gives the term 2k and the
+/// difference of the terms 2k + 1 and 2k − 1.
 fn unfold_with(
     y: &[Complex64],
     first: f64,
@@ -141,8 +145,8 @@ fn unfold_with(
     }
 }
 
-/// The same of two sequences, of which Y, at 0 … N − 1, is that of the first plus i times the
-/// second.
+/// Computes the transforms of two full sequences, as [`unfold`] does. `y` at 0 … N − 1 is Y of the first
+/// sequence plus i times Y of the second.
 pub(super) fn unfold_pair(
     y: &[Complex64],
     odd: bool,
@@ -150,8 +154,9 @@ pub(super) fn unfold_pair(
     one: &mut [f64],
     other: &mut [f64],
 ) {
-    // Twice Y of the first is y + y*, of the second −i (y − y*), with y* mirrored and conjugate:
-    // their real parts make y + m, their imaginary parts −i (y − m) conjugate.
+    // 2 Y of the first sequence is y + y*, and 2 Y of the second −i (y − y*), where y* is y mirrored
+    // and conjugated. With m mirrored but not conjugated, the real parts of both, as one complex
+    // number, are y + m, and the imaginary parts −i (y − m).
     let real = |y: Complex64, m: Complex64| y + m;
     let imaginary = |y: Complex64, m: Complex64| Complex64::new(y.im - m.im, m.re - y.re);
     if odd {

@@ -1,4 +1,4 @@
-//! The transform of an even kernel, and that of its inverse.
+//! Spectra of even kernels and of their inverses.
 
 use ndarray::ArrayRef2;
 use rustfft::num_complex::Complex64;
@@ -7,8 +7,8 @@ use super::{BLOCK, EvenSpectrum, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::parallel::Threads;
 
 impl PaddedTransform {
-    /// Transform of the kernel whose values at offsets (i, j) ≥ 0 are `quarter` (nx, ny); on a
-    /// periodic mesh, up to half a period.
+    /// Spectrum of the even kernel with the values `quarter` (nx, ny) at offsets (i, j) ≥ 0. On a
+    /// periodic mesh, only offsets of up to half a period count.
     pub(crate) fn even_spectrum(
         &self,
         quarter: &ArrayRef2<f64>,
@@ -61,7 +61,8 @@ impl PaddedTransform {
         EvenSpectrum(spectrum)
     }
 
-    /// The transform of the inverse, with entries below `floor` times the largest raised to that.
+    /// Spectrum of the inverse kernel. Entries of `spectrum` below `floor` times the largest entry are
+    /// raised to this bound, so that the inverse is positive and finite.
     pub(crate) fn inverse_spectrum(&self, spectrum: &EvenSpectrum, floor: f64) -> EvenSpectrum {
         let points = self.padded[0] as f64 * self.padded[1] as f64;
         let largest = spectrum.0.iter().fold(0.0, |a: f64, &b| a.max(b));

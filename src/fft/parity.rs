@@ -1,22 +1,21 @@
-//! Convolution of one input with many kernels, each even or odd along x and along y.
+//! Convolution of one input with several kernels, each even or odd along x and along y.
 
 use std::ops::Range;
 
 use rustfft::num_complex::Complex64;
 
-use super::convolve::scatter;
 use super::cosine::unfold_pair;
 use super::quarter::{KernelRows, QuarterTransform};
+use super::stages::scatter;
 use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::parallel::Threads;
 
-/// The transform of padded data: columns of the half spectrum, one after another. Scaled by
-/// 1/(mx my).
+/// The half spectrum of padded data, scaled by 1/(mx my) and stored column after column.
 #[derive(Debug)]
 pub(crate) struct Transformed(Vec<Complex64>);
 
 impl PaddedTransform {
-    /// Of data (nx, ny) in C order.
+    /// Transforms `input` (nx, ny) in C order.
     pub(crate) fn transform(
         &self,
         input: &[f64],
@@ -44,8 +43,8 @@ impl PaddedTransform {
         Transformed(spectrum)
     }
 
-    /// For kernels of either parity, at `offsets` along x and y: as many as there are cells at
-    /// most, fewer where the input is zero near the edges.
+    /// Transforms for kernels of either parity with the given numbers of `offsets` along x and y. These
+    /// are at most the numbers of cells, and fewer where the input is zero near the edges.
     pub(crate) fn plan_even(shape: [usize; 2], offsets: [usize; 2], threads: &Threads) -> Self {
         let even = |n: usize| {
             let mut half = n.max(2);
@@ -57,10 +56,10 @@ impl PaddedTransform {
         Self::on(shape, offsets.map(even), threads)
     }
 
-    /// Each output, (nx, ny) in C order, = Σ weight · kernel ∗ input, of the kernels of these
-    /// `numbers` of all sets.
+    /// Computes one output, (nx, ny) in C order, for each of the `numbers`: the sum over all sets of
+    /// weight · kernel ∗ input, with the kernel of this number in the set.
     ///
-    /// All at once, so that the input passes through the caches once.
+    /// All outputs are computed together, so that the input is read from memory once.
     pub(crate) fn convolve_parities(
         &self,
         input: &Transformed,
@@ -125,14 +124,15 @@ impl PaddedTransform {
             let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
                 let blocks = blocks.chunks_exact(size);
                 let parts = blocks.map(|block| &block[k * block_rows..]);
-                self.rows_from_parts(parts, first, output, scratch);
+                self.rows_from_blocks(parts, first, output, scratch);
             };
             self.over_items(threads, output, ny, scratches, inverse);
         }
     }
 }
 
-/// `column` = or += weight · (the kernel's column) · `data`.
+/// Sets `column` to weight · kernel · `data`, or adds this product where `add`. `values` is the lower
+/// half of the kernel's column, less the factor i for each direction in which the kernel is odd.
 fn multiply_add(
     column: &mut [Complex64],
     data: &[Complex64],
@@ -146,7 +146,7 @@ fn multiply_add(
     // The upper half of the column mirrors 1 … of the quarter.
     let turned = values[1..=high.len()].iter().rev();
     let of_high = if odd[0] { -weight } else { weight };
-    // i for each direction in which the kernel is odd.
+    // Two odd directions give i² = −1; one gives i.
     if odd[0] == odd[1] {
         let sign = if odd[0] { -1.0 } else { 1.0 };
         let real = |c: Complex64, v: f64| c * v;
@@ -180,12 +180,12 @@ mod tests {
     use super::super::quarter::Keep;
     use super::*;
 
-    /// Against the double sum, for each parity and for their sum, on odd and even lengths.
+    /// Convolutions of each parity, and their sum, equal the double sum, for odd and even lengths.
     #[test]
     fn convolutions_of_every_parity_equal_the_double_sum() -> crate::Result<()> {
         let threads = Threads::new(Some(1))?;
         let parities = [[false, false], [true, false], [false, true], [true, true]];
-        // Shapes, and how many offsets lie between a loaded cell and another.
+        // Shapes, and the numbers of offsets between a loaded cell and any cell.
         let cases = [
             ([5, 4], [5, 4]),
             ([1, 7], [1, 7]),
@@ -254,7 +254,7 @@ mod tests {
             );
             for ((a, b), exact) in outputs[0].iter().zip(&outputs[1]).zip(&exact) {
                 let value = a + b;
-                // Sums of some hundred numbers of at most 4 · 24.
+                // Rounding of a sum of some hundred numbers of at most 4 · 24.
                 assert!((value - exact).abs() < 1e-11, "{nx} {ny}: {value} {exact}");
             }
         }

@@ -1,8 +1,8 @@
 //! Transforms of kernels that are even or odd along x and along y.
 //!
-//! Only offsets ≥ 0 are given and transformed: along each direction a cosine or sine transform of
-//! half the length, see [`super::cosine`]. Rows are transformed as they are made; columns where
-//! they are needed, a block of them at a time, so that the transform as a whole is never stored.
+//! Kernels are given at offsets ≥ 0 and transformed along each direction by a cosine or sine transform
+//! of half the length, see [`super::cosine`]. Rows are transformed when they are computed. Columns are
+//! transformed when they are needed, one block at a time, so that the full transform is never stored.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -17,14 +17,14 @@ use super::cosine::{Angles, fold, fold_lines, unfold};
 use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::parallel::Threads;
 
-/// Takes row i of kernel k: (i, k, values).
+/// Receives one row of a kernel: (row, kernel, values).
 pub(crate) type Keep<'a> = dyn FnMut(usize, usize, &[f64]) + 'a;
 
-/// Cosine and sine transforms of half the padded lengths.
+/// Plans of the cosine and sine transforms of half the padded lengths.
 pub(crate) struct QuarterTransform {
     row: Arc<dyn RealToComplex<f64>>,
     column: Arc<dyn Fft<f64>>,
-    /// Along x and along y.
+    /// Angles of the transforms along x and along y.
     angles: [Angles; 2],
 }
 
@@ -35,23 +35,23 @@ impl fmt::Debug for QuarterTransform {
     }
 }
 
-/// Some kernels at offsets (i, j) ≥ 0, transformed along y.
+/// Several kernels at offsets (i, j) ≥ 0, transformed along y.
 #[derive(Debug)]
 pub(crate) struct KernelRows {
-    /// Offsets along x and along y.
+    /// Numbers of offsets along x and along y.
     offsets: [usize; 2],
-    /// Of each kernel, whether it is odd along x and along y.
+    /// Whether each kernel is odd along x and along y.
     odd: Vec<[bool; 2]>,
-    /// How many rows one task makes.
-    rows_of_a_task: usize,
-    /// For each task, block of columns, and kernel: its rows.
+    /// Number of rows that one task computes.
+    rows_per_task: usize,
+    /// Rows, ordered by task, block of columns and kernel.
     values: Vec<[f64; BLOCK]>,
-    /// Where each row is, in the first block of the first kernel.
+    /// Position in `values` of each row of the first kernel in the first block.
     starts: Vec<usize>,
 }
 
 impl KernelRows {
-    /// How many kernels.
+    /// Number of kernels.
     pub(crate) fn count(&self) -> usize {
         self.odd.len()
     }
@@ -60,9 +60,9 @@ impl KernelRows {
         self.odd[kernel]
     }
 
-    /// Row i of a kernel within a block of columns; zero beyond the offsets that are given.
+    /// Row i of a kernel in a block of columns; zero beyond the given offsets.
     fn line(&self, [block, kernel]: [usize; 2], i: usize) -> &[f64; BLOCK] {
-        let part = (block * self.odd.len() + kernel) * self.rows_of_a_task;
+        let part = (block * self.odd.len() + kernel) * self.rows_per_task;
         self.starts
             .get(i)
             .map_or(&[0.0; BLOCK], |start| &self.values[start + part])
@@ -84,13 +84,15 @@ impl QuarterTransform {
         }
     }
 
-    /// Points along x of a column's transform, less one.
+    /// Half the padded length along x, which is the length of a folded column.
     pub(super) fn column_length(&self) -> usize {
         self.angles[0].sin.len() + 1
     }
 
-    /// Transforms the columns of one block of a kernel, in pairs, into `folded`; returns the
-    /// term 1 of each, which is needed to unfold them.
+    /// Transforms the columns of one block of a kernel into `folded`, two columns as one complex
+    /// sequence, and returns the term 1 of each column, which [`unfold_pair`] needs.
+    ///
+    /// [`unfold_pair`]: super::cosine::unfold_pair
     pub(super) fn columns(
         &self,
         rows: &KernelRows,
@@ -114,23 +116,23 @@ impl PaddedTransform {
         QuarterTransform::new(self.padded)
     }
 
-    /// Memory for kernels of these parities along x and y, given at `offsets` along x and y.
+    /// Memory for kernels of these parities along x and y, with the numbers of `offsets` along x and y.
     pub(crate) fn kernel_rows(&self, offsets: [usize; 2], odd: Vec<[bool; 2]>) -> KernelRows {
-        let rows_of_a_task = offsets[0].div_ceil(self.tasks);
-        let tasks = offsets[0].div_ceil(rows_of_a_task);
-        let of_a_task = self.blocks() * odd.len() * rows_of_a_task;
-        let start = |i: usize| i / rows_of_a_task * of_a_task + i % rows_of_a_task;
+        let rows_per_task = offsets[0].div_ceil(self.tasks);
+        let tasks = offsets[0].div_ceil(rows_per_task);
+        let per_task = self.blocks() * odd.len() * rows_per_task;
+        let start = |i: usize| i / rows_per_task * per_task + i % rows_per_task;
         KernelRows {
             offsets,
             odd,
-            rows_of_a_task,
-            values: vec![[0.0; BLOCK]; tasks * of_a_task],
+            rows_per_task,
+            values: vec![[0.0; BLOCK]; tasks * per_task],
             starts: (0..offsets[0]).map(start).collect(),
         }
     }
 
-    /// Transforms kernels along y. `source` is called for ranges of rows, and gives each row of
-    /// each kernel to its second argument.
+    /// Transforms kernels along y. `source` is called with ranges of rows, and passes each row of each
+    /// kernel to its second argument.
     pub(crate) fn transform_rows(
         &self,
         transform: &QuarterTransform,
@@ -142,11 +144,11 @@ impl PaddedTransform {
         let KernelRows {
             offsets: [nx, ny],
             odd,
-            rows_of_a_task,
+            rows_per_task,
             values,
             ..
         } = kernels;
-        let ([nx, ny], of_a_task) = ([*nx, *ny], *rows_of_a_task);
+        let ([nx, ny], per_task) = ([*nx, *ny], *rows_per_task);
         let (columns, count) = (self.columns(), odd.len());
         let (plan, angles) = (&transform.row, &transform.angles[1]);
         let odd = &*odd;
@@ -162,16 +164,16 @@ impl PaddedTransform {
                 padded[..ny].copy_from_slice(&row[..ny]);
                 let start = fold(padded, odd[k][1], angles, folded);
                 let done = plan.process_with_scratch(folded, half, fft);
-                debug_assert!(done.is_ok(), "lengths are the plan's own");
+                debug_assert!(done.is_ok(), "the lengths are those of the plan");
                 unfold(half, odd[k][1], start, &mut line[..columns]);
                 let (lines, _) = line.as_chunks::<BLOCK>();
                 for (block, line) in lines.iter().enumerate() {
-                    part[(block * count + k) * of_a_task + i - first] = *line;
+                    part[(block * count + k) * per_task + i - first] = *line;
                 }
             };
-            source(first..(first + of_a_task).min(nx), &mut keep);
+            source(first..(first + per_task).min(nx), &mut keep);
         };
         let (size, scratches) = (self.blocks() * count, &workspace.scratches);
-        self.over_tasks(threads, values, (size, of_a_task), scratches, work);
+        self.over_tasks(threads, values, (size, per_task), scratches, work);
     }
 }

@@ -1,4 +1,4 @@
-//! Transforms of spectra and samples, done once and not planned.
+//! Transforms that are used once and therefore have no plan.
 
 use std::sync::Arc;
 
@@ -11,8 +11,8 @@ use rustfft::{Fft, FftPlanner};
 use super::ZERO;
 use crate::parallel::Threads;
 
-/// Inverse transform of a real and even spectrum of (mx, my) points, of which `value(k, l)` gives
-/// the entries 0 ≤ k ≤ mx/2, 0 ≤ l ≤ my/2 (mx, my even); its corner (nx, ny) is returned.
+/// The corner (nx, ny) of the inverse transform of a real and even spectrum of (mx, my) points, both
+/// even. `value(k, l)` returns the entries at 0 ≤ k ≤ mx/2 and 0 ≤ l ≤ my/2.
 pub(crate) fn inverse_even(
     [nx, ny]: [usize; 2],
     [mx, my]: [usize; 2],
@@ -22,7 +22,7 @@ pub(crate) fn inverse_even(
     let mut planner = FftPlanner::new();
     let (along_x, along_y) = (planner.plan_fft_forward(mx), planner.plan_fft_forward(my));
     let (half_x, half_y) = (mx / 2, my / 2);
-    // The transform of real, even data is real and even, and forward and inverse are the same.
+    // For real and even data, the forward transform equals the unscaled inverse transform.
     let even = |fft: &Arc<dyn Fft<f64>>, buffer: &mut [Complex64], scratch: &mut Vec<Complex64>| {
         scratch.resize(fft.get_inplace_scratch_len(), ZERO);
         fft.process_with_scratch(buffer, scratch);
@@ -68,13 +68,14 @@ pub(crate) fn inverse_even(
     out
 }
 
-/// Fourier coefficients of `samples`, c_m = 1/N Σ f_n e^{−2πi mn/N}, 0 ≤ m ≤ N/2, as (re, im).
+/// Fourier coefficients c_m = 1/N Σ f_n e^{−2πi mn/N} of the `samples` f_n, at 0 ≤ m ≤ N/2, as pairs
+/// of real and imaginary parts.
 pub(crate) fn fourier_coefficients(mut samples: Vec<f64>) -> Vec<(f64, f64)> {
     let scale = 1.0 / samples.len() as f64;
     let fft = RealFftPlanner::new().plan_fft_forward(samples.len());
     let mut spectrum = fft.make_output_vec();
     let done = fft.process(&mut samples, &mut spectrum);
-    debug_assert!(done.is_ok(), "lengths are the plan's own");
+    debug_assert!(done.is_ok(), "the lengths are those of the plan");
     spectrum
         .iter()
         .map(|c| (c.re * scale, c.im * scale))

@@ -1,10 +1,10 @@
-//! The machine's memory, looked at before much of it is asked for.
+//! A check of the memory of the machine before large allocations.
 
 use crate::error::{Error, Result};
 
-/// An error where the machine has less than `needed` bytes.
+/// Returns an error where the machine has less than `needed` bytes for a grid of `shape`.
 pub(crate) fn check_memory(shape: [usize; 2], needed: u64) -> Result<()> {
-    // A small grid needs no look at the machine.
+    // Small allocations are not checked, since the check itself takes time.
     if needed < 64 << 20 {
         return Ok(());
     }

@@ -1,10 +1,10 @@
-//! Memory that is kept for the next use: to get it anew takes as long as a transform.
+//! Memory that is kept for later use, since allocating it again takes as long as a transform.
 
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Memory that is not in use; clones share it.
+/// A store of memory that is not in use; clones share the store.
 pub(crate) struct Pool<T>(Arc<Mutex<Vec<T>>>);
 
 impl<T> Pool<T> {
@@ -14,7 +14,7 @@ impl<T> Pool<T> {
 }
 
 impl<T: Default> Pool<T> {
-    /// Memory with whatever its last use left in it.
+    /// Memory from the store, or new memory. It holds arbitrary values from earlier use.
     pub(crate) fn lease(&self) -> Lease<T> {
         let memory = self.lock().pop().unwrap_or_default();
         Lease {
@@ -42,7 +42,7 @@ impl<T> fmt::Debug for Pool<T> {
     }
 }
 
-/// Memory in use; when dropped, it goes back to its pool.
+/// Memory in use, which returns to its store when it is dropped.
 #[derive(Debug)]
 pub(crate) struct Lease<T: Default> {
     memory: T,

@@ -1,4 +1,4 @@
-//! A pool of threads that belongs to a plan, and work divided among them.
+//! Threads that belong to a plan, and the division of work among them.
 
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -14,46 +14,52 @@ mod waiting;
 pub(crate) use waiting::{SetOnDrop, join};
 use waiting::{Within, linger, linger_during};
 
-/// More threads than that are a mistake: each has a stack and memory of its own.
-const MOST: usize = 256;
+/// Largest permitted number of threads. Larger numbers are taken for mistakes, since each thread has a
+/// stack and working memory.
+const THREAD_LIMIT: usize = 256;
 
-/// Below this number of cells a transform, or a pass over a grid, is done before a second thread
-/// is awake: a tenth of a millisecond (measured: `benches/README.md`).
-const WORTH: usize = 1 << 15;
+/// Smallest number of cells for which work is divided among sleeping threads: 2¹⁵ ≈ 181². With fewer
+/// cells, one transform or pass over a grid is finished before a second thread wakes, which takes a
+/// tenth of a millisecond (measured, `benches/README.md`).
+const DIVIDED_CELLS: usize = 1 << 15;
 
-/// The same where the others are awake: within a solve, or whatever else these threads do.
-const WORTH_AWAKE: usize = 1 << 13;
+/// Smallest number of cells for which work is divided among threads that are awake, as within a solve:
+/// 2¹³ ≈ 91². Measured: solves of 256² cells on two threads take 3.1 ms, and 3.5 ms with the value
+/// for sleeping threads (`benches/README.md`).
+const DIVIDED_CELLS_AWAKE: usize = 1 << 13;
 
-/// Cells that are not divided: a few microseconds' work, in the first caches.
+/// Number of cells that one task processes without further division: a few microseconds of work, in
+/// arrays of 64 KiB that stay in the caches of one core. The value was chosen by trial.
 pub(crate) const LEAF: usize = 1 << 13;
 
-/// Whether what is done with `cells` cells is worth a second thread.
+/// Whether work on `cells` cells takes long enough to be divided among threads.
 pub(crate) fn worth_dividing(cells: usize) -> bool {
     match rayon::current_thread_index() {
-        Some(_) => cells >= WORTH_AWAKE,
-        None => cells >= WORTH,
+        Some(_) => cells >= DIVIDED_CELLS_AWAKE,
+        None => cells >= DIVIDED_CELLS,
     }
 }
 
-/// Threads that the machine offers this process.
+/// Number of threads that the machine offers this process.
 fn available() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// A number of threads, and the pool that is made at the first use.
+/// A number of threads, and the pool of these threads, which is created at first use.
 ///
-/// The pool sleeps when idle. A process that was forked has the plan but not its threads: there
-/// the pool is made anew.
+/// The threads sleep when idle. A forked process has the plan but not the threads, and creates a new
+/// pool.
 pub(crate) struct Threads {
     count: usize,
+    /// The pool, with the identifier of the process that created it.
     pool: Mutex<Option<(u32, Arc<Pool>)>>,
 }
 
 struct Pool {
     threads: ThreadPool,
-    /// Calls from other threads that are under way.
+    /// Number of calls from other threads that have not returned.
     calls: Arc<AtomicUsize>,
-    /// Held while one is counted, and by whoever must know that there is none.
+    /// Held while a call is counted, and while a call that must be the only one checks that it is.
     gate: Mutex<()>,
 }
 
@@ -64,7 +70,7 @@ impl fmt::Debug for Threads {
 }
 
 impl Threads {
-    /// `count` threads, or as many as the machine offers this process.
+    /// `count` threads, or as many as the machine offers this process where it is `None`.
     pub(crate) fn new(count: Option<usize>) -> Result<Self> {
         match count.unwrap_or_else(available) {
             0 => Err(Error::Parameter {
@@ -72,7 +78,7 @@ impl Threads {
                 requirement: "at least 1",
                 value: 0.0,
             }),
-            count if count > MOST => Err(Error::Parameter {
+            count if count > THREAD_LIMIT => Err(Error::Parameter {
                 name: "threads",
                 requirement: "at most 256",
                 value: count as f64,
@@ -88,12 +94,12 @@ impl Threads {
         self.count
     }
 
-    /// Whether to divide among them what is done with `cells` cells.
+    /// Whether work on `cells` cells is to be divided among the threads.
     pub(crate) fn divide(&self, cells: usize) -> bool {
         self.count > 1 && worth_dividing(cells)
     }
 
-    /// Calls `work` where rayon's parallel iterators use these threads.
+    /// Calls `work` on one of the threads, where rayon's parallel iterators use all of them.
     pub(crate) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match self.pool() {
             Some(pool) => pool.run(work),
@@ -101,18 +107,19 @@ impl Threads {
         }
     }
 
-    /// Calls `work`, which goes over `cells` cells many times, on one of the threads, where that pays and
-    /// nobody else uses them yet; elsewhere here, from where it divides what it can. Each time that
-    /// something is handed to the threads takes a tenth of a millisecond.
-    pub(crate) fn run_whole<R: Send>(&self, cells: usize, work: impl FnOnce() -> R + Send) -> R {
+    /// Calls `work`, which processes `cells` cells many times, on one of the threads where the cells are
+    /// many and no other call uses the threads; otherwise on the calling thread. Inside, work is divided
+    /// at once, whereas each division from outside the pool takes a tenth of a millisecond.
+    pub(crate) fn run_inside<R: Send>(&self, cells: usize, work: impl FnOnce() -> R + Send) -> R {
         match self.divide(cells).then(|| self.pool()).flatten() {
-            Some(pool) => pool.run_whole(work),
+            Some(pool) => pool.run_inside(work),
             None => work(),
         }
     }
 
-    /// Calls both, at once where this is one of the threads. (Handed to them from elsewhere, whatever waits
-    /// within would keep one of them from those that it waits for.)
+    /// Calls both functions, in parallel where the caller is one of the threads. From another thread they
+    /// are called one after the other: in the pool, a function that waits for a third party would occupy
+    /// a thread that the third party may need.
     pub(crate) fn both<A: Send, B: Send>(
         &self,
         first: impl FnOnce() -> A + Send,
@@ -148,7 +155,7 @@ impl Threads {
                     gate: Mutex::default(),
                 });
                 if let Some((_, forked)) = pool.replace((process, Arc::clone(&new))) {
-                    // Its threads do not exist here: there is nothing that could be joined.
+                    // The threads of the old pool do not exist in a forked process and cannot be joined.
                     std::mem::forget(forked);
                 }
                 Some(new)
@@ -169,12 +176,13 @@ impl Pool {
         })
     }
 
-    fn run_whole<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    fn run_inside<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let (mut work, mut done, mut call) = (Some(work), None, None);
         self.threads.in_place_scope(|scope| {
             let gate = self.gate();
-            // One at a time, so that a thread of the pool is left whatever `work` waits for; and none
-            // while another call waits, which might have to wait for it.
+            // At most one call runs inside, so that `work` leaves a thread of the pool to calls that it
+            // waits for. It does not run inside while another call is under way, which might have to
+            // wait for it.
             if self.calls.load(Ordering::Acquire) == 0 {
                 call = Some(self.call(&gate));
                 self.threads.spawn_broadcast(|_| linger(true));
@@ -189,7 +197,7 @@ impl Pool {
         match (done, work) {
             (Some(done), _) => done,
             (None, Some(work)) => work(),
-            (None, None) => unreachable!("what was taken was done"),
+            (None, None) => unreachable!("work that was taken has been done"),
         }
     }
 
@@ -197,13 +205,14 @@ impl Pool {
         self.gate.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Counts a call until that is dropped.
+    /// Counts a call until the returned value is dropped.
     fn call(&self, _gate: &MutexGuard<()>) -> Call<'_> {
         self.calls.fetch_add(1, Ordering::AcqRel);
         Call(&self.calls)
     }
 }
 
+/// A call that is under way.
 struct Call<'a>(&'a AtomicUsize);
 
 impl Drop for Call<'_> {
@@ -212,13 +221,13 @@ impl Drop for Call<'_> {
     }
 }
 
-/// The number of this thread in its pool; 0 where it is in none.
+/// Index of the current thread in its pool; 0 for a thread outside any pool.
 pub(crate) fn number() -> usize {
     rayon::current_thread_index().unwrap_or(0)
 }
 
-/// Calls `work` with each `length` elements of `data`, and how many times `length` come before them,
-/// `first` included.
+/// Divides `data` into chunks of `length` elements, and calls `work` for each with the index of the
+/// chunk and its elements; `first` is the index of the first chunk.
 pub(crate) fn each_chunk<T: Send>(
     data: &mut [T],
     length: usize,
@@ -239,8 +248,8 @@ pub(crate) fn each_chunk<T: Send>(
     );
 }
 
-/// Calls `work` with each row of `data`, of `length` elements, and its number; on all threads of the pool
-/// that this thread belongs to, where it does. (Rayon's own would not survive a fork.)
+/// Calls `work` for each row of `data`, of `length` elements, with the index of the row; in parallel where
+/// the caller is a thread of a pool. (Rayon's global pool would not survive a fork.)
 pub(crate) fn each_row<T: Send>(
     data: &mut [T],
     length: usize,
@@ -268,10 +277,10 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    use super::{LEAF, Threads, WORTH, each_chunk, each_row, join, number};
+    use super::{DIVIDED_CELLS, LEAF, Threads, each_chunk, each_row, join, number};
     use crate::error::Result;
 
-    /// Whether the caller is one of a pool's threads.
+    /// Whether the caller is a thread of a pool.
     fn in_pool() -> bool {
         rayon::current_thread_index().is_some()
     }
@@ -331,14 +340,15 @@ mod tests {
         Ok(())
     }
 
-    /// Solves whose callbacks solve with the same plan: each call waits for another, of another thread.
+    /// Calls that wait for calls from other threads end, as of solves whose callbacks solve with the same
+    /// plan.
     #[test]
     fn calls_that_wait_for_calls_end() -> Result<()> {
         fn nested(threads: Arc<Threads>, depth: u32) -> Option<u32> {
             let (sender, receiver) = channel();
             let within = Arc::clone(&threads);
             thread::spawn(move || {
-                let _ = sender.send(threads.run_whole(WORTH, || {
+                let _ = sender.send(threads.run_inside(DIVIDED_CELLS, || {
                     let deeper = match depth {
                         0 => 0,
                         _ => nested(within, depth - 1)?,
@@ -347,7 +357,7 @@ mod tests {
                     Some(one + more)
                 }));
             });
-            // Where that does not end, this does, and says so.
+            // The time limit makes the test fail where the calls do not end.
             receiver.recv_timeout(Duration::from_secs(20)).ok()?
         }
         assert_eq!(nested(Arc::new(Threads::new(Some(2))?), 5), Some(6));
@@ -365,10 +375,10 @@ mod tests {
                 let _ = started.send(());
                 panic!("on purpose");
             };
-            let call = || threads.run_whole(WORTH, || join(wait, panics));
+            let call = || threads.run_inside(DIVIDED_CELLS, || join(wait, panics));
             let _ = sender.send(catch_unwind(AssertUnwindSafe(call)).is_err());
         });
-        // Where the first half waits for ever, this does not.
+        // The time limit makes the test fail where the first half waits forever.
         assert_eq!(receiver.recv_timeout(Duration::from_secs(20)), Ok(true));
         Ok(())
     }
@@ -376,10 +386,10 @@ mod tests {
     #[test]
     fn a_panic_reaches_the_caller_and_leaves_the_threads_as_they_were() -> Result<()> {
         let threads = Threads::new(Some(2))?;
-        for cells in [WORTH, WORTH - 1] {
-            let call = || threads.run_whole(cells, || threads.run(|| panic!("on purpose")));
+        for cells in [DIVIDED_CELLS, DIVIDED_CELLS - 1] {
+            let call = || threads.run_inside(cells, || threads.run(|| panic!("on purpose")));
             assert!(catch_unwind(AssertUnwindSafe(call)).is_err());
-            assert_eq!(threads.run_whole(cells, in_pool), cells == WORTH);
+            assert_eq!(threads.run_inside(cells, in_pool), cells == DIVIDED_CELLS);
         }
         Ok(())
     }

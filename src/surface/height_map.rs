@@ -14,7 +14,8 @@ use crate::grid::Grid;
 /// h = max(heights) − heights
 /// ```
 ///
-/// Bilinear on another grid, constant over the outer half of the outermost cells, +∞ beyond them.
+/// On another grid, gaps are interpolated bilinearly. They are constant over the outer half of the
+/// outermost cells, and +∞ beyond.
 ///
 /// ```
 /// use nacre::{HeightMap, Surface};
@@ -31,7 +32,7 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// `heights` (nx, ny) \[m\] at samples `spacing` \[m\] apart, around the origin.
+    /// A height map of `heights` (nx, ny) \[m\] at a `spacing` \[m\], centred at the origin.
     ///
     /// # Errors
     /// Where a height is not finite, there are fewer than two samples in a direction, or the
@@ -63,10 +64,10 @@ impl HeightMap {
         })
     }
 
-    /// The same surface around `center` \[m\].
+    /// This surface, moved to be centred at `center` \[m\].
     ///
     /// # Errors
-    /// Unless it is finite.
+    /// Unless `center` is finite.
     pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
         Ok(Self {
             grid: self.grid.centered_at(center)?,
@@ -74,7 +75,7 @@ impl HeightMap {
         })
     }
 
-    /// The heights, (nx, ny) \[m\].
+    /// Heights, (nx, ny) \[m\].
     pub fn heights(&self) -> &ArrayRef2<f64> {
         &self.heights
     }
@@ -84,17 +85,22 @@ impl HeightMap {
         self.spacing
     }
 
-    /// Its centre \[m\].
+    /// Centre of the map \[m\].
     pub fn center(&self) -> [f64; 2] {
         self.grid.center()
     }
 }
 
-/// Index of the sample below `coordinate` and the weight of the next one; none outside the map.
+/// Relative tolerance of positions and spacings: rounding of coordinates must not exclude a cell
+/// whose centre lies on the rim of the map.
+const ROUNDING: f64 = 1e-9;
+
+/// Index of the sample at or below `coordinate`, and the weight of the next sample; `None` outside
+/// the map.
 fn locate(coordinate: f64, center: f64, n: usize, spacing: f64) -> Option<(usize, f64)> {
     let position = (coordinate - center) / spacing + 0.5 * (n - 1) as f64;
-    // Half a cell beyond the outermost samples, and room for rounding.
-    if !(-0.5 - 1e-9..=n as f64 - 0.5 + 1e-9).contains(&position) {
+    // The map ends half a cell beyond the outermost samples.
+    if !(-0.5 - ROUNDING..=n as f64 - 0.5 + ROUNDING).contains(&position) {
         return None;
     }
     let position = position.clamp(0.0, (n - 1) as f64);
@@ -119,7 +125,7 @@ impl Surface for HeightMap {
             return Ok(sampled(grid, |i, j| self.highest - self.heights[[i, j]]));
         }
         for (cell, sample) in grid.spacing().into_iter().zip(self.grid.spacing()) {
-            if cell > 2.0 * sample * (1.0 + 1e-9) {
+            if cell > 2.0 * sample * (1.0 + ROUNDING) {
                 return Err(Error::Parameter {
                     name: "grid spacing",
                     requirement: "at most twice the spacing of the height map",

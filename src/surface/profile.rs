@@ -1,4 +1,4 @@
-//! Axial profiles of rollers: the drop d(x) of the generatrix below its middle.
+//! Axial profiles of rollers: the drop d(x) of the generatrix relative to the middle of the roller.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -7,14 +7,14 @@ use super::quadric::sagitta;
 use crate::error::{Error, Result, positive};
 use crate::hertz::Line;
 
-/// An axial profile.
+/// An axial profile of a roller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
-    /// Straight, with rounded ends.
+    /// A straight profile with rounded ends.
     Crowned(CrownedProfile),
-    /// Logarithmic.
+    /// A logarithmic profile.
     Logarithmic(LogarithmicProfile),
-    /// Measured.
+    /// A measured profile.
     Sampled(SampledProfile),
 }
 
@@ -46,11 +46,13 @@ impl Profile {
         }
     }
 
-    /// Mean drop \[m\] over the cell from a to b \[m\], as far as the roller goes; +∞ where it
-    /// covers less than half of the cell. A crowned profile is smooth, and is taken at the middle.
+    /// Mean drop \[m\] over the part of the cell from a to b \[m\] that the roller covers; +∞
+    /// where this is less than half of the cell. The drop of a crowned profile, which is smooth, is
+    /// taken at the middle of the cell.
     pub(super) fn mean_drop(&self, a: f64, b: f64) -> f64 {
         let [low, high] = self.ends();
         let (from, to) = (a.max(low), b.min(high));
+        // Rounding of coordinates must not exclude a cell that is half covered.
         if to - from < 0.5 * (b - a) * (1.0 - 1e-9) {
             return f64::INFINITY;
         }
@@ -63,7 +65,7 @@ impl Profile {
         }
     }
 
-    /// Where it ends.
+    /// Coordinates of the ends \[m\].
     pub(super) fn ends(&self) -> [f64; 2] {
         match self {
             Self::Crowned(_) => [f64::NEG_INFINITY, f64::INFINITY],
@@ -72,7 +74,7 @@ impl Profile {
         }
     }
 
-    /// Whether a contact that reaches its ends has a sharp edge there.
+    /// Whether a contact that reaches an end of the profile has a sharp edge there.
     pub(super) fn has_sharp_ends(&self) -> bool {
         match self {
             Self::Crowned(_) => false,
@@ -80,7 +82,7 @@ impl Profile {
         }
     }
 
-    /// Smallest radius of curvature that a contact must be small against.
+    /// Smallest radius of curvature \[m\], compared with which a contact must be small.
     pub(super) fn radius(&self) -> f64 {
         match self {
             Self::Crowned(profile) => profile.crown_radius,
@@ -89,7 +91,7 @@ impl Profile {
     }
 }
 
-/// Straight over `flat_length`, rounded beyond with `crown_radius`.
+/// A profile that is straight over `flat_length` and rounded with `crown_radius` beyond.
 ///
 /// ```text
 /// d(x) = 0                            |x| ≤ L = flat_length / 2
@@ -102,10 +104,11 @@ pub struct CrownedProfile {
 }
 
 impl CrownedProfile {
-    /// Straight over `flat_length` \[m\] ≥ 0, rounded to `crown_radius` \[m\] beyond.
+    /// A profile that is straight over `flat_length` ≥ 0 \[m\] and rounded with `crown_radius`
+    /// \[m\] beyond.
     ///
     /// # Errors
-    /// Unless the radius is finite and above 0, and the length finite and at least 0.
+    /// Unless `crown_radius` is finite and above 0, and `flat_length` finite and at least 0.
     pub fn new(flat_length: f64, crown_radius: f64) -> Result<Self> {
         if !(flat_length >= 0.0 && flat_length.is_finite()) {
             return Err(Error::Parameter {
@@ -125,7 +128,7 @@ impl CrownedProfile {
         self.flat_length
     }
 
-    /// Radius of the ends \[m\].
+    /// Radius of the rounded ends \[m\].
     pub fn crown_radius(&self) -> f64 {
         self.crown_radius
     }
@@ -136,20 +139,20 @@ impl CrownedProfile {
     }
 }
 
-/// A logarithmic profile, straight over its middle where `flat_length` > 0.
+/// A logarithmic profile, which has a straight middle where `flat_length` > 0.
 ///
 /// ```text
-/// d(x) = A ln 1/(1 − f u²)      u = (2|x| − flat_length)/(length − flat_length), 0 where negative
+/// d(x) = A ln 1/(1 − f u²)      u = max(2|x| − flat_length, 0) / (length − flat_length)
 /// ```
 ///
-/// +∞ beyond |x| = `length` / 2. The amplitude A and the end factor f ≤ 1 follow from
+/// The drop is +∞ beyond |x| = `length` / 2. The amplitude A and the end factor f ≤ 1 are, after
 ///
-/// - Lundberg: A = W/(π L E*), f = 1: the pressure of the load W is the same all along
-///   (Lundberg, Forsch. Ing.-Wes. 10 (1939) 201);
-/// - Johns & Gohar: f = 1 − 0.3033 b/a, of the half-width b and half-length a, for a finite drop at
-///   the ends (Johns & Gohar, Tribol. Int. 14 (1981) 131);
-/// - ISO/TS 16281: A = 0.00035 D, f = 1 for L ≤ 2.5 D; else A = 0.0005 D over the last 1.25 D at
-///   each end.
+/// - Lundberg (Forsch. Ing.-Wes. 10 (1939) 201): A = W/(π L E*), f = 1, for which the load W causes
+///   the same peak pressure at every x;
+/// - Johns & Gohar (Tribol. Int. 14 (1981) 131): Lundberg's amplitude and f = 1 − 0.3033 b/a, with
+///   the half-width b and the half-length a of the contact, for a finite drop at the ends;
+/// - ISO/TS 16281: A = 0.00035 D and f = 1 for L ≤ 2.5 D; for longer rollers A = 0.0005 D and f = 1
+///   over the last 1.25 D at each end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogarithmicProfile {
     amplitude: f64,
@@ -159,11 +162,11 @@ pub struct LogarithmicProfile {
 }
 
 impl LogarithmicProfile {
-    /// A profile of `amplitude` A \[m\] over `length` \[m\], straight over `flat_length` \[m\], with
-    /// `end_factor` f.
+    /// A profile of `amplitude` A \[m\] and `length` \[m\] with `end_factor` f, straight over
+    /// `flat_length` \[m\].
     ///
     /// # Errors
-    /// Unless amplitude and length are finite and above 0, 0 ≤ flat length < length and
+    /// Unless amplitude and length are finite and above 0, 0 ≤ `flat_length` < `length` and
     /// 0 < f ≤ 1.
     pub fn new(amplitude: f64, length: f64, flat_length: f64, end_factor: f64) -> Result<Self> {
         positive("amplitude", amplitude)?;
@@ -232,12 +235,12 @@ impl LogarithmicProfile {
         }
     }
 
-    /// Amplitude A \[m\].
+    /// Amplitude A of the profile \[m\].
     pub fn amplitude(&self) -> f64 {
         self.amplitude
     }
 
-    /// Whole length \[m\].
+    /// Length of the roller \[m\].
     pub fn length(&self) -> f64 {
         self.length
     }
@@ -261,7 +264,7 @@ impl LogarithmicProfile {
         -self.amplitude * (-self.end_factor * u * u).ln_1p()
     }
 
-    /// ∫ d from 0 to x.
+    /// Integral of the drop from 0 to x \[m²\]. With v² = f u²,
     ///
     /// ```text
     /// ∫ −ln(1 − v²) dv = (1 − v) ln(1 − v) − (1 + v) ln(1 + v) + 2v
@@ -277,19 +280,19 @@ impl LogarithmicProfile {
     }
 }
 
-/// A measured profile: drops at increasing positions, linear in between, +∞ beyond.
+/// A measured profile: drops at increasing positions, with linear interpolation, and +∞ beyond.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledProfile {
-    /// Position, drop, and the integral of the drop up to there.
+    /// Position, drop, and integral of the drop from the first position to this one, per sample.
     samples: Arc<[[f64; 3]]>,
 }
 
 impl SampledProfile {
-    /// Drops `drop` \[m\] at positions `x` \[m\].
+    /// A profile with drops `drop` \[m\] at positions `x` \[m\].
     ///
     /// # Errors
-    /// Unless there are as many drops as positions, two at least, all finite, the positions
-    /// increasing.
+    /// Unless there are at least two positions and as many drops, all are finite, and the positions
+    /// increase.
     pub fn new(x: &[f64], drop: &[f64]) -> Result<Self> {
         if x.len() != drop.len() || x.len() < 2 {
             return Err(Error::Shape {
@@ -325,7 +328,7 @@ impl SampledProfile {
         })
     }
 
-    /// Positions and drops \[m\].
+    /// Position and drop of each sample \[m\].
     pub fn samples(&self) -> impl Iterator<Item = [f64; 2]> {
         self.samples.iter().map(|&[x, drop, _]| [x, drop])
     }
@@ -334,7 +337,8 @@ impl SampledProfile {
         [self.samples[0][0], self.samples[self.samples.len() - 1][0]]
     }
 
-    /// The sample at or below x, and drop and position relative to it; clamped to the ends.
+    /// The sample at or below x, the slope of the drop after it, and the distance of x from it; x is
+    /// clamped to the ends.
     fn locate(&self, x: f64) -> ([f64; 3], f64, f64) {
         let [low, high] = self.ends();
         let x = x.clamp(low, high);

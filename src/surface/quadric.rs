@@ -1,9 +1,9 @@
-//! Sphere, paraboloid, cylinder and flat punch.
+//! Spheres, paraboloids, cylinders and flat punches.
 
 use super::{Extent, Surface};
 use crate::error::{Result, positive};
 
-/// R − √(R² − s), without the cancellation; +∞ where the root has no value.
+/// R − √(R² − s), computed without cancellation; +∞ where s > R².
 ///
 /// ```text
 /// R − √(R² − s) = s / (R + √(R² − s))
@@ -17,7 +17,7 @@ pub(super) fn sagitta(radius: f64, s: f64) -> f64 {
     }
 }
 
-/// A sphere: h = R − √(R² − r²), +∞ beyond R.
+/// A sphere: h = R − √(R² − r²), and +∞ for r > R.
 ///
 /// ```
 /// use nacre::{Sphere, Surface};
@@ -33,14 +33,14 @@ impl Sphere {
     /// A sphere of `radius` \[m\].
     ///
     /// # Errors
-    /// Unless it is finite and above 0.
+    /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
         Ok(Self {
             radius: positive("radius", radius)?,
         })
     }
 
-    /// Its radius \[m\].
+    /// Radius of the sphere \[m\].
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -77,7 +77,7 @@ impl Paraboloid {
     /// A paraboloid of radii of curvature `radius_x` and `radius_y` \[m\] at its apex.
     ///
     /// # Errors
-    /// Unless they are finite and above 0.
+    /// Unless both radii are finite and above 0.
     pub fn new(radius_x: f64, radius_y: f64) -> Result<Self> {
         Ok(Self {
             radius_x: positive("radius_x", radius_x)?,
@@ -106,7 +106,7 @@ impl Surface for Paraboloid {
     }
 }
 
-/// An endless cylinder, axis along x: h = R − √(R² − y²), +∞ beyond R.
+/// A cylinder of infinite length along x: h = R − √(R² − y²), and +∞ for |y| > R.
 ///
 /// ```
 /// use nacre::{Cylinder, Surface};
@@ -122,14 +122,14 @@ impl Cylinder {
     /// A cylinder of `radius` \[m\].
     ///
     /// # Errors
-    /// Unless it is finite and above 0.
+    /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
         Ok(Self {
             radius: positive("radius", radius)?,
         })
     }
 
-    /// Its radius \[m\].
+    /// Radius of the cylinder \[m\].
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -149,7 +149,7 @@ impl Surface for Cylinder {
     }
 }
 
-/// A flat circular punch: h = 0 for r ≤ a, else +∞.
+/// A flat circular punch: h = 0 for r ≤ a, and +∞ beyond.
 ///
 /// ```
 /// use nacre::{FlatPunch, Surface};
@@ -163,17 +163,17 @@ pub struct FlatPunch {
 }
 
 impl FlatPunch {
-    /// A punch of `radius` \[m\].
+    /// A punch of `radius` a \[m\].
     ///
     /// # Errors
-    /// Unless it is finite and above 0.
+    /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
         Ok(Self {
             radius: positive("radius", radius)?,
         })
     }
 
-    /// Its radius \[m\].
+    /// Radius of the punch \[m\].
     pub fn radius(&self) -> f64 {
         self.radius
     }

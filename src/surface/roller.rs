@@ -8,16 +8,16 @@ use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
 
-/// A roller, axis along x, with an axial profile d(x).
+/// A roller of radius R with its axis along x and an axial profile d(x).
 ///
 /// ```text
 /// h = R − √((R − d)² − y²)
 /// ```
 ///
-/// +∞ where the root has no value, beyond the profile's ends, and beyond |x| = `length` / 2 where
-/// a length is given. On a grid, d is taken at cell centres for a crowned roller (Spinu et al., The
-/// normal contact of finite length coated cylinders, eq. (3)), and as its mean over each cell for
-/// other profiles, which are steep at the ends.
+/// Spinu et al., The normal contact of finite length coated cylinders, eq. (3). The gap is +∞ where
+/// the root has no value, beyond the ends of the profile, and beyond |x| = `length` / 2 where a
+/// length is given. On a grid, the drop d of a crowned profile is taken at cell centres. Other
+/// profiles are steep at the ends, and their drop is averaged over each cell.
 ///
 /// ```
 /// use nacre::{LogarithmicProfile, Roller, Surface};
@@ -37,11 +37,11 @@ pub struct Roller {
 }
 
 impl Roller {
-    /// A roller of `radius` \[m\], straight over `flat_length` \[m\] ≥ 0, with ends rounded to
+    /// A roller of `radius` \[m\], straight over `flat_length` ≥ 0 \[m\], with ends rounded with
     /// `crown_radius` \[m\].
     ///
     /// # Errors
-    /// Unless the radii are finite and above 0 and the flat length is finite and at least 0.
+    /// Unless both radii are finite and above 0, and `flat_length` is finite and at least 0.
     pub fn new(radius: f64, flat_length: f64, crown_radius: f64) -> Result<Self> {
         Self::with_profile(radius, CrownedProfile::new(flat_length, crown_radius)?)
     }
@@ -49,7 +49,7 @@ impl Roller {
     /// A roller of `radius` \[m\] with any axial profile.
     ///
     /// # Errors
-    /// Unless the radius is finite and above 0.
+    /// Unless `radius` is finite and above 0.
     pub fn with_profile(radius: f64, profile: impl Into<Profile>) -> Result<Self> {
         Ok(Self {
             radius: positive("radius", radius)?,
@@ -58,7 +58,7 @@ impl Roller {
         })
     }
 
-    /// The same roller, cut off at |x| = `length` / 2 \[m\].
+    /// This roller, cut off at |x| = `length` / 2 \[m\].
     ///
     /// # Errors
     /// Unless `length` is finite, above 0 and at least the flat length of a crowned profile.
@@ -79,27 +79,27 @@ impl Roller {
         })
     }
 
-    /// Its radius \[m\].
+    /// Radius of the roller \[m\].
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Its axial profile.
+    /// Axial profile of the roller.
     pub fn profile(&self) -> &Profile {
         &self.profile
     }
 
-    /// Its whole length \[m\], where it is cut off.
+    /// Length at which the roller is cut off \[m\]; `None` where only the profile ends it.
     pub fn length(&self) -> Option<f64> {
         self.length
     }
 
-    /// Whether the roller is there at x.
+    /// Whether x is within the length of the roller.
     fn reaches(&self, x: f64) -> bool {
         self.length.is_none_or(|length| x.abs() <= 0.5 * length)
     }
 
-    /// R − √((R − d)² − y²) where (R − d)² − y² = R² − (d (2R − d) + y²).
+    /// Gap R − √((R − d)² − y²) for the drop d, computed from (R − d)² − y² = R² − (d (2R − d) + y²).
     fn gap_at(&self, drop: f64, y: f64) -> f64 {
         if drop > self.radius {
             return f64::INFINITY;
@@ -133,7 +133,7 @@ impl Surface for Roller {
     fn extent(&self) -> [Extent; 2] {
         let natural = match &self.profile {
             Profile::Crowned(crowned) => {
-                // The crown ends where it has fallen by R, or at a quarter of its circle.
+                // The crown ends where the drop is R, or at a quarter of the crown's circle.
                 let (r, ra) = (self.radius, crowned.crown_radius());
                 let crown = if r < ra {
                     (r * (2.0 * ra - r)).sqrt()

@@ -1,4 +1,5 @@
-//! The default algorithm finds the reference's solution: every shape and control, coated and bare.
+//! The default algorithm and the reference algorithm find the same solution, for every shape and control,
+//! on coated and bare bodies.
 
 use nacre::{
     Algorithm, Contact, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Layer, Motion, Options,
@@ -6,11 +7,11 @@ use nacre::{
 };
 use ndarray::Array2;
 
-/// Both solve to this residual and overlap.
+/// Residual and overlap to which both algorithms solve.
 const TOLERANCE: f64 = 1e-12;
 
-/// Pressures then differ by the residual times the condition of the problem, which grows as the
-/// number of cells across the grid: some 1e-10 of the peak.
+/// Difference of pressures, relative to the peak: the residual times the condition of the problem, which
+/// grows as the number of cells across the grid: some 1e-10 of the peak.
 const SAME: f64 = 1e-9;
 
 fn motions() -> [(&'static str, Motion); 8] {
@@ -65,7 +66,7 @@ fn motions() -> [(&'static str, Motion); 8] {
     ]
 }
 
-/// A sum of waves, of about the roughness of a ground surface.
+/// A sum of waves with about the roughness of a ground surface.
 fn rough(grid: &Grid) -> Result<HeightMap> {
     let (x, y) = (grid.x(), grid.y());
     let waves = [

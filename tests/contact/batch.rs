@@ -1,5 +1,5 @@
-//! Many cases side by side give what each gives alone, in the order given; what is stopped keeps
-//! what is finished.
+//! Cases solved in parallel have the same solutions as each case alone, in the given order; a batch that is
+//! stopped keeps the finished solutions.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -24,7 +24,7 @@ fn contact(threads: usize) -> Result<Contact> {
 #[test]
 fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
     let spheres = [Sphere::new(50.0)?, Sphere::new(80.0)?];
-    // Four cases of one sphere come together; of these one is pressed by a given approach, which
+    // Four cases of one sphere are adjacent. One of them has a prescribed approach, which
     // changes what the solver takes for the undeformed gap.
     let cases: Vec<Case> = (0..24)
         .map(|k| Case {
@@ -135,7 +135,7 @@ fn each_solution_is_given_away_once() -> Result<()> {
     Ok(())
 }
 
-/// A sphere that counts how often it is sampled on its grid.
+/// A sphere that counts how often its gaps are sampled on the grid.
 #[derive(Debug)]
 struct Counted {
     sphere: Sphere,

@@ -1,11 +1,11 @@
-//! The estimated discretisation error is of the size of the true one.
+//! Estimated discretisation errors have the size of the true errors.
 
 use nacre::{
     Contact, Discretisation, Elastic, Error, FlatPunch, Grid, Motion, Options, Paraboloid, Result,
     Setup, Sphere, hertz,
 };
 
-/// Errors against Hertz (relative), and their estimates: of peak pressure and approach.
+/// Relative errors of peak pressure and approach compared with Hertz, and their estimates.
 fn errors(cells: [usize; 2], radius: f64) -> Result<[[f64; 2]; 2]> {
     let (body, curvature) = (Elastic::new(1.0, 0.0)?, 100.0);
     let load = 4.0 / 3.0 * radius.powi(3) / curvature;
@@ -33,9 +33,9 @@ fn estimate(found: Option<Discretisation>) -> Result<Discretisation> {
 
 #[test]
 fn estimates_are_of_the_size_of_the_errors() -> Result<()> {
-    // The error depends on where the edge falls among the cells: one contact may be lucky, and so may
-    // its estimate. The mean over many (of the logarithm) must agree within a factor of three, and
-    // no error may be much above its estimate.
+    // The error depends on the position of the edge within a cell. In one contact, the error or its
+    // estimate may be small by chance. The mean of the logarithm over many contacts must agree within a
+    // factor of three, and no error may be much larger than its estimate.
     let mut cases = Vec::new();
     for n in [96, 128, 160, 200, 256, 320, 400, 512] {
         for radius in [0.21, 0.3, 0.45, 0.6] {
@@ -65,7 +65,7 @@ fn what_is_prescribed_has_no_error() -> Result<()> {
     let shape = Sphere::new(100.0)?;
     let loaded = contact.solve(&shape, &Motion::load(5e-4), &Options::default())?;
     let loaded = estimate(loaded.report.discretisation)?;
-    // Within rounding of the sums.
+    // The difference is rounding of the sums.
     assert!(loaded.load < 1e-12 * 5e-4 && loaded.approach > 0.0);
     let moved = contact.solve(&shape, &Motion::approach(1e-3), &Options::default())?;
     let moved = estimate(moved.report.discretisation)?;
@@ -86,7 +86,8 @@ fn peak_at_a_sharp_edge_is_seen_not_to_converge() -> Result<()> {
         &Options::default(),
     )?;
     let estimate = estimate(solution.report.discretisation)?;
-    // p ~ s^(−1/2): halving the cells raises the peak by √2, of which 1 − 1/√2 is 0.29.
+    // With p ~ s^(−1/2), halving the cells raises the peak by √2: the change is 1 − 1/√2 = 0.29 of the
+    // finer peak.
     assert!(estimate.peak_pressure > 0.25 * solution.peak_pressure());
     assert!(estimate.approach < 0.02 * solution.approach);
     Ok(())

@@ -1,5 +1,5 @@
-//! What cannot be solved is an error that says why: controls that contradict each other, loads that
-//! nothing can balance, plans and options that cannot be.
+//! Problems that cannot be solved end in errors that say why: contradictory controls, loads that no
+//! pressure can balance, invalid plans and options.
 
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
@@ -17,7 +17,7 @@ fn steel() -> Result<Elastic> {
     Elastic::new(210e9, 0.3)
 }
 
-/// On 16 x 12 cells of 1 mm.
+/// A contact on 16 x 12 cells of 1 mm.
 fn contact() -> Result<Contact> {
     let grid = Grid::new([16, 12], [16e-3, 12e-3])?;
     Contact::plan(&steel()?, grid, Setup::default())
@@ -122,7 +122,8 @@ fn products_that_overflow() -> Result<()> {
         eccentricity: [Some(1e-3), None],
         ..Motion::load(1e307)
     };
-    // Pressures of 1e13 times that approach; of the smaller one products with displacements.
+    // Pressures are about 1e13 times the approach and overflow for the larger one; for the smaller one,
+    // products of pressures with displacements underflow.
     check([
         (solved(&shape, &Motion::approach(1e300)), overflows),
         (solved(&shape, &Motion::approach(1e160)), overflows),
@@ -135,7 +136,7 @@ fn products_that_overflow() -> Result<()> {
 
 #[test]
 fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
-    // A punch of 4 mm on cells of 1 mm: centres up to 3.5 mm.
+    // A punch of 4 mm radius on cells of 1 mm has cell centres up to 3.5 mm.
     let punch = FlatPunch::new(4e-3)?;
     for x in [3.5e-3, -5e-3] {
         let motion = Motion {
@@ -149,7 +150,7 @@ fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
         );
         assert!(text.starts_with(&begins), "{text}");
     }
-    // Inside the rectangle around them, but not inside the hull.
+    // The point is inside the rectangle around the cells, and outside their convex hull.
     let corner = [Some(3e-3), Some(3e-3)];
     let motion = Motion {
         eccentricity: corner,
@@ -261,7 +262,7 @@ fn plans_and_options() -> Result<()> {
 
 #[test]
 fn cells_too_coarse_for_a_height_map() -> Result<()> {
-    // Cells of 1 mm, and a sample every 0.1 mm.
+    // The cells have sides of 1 mm, and the samples are 0.1 mm apart.
     let fine = HeightMap::new(Array2::zeros([160, 120]), [1e-4, 1e-4])?;
     check([(
         solved(&fine, &Motion::load(1.0)),
@@ -299,7 +300,7 @@ fn a_shape_of_the_wrong_size_or_without_a_gap() -> Result<()> {
     Ok(())
 }
 
-/// Even where the coarser grids, which are solved at the same time, know nothing of it.
+/// The error occurs even where the coarser grids, which are solved at the same time, can be solved.
 #[test]
 fn a_shape_without_a_gap_on_the_finest_grid() -> Result<()> {
     #[derive(Debug)]
@@ -339,7 +340,7 @@ fn grids_that_are_not_to_be_found() -> Result<()> {
         solve(&Cylinder::new(1.0)?, &body, &Motion::load(1.0)),
         "grid must be given for a shape without end: its contact is as long as the grid",
     )]);
-    // A plane is in contact all over, however large the grid.
+    // The contact of a plane covers any grid.
     #[derive(Debug)]
     struct Plane;
     impl Surface for Plane {

@@ -1,4 +1,4 @@
-//! Contacts of a few cells carry force and moments as statics says, down to vanishing loads.
+//! Contacts of a few cells have the forces that statics demands, down to vanishing loads.
 
 use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
@@ -10,25 +10,25 @@ use ndarray::Array2;
 
 use crate::support::random::uniform;
 
-/// Forces that three equations determine.
+/// Relative error of forces that three equations of equilibrium determine.
 const STATICS: f64 = 1e-9;
 
-/// Balance of force and moments, over W and W × half side.
+/// Imbalance of force and moments, relative to W and W × half side.
 const BALANCE: f64 = 1e-12;
 
-/// Far more than any of these needs.
+/// Limit on iterations, far more than any of these contacts needs.
 const ITERATIONS: usize = 1000;
 
 const ALGORITHMS: [Algorithm; 2] = [Algorithm::Cascade, Algorithm::PolonskyKeer];
 
-/// Unit cells, unit modulus.
+/// A contact on unit cells with unit modulus.
 fn contact() -> Result<Contact> {
     let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
     Contact::plan(&body, Grid::new([16, 16], [16.0; 2])?, Setup::default())
 }
 
-/// A balanced solution. The default algorithm must find it; the reference may give up, and then says
-/// so.
+/// A balanced solution. The default algorithm must find it; the reference algorithm may fail to converge,
+/// but must report it.
 fn solve(
     contact: &Contact,
     shape: &dyn Surface,
@@ -72,7 +72,7 @@ fn one_cell_carries_the_load() -> Result<()> {
     Ok(())
 }
 
-/// Three long legs and a short one.
+/// A body with three long legs and a short one.
 const LEGS: [(usize, usize, f64); 4] = [(2, 3, 1.0), (13, 4, 0.98), (6, 12, 0.99), (12, 12, 0.9)];
 
 /// Forces of the three long legs under a unit load at (x, y): its barycentric coordinates.
@@ -109,7 +109,7 @@ fn table_stands_on_its_three_long_legs() -> Result<()> {
                     let (i, j, height) = LEGS[k];
                     let error = solution.pressure[[i, j]] / (load * force) - 1.0;
                     assert!(error.abs() < STATICS, "{what}: leg {k}: {error:e}");
-                    // Its foot is pressed in by what the motion brings it down.
+                    // The indentation of a leg's foot is the displacement of the foot by the rigid motion.
                     let (gx, gy) = (contact.grid().x()[i], contact.grid().y()[j]);
                     let [sx, sy] = solution.tilt;
                     let down = solution.approach + sx * gx + sy * gy - (1.0 - height);
@@ -130,8 +130,8 @@ fn table_stands_on_its_three_long_legs() -> Result<()> {
     Ok(())
 }
 
-/// One leg beneath the load, or two in line with it, leave the body free to turn. A taller leg turns
-/// it, and carries nothing: there are tilts at which both it and the rest, 0.1 high, are clear.
+/// With one leg beneath the load, or two legs in line with it, the body is free to turn. A taller leg turns
+/// the body and carries no load: at some tilts, this leg and the others, which are 0.1 high, do not touch.
 #[test]
 fn legs_in_line_with_the_load_carry_it_beside_a_taller_one() -> Result<()> {
     let contact = contact()?;
@@ -165,7 +165,7 @@ fn legs_in_line_with_the_load_carry_it_beside_a_taller_one() -> Result<()> {
             for ((i, j), h) in undeformed.indexed_iter() {
                 let down = solution.approach + sx * x[i] + sy * y[j];
                 let gap = h + solution.displacement[[i, j]] - down;
-                // The tolerance, and rounding of heights of 1.
+                // The bound is the tolerance plus rounding of heights of 1.
                 assert!(gap > -1e-8 * deepest - 1e-15, "{load:e}, {legs:?}: {gap:e}");
             }
         }
@@ -173,15 +173,16 @@ fn legs_in_line_with_the_load_carry_it_beside_a_taller_one() -> Result<()> {
     Ok(())
 }
 
-/// Three or four cells carry the least of these loads, from place to place of a rough surface as the
-/// moments ask. The reference may give up, and must say so; what it calls converged is balanced.
+/// The smallest of these loads is carried by three or four cells of a rough surface, whose places depend on the
+/// moments. The reference algorithm may fail to converge, and must report it; solutions that it reports as
+/// converged are balanced.
 #[test]
 fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
     let grid = Grid::new([45, 64], [4.5e-4, 4.8e-4])?;
     let body: HalfSpace = Elastic::new(210e9, 0.3)?.into();
     let contact = Contact::plan(&body, grid, Setup::default())?;
-    // Among the last ones are contacts that, on the way, cannot carry the moment until the body has
-    // turned far.
+    // In some of the last cases, the contact cannot balance the moment during the iteration until the body has
+    // turned by a large angle.
     for seed in (0..8).chain([19, 45, 49]) {
         let rough = HeightMap::new(uniform(grid.shape(), seed) * 3e-7, grid.spacing())?;
         let shape = Paraboloid::new(5e-3, 7.5e-3)?.plus(rough);
@@ -194,7 +195,7 @@ fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
                     ..Motion::load(load)
                 };
                 for algorithm in ALGORITHMS {
-                    // Elsewhere the reference gives up more often than not.
+                    // For other loads, the reference algorithm usually fails to converge.
                     if (seed < 8 && load >= 1e-3) || algorithm == Algorithm::Cascade {
                         solve(&contact, &shape, &motion, algorithm)?;
                     }

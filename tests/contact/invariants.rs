@@ -1,5 +1,5 @@
-//! What holds for any contact: balance, complementarity, scaling, and that a solution does not
-//! depend on how it was asked for.
+//! Properties of every contact: balance, complementarity, scaling, and that a solution does not
+//! depend on which quantities are prescribed.
 
 use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
@@ -13,24 +13,26 @@ use proptest::prelude::*;
 use crate::support::random::uniform;
 use crate::support::seeded::seeded;
 
-/// Balance of force and moments, over W and W × half side.
+/// Imbalance of force and moments, relative to W and W × half side.
 const BALANCE: f64 = 1e-12;
 
-/// A layer that is not there: the radial tables of its rest, which is zero.
+/// Error of a layer of the material of the substrate: the tables of the remainder of its response, which is
+/// zero.
 const NO_LAYER: f64 = 1e-10;
 
-/// Pressure over its peak, between two ways to the same contact, both at [`TIGHT`].
+/// Difference of pressures, relative to the peak, between two formulations of one contact, both solved to
+/// [`TIGHT`].
 const SAME_PRESSURE: f64 = 1e-8;
 
-/// Motion, load and moments between them, relative.
+/// Relative difference of motion, load and moments between them.
 const SAME_MOTION: f64 = 1e-9;
 
-/// Tolerance of the iterations, so that it is not what is seen.
+/// Tolerance of the iterations, far below the differences that are tested.
 const TIGHT: f64 = 1e-12;
 
 const RADIUS: f64 = 5e-3;
 
-/// Two layers on steel.
+/// A body of two layers on steel.
 fn stack() -> Result<HalfSpace> {
     let steel = Elastic::new(210e9, 0.3)?;
     let layers = [
@@ -40,7 +42,7 @@ fn stack() -> Result<HalfSpace> {
     HalfSpace::new(steel, layers)
 }
 
-/// Oblong cells, odd and even numbers of them, the origin off the centre.
+/// A grid of oblong cells, odd in number along one axis and even along the other, off the origin.
 fn grid() -> Result<Grid> {
     Grid::new([45, 64], [4.5e-4, 4.8e-4])?.centered_at([2e-5, -3e-5])
 }
@@ -60,7 +62,7 @@ fn paraboloid() -> Result<Paraboloid> {
     Paraboloid::new(RADIUS, 1.5 * RADIUS)
 }
 
-/// max |a − b| over the peak of b.
+/// Largest |a − b| relative to the peak of b.
 fn difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
     let largest = |a: &Array2<f64>| a.fold(0.0_f64, |largest, x| largest.max(x.abs()));
     largest(&(a - b)) / largest(b)
@@ -103,8 +105,8 @@ fn layer_of_the_substrates_material_is_no_layer() -> Result<()> {
 
 #[test]
 fn eccentric_paraboloid_is_a_shifted_one() -> Result<()> {
-    // x²/2R − s x = (x − sR)²/2R − s²R/2, on any body; on the grid if the shift is a whole number
-    // of half cells from where its cells are symmetric.
+    // x²/2R − s x = (x − sR)²/2R − s²R/2 holds on any body, and on the grid if the shift is a whole number
+    // of half cells from a point about which the cells are symmetric.
     let side = [4.5e-4, 4.8e-4];
     let contact = Contact::plan(&stack()?, Grid::new([45, 64], side)?, Setup::default())?;
     let shape = paraboloid()?;
@@ -228,7 +230,7 @@ fn approach_at_which_nothing_touches_is_an_answer() -> Result<()> {
 
 #[test]
 fn stiffer_bodies_under_larger_loads_touch_alike() -> Result<()> {
-    // Linear elasticity: E → kE and W → kW leave contact and approach, and p → kp.
+    // In linear elasticity, E → kE and W → kW do not change contact and approach, and p → kp.
     let scaled = |factor: f64| -> Result<Solution> {
         let steel = Elastic::new(factor * 210e9, 0.3)?;
         let coating = Layer::new(Elastic::new(factor * 420e9, 0.2)?, 2e-5)?;
@@ -244,7 +246,7 @@ fn stiffer_bodies_under_larger_loads_touch_alike() -> Result<()> {
 
 #[test]
 fn any_consistent_units_give_the_same_contact() -> Result<()> {
-    // m, N, Pa; then mm, N, MPa.
+    // The first solution is in m, N, Pa, the second in mm, N, MPa.
     let solve = |length: f64, pressure: f64| -> Result<Solution> {
         let steel = Elastic::new(210e9 * pressure, 0.3)?;
         let coating = Layer::new(Elastic::new(800e9 * pressure, 0.1)?, 1e-5 * length)?;
@@ -299,7 +301,7 @@ fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
     Ok(())
 }
 
-/// A paraboloid that has sound gaps on the grid of these tests alone.
+/// A paraboloid with finite gaps on the grid of these tests only.
 #[derive(Debug)]
 struct OnOneGrid(Paraboloid, f64);
 
@@ -315,7 +317,7 @@ impl Surface for OnOneGrid {
     }
 }
 
-/// Coarser grids only say where to start.
+/// Coarser grids only provide the starting point.
 #[test]
 fn gaps_of_coarser_grids_do_not_change_the_solution() -> Result<()> {
     let prescribed = Motion {
@@ -334,7 +336,8 @@ fn gaps_of_coarser_grids_do_not_change_the_solution() -> Result<()> {
     Ok(())
 }
 
-/// In a window of some cells, and on all of so many that every pass is divided.
+/// Solutions do not depend on the number of threads, in a window of some cells and on so many cells that
+/// every pass is divided.
 #[test]
 fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {
     let small = (Grid::new([300, 256], [4.5e-4, 4.8e-4])?, 200.0);
@@ -369,7 +372,7 @@ fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {
     Ok(())
 }
 
-/// Memory that a plan keeps, whatever is left in it.
+/// Values left in the memory that a plan keeps do not change later solutions.
 #[test]
 fn a_solve_that_failed_leaves_no_trace() -> Result<()> {
     let contact = plan(&stack()?)?;
@@ -385,7 +388,7 @@ fn a_solve_that_failed_leaves_no_trace() -> Result<()> {
 
 #[test]
 fn displacement_is_the_convolution_of_the_pressure() -> Result<()> {
-    // By the double sum over the coefficients, at a few cells.
+    // The displacement is compared with the double sum over the coefficients, at a few cells.
     let contact = plan(&stack()?)?;
     let solution = contact.solve(&paraboloid()?, &Motion::load(30.0), &Options::default())?;
     let c = influence_coefficients(&stack()?, contact.grid(), Method::Exact)?;
@@ -411,7 +414,7 @@ proptest! {
         free in any::<[bool; 2]>(),
         old in any::<bool>(),
     ) {
-        // A rough paraboloid, with heights of the size of its approach.
+        // A rough paraboloid, with heights of the size of the approach.
         let grid = grid()?;
         let rough = HeightMap::new(uniform(grid.shape(), seed) * 3e-7, grid.spacing())?
             .centered_at(grid.center())?;
@@ -434,7 +437,7 @@ proptest! {
             prop_assert!(off.abs() < BALANCE, "moment {}: {:e}", k, off);
         }
 
-        // The report says what the fields say.
+        // The numbers of the report follow from the fields.
         let gap = shape.gaps(&grid)? + &solution.displacement;
         let gaps = solution.gap();
         let (x, y) = (grid.x(), grid.y());

@@ -13,18 +13,18 @@ use serde_json::Value;
 
 use crate::support::reference::{cases, list, number};
 
-/// Peak pressure, extrapolated from 256 and 512 cells by the second order of the discretisation.
+/// Error of the peak pressure, extrapolated from 256 and 512 cells with an error of second order.
 const EXTRAPOLATED: f64 = 1e-4;
 
-/// Half-width, from p² near the edge, and the peak on 512 cells as it is: dx/b = 1/85 of a bare
-/// body, (dx/b)² = 1.4e-4; 1/43 where b is smallest.
+/// Error of the half-width, from p² near the edge, and of the peak on 512 cells: dx/b = 1/85 of a bare
+/// body, (dx/b)² = 1.4e-4; dx/b = 1/43 where b is smallest.
 const ON_THE_GRID: f64 = 1e-3;
 
-/// Pressure over its peak at points inside three quarters of the half-width, interpolated linearly
+/// Error of the pressure, relative to the peak, inside three quarters of the half-width, interpolated linearly
 /// between cells of b/43 or less.
 const PROFILE: f64 = 1e-3;
 
-/// Two ways to the same closed form.
+/// Rounding between two computations of one closed form.
 const ROUNDING: f64 = 1e-10;
 
 /// Half-width on the bare substrate, and a radius so large that a circle is a parabola to
@@ -32,14 +32,15 @@ const ROUNDING: f64 = 1e-10;
 const HALF_WIDTH: f64 = 1e-4;
 const RADIUS: f64 = 1.0;
 
-/// Width of the grid over that half-width.
+/// Width of the grid relative to [`HALF_WIDTH`].
 const WIDTH: f64 = 6.0;
 
 fn steel() -> Result<Elastic> {
     Elastic::new(210e9, 0.3)
 }
 
-/// Rows of 3000 cells: what is left of their ends is (h/X)² = 2e-5 of a tail of (y/X)²/4.
+/// Error of sums over rows of 3000 cells: beyond their ends, (h/X)² = 2e-5 of a tail of (y/X)²/4 is
+/// neglected.
 const STRIPS: f64 = 1e-7;
 
 /// Load per length at which a bare half-width is [`HALF_WIDTH`].
@@ -103,7 +104,7 @@ fn coated_cylinders_equal_the_reference() -> Result<()> {
         let peaks = solutions
             .each_ref()
             .map(|s| s.peak_pressure() / exact - 1.0);
-        // Under a thin hard coating 512 cells are short of it: 1.5e-3.
+        // Under a thin hard coating, the error on 512 cells is larger: 1.5e-3.
         let edge = if number(row, "modulus_ratio") > 3.0 && number(row, "h") < 0.3 {
             half_width(&line(&body, 1024, WIDTH)?)
         } else {
@@ -143,7 +144,7 @@ fn coated_cylinders_equal_the_reference() -> Result<()> {
 #[test]
 fn bare_cylinder_equals_hertz() -> Result<()> {
     let (exact, modulus) = (bare()?, steel()?.plane_strain_modulus());
-    // An odd number of cells, of which one is on the axis; the grid is off it.
+    // The number of cells is odd, so that one is on the axis; the grid is not centred at the axis.
     for (cells, width, center) in [(511, 6.0, 0.0), (400, 4.0, 0.3)] {
         let grid = Grid::line(cells, width * HALF_WIDTH)?;
         let grid = grid.centered_at([0.0, center * HALF_WIDTH])?;
@@ -153,14 +154,14 @@ fn bare_cylinder_equals_hertz() -> Result<()> {
         println!("{cells} cells: peak {peak:.1e}, half-width {edge:.1e}");
         assert!(peak.abs() < ON_THE_GRID && edge.abs() < ON_THE_GRID);
         for (y, p) in solution.grid().y().iter().zip(&solution.pressure) {
-            // p0 √(1 − y²/b²); the edge falls inside a cell.
+            // Hertz: p0 √(1 − y²/b²). The edge lies inside a cell.
             let beyond = (y.abs() / HALF_WIDTH - 1.0).abs();
             let tolerance = if beyond > 0.1 { 2e-3 } else { 0.1 };
             let hertz = (1.0 - (y / HALF_WIDTH).powi(2)).max(0.0).sqrt();
             let error = p / exact.peak_pressure - hertz;
             assert!(error.abs() < tolerance, "y/b = {}: {error}", y / HALF_WIDTH);
         }
-        // u(0) = 2W'/πE* (ln 2ℓ/b + ½) of −2W'/πE* ln r/ℓ and Hertz's pressure.
+        // u(0) = 2W'/πE* (ln 2ℓ/b + ½), from −2W'/πE* ln r/ℓ per line load and Hertz's pressure.
         let unit = 2.0 * line_load()? / (PI * modulus);
         let approach = unit * ((2.0 * width).ln() + 0.5);
         assert_relative_eq!(solution.approach, approach, max_relative = 1e-4);
@@ -170,7 +171,7 @@ fn bare_cylinder_equals_hertz() -> Result<()> {
 
 #[test]
 fn the_datum_moves_the_approach_alone() -> Result<()> {
-    // The same cells, twice as many of them: by 2W'/πE* ln 2.
+    // With twice as many cells of equal width, the datum moves by 2W'/πE* ln 2.
     let body = coated(4.0, 0.5 * HALF_WIDTH)?;
     let (near, far) = (line(&body, 300, 3.0)?, line(&body, 600, 6.0)?);
     let unit = 2.0 * line_load()? / (PI * steel()?.plane_strain_modulus());
@@ -202,7 +203,7 @@ fn force_is_per_length() -> Result<()> {
 
 #[test]
 fn thin_layer_on_a_rigid_base_is_a_winkler_foundation() -> Result<()> {
-    // p = M (δ − y²/2R)/h, M = E (1−ν)/((1+ν)(1−2ν)), of which a³ = 3 W' R h/2M and p0 = 3W'/4a.
+    // p = M (δ − y²/2R)/h with M = E (1−ν)/((1+ν)(1−2ν)), from which a³ = 3 W' R h/2M and p0 = 3W'/4a.
     // A layer of a/100 spreads the pressure at the edges over its thickness.
     let (material, load) = (steel()?, line_load()?);
     let oedometer = 210e9 * 0.7 / (1.3 * 0.4);
@@ -229,7 +230,7 @@ fn thin_layer_on_a_rigid_base_is_a_winkler_foundation() -> Result<()> {
         a * a / (2.0 * RADIUS),
         max_relative = 0.02
     );
-    // The base does not move: there is no datum.
+    // A rigid base does not move, so that there is no datum.
     assert_relative_eq!(
         solve(1200, 6.0)?.approach,
         solution.approach,
@@ -240,9 +241,9 @@ fn thin_layer_on_a_rigid_base_is_a_winkler_foundation() -> Result<()> {
 
 #[test]
 fn endless_strips_are_rows_of_rectangles() -> Result<()> {
-    // C(0) − C(j), free of the datum, are the sums of three-dimensional coefficients along x. Those
-    // beyond X = (n − ½) dx are point loads on the substrate:
-    // A dy/π ∫_X^∞ (1/x − 1/√(x² + y²)) dx = A dy/π ln [(1 + √(1 + y²/X²))/2], A = 2/E*.
+    // The differences C(0) − C(j), which do not contain the datum, are sums of three-dimensional
+    // coefficients along x. Cells beyond X = (n − ½) dx are replaced by point loads on the substrate: A
+    // dy/π ∫_X^∞ (1/x − 1/√(x² + y²)) dx = A dy/π ln [(1 + √(1 + y²/X²))/2], A = 2/E*.
     let (dy, n, ny) = (HALF_WIDTH / 8.0, 1500, 12);
     for (ratio, thickness, aspect) in [
         (1.0, 1.0, 1.0),
@@ -273,7 +274,7 @@ fn endless_strips_are_rows_of_rectangles() -> Result<()> {
 
 #[test]
 fn the_middle_of_a_long_cylinder_is_in_plane_strain() -> Result<()> {
-    // Over 60 half-widths; the middle differs by the strain along the axis, (b/L)² ≈ 3e-4.
+    // The roller is 60 half-widths long. Its middle differs by the strain along the axis, (b/L)² ≈ 3e-4.
     let body = coated(2.0, HALF_WIDTH)?;
     let grid = Grid::new([64, 128], [60.0 * HALF_WIDTH, 4.0 * HALF_WIDTH])?;
     let long = press(&body, grid, 60.0 * HALF_WIDTH * line_load()?)?;

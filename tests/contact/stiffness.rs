@@ -1,11 +1,11 @@
-//! The tangent stiffness is that of central differences, symmetric, and that of closed forms.
+//! The tangent stiffness is symmetric and equals central differences and closed forms.
 
 use nacre::{
     Contact, Elastic, FlatPunch, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result,
     Roller, Setup, Sphere, Surface,
 };
 
-/// (Σ p dA, Σ p x dA, Σ p y dA) under a prescribed motion.
+/// Force and moments (Σ p dA, Σ p x dA, Σ p y dA) under a prescribed motion.
 fn loads(contact: &Contact, shape: &dyn Surface, motion: [f64; 3]) -> Result<[f64; 3]> {
     let [approach, sx, sy] = motion;
     let motion = Motion {
@@ -22,7 +22,7 @@ fn loads(contact: &Contact, shape: &dyn Surface, motion: [f64; 3]) -> Result<[f6
     Ok([solution.load(), mx, my])
 }
 
-/// Largest difference between the stiffness of a solution and central differences, each entry over
+/// Largest difference between the stiffness of a solution and central differences, each entry relative to
 /// the geometric mean of its diagonals; the contact is tilted, so that no entry is zero by symmetry.
 fn error_against_differences(
     body: &HalfSpace,
@@ -41,7 +41,7 @@ fn error_against_differences(
     };
     let solution = contact.solve(shape, &motion, &options)?;
     let stiffness = solution.stiffness()?;
-    // Steps of one and the same displacement at the rim.
+    // All steps cause equal displacements at the rim.
     let half = 0.5 * grid.size()[0];
     let mut worst: f64 = 0.0;
     for freedom in 0..3 {
@@ -63,7 +63,8 @@ fn error_against_differences(
     Ok(worst)
 }
 
-/// Small enough that no cell joins or leaves, large against what the tolerance leaves: 1e-13/1e-6.
+/// Step of the differences: so small that no cell joins or leaves the contact, and large compared with
+/// the error of the solutions, 1e-13/1e-6.
 const STEP: f64 = 1e-6;
 const SYMMETRY: f64 = 1e-10;
 const DIFFERENCES: f64 = 1e-6;
@@ -104,7 +105,7 @@ fn stiffness_of_a_tilted_roller_is_that_of_central_differences() -> Result<()> {
 #[test]
 fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
     // W = 2 E* a δ; M = 4/3 E* a³ s (Johnson, Contact Mechanics, eqs 3.36 and 5.46 f.). The radius
-    // of a punch of cells is right to a fraction of a cell: π a² is their area.
+    // of a punch of cells is right to a fraction of a cell, and is taken from their area π a².
     let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
     let radius: f64 = 1.0;
     let mut errors = Vec::new();
@@ -125,7 +126,7 @@ fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
             );
         }
     }
-    // Cells of constant pressure carry 1/√ singular edges to first order: half a cell of radius.
+    // Cells of uniform pressure represent a 1/√ singularity at the edge to first order: half a cell of radius.
     for (error, cell) in errors.iter().zip([2.2 / 64.0, 2.2 / 128.0]) {
         assert!(error[0].abs() < 0.5 * cell / radius, "{errors:?}");
         assert!(error[1].abs() < 1.5 * cell / radius, "{errors:?}");

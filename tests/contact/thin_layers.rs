@@ -1,22 +1,23 @@
-//! Layers far thinner than a cell act as they do on grids that are two and four times finer.
+//! Layers far thinner than a cell have the same effect on grids that are two and four times finer.
 
 use nacre::{
     Contact, Cylinder, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result, Setup,
     Surface, hertz,
 };
 
-/// Peak pressure on 200 cells across the contact against finer grids: the peak is read half a cell
-/// diagonal off the axis, (dx/a)²/4 = 2.5e-5, and the discretisation errs as much.
+/// Error of the peak pressure on 200 cells across the contact, compared with finer grids: the peak is
+/// read half a cell diagonal off the axis, (dx/a)²/4 = 2.5e-5, and the discretisation has an error of
+/// the same size.
 const DISCRETISATION: f64 = 2e-4;
 
-/// Pressure errs by 1e-5 at this residual.
+/// Residual at which the error of the pressure is 1e-5.
 const CONVERGED: f64 = 1e-6;
 
-/// Half-width of the contact on the bare substrate: it is 1 mm wide.
+/// Half-width of the contact on the bare substrate, which is 1 mm wide.
 const HALF_WIDTH: f64 = 0.5e-3;
 const RADIUS: f64 = 50e-3;
 
-/// Cells along the side of the coarsest grid, and the side of one: 200 across the contact.
+/// Number of cells along the side of the coarsest grid, and side of a cell, for 200 cells across the contact.
 const CELLS: usize = 216;
 const CELL: f64 = HALF_WIDTH / 100.0;
 
@@ -48,7 +49,7 @@ fn sphere(body: &HalfSpace, refinement: usize) -> Result<f64> {
     peak(body, grid, &Paraboloid::new(RADIUS, RADIUS)?, load)
 }
 
-/// Peak pressure under an endless cylinder.
+/// Peak pressure under a cylinder of infinite length.
 fn cylinder(body: &HalfSpace, refinement: usize) -> Result<f64> {
     let modulus = steel()?.plane_strain_modulus();
     let load = std::f64::consts::PI * modulus * HALF_WIDTH.powi(2) / (4.0 * RADIUS);
@@ -75,7 +76,7 @@ fn a_tenth_and_a_hundredth_of_a_cell_under_a_sphere() -> Result<()> {
             );
             let coarse = sphere(&body, 1)?;
             check(&name, coarse, sphere(&body, 2)?, 2);
-            // The finest grid where the layer shows most.
+            // The finest grid is used where the effect of the layer is largest.
             if ratio > 2.0 && part < 100.0 {
                 check(&name, coarse, sphere(&body, 4)?, 4);
             }
@@ -102,8 +103,8 @@ fn a_tenth_and_a_hundredth_of_a_cell_under_a_cylinder() -> Result<()> {
 
 #[test]
 fn the_thin_layer_is_not_lost() -> Result<()> {
-    // A stiff layer raises the peak of a point contact by what grows with its thickness, in
-    // proportion while h is small against the contact.
+    // A stiff layer raises the peak of a point contact in
+    // proportion to its thickness h, while h is small compared with the contact.
     let load = 4.0 * steel()?.plane_strain_modulus() * HALF_WIDTH.powi(3) / (3.0 * RADIUS);
     let bare = hertz::Point::new(RADIUS, steel()?.plane_strain_modulus(), load)?;
     let uncoated = sphere(&steel()?.into(), 1)?;

@@ -1,4 +1,4 @@
-//! Two coated bodies press like one whose response is the sum of theirs, whichever is which.
+//! Two coated bodies have the contact of one body whose response is the sum of both, in either order.
 
 use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
@@ -9,17 +9,17 @@ use nacre::{
 
 use crate::support::random::uniform;
 
-/// The same sums in another order.
+/// Rounding of sums in different order.
 const ROUNDING: f64 = 1e-12;
 
-/// Where an iteration is between: converged to 1e-13.
+/// Difference of two solutions that are converged to 1e-13.
 const CONVERGED: f64 = 1e-12;
 
 fn grid() -> Result<Grid> {
     Grid::new([72, 60], [3.0e-4, 2.8e-4])
 }
 
-/// A hard coating, and two layers on another metal.
+/// A body with a hard coating, and a body of another metal with two layers.
 fn bodies() -> Result<[HalfSpace; 2]> {
     let steel = Elastic::new(210e9, 0.3)?;
     let hard = HalfSpace::new(steel, [Layer::new(Elastic::new(420e9, 0.2)?, 2e-6)?])?;
@@ -48,7 +48,7 @@ fn press(contact: &Contact, motion: &Motion) -> Result<Solution> {
     solution.require_converged(options.tolerance)
 }
 
-/// Largest difference of two pressures over their peak.
+/// Largest difference of two pressures relative to the peak.
 fn difference(a: &Solution, b: &Solution) -> f64 {
     let pairs = a.pressure.iter().zip(&b.pressure);
     let worst = pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
@@ -73,7 +73,7 @@ fn displacements_of_two_bodies_add() -> Result<()> {
 
 #[test]
 fn equal_bodies_are_one_of_half_the_modulus() -> Result<()> {
-    // Half of every modulus doubles the response.
+    // Halving every modulus doubles the response.
     let body = |scale: f64| {
         let substrate = Elastic::new(scale * 210e9, 0.3)?;
         let coating = Elastic::new(scale * 630e9, 0.22)?;

@@ -122,11 +122,11 @@ def test_figures_are_ratios_with_a_verdict() -> None:
     work = found["hertz 1024², 1 thread: work in convolutions"]
     assert (work.measured, work.met) == (12.5, "missed")
     tamaas = found["hertz 1024², 1 thread: time over Tamaas"]
-    assert (report.number(tamaas.measured, tamaas), tamaas.met) == ("1/90", "met, and the stretch")
+    assert (report.number(tamaas.measured, tamaas), tamaas.met) == ("1/90", "met, also the goal")
     assert found["hertz 1024², 1 thread: time over ASPHER"].met == "missed"
     coated = found["coated over bare, 1024², 1 thread, with planning"]
     assert coated.measured == pytest.approx(1.1)
-    assert coated.met == "met, and the stretch"
+    assert coated.met == "met, also the goal"
     assert coated.error == pytest.approx(0.13)  # of 5 and 12 %
     assert report.measured(coated) == "1.1 ± 0.1"
     idle = found["hertz 1024²: two threads over one, machine idle"]
@@ -141,8 +141,8 @@ def test_figures_are_ratios_with_a_verdict() -> None:
 @pytest.mark.parametrize(
     ("measured", "error", "met"),
     [
-        (0.59, 0.03, "undecided: the bar is within the error"),
-        (0.61, 0.03, "undecided: the bar is within the error"),
+        (0.59, 0.03, "undecided: the limit is within the error"),
+        (0.61, 0.03, "undecided: the limit is within the error"),
         (0.61, 0.01, "missed"),
         (0.59, 0.01, "met"),
         (0.59, None, "met"),
@@ -176,7 +176,7 @@ def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_pat
     assert files[1].read_bytes().startswith(b"\x89PNG")
     text = files[0].read_text(encoding="utf-8")
     assert "| 64² | nacre | 1 |" in text
-    assert "![Time over cells](peers.png)" in text
+    assert "![Time of a solve as a function of the number of cells](peers.png)" in text
 
 
 def test_what_is_measured_in_turn_counts_by_the_mean_over_processes() -> None:

@@ -7,22 +7,25 @@ use serde_json::Value;
 use crate::support::reference::{cases, number};
 use crate::support::sphere::{Measures, measures, solve};
 
-/// Peak pressure and approach with 512² cells, side 6 a_H: discretisation of second order.
+/// Error of peak pressure and approach on 512² cells over a side of 6 a_H, of second order in the cells.
 const AT_512: f64 = 2e-4;
 
-/// The same, extrapolated from 256² and 512².
+/// Error of peak pressure and approach, extrapolated from 256² and 512² cells.
 const EXTRAPOLATED: f64 = 2e-5;
 
-/// Contact radius, by p² continued to zero, with 512² cells.
+/// Error of the contact radius on 512² cells, where p² is extrapolated to zero.
 const CONTACT_RADIUS: f64 = 1e-3;
 
-/// The same of layers on a rigid base, where the thinnest has p² bent most towards the edge.
+/// Error of the contact radius of layers on a rigid base. p² is least linear near the edge for the
+/// thinnest layer.
 const RADIUS_ON_RIGID: f64 = 2e-3;
 
-/// Pressure on the axis with 256² cells: half of what the peak is off by there.
+/// Error of the pressure on the axis with 256² cells: half the error of the peak, which is read off
+/// the axis.
 const CENTRAL: f64 = 5e-5;
 
-/// Peak pressure by any conversion, and approach by `image`, with 256² cells and χ = 8.
+/// Error of the peak pressure by any conversion, and of the approach by `image`, with 256² cells and
+/// χ = 8.
 const CONVERTED: f64 = 1e-3;
 
 fn coated(case: &Value) -> Result<(HalfSpace, f64)> {
@@ -62,7 +65,7 @@ fn check(name: &str, [fine, extrapolated]: [Measures; 2], radius: f64) {
     assert!(fine.radius.abs() < radius, "{name}: {fine:?}");
 }
 
-/// All thicknesses of one modulus ratio, `expected` of them.
+/// Compares all thicknesses of one modulus ratio; there are `expected` of them.
 fn check_ratio(modulus_ratio: f64, expected: usize) -> Result<()> {
     let rows = cases("sphere_coated.json");
     let of_ratio = rows
@@ -92,7 +95,7 @@ fn coating_of_half_the_modulus() -> Result<()> {
 
 #[test]
 fn coating_of_the_same_modulus() -> Result<()> {
-    // Of whatever thickness, it is the bare body.
+    // A coating of the material of the substrate leaves a bare body, whatever its thickness.
     check_ratio(1.0, 1)
 }
 
@@ -120,7 +123,7 @@ fn layer_on_a_rigid_base() -> Result<()> {
 
 #[test]
 fn central_pressure_is_read_between_the_cells() -> Result<()> {
-    // On the axis, where no cell has its centre: without the half cell that the peak is off.
+    // The pressure on the axis is interpolated, since no cell has its centre there.
     let rows = cases("sphere_coated.json");
     for case in rows
         .iter()

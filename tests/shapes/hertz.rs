@@ -13,10 +13,10 @@ use nacre::{
 /// axis, (dx/a)²/4 = 1.4e-4.
 const PEAK: f64 = 2e-4;
 
-/// The same for the approach, which sees the discretisation alone.
+/// Error of the approach on the same cells; the approach does not depend on where the peak is read.
 const APPROACH: f64 = 1e-4;
 
-/// The rim of a flat punch is a singularity on staircase cells, dx/a = 1/64.
+/// Error of a flat punch, whose singular rim is a staircase of cells with dx/a = 1/64.
 const FLAT_PUNCH: f64 = 5e-3;
 
 const RADIUS: f64 = 5e-3;
@@ -66,7 +66,7 @@ fn paraboloid_equals_hertz() -> Result<()> {
     let [peak, approach, radius] = errors(&solution)?;
     println!("256²: peak {peak:.1e}, approach {approach:.1e}, contact radius {radius:.1e}");
     assert!(peak.abs() < PEAK && approach.abs() < APPROACH);
-    // By a straight line through p², a tenth of a cell.
+    // The radius from a straight line through p² is right to a tenth of a cell.
     assert!(radius.abs() < 2e-3, "{radius:e}");
     Ok(())
 }
@@ -78,7 +78,7 @@ fn pressure_equals_hertz_everywhere() -> Result<()> {
     let (x, y) = (solution.grid().x(), solution.grid().y());
     for ((i, j), p) in solution.pressure.indexed_iter() {
         let r = x[i].hypot(y[j]);
-        // Away from the rim, where the cells are staircase.
+        // Cells near the rim are left out, since the rim is a staircase of cells.
         let beyond = (r / exact.radius - 1.0).abs();
         let tolerance = if beyond > 0.1 { 5e-3 } else { 0.25 };
         let error = (p - exact.pressure(r)) / exact.peak_pressure;
@@ -88,7 +88,7 @@ fn pressure_equals_hertz_everywhere() -> Result<()> {
             r / exact.radius
         );
     }
-    // The displacement outside, Johnson (1985), eq. (3.42a).
+    // Displacement outside the contact, Johnson (1985), eq. (3.42a).
     let (a, r) = (exact.radius, x[0].hypot(y[0]));
     let inside = (2.0 * a * a - r * r) * (a / r).asin() + r * a * (1.0 - a * a / (r * r)).sqrt();
     let displacement = exact.peak_pressure / (2.0 * modulus()? * a) * inside;
@@ -135,7 +135,7 @@ fn load_gives_approach_gives_load() -> Result<()> {
 
 #[test]
 fn load_grows_as_the_approach_to_three_halves() -> Result<()> {
-    // Under a prescribed approach nothing fixes the scale but the coefficients themselves.
+    // Under a prescribed approach, the coefficients alone determine the scale of the pressure.
     let contact = plan([160, 160], [4.0, 4.0])?;
     let shape = Paraboloid::new(RADIUS, RADIUS)?;
     for factor in [0.5, 1.0, 2.0] {
@@ -168,13 +168,13 @@ fn eccentric_flat_punch_tilts_as_boussinesq_found() -> Result<()> {
             let (approach, exact) = hertz::flat_punch(a, modulus()?, 1e3, moment)?;
             let relative = solution.approach / approach - 1.0;
             assert!(relative.abs() < FLAT_PUNCH, "approach {relative:e}");
-            // 3M/(4E*a³), or nothing.
+            // The tilt is 3M/(4E*a³) where it is free, and 0 where it is locked.
             let scale = 0.75 * 0.25 * a * 1e3 / (modulus()? * a.powi(3));
             let error = (tilt - exact) / scale;
             println!("flat punch: approach {relative:.1e}, tilt {error:.1e}");
             assert!(error.abs() < FLAT_PUNCH, "tilt {error:e}");
         }
-        // W/2πa² (1 + 3 e x/a²) in the middle.
+        // The pressure in the middle is W/2πa² (1 + 3 e x/a²).
         let central = 1e3 / (2.0 * PI * a * a);
         assert_relative_eq!(
             solution.central_pressure(),

@@ -1,24 +1,24 @@
-//! The paper's roller has the known pressure, ends and tilt, centred and under an eccentric force.
+//! The roller of Spinu et al. has the known pressure, ends and tilt, under centred and eccentric loads.
 
 use approx::assert_relative_eq;
 use nacre::{Contact, Elastic, Grid, Motion, Options, Result, Roller, Setup, Solution};
 
-/// Of the known values, which have three digits.
+/// Relative tolerance of the known values, which have three digits.
 const KNOWN: f64 = 5e-3;
 
-/// Two cells along x, and half of the last digit of the known ends.
+/// Tolerance of the ends: two cells along x, and half of the last digit of the known ends.
 const ENDS: f64 = 2.0 * LENGTH / 1024.0 + 0.05e-3;
 
-/// Symmetry of the pressure, over its peak, and of the tilt.
+/// Asymmetry of the pressure, relative to the peak, and of the tilt.
 const SYMMETRIC: f64 = 1e-9;
 
-/// Of the grid \[m\].
+/// Side lengths of the grid \[m\].
 const LENGTH: f64 = 28.8e-3;
 
 const LOAD: f64 = 1e3;
 const HALF_FLAT: f64 = 9.565e-3;
 
-/// Rigid, on steel, free to tilt both ways under a force at x = `eccentricity`.
+/// The rigid roller on steel, free to tilt along x and y under a force at x = `eccentricity`.
 fn solve(eccentricity: f64, shape: [usize; 2]) -> Result<Solution> {
     let steel = Elastic::new(210e9, 0.3)?;
     let roller = Roller::new(5e-3, 2.0 * HALF_FLAT, 7.5)?;
@@ -50,7 +50,7 @@ fn central_half_width(solution: &Solution) -> f64 {
     (x - y / slope).sqrt()
 }
 
-/// max |a − b| over the peak, where b is `other` of the cell.
+/// Largest |a − b| relative to the peak, where `other(cell)` is b.
 fn asymmetry(solution: &Solution, other: impl Fn(usize, usize) -> f64) -> f64 {
     let difference = solution
         .pressure

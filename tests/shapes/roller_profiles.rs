@@ -10,16 +10,17 @@ use nacre::{
     Roller, SampledProfile, Setup, Solution, Surface, Warning, hertz,
 };
 
-/// Closed forms written in two ways.
+/// Rounding between two forms of one formula.
 const ROUNDING: f64 = 1e-12;
 
-/// A mean over a cell against Gauss's rule in pieces, next to a logarithmic end.
+/// Error of quadrature of the mean over a cell next to a logarithmic end.
 const QUADRATURE: f64 = 1e-6;
 
-/// Peak pressure of a logarithmic roller on 256 cells along it, against 512.
+/// Difference of the peak pressures of a logarithmic roller on 256 and 512 cells along the axis.
 const AXIAL: f64 = 5e-3;
 
-/// Peak pressure and force on the last 5 % at each end, for any place of the cells.
+/// Change of the peak pressure, and of the force on the last 5 % at each end, when the grid is shifted by
+/// part of a cell.
 const MOVED: f64 = 1e-3;
 const END: f64 = 1e-2;
 
@@ -27,7 +28,7 @@ const END: f64 = 1e-2;
 const CONVERGED: f64 = 5e-6;
 
 /// Line load of Lundberg's profile over the middle 80 % of the length: his profile is that of a
-/// strip whose width is small against the length, b/L = 1/150.
+/// strip whose width is small compared with the length, b/L = 1/150.
 const UNIFORM: f64 = 0.03;
 
 const RADIUS: f64 = 5e-3;
@@ -37,7 +38,7 @@ fn steel() -> Result<Elastic> {
     Elastic::new(210e9, 0.3)
 }
 
-/// Load at which an endless roller has the peak pressure `peak`: p0² = W'E*/πR.
+/// Load at which a roller of infinite length has the peak pressure `peak`: p0² = W'E*/πR.
 fn load(peak: f64) -> Result<f64> {
     Ok(LENGTH * PI * RADIUS * peak * peak / steel()?.plane_strain_modulus())
 }
@@ -73,7 +74,7 @@ fn iso_profile_has_the_values_of_the_standard() -> Result<()> {
         max_relative = ROUNDING
     );
     assert_relative_eq!(drop(long, -13.75), drop(long, 13.75));
-    // The limit between the two belongs to the first.
+    // At L = 2.5 D, the formula for short rollers applies.
     let limit = LogarithmicProfile::iso16281(10.0, 25.0)?;
     assert_relative_eq!(limit.amplitude(), 3.5e-3);
     assert_relative_eq!(limit.flat_length(), 0.0);
@@ -106,7 +107,7 @@ fn lundberg_makes_the_load_uniform() -> Result<()> {
         b / LENGTH
     );
     assert!(low > 1.0 - UNIFORM && high < 1.0 + UNIFORM, "{low} {high}");
-    // A cylinder cut off without a profile is at its lowest in the middle, and peaks at its ends.
+    // Without a profile, the pressure is lowest in the middle and has peaks at the ends.
     let straight = SampledProfile::new(&[-0.5 * LENGTH, 0.5 * LENGTH], &[0.0, 0.0])?;
     let straight = Roller::with_profile(RADIUS, straight)?;
     let sharp = press(&steel()?.into(), grid, &straight, load)?;
@@ -127,7 +128,7 @@ fn johns_gohar_ends_with_a_finite_drop() -> Result<()> {
     let b = hertz::Line::new(RADIUS, modulus, load / LENGTH)?.half_width;
     let end = load / (PI * LENGTH * modulus) * (0.5 * LENGTH / (0.3033 * b)).ln();
     assert_relative_eq!(drop(profile, 0.5 * LENGTH), end, max_relative = 1e-9);
-    // It is Lundberg's away from them.
+    // Away from the ends, the profile is that of Lundberg.
     let lundberg = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
     let x = 0.25 * LENGTH;
     assert_relative_eq!(
@@ -148,12 +149,12 @@ fn a_fine_sampling_is_the_profile() -> Result<()> {
     let drops: Vec<f64> = x.iter().map(|x| drop(profile, *x)).collect();
     let sampled = SampledProfile::new(&x, &drops)?;
     for k in 0..1000 {
-        // Between samples: linear, A f u″ dx²/8 and at the ends more.
+        // Linear interpolation between samples has the error A f u″ dx²/8, and a larger error at the ends.
         let x = 0.499 * LENGTH * (f64::from(k) / 500.0 - 1.0);
         let error = (drop(sampled.clone(), x) - drop(profile, x)).abs() / profile.amplitude();
         assert!(error < 2e-3, "x/L = {}: {error:e}", x / LENGTH);
     }
-    // What is measured need not be symmetric, nor about the origin.
+    // A measured profile need be neither symmetric nor centred at the origin.
     let lopsided = SampledProfile::new(&[-1.0, 0.0, 2.0], &[0.5, 0.0, 0.25])?;
     assert_relative_eq!(drop(lopsided.clone(), 1.0), 0.125);
     assert_relative_eq!(drop(lopsided.clone(), -0.5), 0.25);
@@ -184,7 +185,7 @@ fn a_fine_sampling_is_the_profile() -> Result<()> {
 
 /// Mean of the profile from a to b, by a midpoint rule on a mesh that is fine towards both ends.
 fn mean(profile: &Profile, a: f64, b: f64) -> f64 {
-    // x = a + (b − a) t² (3 − 2t): the logarithm's end is dampened by the weight 6t(1 − t).
+    // With x = a + (b − a) t² (3 − 2t), the weight 6t(1 − t) removes the singularity at the end.
     let steps = 4000;
     let sum: f64 = (0..steps)
         .map(|k| {
@@ -226,7 +227,7 @@ fn cells_take_the_mean_of_the_profile() -> Result<()> {
     Ok(())
 }
 
-/// Force on x > 0.45 L, of the end of a roller, counting parts of cells.
+/// Force on the end x > 0.45 L of a roller, including parts of cells.
 fn end_force(solution: &Solution) -> f64 {
     let (x, line_load) = (solution.grid().x(), solution.line_load());
     let cell = solution.grid().spacing()[0];
@@ -236,7 +237,8 @@ fn end_force(solution: &Solution) -> f64 {
 
 #[test]
 fn ends_do_not_depend_on_where_cells_fall() -> Result<()> {
-    // Contacts to 96 % of the length, and to its very end; cells of L/200, moved by parts of one.
+    // Contacts over 96 % of the length, and up to the ends, on cells of L/200 that are shifted by parts of
+    // a cell.
     let body: HalfSpace = steel()?.into();
     let cell = LENGTH / 200.0;
     let lundberg =
@@ -282,7 +284,7 @@ fn a_finite_drop_under_load_is_reported_as_a_sharp_end() -> Result<()> {
 
 #[test]
 fn the_peak_converges_along_the_roller() -> Result<()> {
-    // Central, off-centre with a free tilt, and where the contact nearly reaches the ends.
+    // A centred load, an off-centre load with a free tilt, and a contact that nearly reaches the ends.
     let coating = Elastic::new(420e9, 0.3)?;
     let body = HalfSpace::new(steel()?, [Layer::new(coating, 2e-6)?])?;
     let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
@@ -372,7 +374,7 @@ fn errors_name_what_is_wrong() {
     for bad in [0.0, -0.5, 1.001, f64::NAN] {
         assert_eq!(name(log(1e-6, 1.0, 0.0, bad)), Some("end_factor"));
     }
-    // Wider than long: b = √(4W'R/πE*) = 3.6 over a length of 1.
+    // The contact would be wider than long: b = √(4W'R/πE*) = 3.6 for a length of 1.
     assert_eq!(
         name(LogarithmicProfile::johns_gohar(1.0, 1.0, 1.0, 10.0)),
         Some("end_factor")

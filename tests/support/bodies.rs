@@ -1,4 +1,4 @@
-//! Bodies as the reference data write them.
+//! Bodies in the format of the reference data.
 
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 use serde_json::Value;

@@ -1,6 +1,6 @@
-//! Stress below Hertz' contacts in closed form.
+//! Stress below Hertzian contacts in closed form.
 
-/// xx, yy, zz, xy, yz, xz below Hertz' pressure on the unit disc; Huber (1904), after Hills, Nowell
+/// Stresses xx, yy, zz, xy, yz, xz below Hertz's pressure on the unit disc; Huber (1904), after Hills, Nowell
 /// & Sackfield, Mechanics of Elastic Contacts (1993).
 pub(crate) fn huber(nu: f64, x: f64, y: f64, z: f64) -> [f64; 6] {
     let r2 = x * x + y * y;

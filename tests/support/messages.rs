@@ -1,8 +1,8 @@
-//! Errors by what they say.
+//! Comparison of errors with the messages that are expected.
 
 use nacre::Result;
 
-/// What the error says.
+/// Message of an error.
 pub(crate) fn message<T>(result: Result<T>) -> String {
     match result {
         Ok(_) => "no error".into(),
@@ -10,7 +10,7 @@ pub(crate) fn message<T>(result: Result<T>) -> String {
     }
 }
 
-/// Each with the message that it must give.
+/// Asserts that each result is an error with the message beside it.
 pub(crate) fn check<T>(cases: impl IntoIterator<Item = (Result<T>, &'static str)>) {
     for (result, expected) in cases {
         assert_eq!(message(result), expected);

@@ -1,8 +1,8 @@
-//! Numbers that look random and are the same in every run.
+//! Pseudo-random numbers that are equal in every run.
 
 use ndarray::Array2;
 
-/// Uniform in \[0, 1): splitmix64, Steele et al., doi:10.1145/2660193.2660195.
+/// Pseudo-random number, uniform in \[0, 1): splitmix64, Steele et al. (2014), doi:10.1145/2660193.2660195.
 pub(crate) fn uniform(shape: [usize; 2], seed: u64) -> Array2<f64> {
     let mut state = seed;
     Array2::from_shape_simple_fn(shape, || {

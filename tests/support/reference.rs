@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-/// The cases of a file.
+/// Cases of a reference file.
 pub(crate) fn cases(name: &str) -> Vec<Value> {
     let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -12,13 +12,13 @@ pub(crate) fn cases(name: &str) -> Vec<Value> {
     list(&file, "cases").clone()
 }
 
-/// The list `value[key]`.
+/// List of numbers `value[key]`.
 pub(crate) fn list<'a>(value: &'a Value, key: &str) -> &'a Vec<Value> {
     let found = value[key].as_array();
     found.unwrap_or_else(|| panic!("no list {key:?} in {value}"))
 }
 
-/// The number `value[key]`.
+/// Number `value[key]`.
 pub(crate) fn number(value: &Value, key: &str) -> f64 {
     let found = value[key].as_f64();
     found.unwrap_or_else(|| panic!("no number {key:?} in {value}"))

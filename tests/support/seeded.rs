@@ -1,9 +1,9 @@
-//! Random cases that are the same in every run.
+//! Random cases of proptest that are equal in every run.
 
 use proptest::prelude::ProptestConfig;
 use proptest::test_runner::RngSeed;
 
-/// So many cases.
+/// Configuration of proptest for this number of cases.
 pub(crate) fn seeded(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,

@@ -1,10 +1,10 @@
-//! A paraboloid on a coating, in the scales of the Hertz contact that a reference gives.
+//! A paraboloid on a coated body, in the scales of the Hertzian contact of a reference material.
 
 use nacre::{
     Contact, Grid, HalfSpace, Method, Motion, Options, Paraboloid, Result, Setup, Solution, hertz,
 };
 
-/// Peak pressure, approach and contact radius, each over its scale.
+/// Peak pressure, approach and contact radius, each divided by its Hertzian scale.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measures {
     pub(crate) peak: f64,
@@ -13,7 +13,7 @@ pub(crate) struct Measures {
 }
 
 impl Measures {
-    /// Relative errors of these against `exact`.
+    /// Relative errors of these numbers compared with `exact`.
     pub(crate) fn errors(self, exact: Self) -> Self {
         Self {
             peak: self.peak / exact.peak - 1.0,
@@ -22,7 +22,8 @@ impl Measures {
         }
     }
 
-    /// Taken from cells of half the size: what is left when the error falls by four.
+    /// Richardson extrapolation of these numbers and those on cells of half the size, for errors of
+    /// second order.
     pub(crate) fn extrapolated(self, finer: Self) -> Self {
         let limit = |coarse: f64, fine: f64| (4.0 * fine - coarse) / 3.0;
         Self {
@@ -33,7 +34,7 @@ impl Measures {
     }
 }
 
-/// A solved contact on n² cells over a side of 6, in units where the Hertz contact of the reference
+/// A solved contact on n² cells over a side of 6, in units in which the Hertzian contact of the reference
 /// material (`modulus` E*) has a radius of 1.
 pub(crate) fn solve(body: &HalfSpace, modulus: f64, n: usize, method: Method) -> Result<Solution> {
     let setup = Setup {
@@ -50,14 +51,14 @@ pub(crate) fn solve(body: &HalfSpace, modulus: f64, n: usize, method: Method) ->
     solution.require_converged(options.tolerance)
 }
 
-/// Of the paraboloid, far above the contact radius.
+/// Radius of the paraboloid, far larger than the contact radius.
 const RADIUS: f64 = 100.0;
 
 fn load(modulus: f64) -> f64 {
     4.0 * modulus / (3.0 * RADIUS)
 }
 
-/// Over the scales of the reference material.
+/// Numbers of a solution, divided by the scales of the reference material.
 pub(crate) fn measures(solution: &Solution, modulus: f64) -> Result<Measures> {
     let scale = hertz::Point::new(RADIUS, modulus, load(modulus))?;
     let [x, y] = solution

@@ -76,7 +76,7 @@ impl Levels {
         while halved(fine.shape()) != [false; 2] {
             fine = coarse_grid(&fine, halved(fine.shape()))?;
             let coarse = of(&fine)?;
-            convolutions.push(convolution.part(&coarse));
+            convolutions.push(convolution.companion(&coarse));
             coefficients.push(coarse);
             grids.push(fine);
         }
@@ -93,7 +93,7 @@ impl Levels {
         let convolutions = self.convolutions.iter();
         Self {
             coefficients: Arc::clone(&self.coefficients),
-            convolutions: convolutions.map(|c| c.beside(finest)).collect(),
+            convolutions: convolutions.map(|c| c.sharing_with(finest)).collect(),
             grids: self.grids.clone(),
             memory: Pool::default(),
         }
@@ -241,8 +241,8 @@ impl Level<'_> {
             // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
             let ((windowed, [periodic, inverse]), (gap, memory)) = rows.both(
                 || {
-                    let windowed = (!whole).then(|| self.convolution.part(&corner));
-                    (windowed, self.convolution.periodic(&corner))
+                    let windowed = (!whole).then(|| self.convolution.companion(&corner));
+                    (windowed, self.convolution.preconditioner(&corner))
                 },
                 || {
                     let (memory, most) = self.memory;

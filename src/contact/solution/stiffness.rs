@@ -109,7 +109,7 @@ impl Tangent {
         let coefficients = total_coefficients(&report.body, &setup, grid, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let convolution = Convolution::plan_on(&corner, threads)?;
-        let [_, inverse] = convolution.periodic(&corner);
+        let [_, inverse] = convolution.preconditioner(&corner);
         let contact = block(&solution.pressure, &window);
         let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
         let coordinates = [part(0), part(1)];

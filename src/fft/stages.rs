@@ -1,26 +1,29 @@
-//! The convolution: rows forward, columns there and back with the product in between, rows back.
+//! The three stages of a convolution with an even kernel: rows are transformed along y; columns are
+//! transformed along x, multiplied by the kernel's spectrum and transformed back; rows are transformed
+//! back.
 
 use std::ops::Range;
 
 use ndarray::{ArrayViewMut2, Axis};
 use rustfft::num_complex::Complex64;
 
-use super::{BLOCK, EvenSpectrum, GROUP, PaddedTransform, Scratch, Scratches, Workspace, ZERO};
+use super::{BLOCK, EvenSpectrum, PaddedTransform, ROW_GROUP, Scratch, Scratches, Workspace, ZERO};
 use crate::parallel::{Threads, each_chunk, join};
 
-/// Half spectra of some rows of a mesh, by blocks of columns.
+/// Half spectra of consecutive rows, stored by blocks of columns.
 pub(crate) struct HalfSpectra<'a>(ArrayViewMut2<'a, [Complex64; BLOCK]>);
 
 impl HalfSpectra<'_> {
-    /// Those of the first `rows`, and of the others.
+    /// The first `rows` of these half spectra, and the remaining ones.
     pub(crate) fn split(self, rows: usize) -> (Self, Self) {
         let (near, far) = self.0.split_at(Axis(1), rows);
         (Self(near), Self(far))
     }
 }
 
-/// Calls `work` with some `rows`, `length` at most, and the number of the first, for all of them.
-fn each_part(
+/// Divides `rows` into groups of `length` rows or fewer, and calls `work` for each with the index of its
+/// first row; `first` is the index of the first of all.
+fn each_group(
     rows: HalfSpectra,
     length: usize,
     first: usize,
@@ -34,13 +37,13 @@ fn each_part(
     let half = count.div_ceil(length) / 2 * length;
     let (near, far) = rows.split(half);
     join(
-        || each_part(near, length, first, work),
-        || each_part(far, length, first + half, work),
+        || each_group(near, length, first, work),
+        || each_group(far, length, first + half, work),
     );
 }
 
 impl PaddedTransform {
-    /// `output` = kernel ∗ `input`, both (nx, ny) in C order. Allocates nothing.
+    /// Computes `output` = kernel ∗ `input`, both (nx, ny) in C order, without allocating memory.
     pub(crate) fn convolve_into(
         &self,
         spectrum: &EvenSpectrum,
@@ -50,20 +53,20 @@ impl PaddedTransform {
         threads: &Threads,
     ) {
         let rows = || 0..self.shape[0];
-        // Handed over once, rather than for each of the three parts.
+        // All three stages run in one call of the threads, which takes less time than three calls.
         self.divided(threads, || {
             self.rows_in((input, rows()), workspace, threads);
             self.columns_through(spectrum, rows(), workspace, threads);
             let ny = self.shape[1];
-            let of_a_task = self.shape[0].div_ceil(self.tasks);
+            let per_task = self.shape[0].div_ceil(self.tasks);
             let workspace = &*workspace;
-            each_chunk(output, of_a_task * ny, 0, &|task, output| {
-                self.rows_out(task * of_a_task, output, workspace);
+            each_chunk(output, per_task * ny, 0, &|task, output| {
+                self.rows_out(task * per_task, output, workspace);
             });
         });
     }
 
-    /// The first part: transforms the `occupied` rows of `input` along y.
+    /// First stage: transforms the `occupied` rows of `input` along y.
     pub(crate) fn rows_in(
         &self,
         (input, occupied): (&[f64], Range<usize>),
@@ -73,18 +76,18 @@ impl PaddedTransform {
         let (rows, scratches) = self.half_spectra(workspace);
         let (_, rows) = rows.split(occupied.start);
         let (rows, _) = rows.split(occupied.len());
-        let of_a_task = occupied.len().div_ceil(self.tasks).max(1);
+        let per_task = occupied.len().div_ceil(self.tasks).max(1);
         let ny = self.shape[1];
         let work = |first: usize, rows: HalfSpectra| {
             self.some_rows_in(&input[first * ny..], rows, scratches)
         };
         self.divided(threads, || {
-            each_part(rows, of_a_task, occupied.start, &work)
+            each_group(rows, per_task, occupied.start, &work)
         });
     }
 
-    /// Where the first part leaves the rows; each may be transformed by itself, by
-    /// [`Self::some_rows_in`].
+    /// Memory for the half spectra of all rows, which [`Self::some_rows_in`] can fill row by row, and
+    /// the working memory of the threads.
     pub(crate) fn half_spectra<'a>(
         &self,
         workspace: &'a mut Workspace,
@@ -92,13 +95,13 @@ impl PaddedTransform {
         let Workspace { mesh, scratches } = workspace;
         let shape = [self.blocks(), self.block_rows()];
         let Ok(rows) = ArrayViewMut2::from_shape(shape, &mut mesh[..shape[0] * shape[1]]) else {
-            unreachable!("the mesh has room for the rows of all blocks");
+            unreachable!("the mesh has space for the rows of all blocks");
         };
         let (rows, _) = HalfSpectra(rows).split(self.shape[0]);
         (rows, scratches)
     }
 
-    /// Transforms the first rows of `input` along y, into `halves`.
+    /// Transforms the first rows of `input` along y into `halves`, as many as `halves` has.
     pub(crate) fn some_rows_in(&self, input: &[f64], halves: HalfSpectra, scratches: &Scratches) {
         let Scratch {
             real, spectra, fft, ..
@@ -106,8 +109,8 @@ impl PaddedTransform {
         let (ny, blocks, columns) = (self.shape[1], self.blocks(), self.columns());
         let HalfSpectra(mut rows) = halves;
         let input = &input[..rows.len_of(Axis(1)) * ny];
-        let groups = rows.axis_chunks_iter_mut(Axis(1), GROUP);
-        for (mut rows, input) in groups.zip(input.chunks(GROUP * ny)) {
+        let groups = rows.axis_chunks_iter_mut(Axis(1), ROW_GROUP);
+        for (mut rows, input) in groups.zip(input.chunks(ROW_GROUP * ny)) {
             let spectra_of = spectra.chunks_exact_mut(blocks * BLOCK);
             for (spectrum, values) in spectra_of.zip(input.chunks_exact(ny)) {
                 let (half, beyond) = spectrum.split_at_mut(columns);
@@ -124,7 +127,8 @@ impl PaddedTransform {
         }
     }
 
-    /// The second part: columns, of which the `occupied` rows were transformed, are convolved along x.
+    /// Second stage: convolves all columns along x. The `occupied` rows have passed the first stage; all
+    /// other rows are zero.
     pub(crate) fn columns_through(
         &self,
         spectrum: &EvenSpectrum,
@@ -142,7 +146,7 @@ impl PaddedTransform {
             let blocks = blocks.chunks_exact_mut(size).zip(kernels);
             for (block, (lines, kernel)) in blocks.enumerate() {
                 let width = (columns - (first + block) * BLOCK).min(BLOCK);
-                let buffer = &mut scratch.columns[..width.next_multiple_of(TOGETHER) * mx];
+                let buffer = &mut scratch.columns[..width.next_multiple_of(COLUMN_GROUP) * mx];
                 gather(lines, occupied.clone(), mx, buffer);
                 self.column_forward
                     .process_with_scratch(buffer, &mut scratch.fft);
@@ -155,26 +159,27 @@ impl PaddedTransform {
         self.over_items(threads, blocks, size, scratches, convolve);
     }
 
-    /// The last part: transforms rows from `first` on back along y, as many as `values` have room for.
+    /// Third stage: transforms rows back along y into `values`, from row `first` on and as many as fit.
     pub(crate) fn rows_out(&self, first: usize, values: &mut [f64], workspace: &Workspace) {
         let Workspace { mesh, scratches } = workspace;
         let size = self.block_rows();
         let blocks = mesh[..self.blocks() * size].chunks_exact(size);
-        self.rows_from_parts(blocks, first, values, &mut self.scratch(scratches));
+        self.rows_from_blocks(blocks, first, values, &mut self.scratch(scratches));
     }
 }
 
-/// Columns of a block that are gone over together: of each row they are a cache line.
-const TOGETHER: usize = 4;
+/// Columns of a block that are processed together. In each row they fill a cache line of 64 bytes.
+const COLUMN_GROUP: usize = 4;
 
-/// The first columns of `length` points, of some one after another.
-fn together(columns: &mut [Complex64], length: usize) -> [&mut [Complex64]; TOGETHER] {
+/// The first [`COLUMN_GROUP`] of consecutive columns of `length` points each.
+fn split_columns(columns: &mut [Complex64], length: usize) -> [&mut [Complex64]; COLUMN_GROUP] {
     let (ab, cd) = columns.split_at_mut(2 * length);
     let ((a, b), (c, d)) = (ab.split_at_mut(length), cd.split_at_mut(length));
     [a, b, c, d]
 }
 
-/// The columns, of `length` points, of `lines`, of which those `occupied` are read: the others are zero.
+/// Copies the columns of `lines` into `columns`, of `length` points each. Only the `occupied` rows are
+/// read; all other points are set to zero.
 fn gather(
     lines: &[[Complex64; BLOCK]],
     occupied: Range<usize>,
@@ -182,8 +187,8 @@ fn gather(
     columns: &mut [Complex64],
 ) {
     let lines = &lines[occupied.clone()];
-    for (k, columns) in columns.chunks_exact_mut(TOGETHER * length).enumerate() {
-        let [a, b, c, d] = together(columns, length).map(|column| {
+    for (k, columns) in columns.chunks_exact_mut(COLUMN_GROUP * length).enumerate() {
+        let [a, b, c, d] = split_columns(columns, length).map(|column| {
             column[..occupied.start].fill(ZERO);
             column[occupied.end..].fill(ZERO);
             &mut column[occupied.clone()]
@@ -195,19 +200,19 @@ fn gather(
     }
 }
 
-/// Multiplies columns of `length` points by those of a real and even `kernel`, of which the first half is
-/// given.
+/// Multiplies columns of `length` points by the columns of a real and even `kernel`, which has the first
+/// half of the points.
 fn multiply(columns: &mut [Complex64], length: usize, kernel: &[[f64; BLOCK]]) {
-    for (k, columns) in columns.chunks_exact_mut(TOGETHER * length).enumerate() {
-        let halves = together(columns, length).map(|column| column.split_at_mut(kernel.len()));
+    for (k, columns) in columns.chunks_exact_mut(COLUMN_GROUP * length).enumerate() {
+        let halves = split_columns(columns, length).map(|column| column.split_at_mut(kernel.len()));
         let [(a, a_high), (b, b_high), (c, c_high), (d, d_high)] = halves;
-        let times = |entries: [&mut Complex64; TOGETHER], values: &[f64; BLOCK]| {
-            let values: [f64; TOGETHER] = values.as_chunks().0[k];
+        let times = |entries: [&mut Complex64; COLUMN_GROUP], values: &[f64; BLOCK]| {
+            let values: [f64; COLUMN_GROUP] = values.as_chunks().0[k];
             entries.into_iter().zip(values).for_each(|(e, v)| *e *= v);
         };
         let low = a.iter_mut().zip(b).zip(c.iter_mut().zip(d)).zip(kernel);
         low.for_each(|(((a, b), (c, d)), values)| times([a, b, c, d], values));
-        // The others mirror them, but the first.
+        // The upper half mirrors the lower half without the first point.
         let high = a_high
             .iter_mut()
             .zip(b_high)
@@ -217,9 +222,9 @@ fn multiply(columns: &mut [Complex64], length: usize, kernel: &[[f64; BLOCK]]) {
     }
 }
 
-/// The first points of columns of `length`, into as many `lines`.
+/// Copies the first points of columns of `length` points into `lines`, as many points as there are lines.
 pub(super) fn scatter(columns: &[Complex64], length: usize, lines: &mut [[Complex64; BLOCK]]) {
-    let mut four = columns.chunks_exact(TOGETHER * length);
+    let mut four = columns.chunks_exact(COLUMN_GROUP * length);
     for (k, columns) in four.by_ref().enumerate() {
         let (ab, cd) = columns.split_at(2 * length);
         let ((a, b), (c, d)) = (ab.split_at(length), cd.split_at(length));
@@ -228,7 +233,7 @@ pub(super) fn scatter(columns: &[Complex64], length: usize, lines: &mut [[Comple
             line.as_chunks_mut().0[k] = [*a, *b, *c, *d];
         }
     }
-    let done = columns.len() / length / TOGETHER * TOGETHER;
+    let done = columns.len() / length / COLUMN_GROUP * COLUMN_GROUP;
     for (k, column) in four.remainder().chunks_exact(length).enumerate() {
         for (line, value) in lines.iter_mut().zip(column) {
             line[done + k] = *value;

@@ -1,4 +1,5 @@
-//! A convolution in three parts, so that what makes its rows, or uses them, finds them in the caches.
+//! Convolution in three stages. The solver can compute the rows of the input within the first stage, and
+//! use the rows of the output within the third, while they are in the caches.
 
 use std::ops::Range;
 
@@ -7,12 +8,12 @@ use crate::fft::{HalfSpectra, Scratches, Workspace as FftWorkspace};
 use crate::parallel::Written;
 
 impl Convolution {
-    /// The first part, for rows as they are made: what takes them, and where they go.
+    /// First stage, row by row: a receiver of input rows, and the memory for their half spectra.
     pub(crate) fn inwards<'a>(
         &'a self,
         workspace: &'a mut Workspace,
     ) -> (Inwards<'a>, HalfSpectra<'a>) {
-        self.transform.fit(&mut workspace.0);
+        self.transform.reserve(&mut workspace.0);
         let (rows, scratches) = self.transform.half_spectra(&mut workspace.0);
         let inwards = Inwards {
             convolution: self,
@@ -21,16 +22,18 @@ impl Convolution {
         (inwards, rows)
     }
 
-    /// The first part, of an input that is zero but in the rows of `occupied`, which alone are read.
+    /// First stage, for all rows of an input that is zero outside the rows `occupied`; only these are
+    /// read.
     pub(crate) fn rows_in(&self, input: &[f64], occupied: Range<usize>, workspace: &mut Workspace) {
         let memory = &mut workspace.0;
-        self.transform.fit(memory);
+        self.transform.reserve(memory);
         let input = (input, occupied);
         let work = || self.transform.rows_in(input, memory, &self.threads);
         self.clock.during(work);
     }
 
-    /// The second part, after the rows of `occupied` are in; returns the last, which gives all rows.
+    /// Second stage, after the first stage of the rows `occupied`. Returns the third stage, which can
+    /// compute any rows of the output.
     pub(crate) fn outwards<'a>(
         &'a self,
         occupied: Range<usize>,
@@ -46,7 +49,7 @@ impl Convolution {
     }
 }
 
-/// Fields, and rows on their way into a convolution.
+/// Rows of fields, together with the half spectra of the same rows.
 impl<const N: usize> Written for ([&mut [f64]; N], HalfSpectra<'_>) {
     fn split(self, rows: usize, ny: usize) -> (Self, Self) {
         let (fields, halves) = (self.0.split(rows, ny), self.1.split(rows));
@@ -54,14 +57,14 @@ impl<const N: usize> Written for ([&mut [f64]; N], HalfSpectra<'_>) {
     }
 }
 
-/// Takes the rows of what a convolution is applied to.
+/// Receiver of the rows of the input of a convolution.
 pub(crate) struct Inwards<'a> {
     convolution: &'a Convolution,
     scratches: &'a Scratches,
 }
 
 impl Inwards<'_> {
-    /// Takes some rows, of which these are the `halves`.
+    /// Transforms consecutive rows of the input into their half spectra `halves`.
     pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
         let Convolution {
             transform, clock, ..
@@ -72,14 +75,14 @@ impl Inwards<'_> {
     }
 }
 
-/// Gives the rows of what a convolution made.
+/// Source of the rows of the output of a convolution.
 pub(crate) struct Outwards<'a> {
     convolution: &'a Convolution,
     memory: &'a FftWorkspace,
 }
 
 impl Outwards<'_> {
-    /// Those from `first` on, as many as `values` have room for.
+    /// Computes rows of the output into `values`, from row `first` on and as many as fit.
     pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
         let Convolution {
             transform, clock, ..
@@ -103,9 +106,10 @@ mod tests {
         })
     }
 
-    /// In parts of any size, on two threads, and where only some rows are occupied: the same bits as at once.
+    /// Stages give the bits of `apply`, with groups of rows of any size, on two threads, and where only
+    /// some rows are occupied.
     #[test]
-    fn rows_in_parts_give_the_same_bits() -> Result<()> {
+    fn stages_give_the_bits_of_a_whole_application() -> Result<()> {
         for shape in [[1, 9], [7, 1], [23, 18], [150, 130], [230, 150]] {
             let convolution = Convolution::plan(&field(shape), Some(2))?;
             let mut workspace = convolution.workspace();
