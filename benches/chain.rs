@@ -109,7 +109,7 @@ fn hertz(n: usize, threads: usize) -> Result<(Contact, Paraboloid, Motion)> {
         threads: Some(threads),
         ..Setup::default()
     };
-    let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, grid, setup)?;
+    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     // The load 4/3 E* a³/R for a contact radius a of a third.
     let load = 4.0 / 81.0 / HERTZ_RADIUS;
     Ok((

@@ -32,7 +32,7 @@ fn random(shape: [usize; 2]) -> Array2<f64> {
 fn best(cells: usize, threads: usize) -> Result<f64> {
     let grid = Grid::new([cells, cells], [2.0, 2.0])?;
     let body = Elastic::new(1.0, 0.0)?;
-    let coefficients = influence_coefficients(&body, &grid, Method::Exact)?;
+    let coefficients = influence_coefficients(body, &grid, Method::Exact)?;
     let convolution = Convolution::plan(&coefficients, Some(threads))?;
     let mut workspace = convolution.workspace();
     let pressure = random([cells, cells]);
@@ -58,7 +58,7 @@ fn solve(cells: usize, threads: usize) -> Result<(f64, f64)> {
         ..Setup::default()
     };
     let grid = Grid::new([cells, cells], [SIDE; 2])?;
-    let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, grid, setup)?;
+    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     let shape = Paraboloid::new(1.0, 1.0)?;
     // Hertz: a³ = 3 W R / 4 E*.
     let motion = Motion::load(4.0 / 3.0 * (SIDE / 6.0).powi(3));
