@@ -1,7 +1,7 @@
-//! One group for each step of the chain; `benches/README.md` says what each isolates.
+//! Benchmarks of the steps of the chain; `benches/README.md` describes each.
 //!
-//! Inputs are fixed, results are asserted once before timing, and all run on one thread unless the
-//! id says otherwise.
+//! Inputs are fixed, and results are asserted once before timing. Benchmarks run on one thread unless
+//! the id says otherwise.
 
 use std::hint::black_box;
 
@@ -15,14 +15,14 @@ use ndarray::Array2;
 
 const HERTZ_RADIUS: f64 = 1e3;
 
-/// E1/E2 = 4, `layers` layers of 8 cells of unit size together.
+/// A coating of E1/E2 = 4 in `layers` equal layers, together 8 cells of unit size thick.
 fn coated(layers: usize) -> Result<HalfSpace> {
     let hard = Elastic::new(4.0, 0.3)?;
     let layer = Layer::new(hard, 8.0 / layers as f64)?;
     HalfSpace::new(Elastic::new(1.0, 0.3)?, vec![layer; layers])
 }
 
-/// A square of n cells of unit size.
+/// A square of n² cells of unit size.
 fn square(n: usize) -> Result<Grid> {
     Grid::new([n, n], [n as f64; 2])
 }
@@ -109,8 +109,8 @@ fn hertz(n: usize, threads: usize) -> Result<(Contact, Paraboloid, Motion)> {
         threads: Some(threads),
         ..Setup::default()
     };
-    let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, grid, setup)?;
-    // Contact radius a third: 4/3 E* a³/R.
+    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
+    // The load 4/3 E* a³/R for a contact radius a of a third.
     let load = 4.0 / 81.0 / HERTZ_RADIUS;
     Ok((
         contact,
@@ -160,7 +160,7 @@ fn contact(c: &mut Criterion) {
     group.finish();
 }
 
-/// The paper's roller, E1/E2 = 4, under a force off-centre.
+/// The roller of Spinu et al., E1/E2 = 4, under an off-centre force.
 fn roller() -> Result<(Contact, Motion)> {
     let steel = Elastic::new(210e9, 0.3)?;
     let body = HalfSpace::new(steel, [Layer::new(Elastic::new(840e9, 0.3)?, 40e-6)?])?;

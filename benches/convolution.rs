@@ -1,7 +1,9 @@
-//! One convolution, for `benches/peers`: `convolution [CELLS THREADS]`, by default a few of both.
+//! Time of one convolution, for `benches/peers`: `convolution [CELLS THREADS]`, by default several of
+//! both.
 //!
-//! Prints one line of JSON for each: the best of five applications to random pressures, after one
-//! that is not counted; and of solves of a sphere the fastest, and its share that is not convolutions.
+//! Prints one line of JSON for each number of cells and threads: the best time of five applications to
+//! random pressures after one that is not counted, the time of the fastest of several solves of a
+//! sphere, and the share of this solve outside convolutions.
 
 use std::time::Instant;
 
@@ -11,10 +13,11 @@ use ndarray::Array2;
 
 const REPETITIONS: usize = 5;
 
-/// Solves go on for so many seconds, if these are more: for a moment in which nobody else uses the memory.
+/// Smallest duration of all solves together \[s\], so that some run while no other program uses the
+/// memory.
 const SECONDS: f64 = 2.0;
 
-/// Reproducible numbers in [0, 1): Knuth's MMIX generator.
+/// Reproducible pseudo-random numbers in [0, 1), by Knuth's MMIX generator.
 fn random(shape: [usize; 2]) -> Array2<f64> {
     let mut state = 1_u64;
     Array2::from_shape_simple_fn(shape, || {
@@ -25,11 +28,11 @@ fn random(shape: [usize; 2]) -> Array2<f64> {
     })
 }
 
-/// Seconds of the fastest application.
+/// Time of the fastest application \[s\].
 fn best(cells: usize, threads: usize) -> Result<f64> {
     let grid = Grid::new([cells, cells], [2.0, 2.0])?;
     let body = Elastic::new(1.0, 0.0)?;
-    let coefficients = influence_coefficients(&body, &grid, Method::Exact)?;
+    let coefficients = influence_coefficients(body, &grid, Method::Exact)?;
     let convolution = Convolution::plan(&coefficients, Some(threads))?;
     let mut workspace = convolution.workspace();
     let pressure = random([cells, cells]);
@@ -46,8 +49,8 @@ fn best(cells: usize, threads: usize) -> Result<f64> {
     Ok(best)
 }
 
-/// Seconds of the fastest solve of a sphere whose contact radius is a sixth of the side, and its share
-/// outside convolutions: kernels, transforms and products.
+/// Time of the fastest solve of a sphere whose contact radius is a sixth of the side \[s\], and its
+/// share outside kernels, transforms and products.
 fn solve(cells: usize, threads: usize) -> Result<(f64, f64)> {
     const SIDE: f64 = 2.0;
     let setup = Setup {
@@ -55,9 +58,9 @@ fn solve(cells: usize, threads: usize) -> Result<(f64, f64)> {
         ..Setup::default()
     };
     let grid = Grid::new([cells, cells], [SIDE; 2])?;
-    let contact = Contact::plan(&Elastic::new(1.0, 0.0)?, grid, setup)?;
+    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     let shape = Paraboloid::new(1.0, 1.0)?;
-    // Hertz: a³ = 3 W R / 4 E*
+    // Hertz: a³ = 3 W R / 4 E*.
     let motion = Motion::load(4.0 / 3.0 * (SIDE / 6.0).powi(3));
     let (mut best, mut share) = (f64::INFINITY, f64::NAN);
     let begin = Instant::now();
@@ -78,7 +81,7 @@ fn solve(cells: usize, threads: usize) -> Result<(f64, f64)> {
 }
 
 fn main() -> Result<()> {
-    // Cargo adds options of its own.
+    // Cargo adds options, which are ignored.
     let numbers: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
     let cases = match numbers[..] {
         [cells, threads] => vec![(cells, threads)],

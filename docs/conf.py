@@ -25,15 +25,15 @@ extensions = [
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]
 
-# Equations: $ and $$, numbered where they have a label.
+# Equations are between $ or $$, and have numbers where they have labels.
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 math_eqref_format = "({number})"
 numfig = True
-numfig_format = {"code-block": "%.0s"}  # captions of code are names of files
+numfig_format = {"code-block": "%.0s"}  # captions of code are file names, without numbers
 numfig_secnum_depth = 1
 
-# The compiled classes have NumPy docstrings, and signatures without types.
+# The compiled classes have NumPy docstrings and signatures without types.
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "undoc-members": False}
 autodoc_typehints = "none"
@@ -74,10 +74,10 @@ sphinx_gallery_conf = {
 
 
 def link_pages(app: Any, name: str, source: list[str]) -> None:
-    """Make links of files that are read outside the site too lead to its pages."""
+    """Replace links between files of the repository by links between pages of the site."""
     source[0] = source[0].replace("(../benches/README.md)", "(benches.md)")
 
 
 def setup(app: Any) -> None:
-    """Connect what Sphinx calls."""
+    """Connect the functions that Sphinx calls."""
     app.connect("source-read", link_pages)

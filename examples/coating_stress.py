@@ -1,8 +1,9 @@
 """Where does a hard coating crack, and its substrate yield, when a ball slides on it?
 
-A steel ball on steel with a coating of twice its modulus, for three thicknesses and a coefficient
-of friction of 0.15. Tension in the coating opens cracks behind the ball and above the interface;
-shear there peels it off; von Mises' stress makes the substrate yield.
+A steel ball slides on steel with a coating of twice its modulus, for three thicknesses and a
+coefficient of friction of 0.15. Tension in the coating can open cracks behind the ball and above
+the interface, shear at the interface can detach the coating, and the von Mises stress can make the
+substrate yield.
 """
 
 import nacre

@@ -1,8 +1,9 @@
 """How far do conversions by inverse FFT err in pressure and approach, and does refinement help?
 
-`plain`, `difference` and `image` against the exact coefficients, over the refinement χ of the
-spectral mesh: under a coated sphere on a square domain, and under a coated roller on a domain forty
-times as long as wide. Prints the errors and draws them, in a PNG in the folder `--out`.
+The methods `plain`, `difference` and `image` are compared with the exact coefficients, for several
+refinements χ of the spectral mesh: under a coated sphere on a square domain, and under a coated
+roller on a domain forty times as long as wide. The program prints the errors and draws them, in a
+PNG in the folder `--out`.
 """
 
 import argparse
@@ -51,7 +52,7 @@ class Case:
 
 
 def draw(cases: dict[str, dict[Conversion, Errors]], file: Path) -> None:
-    """Draw errors over χ: a row for each quantity, a column for each case."""
+    """Draw errors as a function of χ: a row for each quantity, a column for each case."""
     with plt.rc_context({"font.size": 8, "axes.titlesize": 8, "lines.markersize": 4}):
         figure, axes = plt.subplots(
             2, 2, figsize=(5.5, 4.2), sharex=True, sharey="row", layout="constrained"

@@ -1,7 +1,7 @@
 """How much of a rough ball touches, and does a hard coating change it?
 
-Heights as a microscope would give them, here made up: noise without its short waves. They are added
-to the shape of a ball; the grid is then that of the measurement.
+Noise without short waves replaces heights from a microscope. The heights are added to the shape of
+a ball. By default, nacre then uses the grid of the measurement.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """What pressure does my own roller make, and how far does the contact reach?
 
 A steel roller of 10 mm diameter with crowned ends, on steel with a coating of 2 µm. Replace the
-numbers by yours: nacre chooses the grid, and warns where the answer is not to be trusted.
+numbers by yours: nacre chooses the grid, and warns where the model does not hold.
 """
 
 import nacre

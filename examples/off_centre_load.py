@@ -1,7 +1,7 @@
 """How much does a roller tilt, and its pressure rise, when the force acts off its centre?
 
-The roller of the paper (Spinu et al.), coated by twice as stiff a layer and free to tilt along its
-axis. The contact is planned once and solved for each position of the force.
+The roller of Spinu et al. has a coating twice as stiff as the substrate and is free to tilt along
+its axis. The contact is planned once and solved for each position of the force.
 """
 
 import nacre

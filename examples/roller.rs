@@ -1,6 +1,6 @@
 //! How much does a roller tilt, and its pressure rise, when the force acts off its centre?
 //!
-//! The roller of the paper (Spinu et al.), coated by twice as stiff a layer and free to tilt along
+//! The roller of Spinu et al. has a coating twice as stiff as the substrate and is free to tilt along
 //! its axis. The contact is planned once and solved for each position of the force.
 
 use nacre::{Contact, Elastic, Grid, HalfSpace, Layer, Motion, Options, Result, Roller, Setup};

@@ -1,7 +1,7 @@
-"""Which coating spares the most pressure, and how thick must it be?
+"""Which coating reduces the pressure most, and how thick must it be?
 
-A study over the thickness and Young's modulus of a coating on steel under a ball. Kept in a file
-(``store="study.nc"``), it would go on after a kill where it was.
+A study varies the thickness and Young's modulus of a coating on steel under a ball. With
+``store="study.nc"``, a study that was interrupted would continue.
 """
 
 import nacre

@@ -1,4 +1,4 @@
-"""The residual of anybody's pressure, by nacre's exact influence coefficients.
+"""The residual of any pressure, by nacre's exact influence coefficients.
 
 The convolution is SciPy's, so that nacre is not judged by its own: `rfft` on the N rows that hold
 data, `fft` on the columns, the product with the kernel's transform, and back. It is also what
@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Convolution:
-    """The zero-padded convolution with `coefficients` (nx, ny), those of offsets ≥ 0."""
+    """The zero-padded convolution with `coefficients` (nx, ny) at offsets ≥ 0."""
 
     def __init__(self, coefficients: Array, workers: int = 1) -> None:
         self.workers = workers
@@ -44,14 +44,14 @@ class Convolution:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How well a pressure solves the problem."""
+    """Errors of a pressure as a solution of the problem."""
 
     residual: float
-    """Σ p|g| / Σ p u."""
+    """Residual Σ p|g| / Σ p u."""
     overlap: float
-    """max(−g, 0) / max u."""
+    """Overlap max(−g, 0) / max u."""
     balance: float
-    """|Σ p dA − W| / W."""
+    """Imbalance |Σ p dA − W| / W."""
     contact: float
     """Share of the cells that touch."""
 
@@ -59,9 +59,9 @@ class Verdict:
 def judge(
     pressure: Array, gaps: Array, body: nacre.HalfSpace, grid: nacre.Grid, load: float
 ) -> Verdict:
-    """Judge a pressure under load control without tilt: `nacre.Report` defines the figures.
+    """Judge a pressure under load control without tilt, by the definitions of `nacre.Report`.
 
-    The approach is the one that makes the gap least over the contact, in the sense of squares.
+    With the approach that is used, the mean gap over the contact is 0.
     """
     displacement = Convolution(nacre.influence_coefficients(body, grid))(pressure)
     touching = pressure > 0

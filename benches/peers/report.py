@@ -62,7 +62,8 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         ),
         "",
         "The time outside transforms is the share of a solve that is not spent in kernels,",
-        "transforms and products, for the fastest of some hundred solves (`benches/convolution.rs`).",
+        "transforms and products, in the fastest of some hundred solves",
+        "(`benches/convolution.rs`).",
         *shared(bench),
     ]
     for problem, title in TITLES.items():

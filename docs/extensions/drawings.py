@@ -1,4 +1,4 @@
-"""For sphinx-gallery: the figures of the paper among the pictures of an example."""
+"""An image scraper of sphinx-gallery that shows the figures of Spinu et al."""
 
 from __future__ import annotations
 

@@ -52,10 +52,11 @@ fn available() -> usize {
 pub(crate) struct Threads {
     count: usize,
     /// The pool, with the identifier of the process that created it.
-    pool: Mutex<Option<(u32, Arc<Pool>)>>,
+    pool: Mutex<Option<(u32, Arc<SharedPool>)>>,
 }
 
-struct Pool {
+/// A pool of threads, and the calls from other threads that share it.
+struct SharedPool {
     threads: ThreadPool,
     /// Number of calls from other threads that have not returned.
     calls: Arc<AtomicUsize>,
@@ -117,9 +118,9 @@ impl Threads {
         }
     }
 
-    /// Calls both functions, in parallel where the caller is one of the threads. From another thread they
-    /// are called one after the other: in the pool, a function that waits for a third party would occupy
-    /// a thread that the third party may need.
+    /// Calls both functions, in parallel where the caller is one of the threads. Another caller calls them
+    /// one after the other: in the pool, a function that waits for other work would keep a thread from
+    /// that work.
     pub(crate) fn both<A: Send, B: Send>(
         &self,
         first: impl FnOnce() -> A + Send,
@@ -131,7 +132,7 @@ impl Threads {
         }
     }
 
-    fn pool(&self) -> Option<Arc<Pool>> {
+    fn pool(&self) -> Option<Arc<SharedPool>> {
         let process = std::process::id();
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         match &*pool {
@@ -149,7 +150,7 @@ impl Threads {
                     })
                     .build()
                     .ok()?;
-                let new = Arc::new(Pool {
+                let new = Arc::new(SharedPool {
                     threads,
                     calls,
                     gate: Mutex::default(),
@@ -164,7 +165,7 @@ impl Threads {
     }
 }
 
-impl Pool {
+impl SharedPool {
     fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         if self.threads.current_thread_index().is_some() {
             return work();

@@ -9,7 +9,7 @@ use nacre::{
 fn errors(cells: [usize; 2], radius: f64) -> Result<[[f64; 2]; 2]> {
     let (body, curvature) = (Elastic::new(1.0, 0.0)?, 100.0);
     let load = 4.0 / 3.0 * radius.powi(3) / curvature;
-    let contact = Contact::plan(&body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
+    let contact = Contact::plan(body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
     let shape = Paraboloid::new(curvature, curvature)?;
     let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
     let exact = hertz::Point::new(curvature, 1.0, load)?;
@@ -58,7 +58,7 @@ fn estimates_are_of_the_size_of_the_errors() -> Result<()> {
 #[test]
 fn what_is_prescribed_has_no_error() -> Result<()> {
     let contact = Contact::plan(
-        &Elastic::new(1.0, 0.0)?,
+        Elastic::new(1.0, 0.0)?,
         Grid::new([128, 100], [2.0, 2.0])?,
         Setup::default(),
     )?;
@@ -76,7 +76,7 @@ fn what_is_prescribed_has_no_error() -> Result<()> {
 #[test]
 fn peak_at_a_sharp_edge_is_seen_not_to_converge() -> Result<()> {
     let contact = Contact::plan(
-        &Elastic::new(1.0, 0.0)?,
+        Elastic::new(1.0, 0.0)?,
         Grid::new([256, 256], [2.5, 2.5])?,
         Setup::default(),
     )?;
@@ -98,7 +98,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
     let shape = Sphere::new(100.0)?;
     let body = Elastic::new(1.0, 0.0)?;
     for (cells, initial) in [([40, 40], false), ([100, 40], false), ([128, 128], true)] {
-        let contact = Contact::plan(&body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
+        let contact = Contact::plan(body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
         let motion = Motion::load(5e-4);
         let mut solution = contact.solve(&shape, &motion, &Options::default())?;
         if initial {

@@ -20,7 +20,7 @@ fn steel() -> Result<Elastic> {
 /// A contact on 16 x 12 cells of 1 mm.
 fn contact() -> Result<Contact> {
     let grid = Grid::new([16, 12], [16e-3, 12e-3])?;
-    Contact::plan(&steel()?, grid, Setup::default())
+    Contact::plan(steel()?, grid, Setup::default())
 }
 
 fn solved(shape: &dyn Surface, motion: &Motion) -> Result<()> {
@@ -324,7 +324,7 @@ fn a_shape_without_a_gap_on_the_finest_grid() -> Result<()> {
             threads: Some(threads),
             ..Setup::default()
         };
-        let contact = Contact::plan(&steel()?, grid, setup)?;
+        let contact = Contact::plan(steel()?, grid, setup)?;
         check([(
             contact.solve(&shape, &Motion::load(1e3), &Options::default()),
             "shape is not finite at [17, 5]",

@@ -56,7 +56,7 @@ fn solve(
 fn one_cell_carries_the_load() -> Result<()> {
     let contact = contact()?;
     let loaded =
-        influence_coefficients(&Elastic::new(1.0, 0.3)?, contact.grid(), Method::Exact)?[[0, 0]];
+        influence_coefficients(Elastic::new(1.0, 0.3)?, contact.grid(), Method::Exact)?[[0, 0]];
     let mut heights = Array2::zeros([16, 16]);
     heights[[5, 9]] = 1.0;
     let nail = HeightMap::new(heights, [1.0, 1.0])?;

@@ -37,7 +37,7 @@ fn load() -> Result<f64> {
 
 fn plan(shape: [usize; 2], sides: [f64; 2]) -> Result<Contact> {
     let grid = Grid::new(shape, sides.map(|side| side * CONTACT_RADIUS))?;
-    Contact::plan(&steel()?, grid, Setup::default())
+    Contact::plan(steel()?, grid, Setup::default())
 }
 
 fn paraboloid(shape: [usize; 2], sides: [f64; 2], motion: &Motion) -> Result<Solution> {
@@ -151,7 +151,7 @@ fn load_grows_as_the_approach_to_three_halves() -> Result<()> {
 fn eccentric_flat_punch_tilts_as_boussinesq_found() -> Result<()> {
     let a = 1e-3;
     let contact = Contact::plan(
-        &steel()?,
+        steel()?,
         Grid::new([256, 256], [4.0 * a; 2])?,
         Setup::default(),
     )?;

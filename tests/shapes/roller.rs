@@ -28,7 +28,7 @@ fn solve(eccentricity: f64, shape: [usize; 2]) -> Result<Solution> {
         ..Motion::load(LOAD)
     };
     let options = Options::default();
-    let contact = Contact::plan(&steel, grid, Setup::default())?;
+    let contact = Contact::plan(steel, grid, Setup::default())?;
     contact
         .solve(&roller, &motion, &options)?
         .require_converged(options.tolerance)

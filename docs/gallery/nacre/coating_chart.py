@@ -1,9 +1,10 @@
 """
-Which coating spares the most pressure?
-=======================================
+Which coating reduces the pressure most?
+========================================
 
-Peak pressure under a ball over the thickness and the modulus of a coating on steel. A soft
-coating helps once it is not thin against the contact; a stiff one costs.
+Peak pressure under a ball as a function of the thickness and the modulus of a coating on steel.
+A soft coating reduces the pressure unless it is thin compared with the contact; a stiff coating
+increases it.
 """
 
 import numpy as np
@@ -25,12 +26,12 @@ axes = plot.chart(study)
 axes.set_title("peak pressure under a ball of 5 mm, 20 N")
 
 # %%
-# The same study has the largest tension in the coating. A thin one is pulled most beside the
-# contact; a stiff and thicker one at the interface below the middle, where it bends.
+# The study also has the largest tension in the coating. In a thin coating it is beside the
+# contact; in a thicker and stiff coating it is at the interface below the middle, by bending.
 axes = plot.chart(study, "coating_tension")
 
 # %%
-# The interface is sheared most where it lies at a fraction of the contact's radius.
+# The shear at the interface is largest for coatings as thick as a fraction of the contact radius.
 axes = plot.chart(study, "interface_shear")
 
 # %%

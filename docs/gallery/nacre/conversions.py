@@ -1,11 +1,11 @@
 """
-What conversion by inverse FFT costs
-====================================
+Errors of the conversions by inverse FFT
+========================================
 
-The paper obtains influence coefficients by transforming the frequency response back on a mesh
-of finite extent. nacre's ``exact`` coefficients have no such error, so that the error of the
-conversions can be shown: relative to ``exact``, over the offset along x, for a coating four
-times as stiff as its substrate and eight cells thick (:ref:`conversions`).
+Spinu et al. obtain influence coefficients by transforming the frequency response back on a mesh
+of finite extent. nacre's ``exact`` coefficients do not have the error of this conversion. The
+picture shows the error relative to ``exact``, as a function of the offset along x, for a coating
+four times as stiff as its substrate and eight cells thick (:ref:`conversions`).
 """
 
 from typing import Literal
@@ -21,7 +21,7 @@ grid = nacre.Grid(shape=(64, 64), size=(64.0, 64.0))
 exact = nacre.influence_coefficients(body, grid)
 
 # %%
-# Refinement χ of the spectral mesh moves the periodic images away, and cures no more than that.
+# A larger refinement χ of the spectral mesh moves the periodic images away and has no other effect.
 figure, axes = plt.subplots(figsize=(6, 3.8), layout="constrained")
 styles: dict[Literal["plain", "difference", "image"], str]
 styles = {"plain": "-", "difference": "--", "image": ":"}

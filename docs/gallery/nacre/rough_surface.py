@@ -2,8 +2,8 @@
 A rough surface in contact
 ==========================
 
-A ball whose surface was measured, here made up: noise without its short waves, 5 nm high. The
-picture is ``solution.plot()``.
+A ball with a rough surface. The heights, of 5 nm rms, are noise without short waves, in place of a
+measurement. The picture is ``solution.plot()``.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ solution = nacre.solve(ball, body, load=2.0)
 parts = solution.plot()
 
 # %%
-# What the roughness costs, against the smooth ball on the same cells:
+# The smooth ball on the same cells, for comparison:
 smooth = nacre.solve(nacre.Sphere(5e-3), body, grid=solution.report.grid, load=2.0)
 for name, solved in {"smooth": smooth, "rough": solution}.items():
     peak, area = solved.peak_pressure, solved.contact_area

@@ -2,9 +2,9 @@
 Stresses below a coated sphere
 ==============================
 
-A ball on a coating twice as stiff as the steel below it. The stiffer coating carries more: von
-Mises' stress jumps at the interface, and is largest just above it, where the coating bends. The
-cross marks the largest.
+A ball on a coating twice as stiff as the steel below it. The stiff coating has higher stresses:
+the von Mises stress jumps at the interface and is largest just above it, where the coating bends.
+The cross marks the largest value.
 """
 
 import nacre
@@ -17,18 +17,18 @@ solution = nacre.solve(nacre.Sphere(5e-3), body, load=100.0)
 axes = plot.stress_section(solution)
 
 # %%
-# What is in the plane of the coating jumps at the interface; what pulls on the interface is the
-# same on both sides. Here below the middle of the contact:
+# In-plane stresses jump at the interface, and tractions on the interface are continuous. Below the
+# middle of the contact:
 axes = plot.stress_depth(solution, ("xx", "zz", "von_mises"))
 
 # %%
-# The shear that the interface has to bear is largest in a ring below the edge of the contact.
-# Arrows show the traction on the coating, which is drawn inwards by the steel.
+# The shear stress at the interface is largest in a ring below the edge of the contact. Arrows show
+# the traction of the steel on the coating, which points inwards.
 axes = plot.interface_map(solution)
 
 # %%
-# A ball that slides with μ = 0.25 pulls at the surface behind it: the largest principal stress
-# in the same section, tension in red.
+# A ball that slides with μ = 0.25 causes tension at the surface behind it. The picture shows the
+# largest principal stress in the same section, tension in red.
 axes = plot.stress_section(solution, "tension", friction=0.25)
 
 # %%

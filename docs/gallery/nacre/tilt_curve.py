@@ -1,10 +1,10 @@
 """
-How stiff is a roller against tilting?
-======================================
+Tilting stiffness of a roller
+=============================
 
-Moment over tilt of the paper's roller under 1 kN, bare and with 40 µm of a coating a quarter as
-stiff. The slope at the origin is the tilting stiffness that a bearing calculation needs; it
-agrees with the tangent that :py:meth:`nacre.Solution.stiffness` returns for one solution.
+Moment as a function of the tilt for the roller of Spinu et al. under 1 kN, bare and with 40 µm of
+a coating a quarter as stiff. The slope at the origin is the tilting stiffness, as bearing
+calculations need it. It agrees with the tangent that :py:meth:`nacre.Solution.stiffness` returns.
 """
 
 import matplotlib.pyplot as plt
@@ -24,8 +24,8 @@ grid = nacre.Grid(shape=(384, 64), size=(32e-3, 0.16e-3))
 tilts = np.linspace(0, 6e-5, 13)
 
 # %%
-# The thin lines are tangents, each from one solution of the upright roller. With the force held,
-# the approach gives way: the stiffness against tilting is a Schur complement.
+# The thin lines are tangents, each from one solution of the roller without tilt. Since the force is
+# constant and the approach is free, the tilting stiffness is a Schur complement.
 figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
 for (name, body), colour in zip(bodies.items(), ("#0072B2", "#D55E00"), strict=True):
     curve = design.tilt_curve(roller, body, tilts, load=1e3, grid=grid, progress=False)

@@ -2,8 +2,8 @@
 Figure 3: a roller, pressure across its axis
 ============================================
 
-The same contacts as in :doc:`figure 2 <figure_2>`, cut across the middle of the roller. A stiff
-coating carries the load on a narrow strip, a soft one spreads it.
+Sections across the middle of the roller, for the contacts of :doc:`figure 2 <figure_2>`. A stiff
+coating carries the load on a narrow strip, a soft coating on a wide one.
 """
 
 from nacre import paper

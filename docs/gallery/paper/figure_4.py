@@ -2,7 +2,7 @@
 Figure 4: a roller, pressure over the contact
 =============================================
 
-Coating and substrate alike, load in the middle: two risers of the same height.
+With equal coating and substrate under a centred load, there are two risers of equal height.
 """
 
 from nacre import paper

@@ -1,10 +1,10 @@
 """
-Figure 5: a roller whose load is off its centre
-===============================================
+Figure 5: a roller under an off-centre load
+===========================================
 
-The load acts at 0.3 of the straight part's half-length, and the roller is free to tilt along
-its axis: sections along and across, for two thicknesses of the coating. The pressure rises
-towards the load, and more so with a stiff coating as thick as the contact is wide.
+The load acts at 0.3 of the half-length of the straight part, and the roller is free to tilt along
+its axis. The sections are along and across the axis, for two thicknesses of the coating. The
+pressure increases towards the load, most with a stiff coating as thick as the contact is wide.
 """
 
 from nacre import paper
@@ -14,7 +14,7 @@ results = paper.solve()
 drawing = figures.figure(5, results)
 
 # %%
-# The tilt that balances the moment, and the riser: peak over central pressure.
+# The tilt that balances the moment, and the riser as the ratio of peak to central pressure.
 print("h/mm   E1/E2   tilt/1e-5   peak/MPa   riser")
 for series in paper.ECCENTRIC:
     for result in paper.of_series(results, series):

@@ -2,8 +2,8 @@
 Figure 6: the pressure of a tilted roller
 =========================================
 
-Coating and substrate alike, load at 0.3 of the straight part's half-length: the riser on the
-loaded side grows, the other one fades.
+Equal coating and substrate, with the load at 0.3 of the half-length of the straight part. The riser
+on the loaded side increases, and the other one decreases.
 """
 
 from nacre import paper

@@ -8,7 +8,7 @@ fn main() -> nacre::Result<()> {
     let body = HalfSpace::new(steel, [Layer::new(coating, 40e-6)?])?;
     let solution = solve(&Sphere::new(5e-3)?, &body, &Motion::load(100.0))?;
 
-    // Between the contacts of half-spaces of steel and of the coating.
+    // The peak lies between those on half-spaces of steel and of the coating.
     let bare = hertz::Point::new(5e-3, steel.plane_strain_modulus(), 100.0)?;
     let thick = hertz::Point::new(5e-3, coating.plane_strain_modulus(), 100.0)?;
     let peak = solution.peak_pressure();
