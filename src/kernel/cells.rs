@@ -12,7 +12,7 @@
 
 use std::ops::Range;
 
-use super::loads::COMPONENTS;
+use super::COMPONENTS;
 use crate::fft::Keep;
 
 /// Distance, in longer sides of a cell, from which differences are used.

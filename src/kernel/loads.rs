@@ -17,13 +17,11 @@
 //! u_z = H1[W] cos φ        u_x = H0[M] − H2[N] cos 2φ        u_y = −H2[N] sin 2φ
 //! ```
 
-use super::rectangle;
-use super::series::{Kind, Order};
+pub(crate) use super::COMPONENTS;
+use super::mesh::{Kind, Order};
+use super::{cerruti, love};
 use crate::material::Elastic;
 use crate::response::interior::Fields;
-
-/// σxx, σyy, σzz, σxy, σyz, σxz, ux, uy, uz.
-pub(crate) const COMPONENTS: usize = 9;
 
 /// Whether each component is odd in x and in y, under pressure.
 pub(crate) const ODD: [[bool; 2]; COMPONENTS] = [
@@ -115,7 +113,7 @@ impl Load<6> for Pressure {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_pressure(material, half, at, z)
+        love::components(material, half, at, z)
     }
 }
 
@@ -137,7 +135,7 @@ impl Load<4> for PressureStress {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_pressure(material, half, at, z)
+        love::components(material, half, at, z)
     }
 }
 
@@ -197,7 +195,7 @@ impl Load<9> for Traction {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_traction(material, half, at, z)
+        cerruti::components(material, half, at, z)
     }
 }
 
@@ -226,7 +224,7 @@ impl Load<6> for TractionStress {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_traction(material, half, at, z)
+        cerruti::components(material, half, at, z)
     }
 }
 
@@ -272,7 +270,7 @@ impl<const N: usize> PointLoad<N> {
             let power = lean.powi(nu as i32) * inverse / (2.0 * std::f64::consts::PI);
             let first = (z + nu * root) * inverse * inverse;
             match kind {
-                Kind::Displacement => power * (c0 + c1 * z * first),
+                Kind::Displacement | Kind::Vanishing => power * (c0 + c1 * z * first),
                 Kind::Stress | Kind::Line => {
                     let second =
                         (3.0 * z * z + 3.0 * nu * z * root + (nu * nu - 1.0) * root * root)

@@ -1,6 +1,7 @@
 //! What makes the coefficients of a body under pressure and traction.
 
 use super::loads::Load;
+use super::mesh::Multipliers;
 use super::plane::Plan;
 use super::strip::LinePlan;
 use crate::body::HalfSpace;
@@ -11,9 +12,9 @@ use crate::grid::Grid;
 pub(crate) enum Kernels {
     Plane {
         plan: Box<Plan>,
-        pressure: Vec<Vec<(f64, f64)>>,
+        pressure: Vec<Multipliers>,
         /// Empty without friction.
-        traction: Vec<Vec<(f64, f64)>>,
+        traction: Vec<Multipliers>,
     },
     Line(LinePlan),
 }

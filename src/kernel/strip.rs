@@ -9,8 +9,9 @@
 
 use std::f64::consts::PI;
 
-use super::loads::COMPONENTS;
-use super::series::{Kind, LogMesh, Order, Series};
+use super::COMPONENTS;
+use super::mesh::{Kind, LogMesh, Order};
+use super::series::Series;
 use crate::body::HalfSpace;
 use crate::grid::Grid;
 use crate::material::Elastic;
