@@ -151,8 +151,12 @@ struct SurfaceKernel {
 /// Size of the remainder, relative to the response, below which it is rounding.
 const VANISHED: f64 = 1e-15;
 
+/// Size of the remainder, relative to the response, at which a search ends without an error: the
+/// accuracy that the exact method promises.
+const REACHED: f64 = 1e-9;
+
 /// Length in ln α, beyond the response's own lengths, in which the remainder must vanish: it does where
-/// it falls as α^{±0.6} or faster.
+/// it falls as α^{±0.6} or faster, and comes below [`REACHED`] where it falls as α^{±0.35}.
 const SEARCH: f64 = 60.0;
 
 /// Length in ln r over which kernels fall by rounding, that of the remainder as r at small and as 1/r at
@@ -187,9 +191,8 @@ impl SurfaceKernel {
         while high < inner[1] + SEARCH && !vanished(high) {
             high += 1.0;
         }
-        let cut = left(low - 1.0).max(left(high));
-        // Not `>`, which a NaN would pass.
-        if !(cut <= 1e-9 * size) {
+        let reached = |log: f64| left(log) <= REACHED * size;
+        if !(reached(low - 1.0) && reached(high)) {
             return Err(Error::Inconsistent(
                 "normal(α) of the body must reach asymptotes().long for wavelengths above and \
                  asymptotes().short for wavelengths below its lengths()",
@@ -209,7 +212,7 @@ impl SurfaceKernel {
             image: rest / (2.0 * PI),
             image_depth,
             remainder,
-            error: (error + cut) / (2.0 * PI),
+            error: (error + left(low - 1.0).max(left(high))) / (2.0 * PI),
         }))
     }
 

@@ -7,20 +7,18 @@
 //! [`super::cerruti`]) and the difference is integrated from its corners ([`super::quadrature`]). Farther
 //! off, or deeper, one table holds both together, to be integrated over the cell.
 
-use rayon::prelude::*;
-
 use super::COMPONENTS;
 use super::cells::FAR;
 use super::loads::{Load, PointLoad};
-use super::mesh::{LogMesh, Multipliers};
+use super::mesh::{Multipliers, Spectrum};
 use super::quadrature::{CellRules, Rules};
 use super::series::Series;
 use super::table::{FewPieces, FewTerms};
 use crate::body::HalfSpace;
 use crate::material::Elastic;
-use crate::response::interior::{Column, Fields, Place};
+use crate::response::interior::Place;
 
-/// What all depths of a body share.
+/// The plan of a body's kernels, which all depths share.
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub(crate) body: HalfSpace,
@@ -29,37 +27,21 @@ pub(crate) struct Plan {
     nearest: f64,
     reach: f64,
     cells: CellRules,
-    /// Where the body is layered.
+    /// None where the body is homogeneous.
     spectrum: Option<Spectrum>,
 }
 
-/// The body at all wavenumbers.
-#[derive(Debug)]
-struct Spectrum {
-    mesh: LogMesh,
-    columns: Vec<(f64, Column)>,
-}
-
 impl Plan {
-    /// For cells of sides `spacing`, and pieces down to `finest` of them, at offsets up to `reach`.
+    /// Plans kernels for cells of sides `spacing`, and pieces down to `finest` of them, at offsets up to `reach`.
     pub(crate) fn new(body: &HalfSpace, spacing: [f64; 2], finest: f64, reach: f64) -> Self {
         let nearest = NEAREST * finest * 0.5 * spacing[0].min(spacing[1]);
-        let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
-        let spectrum = body.layers().first().map(|top| {
-            let mesh = LogMesh::new(top.thickness(), thickness, [nearest, reach]);
-            let columns = mesh
-                .wavenumbers()
-                .map(|alpha| (alpha, Column::new(body, alpha)))
-                .collect();
-            Spectrum { mesh, columns }
-        });
         Self {
             body: body.clone(),
             spacing,
             nearest,
             reach,
             cells: CellRules::new(Rules::stress()),
-            spectrum,
+            spectrum: Spectrum::new(body, [nearest, reach]),
         }
     }
 
@@ -75,7 +57,8 @@ impl Plan {
     }
 }
 
-/// How near to a corner of a cell distances go, in half sides.
+/// Nearest distance to a corner of a cell, in half sides: half a side, and some more for the nodes of
+/// quadratures.
 const NEAREST: f64 = 0.4;
 
 /// The coefficients of one load at one place.
@@ -84,16 +67,17 @@ pub(crate) struct Kernel<'a, const N: usize> {
     plan: &'a Plan,
     material: Elastic,
     depth: f64,
-    /// h_ν, of the layered body.
+    /// h_ν of the layered body.
     layered: FewPieces<N>,
-    /// The same, far off.
+    /// h_ν of the layered body far off.
     far: FewTerms<N>,
-    /// η_ν of the difference, where there is one and cells are not small against the depth.
+    /// η_ν of the difference from a half-space, where there is one and cells are not small against the
+    /// depth.
     mean_difference: Option<FewPieces<N>>,
 }
 
 impl<'a, const N: usize> Kernel<'a, N> {
-    /// On the threads of the caller.
+    /// The kernel of load L at `place`. On the threads of the caller.
     pub(crate) fn new<L: Load<N>>(
         plan: &'a Plan,
         multipliers: &[Multipliers],
@@ -102,19 +86,11 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let (material, depth) = (place.material, place.depth);
         let point = PointLoad::new::<L>(material, depth);
         let series = plan.spectrum.as_ref().map(|spectrum| {
-            let sample = |(alpha, column): &(f64, Column)| -> [f64; N] {
-                let layered = L::radial(&column.at(&plan.body, place), material);
-                let homogeneous = Fields::homogeneous(material, alpha * depth);
-                let homogeneous = L::radial(&homogeneous, material);
-                std::array::from_fn(|k| layered[k] - homogeneous[k])
-            };
-            let differences: Vec<_> = spectrum.columns.par_iter().map(sample).collect();
+            let differences = spectrum.differences(&plan.body, place, L::radial);
             let samples = std::array::from_fn(|k| {
                 let bias = L::ORDERS[k].kind.bias();
-                let columns = spectrum.columns.iter().zip(&differences);
-                columns
-                    .map(|((alpha, _), difference)| alpha.powf(bias) * difference[k])
-                    .collect()
+                let values = differences.iter();
+                values.map(|(alpha, d)| alpha.powf(bias) * d[k]).collect()
             });
             Series::new(&spectrum.mesh, &L::ORDERS, multipliers, samples, depth)
         });

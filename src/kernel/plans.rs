@@ -1,4 +1,4 @@
-//! What makes the coefficients of a body under pressure and traction.
+//! Plans of a body's kernels under pressure and traction, for cells or for strips.
 
 use super::loads::Load;
 use super::mesh::Multipliers;
@@ -13,15 +13,15 @@ pub(crate) enum Kernels {
     Plane {
         plan: Box<Plan>,
         pressure: Vec<Multipliers>,
-        /// Empty without friction.
+        /// Multipliers of traction; empty without friction.
         traction: Vec<Multipliers>,
     },
     Line(LinePlan),
 }
 
 impl Kernels {
-    /// For loads P and T of pieces down to `finest` of a cell, at offsets up to `reach`. On the
-    /// threads of the caller.
+    /// Plans loads P and T (where the body `slides`) on pieces down to `finest` of a cell, at offsets up
+    /// to `reach`. On the threads of the caller.
     pub(crate) fn new<const N: usize, const M: usize, P: Load<N>, T: Load<M>>(
         body: &HalfSpace,
         grid: &Grid,

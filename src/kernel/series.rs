@@ -40,9 +40,9 @@ pub(crate) struct Series<const N: usize> {
     powers: [[f64; MOMENTS]; N],
 }
 
-/// The spectrum of one function on a mesh, and the size below which its terms are dropped at the end.
-struct Spectrum {
-    coefficients: Vec<(f64, f64)>,
+/// Fourier coefficients of one function on a mesh, and the size below which the last are dropped.
+struct Coefficients {
+    values: Vec<(f64, f64)>,
     negligible: f64,
 }
 
@@ -62,8 +62,8 @@ impl<const N: usize> Series<N> {
             .map(|(k, samples)| {
                 let powers = powers(mesh, orders[k], &samples, depth);
                 let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-                let spectrum = Spectrum {
-                    coefficients: coefficients(mesh, samples),
+                let spectrum = Coefficients {
+                    values: coefficients(mesh, samples),
                     // All terms of this size together are rounding.
                     negligible: 1e-15 * largest / mesh.points as f64,
                 };
@@ -83,12 +83,12 @@ impl<const N: usize> Series<N> {
         mesh: &LogMesh,
         orders: &[Order; N],
         multipliers: &[Multipliers],
-        spectra: &[Spectrum],
+        spectra: &[Coefficients],
     ) -> Self {
         let step = mesh.step();
-        let kept = |spectrum: &Spectrum| {
+        let kept = |spectrum: &Coefficients| {
             let size = |c: &(f64, f64)| c.0.hypot(c.1);
-            let last = (spectrum.coefficients.iter()).rposition(|c| size(c) > spectrum.negligible);
+            let last = (spectrum.values.iter()).rposition(|c| size(c) > spectrum.negligible);
             last.map_or(0, |last| last + 1)
         };
         let kept = spectra.iter().map(kept).max().unwrap_or(0);
@@ -96,7 +96,7 @@ impl<const N: usize> Series<N> {
         let mut means = terms.clone();
         for (k, spectrum) in spectra.iter().enumerate() {
             let power = orders[k].kind.power();
-            let kept = spectrum.coefficients[..kept].iter();
+            let kept = spectrum.values[..kept].iter();
             for (m, ((re, im), (cos, sin))) in kept.zip(&multipliers[k]).enumerate() {
                 let t = m as f64 * step;
                 // The series is real: each term but the first stands for its conjugate, too.
@@ -202,8 +202,8 @@ impl Series<1> {
             found = sampled(spacing);
         }
         let (mesh, coefficients, tail) = found;
-        let spectrum = Spectrum {
-            coefficients,
+        let spectrum = Coefficients {
+            values: coefficients,
             negligible: 1e-3 * ROUNDING * size,
         };
         let series = Self::at_surface(&mesh, &[order], &[mesh.multipliers(order)], &[spectrum]);
@@ -257,7 +257,7 @@ mod tests {
     use super::super::mesh::Kind;
     use super::*;
 
-    /// Of e^{−αz}: t^ν/R and (z + νR) t^ν/R³ over 2π, with t = r/(R + z); Gradshteyn & Ryzhik
+    /// Transforms of e^{−αz}: t^ν/R and (z + νR) t^ν/R³ over 2π, with t = r/(R + z); Gradshteyn & Ryzhik
     /// 6.611.1 and its derivative.
     #[test]
     fn transform_of_an_exponential_is_that_of_the_tables() {
