@@ -1,15 +1,16 @@
-//! Graded coatings: layers thin enough to stand for properties that vary with depth.
+//! Graded coatings: layers thin enough to stand for properties that vary with depth. The choice of
+//! their number is nacre's own.
 
 use crate::body::{HalfSpace, Layer, Substrate};
 use crate::error::{Error, Result, positive};
 use crate::material::Elastic;
 use crate::response::frequency_response;
 
-/// Most layers of a graded coating.
-const MOST: usize = 4096;
+/// Largest number of layers of a graded coating, at which the search for a number ends. Chosen by trial.
+const MAX_LAYERS: usize = 4096;
 
-/// Wavenumbers, times the thickness, over which the response is compared: wavelengths from far
-/// above the coating's thickness to a fifth of it.
+/// Wavenumbers, times the thickness, at which the response is compared: wavelengths from 600 times the
+/// coating's thickness to a fifth of it.
 const WAVENUMBERS: [f64; 9] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 8.0, 16.0, 32.0];
 
 /// Layers, from the surface down, of a coating whose `material` depends on depth.
@@ -22,8 +23,8 @@ const WAVENUMBERS: [f64; 9] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 8.0, 16.0, 32.0];
 /// grade either side of it.)
 ///
 /// # Errors
-/// Unless `thickness` is finite and above 0 and 0 < `tolerance` < 1; what `material` returns; where
-/// 4096 layers do not meet the tolerance.
+/// Unless `thickness` is finite and above 0 and 0 < `tolerance` < 1; an error of `material`; where 4096
+/// layers do not meet the tolerance.
 ///
 /// ```
 /// use nacre::{Elastic, HalfSpace, graded_layers};
@@ -64,13 +65,13 @@ pub fn graded_layers(
     let (_, mut before) = cut(2)?;
     let mut agreed = false;
     let mut count = 4;
-    while count <= MOST {
+    while count <= MAX_LAYERS {
         let (layers, response) = cut(count)?;
         let change = response
             .iter()
             .zip(&before)
             .map(|(new, old)| (new / old - 1.0).abs());
-        // Second order: what is left is a third of the last change.
+        // Second order: the error is a third of the last change.
         let enough = change.fold(0.0, f64::max) / 3.0 <= tolerance;
         if enough && agreed {
             return Ok(layers);

@@ -1,7 +1,7 @@
 //! Influence coefficients: the displacement of cell centres under uniform pressure on one cell.
 //!
 //! ```text
-//! C[i, j] = 1/4π² ∬ c11(α) · sin(m dx/2)/(m/2) · sin(n dy/2)/(n/2) · e^{i(m i dx + n j dy)} dm dn
+//! C[i, j] = 1/4π² ∬ û/p̂(α) · sin(m dx/2)/(m/2) · sin(n dy/2)/(n/2) · e^{i(m i dx + n j dy)} dm dn
 //! ```
 //!
 //! [`Method::Exact`] evaluates it without aliasing. The other methods sample the frequency
@@ -14,16 +14,13 @@ use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::parallel::Threads;
 use crate::parallel::check_memory;
-use crate::response::{Body, Response};
+use crate::response::{Body, Response, check};
 
 mod conversion;
 mod exact;
 mod line;
-mod potential;
-mod radial;
 
 pub use exact::CellInfluence;
-pub(crate) use exact::powers_of_lagrange;
 
 /// How the frequency response becomes influence coefficients.
 ///
@@ -50,7 +47,7 @@ pub enum Method {
         /// Refinement χ of the spectral mesh.
         refinement: usize,
     },
-    /// The same with the rest's 1/α singularity taken by an image potential in closed form. 1e-5
+    /// `Difference`, with an image potential in closed form that takes the rest's 1/α singularity. 1e-5
     /// and 1e-3; needs layers thicker than a cell.
     Image {
         /// Refinement χ of the spectral mesh.
@@ -60,10 +57,10 @@ pub enum Method {
 
 /// Coefficients `C[i, j]` \[m/Pa\] of offsets (i dx, j dy) ≥ 0, in the shape (nx, ny) of `grid`.
 ///
-/// Those of negative offsets are the same.
+/// C is even in both offsets. A local compliance of the body is part of `C[0, 0]`.
 ///
 /// # Errors
-/// Where a refinement is 0, or there is too little memory.
+/// Where a refinement is 0, there is too little memory, or the body's response contradicts itself.
 ///
 /// ```
 /// use nacre::influence::{Method, influence_coefficients};
@@ -84,18 +81,21 @@ pub fn influence_coefficients(
     coefficients_on(&*body.into(), grid, method, &Threads::new(None)?)
 }
 
-/// The same on given threads, memory having been checked.
+/// [`influence_coefficients`] on given threads, memory having been checked.
 pub(crate) fn coefficients_on(
     body: &dyn Response,
     grid: &Grid,
     method: Method,
     threads: &Threads,
 ) -> Result<Array2<f64>> {
-    match method {
-        Method::Exact if grid.is_line() => Ok(line::coefficients(body, grid, threads)),
-        _ if grid.is_line() => Err(Error::Inconsistent(
-            "method must be \"exact\" on the grid of a line contact",
-        )),
+    check(body)?;
+    let mut coefficients = match method {
+        Method::Exact if grid.is_line() => line::coefficients(body, grid, threads)?,
+        _ if grid.is_line() => {
+            return Err(Error::Inconsistent(
+                "method must be \"exact\" on the grid of a line contact",
+            ));
+        }
         Method::Exact => {
             let spacing @ [dx, dy] = grid.spacing();
             let [lx, ly] = grid.size();
@@ -103,10 +103,11 @@ pub(crate) fn coefficients_on(
                 CellInfluence::plan_on(body, spacing, exact::WHOLE_CELLS, lx.hypot(ly), threads)?;
             let mut coefficients = Array2::zeros(grid.shape());
             threads.run(|| {
-                Zip::indexed(&mut coefficients)
-                    .par_for_each(|(i, j), c| *c = cell.at([i as f64 * dx, j as f64 * dy]));
+                Zip::indexed(&mut coefficients).par_for_each(|(i, j), c| {
+                    *c = cell.at_distance([i as f64 * dx, j as f64 * dy]);
+                });
             });
-            Ok(coefficients)
+            coefficients
         }
         Method::Plain { refinement }
         | Method::Difference { refinement }
@@ -118,9 +119,11 @@ pub(crate) fn coefficients_on(
                     value: 0.0,
                 });
             }
-            conversion::coefficients(body, grid, method, refinement, threads)
+            conversion::coefficients(body, grid, method, refinement, threads)?
         }
-    }
+    };
+    coefficients[[0, 0]] += body.local();
+    Ok(coefficients)
 }
 
 /// Bytes that the coefficients of a grid take.

@@ -1,7 +1,8 @@
-//! Frequency response of a layered half-space: surface displacement per surface traction, of the
-//! same wavenumber α = √(m² + n²).
+//! Frequency response: surface displacement per surface traction of the same wavenumber
+//! α = √(m² + n²).
 //!
-//! In the frame of the wave vector (L along it, T across it), for pressure p and surface tractions
+//! [`Response`] is what all later steps know of a body. The rest is the response of a half-space with
+//! layers. In the frame of the wave vector (L along it, T across it), for pressure p and surface tractions
 //! q_L, q_T that act on the body:
 //!
 //! ```text
@@ -9,8 +10,8 @@
 //! ```
 //!
 //! All four are computed as α·c, which is finite from α = 0 to ∞, by a recursion from the
-//! substrate up (`layer`). Only sums of positive terms occur in it: the result is accurate to a
-//! few units in the last place for any thickness, contrast and Poisson's ratio up to 0.5.
+//! substrate up (`layer`), which is nacre's own. Only sums of positive terms occur in it: the result is
+//! accurate to a few units in the last place for any thickness, contrast and Poisson's ratio up to 0.5.
 
 use crate::body::{HalfSpace, Interface, Substrate};
 use crate::error::{Result, positive};
@@ -21,6 +22,7 @@ pub(crate) mod interior;
 mod layer;
 
 pub use body::{Body, Response};
+pub(crate) use body::{check, size};
 
 use layer::Slab;
 
@@ -41,7 +43,7 @@ pub struct Compliance {
 }
 
 impl Compliance {
-    /// Of a rigid base.
+    /// Compliance of a rigid base.
     const RIGID: Self = Self {
         c11: 0.0,
         c12: 0.0,
@@ -84,8 +86,9 @@ impl Compliance {
 /// c11 = (1−ν1)/(G1 α) · [1 + 4αhκθ − λκθ²] / [1 − (λ + κ + 4κα²h²)θ + λκθ²]
 /// ```
 ///
-/// Nogi & Kato, J. Tribol. 119 (1997) 493; O'Sullivan & King, J. Tribol. 110 (1988) 235. The
-/// recursion that is used here equals it and keeps its digits at small αh.
+/// Nogi & Kato, J. Tribol. 119 (1997) 493; O'Sullivan & King, J. Tribol. 110
+/// (1988) 235. The recursion that is used here equals it and keeps its digits
+/// at small αh.
 ///
 /// # Errors
 /// Unless `wavenumber` is finite and above 0.
@@ -121,24 +124,24 @@ pub(crate) fn alpha_compliance(body: &HalfSpace, alpha: f64) -> Compliance {
     })
 }
 
-/// Behaviour of the normal response at both ends of the spectrum.
+/// Limits of the normal response û_z/p̂ at both ends of the spectrum, without the local compliance.
 ///
 /// ```text
-/// c11 → long/α + constant   (α → 0)        c11 → short/α   (α → ∞)
+/// û_z/p̂ → long/α + constant   (α → 0)        û_z/p̂ → short/α   (α → ∞)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Asymptotes {
-    /// α c11 at α → 0: the substrate's \[1/Pa\]; 0 on a rigid base.
+    /// Limit of α û_z/p̂ for α → 0 \[1/Pa\], at least 0: that of the substrate; 0 on a rigid base.
     pub long: f64,
-    /// The next term \[m/Pa\]: the layers' own compression.
+    /// The next term for α → 0 \[m/Pa\]: the compression of the layers.
     pub constant: f64,
-    /// α c11 at α → ∞: the surface material's \[1/Pa\].
+    /// Limit of α û_z/p̂ for α → ∞ \[1/Pa\], at least 0: that of the surface material.
     pub short: f64,
 }
 
-/// Limits of the normal response of `body`.
+/// Limits of the normal response of a half-space.
 ///
-/// The constant is the compression of the layers under a pressure that varies slowly (plane strain
+/// The constant, derived for nacre from the recursion, is the compression of the layers under a pressure that varies slowly (plane strain
 /// across the wave vector). Where the layers follow the substrate's surface strain, with
 /// g = (1−2ν_s) G/G_s (0 on a rigid base), each contributes
 ///

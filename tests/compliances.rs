@@ -2,6 +2,7 @@
 
 mod support {
     pub(crate) mod bodies;
+    pub(crate) mod foundation;
     pub(crate) mod messages;
     pub(crate) mod random;
     pub(crate) mod reference;
@@ -11,6 +12,7 @@ mod support {
 mod compliance {
     mod convolution_direct;
     mod errors;
+    mod foundation;
     mod graded;
     mod influence_conversion;
     mod influence_exact;

@@ -1,6 +1,7 @@
 //! Contacts: every algorithm, control, domain and body, and what cannot be solved.
 
 mod support {
+    pub(crate) mod foundation;
     pub(crate) mod messages;
     pub(crate) mod random;
     pub(crate) mod reference;
@@ -13,6 +14,7 @@ mod contact {
     mod discretisation;
     mod errors;
     mod few_cells;
+    mod foundation;
     mod invariants;
     mod line;
     mod stiffness;

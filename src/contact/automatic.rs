@@ -183,9 +183,22 @@ fn search(
 /// the load by the estimate W = 2 E* δ √(a b), which holds for a flat square punch within 10 %.
 fn first_frame(shape: &dyn Surface, body: &Body, setup: &Setup, motion: &Motion) -> Result<Frame> {
     let (extent, radii) = (shape.extent(), shape.radii());
-    let compliance = |body: &Body| body.asymptotes().short.max(body.asymptotes().long);
-    let compliance = compliance(body) + setup.counterbody.as_ref().map_or(0.0, compliance);
-    let modulus = 2.0 / compliance;
+    // α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the
+    // response itself, and the local compliance.
+    let bodies = [Some(body), setup.counterbody.as_ref()];
+    let compliance = |alpha: f64| -> f64 {
+        let bodies = bodies.iter().flatten();
+        bodies
+            .map(|body| {
+                let limits = body.asymptotes();
+                let larger = match limits.short.max(limits.long) {
+                    0.0 => body.normal(alpha),
+                    larger => larger,
+                };
+                larger + alpha * body.local()
+            })
+            .sum()
+    };
     let center: [f64; 2] = std::array::from_fn(|axis| {
         let [low, high] = extent[axis].range();
         let middle = if low.is_finite() && high.is_finite() {
@@ -221,7 +234,8 @@ fn first_frame(shape: &dyn Surface, body: &Body, setup: &Setup, motion: &Motion)
         (Some(load), _) => {
             let carries = |approach: f64| {
                 let [a, b] = widths(approach);
-                2.0 * modulus * approach * (a * b).sqrt()
+                let half = (a * b).sqrt();
+                4.0 * approach * half / compliance(1.0 / half)
             };
             let mut approach = 1.0;
             while approach > 1e-30 && carries(approach) > load {

@@ -1,4 +1,4 @@
-//! The paper's conversion: sample the response, transform it back, keep the middle.
+//! The paper's conversion (Spinu et al.): sample the response, transform it back, keep the middle.
 //!
 //! 1. A mesh of step Δ, N points and refinement χ is chosen: 2χN points in each direction, of
 //!    which the spectral step is 2π/(2χNΔ). (The paper prints 2π/(NΔ).)
@@ -11,14 +11,16 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::Method;
-use super::potential::Rectangle;
 use crate::error::{Error, Result};
 use crate::fft::inverse_even;
 use crate::grid::Grid;
+use crate::kernel::quadrature::Rules;
+use crate::kernel::rectangle::potential;
 use crate::parallel::Threads;
 use crate::parallel::check_memory;
 use crate::response::Response;
 
+/// Coefficients in the shape of `grid` \[m/Pa\], without the local compliance.
 pub(super) fn coefficients(
     body: &dyn Response,
     grid: &Grid,
@@ -48,11 +50,11 @@ pub(super) fn coefficients(
         2.0 * PI / (mesh[0] as f64 * dx),
         2.0 * PI / (mesh[1] as f64 * dy),
     ];
-    let thickness = body.lengths().map_or(0.0, |[_, longest]| longest);
+    let longest = body.lengths().map_or(0.0, |[_, longest]| longest);
     let limits = body.asymptotes();
     let rest = limits.long - limits.short;
     let mean = mean_of_inverse(step);
-    let image_depth = 2.0 * thickness;
+    let image_depth = 2.0 * longest;
 
     let (zero, with_cell): (f64, bool) = match method {
         Method::Difference { .. } => (rest * mean + limits.constant, true),
@@ -79,7 +81,7 @@ pub(super) fn coefficients(
     };
     let mut coefficients = inverse_even(shape, mesh, value, threads);
     if with_cell {
-        let cell = Rectangle::new([dx, dy]);
+        let (rules, half) = (Rules::displacement(), [0.5 * dx, 0.5 * dy]);
         let image = if matches!(method, Method::Image { .. }) {
             rest
         } else {
@@ -90,9 +92,10 @@ pub(super) fn coefficients(
             rows.into_par_iter().enumerate().for_each(|(i, mut row)| {
                 for (j, c) in row.iter_mut().enumerate() {
                     let (x, y) = (i as f64 * dx, j as f64 * dy);
-                    *c += limits.short / (2.0 * PI) * cell.potential(x, y, 0.0);
+                    let potential = |depth: f64| potential(&rules, half, [x, y], depth);
+                    *c += limits.short * potential(0.0);
                     if image != 0.0 {
-                        *c += image / (2.0 * PI) * cell.potential(x, y, image_depth);
+                        *c += image * potential(image_depth);
                     }
                 }
             });

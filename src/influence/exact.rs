@@ -1,33 +1,28 @@
-//! Influence coefficients without aliasing: the radial kernel, integrated over the cell.
+//! Influence coefficients without aliasing: the kernel at z = 0, integrated over the cell.
 //!
-//! With κ and η of [`RadialKernel`], K = (A1 + κ)/r:
-//!
-//! - far from the cell, Gauss quadrature of K over it;
-//! - near a long thin cell, Gauss quadrature across it, and along it with x = y sinh u beside the
-//!   cell, x = e^v ahead of it,
+//! A unit force displaces the surface at distance r by
 //!
 //! ```text
-//! ∫ K(√(x²+y²)) dx = ∫ (A1 + κ)(y cosh u) du = ∫ K(√(x²+y²)) x dv
+//! K(r) = 1/2π ∫ D(α) J0(αr) dα = A1/2πr + (A − A1)/2π√(r² + d²) + H(r)          D = α û/p̂
 //! ```
 //!
-//! - on the cell and next to it, A1 times Love's closed form, plus the sum over the four corners of
-//!
-//! ```text
-//! F(x, y) = x ∫₀^{asinh(y/x)} η(x cosh u) du + y ∫₀^{asinh(x/y)} η(y cosh u) du
-//! ```
-//!
-//! which holds for any radial kernel. The integrands in u are smooth however thin a layer is.
+//! A1 and A are D at short and at long wavelengths. The second term is an image at depth d, with
+//! D = (A − A1) e^{−αd}; it leaves a remainder that vanishes at both ends of the spectrum, and H is its
+//! transform ([`crate::kernel::series`]). The first term has Love's closed form over a cell
+//! ([`crate::kernel::rectangle`]); the others are tabulated, with their means η(r) = 1/r ∫₀ʳ K r' dr',
+//! and integrated over the cell ([`crate::kernel::quadrature`]). The image and the adaptive sampling of
+//! the remainder are nacre's own.
 
 use std::f64::consts::PI;
 
-use rayon::prelude::*;
-
-use super::potential::Rectangle;
-use super::radial::RadialKernel;
-use crate::error::{Result, positive};
-use crate::kernel::quadrature::{Rule, Rules};
+use crate::error::{Error, Result, positive};
+use crate::kernel::mesh::{Kind, Order};
+use crate::kernel::quadrature::{CellRules, Rules};
+use crate::kernel::rectangle::potential;
+use crate::kernel::series::Series;
+use crate::kernel::table::Precise;
 use crate::parallel::Threads;
-use crate::response::{Body, Response};
+use crate::response::{Body, Response, check, size};
 
 /// Displacement around one uniformly loaded cell: influence coefficients without aliasing, at any
 /// offset.
@@ -43,28 +38,14 @@ use crate::response::{Body, Response};
 /// ```
 #[derive(Debug)]
 pub struct CellInfluence {
-    /// α c11 of the surface material.
+    /// α û/p̂ at short wavelengths.
     short: f64,
-    rectangle: Rectangle,
-    /// Half sides, the longer one first.
+    local: f64,
     half: [f64; 2],
-    /// Whether the longer side lies along y.
-    swapped: bool,
-    rules: Rules,
-    /// For the substitutions x = y sinh u and x = e^v.
-    panel: Rule,
-    /// Where the body is not homogeneous.
+    cells: CellRules,
+    /// Where the response changes with the wavenumber.
     tables: Option<Tables>,
     error: f64,
-}
-
-/// Tables of the radial kernels, over the squared distance.
-#[derive(Debug)]
-pub(super) struct Tables {
-    /// K.
-    kernel: Table,
-    /// η.
-    pub(super) mean: Table,
 }
 
 impl CellInfluence {
@@ -72,19 +53,15 @@ impl CellInfluence {
     /// `reach` \[m\]; beyond it falls as 1/r.
     ///
     /// # Errors
-    /// Unless the lengths are finite and above 0.
+    /// Unless the lengths are finite and above 0; a response that contradicts itself.
     pub fn plan(body: impl Into<Body>, spacing: [f64; 2], reach: f64) -> Result<Self> {
-        Self::plan_on(
-            &*body.into(),
-            spacing,
-            NEAREST_RIM,
-            reach,
-            &Threads::new(None)?,
-        )
+        let body = body.into();
+        check(&*body)?;
+        Self::plan_on(&*body, spacing, NEAREST_RIM, reach, &Threads::new(None)?)
     }
 
-    /// The same for offsets of which no corner of the cell is nearer than `nearest` shorter sides:
-    /// half a side, for whole cells.
+    /// [`CellInfluence::plan`] on `threads`, for offsets at which no corner of the cell is nearer than
+    /// `nearest` shorter sides; `body` has been checked.
     pub(super) fn plan_on(
         body: &dyn Response,
         spacing @ [dx, dy]: [f64; 2],
@@ -95,231 +72,236 @@ impl CellInfluence {
         positive("spacing", dx)?;
         positive("spacing", dy)?;
         positive("reach", reach)?;
-        let limits = body.asymptotes();
         // Nodes of the quadratures lie inside the cells.
         let range = [nearest * dx.min(dy), 1.01 * (reach + dx.hypot(dy))];
-        let kernel = RadialKernel::new(body, range[0], range[1]);
-        let scale = limits.short.max(limits.long);
-        let tables = kernel.map(|kernel| threads.run(|| Tables::new(&kernel, range)));
-        let (tables, missed) = tables.unzip();
+        let tables = Tables::new(body, range, threads)?;
+        let missed = tables.as_ref().map_or(0.0, |tables| tables.error);
         Ok(Self {
-            short: limits.short,
-            rectangle: Rectangle::new(spacing),
-            half: [0.5 * dx.max(dy), 0.5 * dx.min(dy)],
-            swapped: dy > dx,
-            rules: Rules::new(),
-            panel: Rule::gauss_legendre(10),
+            short: body.asymptotes().short,
+            local: body.local(),
+            half: spacing.map(|d| 0.5 * d),
+            cells: CellRules::new(Rules::displacement()),
             tables,
-            error: (missed.unwrap_or(0.0) + QUADRATURE * scale) / (2.0 * PI),
+            error: missed + QUADRATURE * size(body) / (2.0 * PI),
         })
     }
 
-    /// Estimated error \[1/Pa\] of C r/(dx dy), r the offset or half the shorter side: the form in
-    /// which the coefficients of a homogeneous body are all about the same, 1/(πE*).
+    /// Estimated error \[1/Pa\] of C r/(dx dy), where r is the offset or half the shorter side: in this
+    /// form the coefficients of a homogeneous body are all about the same, 1/(πE*).
     pub fn error(&self) -> f64 {
         self.error
     }
 
     /// Displacement \[m\] per unit pressure on the cell, at `offset` \[m\] from its centre.
-    pub fn at(&self, [x, y]: [f64; 2]) -> f64 {
-        let love = || self.short * self.rectangle.potential(x, y, 0.0);
-        let integral = match &self.tables {
-            Some(tables) => self.integral(x.abs(), y.abs(), tables, love),
-            None => love(),
+    ///
+    /// A local compliance acts inside the cell, and by half on its rim.
+    pub fn at(&self, offset: [f64; 2]) -> f64 {
+        let inside = |axis: usize| match offset[axis].abs() - self.half[axis] {
+            beyond if beyond < 0.0 => 1.0,
+            beyond if beyond > 0.0 => 0.0,
+            _ => 0.5,
         };
-        integral / (2.0 * PI)
+        self.at_distance(offset) + self.local * inside(0) * inside(1)
     }
 
-    /// ∬ K over the cell, seen from (x, y) relative to its centre.
-    fn integral(&self, x: f64, y: f64, tables: &Tables, love: impl Fn() -> f64) -> f64 {
-        let [a, b] = self.half;
-        let (x, y) = if self.swapped { (y, x) } else { (x, y) };
-        let distance = SECTOR * (x - a).max(0.0).hypot((y - b).max(0.0));
-        let Some(across) = self.rules.at(distance / b) else {
-            let corner = |x: f64, y: f64| self.corner(x, y, &tables.mean);
-            return love() + corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b)
-                + corner(x - a, y - b);
+    /// [`CellInfluence::at`] without the local compliance.
+    pub(super) fn at_distance(&self, offset: [f64; 2]) -> f64 {
+        let love = || self.short * potential(self.cells.rules(), self.half, offset, 0.0);
+        let Some(tables) = &self.tables else {
+            return love();
         };
-        match self.rules.at(distance / a) {
-            Some(along) => across.around(y, b, |y| {
-                along.around(x, a, |x| tables.kernel(x * x + y * y))
-            }),
-            None => across.around(y, b, |y| self.strip(x - a, x + a, y, tables)),
-        }
-    }
-
-    /// ∫ K(√(x²+y²)) dx from x1 to x2 > |x1|.
-    fn strip(&self, x1: f64, x2: f64, y: f64, tables: &Tables) -> f64 {
-        if x1 > 0.0 {
-            return self.panel.over_panels(x1.ln(), x2.ln(), |v| {
-                let x = v.exp();
-                x * tables.kernel(x * x + y * y)
+        let at = offset.map(f64::abs);
+        let mut sum = 0.0;
+        let far = (self.cells).nodes(at, self.half, 0.0, |weight, x, y| {
+            sum += weight * tables.displacement(x * x + y * y);
+        });
+        if !far {
+            sum = love();
+            (self.cells).corners(at, self.half, |weight, r, _| {
+                sum += weight * tables.mean(r * r);
             });
         }
-        let y = y.abs();
-        self.panel
-            .over_panels((x1 / y).asinh(), (x2 / y).asinh(), |u| {
-                let r = y * u.cosh();
-                r * tables.kernel(r * r)
-            })
-    }
-
-    /// Integral of η's kernel over the rectangle from the origin to (x, y); odd in x and in y.
-    fn corner(&self, x: f64, y: f64, mean: &Table) -> f64 {
-        let (u, v) = (x.abs(), y.abs());
-        let wedge = |near: f64, far: f64| {
-            if near <= f64::MIN_POSITIVE {
-                return 0.0;
-            }
-            near * self.panel.over_panels(0.0, (far / near).asinh(), |u| {
-                let r = near * u.cosh();
-                mean.at(r * r)
-            })
-        };
-        x.signum() * y.signum() * (wedge(u, v) + wedge(v, u))
+        sum
     }
 }
 
-/// Error of the quadratures over the cell, relative; `tests/influence_exact.rs` shows that the
-/// estimate which it is part of bounds the true error.
+/// Relative error of the quadratures over the cell; `tests/compliance/influence_exact.rs` shows that
+/// the estimate which contains it bounds the true error.
 const QUADRATURE: f64 = 1e-12;
 
-/// The kernel is analytic in a sector only, not in the half-plane as 1/r is: to the rules it is
-/// nearer than its origin is.
-const SECTOR: f64 = 0.7;
-
-/// How near to the rim of the cell the public tables go, in shorter sides.
+/// Distance to the rim of the cell, in shorter sides, from which on the public tables hold.
 const NEAREST_RIM: f64 = 1e-6;
 
-/// The same for offsets of whole cells: corners lie half a side from the axes.
+/// Nearest distance to a corner, in shorter sides, at offsets of whole cells: corners lie half a side
+/// from the axes.
 pub(super) const WHOLE_CELLS: f64 = 0.49;
 
-impl Tables {
-    /// K at the squared distance s; as 1/r beyond the table.
-    fn kernel(&self, s: f64) -> f64 {
-        let end = self.kernel.range[1];
-        if s > end {
-            self.kernel.at(end) * (end / s).sqrt()
-        } else {
-            self.kernel.at(s)
-        }
-    }
+/// The kernel of a response at the surface, without the local term.
+struct SurfaceKernel {
+    /// A1/2π.
+    short: f64,
+    /// (A − A1)/2π.
+    image: f64,
+    image_depth: f64,
+    remainder: Series<1>,
+    /// Estimated error of r K and of η \[1/Pa\].
+    error: f64,
+}
 
-    /// Tables for distances in `range`, and the error of their values.
-    pub(super) fn new(kernel: &RadialKernel, range: [f64; 2]) -> (Self, f64) {
-        let at = |r: f64| {
-            let (kappa, eta) = kernel.at(r);
-            [(kernel.short + kappa) / r, eta]
+/// Size of the remainder, relative to the response, below which it is rounding.
+const VANISHED: f64 = 1e-15;
+
+/// Size of the remainder, relative to the response, at which a search ends without an error: the
+/// accuracy that the exact method promises.
+const REACHED: f64 = 1e-9;
+
+/// Length in ln α, beyond the response's own lengths, in which the remainder must vanish: it does where
+/// it falls as α^{±0.6} or faster, and comes below [`REACHED`] where it falls as α^{±0.35}.
+const SEARCH: f64 = 60.0;
+
+/// Length in ln r over which kernels fall by rounding, that of the remainder as r at small and as 1/r at
+/// large distance: e^{−38} = 3e-17.
+const FALL: f64 = 38.0;
+
+impl SurfaceKernel {
+    /// The kernel for distances in `range`; none where the response is the same at all wavenumbers.
+    fn new(body: &dyn Response, range: [f64; 2]) -> Result<Option<Self>> {
+        let limits = body.asymptotes();
+        let Some([shortest, longest]) = body.lengths() else {
+            return Ok(None);
         };
-        let [table, mean] = Table::pair(range, at);
-        // Interpolation, seen between the nodes.
-        let missed = (0..64).map(|k| {
-            let r = range[0] * (range[1] / range[0]).powf((f64::from(k) + 0.5) / 64.0);
-            let [k, eta] = at(r);
-            ((table.at(r * r) - k) * r)
-                .abs()
-                .max((mean.at(r * r) - eta).abs())
-        });
-        let error = kernel.error + missed.fold(0.0, f64::max);
-        (
-            Self {
-                kernel: table,
-                mean,
-            },
-            error,
-        )
+        let size = size(body);
+        let rest = limits.long - limits.short;
+        // This depth takes the term of first order in α as well, where it is a depth at all.
+        let matched = -limits.constant / rest;
+        let image_depth = if (0.1 * shortest..1e3 * longest).contains(&matched) {
+            matched
+        } else {
+            2.0 * longest
+        };
+        let remainder =
+            |alpha: f64| body.normal(alpha) - limits.short - rest * (-alpha * image_depth).exp();
+        let left = |log: f64| remainder(log.exp()).abs();
+        let vanished = |log: f64| (0..3).all(|k| left(log + f64::from(k)) < VANISHED * size);
+        let inner = [-longest.ln(), -shortest.ln()];
+        let [mut low, mut high] = inner;
+        while low > inner[0] - SEARCH && !vanished(low - 3.0) {
+            low -= 1.0;
+        }
+        while high < inner[1] + SEARCH && !vanished(high) {
+            high += 1.0;
+        }
+        let reached = |log: f64| left(log) <= REACHED * size;
+        if !(reached(low - 1.0) && reached(high)) {
+            return Err(Error::Inconsistent(
+                "normal(α) of the body must reach asymptotes().long for wavelengths above and \
+                 asymptotes().short for wavelengths below its lengths()",
+            ));
+        }
+        // The period keeps the ends of the kernels from overlapping, however slowly they fall.
+        let near = (range[1] / shortest).ln().max(0.0) + FALL.max(high - inner[1]);
+        let far = (longest / range[0]).ln().max(0.0) + FALL.max(inner[0] - low);
+        let period = (high - low + 4.0).max(near).max(far);
+        let order = Order {
+            nu: 0.0,
+            kind: Kind::Vanishing,
+        };
+        let (remainder, error) = Series::resolved(remainder, [low, high], period, order, size);
+        Ok(Some(Self {
+            short: limits.short / (2.0 * PI),
+            image: rest / (2.0 * PI),
+            image_depth,
+            remainder,
+            error: (error + left(low - 1.0).max(left(high))) / (2.0 * PI),
+        }))
+    }
+
+    /// K at four distances r > 0.
+    fn displacement(&self, distances: [f64; 4]) -> [[f64; 1]; 4] {
+        let mut values = self.remainder.reduced(distances);
+        for ([value], r) in values.iter_mut().zip(distances) {
+            *value += self.short / r + self.image / r.hypot(self.image_depth);
+        }
+        values
+    }
+
+    /// η of K − A1/2πr at four distances r > 0.
+    fn mean(&self, distances: [f64; 4]) -> [[f64; 1]; 4] {
+        let mut values = self.remainder.mean(distances);
+        for ([value], r) in values.iter_mut().zip(distances) {
+            *value += self.image * r / (r.hypot(self.image_depth) + self.image_depth);
+        }
+        values
     }
 }
 
-/// Points of a piece of a [`Table`].
-const NODES: usize = 8;
-
-/// Leading bits of the mantissa that number the pieces within an octave.
-const BITS: u32 = 3;
-
-/// A function of s > 0 that is smooth in ln s: polynomials of degree 7 over eighths of octaves,
-/// found by the leading bits of s.
+/// Tables of the kernel at the surface, over the squared distance.
 #[derive(Debug)]
-pub(super) struct Table {
-    /// Of s.
-    range: [f64; 2],
-    first: usize,
-    /// Powers of the position in the piece, from −1 to 1.
-    pieces: Vec<[f64; NODES]>,
+pub(super) struct Tables {
+    /// Largest squared distance of the tables.
+    end: f64,
+    displacement: Precise<1>,
+    mean: Precise<1>,
+    /// Estimated error of r K and of η \[1/Pa\].
+    error: f64,
 }
 
-impl Table {
-    /// Both functions `f(r)`, as tables over s = r², for r in `range`.
-    fn pair(range: [f64; 2], f: impl Fn(f64) -> [f64; 2] + Sync) -> [Self; 2] {
-        let piece = |s: f64| (s.to_bits() >> (52 - BITS)) as usize;
-        let (first, last) = (piece(range[0] * range[0]), piece(range[1] * range[1]));
-        let nodes: [f64; NODES] =
-            std::array::from_fn(|k| (PI * (k as f64 + 0.5) / NODES as f64).cos());
-        let powers = powers_of_lagrange(&nodes);
-        let both: Vec<[[f64; NODES]; 2]> = (first..=last)
-            .into_par_iter()
-            .map(|piece| {
-                let bits = (piece as u64) << (52 - BITS);
-                let (start, end) = (
-                    f64::from_bits(bits),
-                    f64::from_bits(bits + (1 << (52 - BITS))),
-                );
-                let mut polynomials = [[0.0; NODES]; 2];
-                for (node, lagrange) in nodes.iter().zip(&powers) {
-                    let s = start + 0.5 * (1.0 + node) * (end - start);
-                    for (polynomial, value) in polynomials.iter_mut().zip(f(s.sqrt())) {
-                        for (c, l) in polynomial.iter_mut().zip(lagrange) {
-                            *c += value * l;
-                        }
-                    }
-                }
-                polynomials
-            })
-            .collect();
-        [0, 1].map(|k| Self {
-            range: range.map(|r| r * r),
-            first,
-            pieces: both.iter().map(|pair| pair[k]).collect(),
-        })
-    }
+/// Number of distances at which the interpolation of the tables is checked, times four.
+const CHECKS: u32 = 16;
 
-    /// The function at s, or at the nearer end of the table.
-    pub(super) fn at(&self, s: f64) -> f64 {
-        let bits = s.clamp(self.range[0], self.range[1]).to_bits();
-        let polynomial = &self.pieces[(bits >> (52 - BITS)) as usize - self.first];
-        // The bits that are left are the position in the piece, from 1 to 2 under this exponent.
-        let left = (bits << BITS) & ((1 << 52) - 1);
-        let position = 2.0 * f64::from_bits(1.0_f64.to_bits() | left) - 3.0;
-        polynomial
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| sum * position + c)
-    }
-}
-
-/// Coefficients by powers of the Lagrange polynomials of `nodes`.
-pub(crate) fn powers_of_lagrange<const NODES: usize>(
-    nodes: &[f64; NODES],
-) -> [[f64; NODES]; NODES] {
-    std::array::from_fn(|k| {
-        let mut polynomial = [0.0; NODES];
-        polynomial[0] = 1.0;
-        for (degree, (_, node)) in nodes
-            .iter()
-            .enumerate()
-            .filter(|(j, _)| *j != k)
-            .enumerate()
-        {
-            let norm = 1.0 / (nodes[k] - node);
-            for power in (0..=degree + 1).rev() {
-                let below = if power > 0 {
-                    polynomial[power - 1]
-                } else {
-                    0.0
-                };
-                polynomial[power] = (below - node * polynomial[power]) * norm;
+impl Tables {
+    /// Tables for distances in `range`; none where the response is the same at all wavenumbers.
+    pub(super) fn new(
+        body: &dyn Response,
+        range: [f64; 2],
+        threads: &Threads,
+    ) -> Result<Option<Self>> {
+        let Some(kernel) = SurfaceKernel::new(body, range)? else {
+            return Ok(None);
+        };
+        let (displacement, mean) = threads.run(|| {
+            (
+                Precise::new(range, 0.0, |r| kernel.displacement(r)),
+                Precise::new(range, 0.0, |r| kernel.mean(r)),
+            )
+        });
+        let mut missed = 0.0_f64;
+        for check in 0..CHECKS {
+            let distances = [0.5, 1.5, 2.5, 3.5].map(|k| {
+                let position = (f64::from(4 * check) + k) / f64::from(4 * CHECKS);
+                range[0] * (range[1] / range[0]).powf(position)
+            });
+            let (exact, exact_mean) = (kernel.displacement(distances), kernel.mean(distances));
+            for (k, r) in distances.into_iter().enumerate() {
+                let [displacement, mean] = [displacement.at(r * r), mean.at(r * r)].map(|[v]| v);
+                missed = missed
+                    .max(((displacement - exact[k][0]) * r).abs())
+                    .max((mean - exact_mean[k][0]).abs());
             }
         }
-        polynomial
-    })
+        Ok(Some(Self {
+            end: range[1] * range[1],
+            displacement,
+            mean,
+            error: kernel.error + missed,
+        }))
+    }
+
+    /// K at the squared distance s; as 1/r beyond the tables.
+    #[inline]
+    fn displacement(&self, s: f64) -> f64 {
+        let [value] = self.displacement.at(s);
+        if s > self.end {
+            value * (self.end / s).sqrt()
+        } else {
+            value
+        }
+    }
+
+    /// η of K − A1/2πr at the squared distance s.
+    #[inline]
+    pub(super) fn mean(&self, s: f64) -> f64 {
+        let [value] = self.mean.at(s);
+        value
+    }
 }

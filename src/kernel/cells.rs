@@ -1,4 +1,4 @@
-//! Influence coefficients at all offsets of a grid.
+//! Kernels of cells at all offsets of a grid.
 //!
 //! Far off, at R = √(r² + z²) ≫ dx, dy, the mean over a cell is that of the kernel's values at the
 //! centres of cells around it,
@@ -7,24 +7,24 @@
 //! K̄ = K + (δ_x² + δ_y²) K / 24          δ² the second difference
 //! ```
 //!
-//! of which the error, 17/5760 δ⁴ K, is below 1e-7 of K from [`FAR`] cells on, and 1e-8 of the
-//! pressure in a sum over any number of cells. Nearer it is integrated ([`super::plane`]).
+//! Its error, 17/5760 δ⁴ K, is below 1e-7 of K from [`FAR`] cells on, and 1e-8 of the pressure in a sum
+//! over any number of cells. Nearer, the kernel is integrated ([`super::plane`]).
 
 use std::ops::Range;
 
-use super::loads::COMPONENTS;
+use super::COMPONENTS;
 use crate::fft::Keep;
 
 /// Distance, in longer sides of a cell, from which differences are used.
 pub(crate) const FAR: f64 = 60.0;
 
-/// What makes the coefficients of C components.
+/// Source of the coefficients of C components.
 pub(crate) struct Source<M, P, const C: usize> {
-    /// How many offsets along x and y.
+    /// Numbers of offsets along x and y.
     pub(crate) offsets: [usize; 2],
     pub(crate) spacing: [f64; 2],
     pub(crate) depth: f64,
-    /// Of each component, whether it is odd in x and in y.
+    /// Whether each component is odd in x and in y.
     pub(crate) odd: [[bool; 2]; C],
     /// Mean over a cell at an offset, times its area.
     pub(crate) mean: M,
@@ -32,7 +32,7 @@ pub(crate) struct Source<M, P, const C: usize> {
     pub(crate) point: P,
 }
 
-/// Values at the centres of a row, of one component after another.
+/// Values at the centres of a row, one component after another.
 type Points = Vec<f64>;
 
 impl<M, P, const C: usize> Source<M, P, C>
@@ -83,7 +83,7 @@ where
         }
     }
 
-    /// Values at the points of row i that differences need.
+    /// Computes the values at the points of row i that differences need.
     fn points(&self, i: usize, row: &mut Points) {
         let width = self.offsets[1] + 1;
         let [dx, dy] = self.spacing;
@@ -97,7 +97,7 @@ where
         }
     }
 
-    /// Coefficients of row i, from the points of three rows.
+    /// Computes the coefficients of row i, from the points of three rows.
     fn means(&self, i: usize, [before, here, after]: [&Points; 3], means: &mut [f64]) {
         let ny = self.offsets[1];
         let width = ny + 1;

@@ -1,4 +1,4 @@
-//! From radial functions to components: the angular part of each.
+//! Loads: which radial functions make which components, and with what angular part.
 //!
 //! A load at the origin gives, with the transforms H_ν of what [`Fields`] holds, and φ the polar
 //! angle of (x, y); under pressure, with S, D = (σ_LL ± σ_TT)/2,
@@ -17,13 +17,11 @@
 //! u_z = H1[W] cos φ        u_x = H0[M] − H2[N] cos 2φ        u_y = −H2[N] sin 2φ
 //! ```
 
-use super::rectangle;
-use super::series::{Kind, Order};
+pub(crate) use super::COMPONENTS;
+use super::mesh::{Kind, Order, homogeneous};
+use super::{cerruti, love};
 use crate::material::Elastic;
 use crate::response::interior::Fields;
-
-/// σxx, σyy, σzz, σxy, σyz, σxz, ux, uy, uz.
-pub(crate) const COMPONENTS: usize = 9;
 
 /// Whether each component is odd in x and in y, under pressure.
 pub(crate) const ODD: [[bool; 2]; COMPONENTS] = [
@@ -38,7 +36,7 @@ pub(crate) const ODD: [[bool; 2]; COMPONENTS] = [
     [false, false],
 ];
 
-/// What the components become when x and y are exchanged.
+/// Position of each component after x and y are exchanged.
 pub(crate) const EXCHANGED: [usize; COMPONENTS] = [1, 0, 2, 3, 5, 4, 7, 6, 8];
 
 /// A load on a point or a cell, of `N` radial functions.
@@ -46,10 +44,10 @@ pub(crate) trait Load<const N: usize>: Sync {
     /// Bessel orders and kinds of the radial functions.
     const ORDERS: [Order; N];
 
-    /// D of each radial function; displacements times α.
+    /// D of each radial function of [`super::series`]; displacements times α.
     fn radial(fields: &Fields, material: Elastic) -> [f64; N];
 
-    /// Components from h_ν = H_ν/r^ν, at (x, y).
+    /// Components at (x, y), made of h_ν = H_ν/r^ν.
     fn components(h: &[f64; N], x: f64, y: f64) -> [f64; COMPONENTS];
 
     /// Components in a homogeneous half-space, of a unit load on a cell of half sides `half`, at
@@ -115,11 +113,11 @@ impl Load<6> for Pressure {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_pressure(material, half, at, z)
+        love::components(material, half, at, z)
     }
 }
 
-/// The same, without its displacements.
+/// Unit pressure, without its displacements.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PressureStress;
 
@@ -137,7 +135,7 @@ impl Load<4> for PressureStress {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_pressure(material, half, at, z)
+        love::components(material, half, at, z)
     }
 }
 
@@ -197,11 +195,11 @@ impl Load<9> for Traction {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_traction(material, half, at, z)
+        cerruti::components(material, half, at, z)
     }
 }
 
-/// The same, without its displacements.
+/// Unit traction along x, without its displacements.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TractionStress;
 
@@ -226,13 +224,13 @@ impl Load<6> for TractionStress {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        rectangle::under_traction(material, half, at, z)
+        cerruti::components(material, half, at, z)
     }
 }
 
-/// h_ν = H_ν/r^ν in a homogeneous half-space at depth z and squared distance s = r².
+/// Radial functions h_ν = H_ν/r^ν of a point load on a homogeneous half-space, at depth z.
 ///
-/// D there is (c0 + c1 αz) e^{−αz}, of which c0 and c1 come from two wavenumbers, and
+/// D there is (c0 + c1 αz) e^{−αz}, and
 ///
 /// ```text
 /// ∫ α^k e^{−αz} J_ν dα = t^ν/R · {1, (z + νR)/R², [3z² + 3νzR + (ν²−1)R²]/R⁴}
@@ -249,18 +247,14 @@ pub(crate) struct PointLoad<const N: usize> {
 
 impl<const N: usize> PointLoad<N> {
     pub(crate) fn new<L: Load<N>>(material: Elastic, z: f64) -> Self {
-        // e^{y} times the response is a polynomial of degree one in y.
-        let at = |y: f64| L::radial(&Fields::homogeneous(material, y), material);
-        let (zero, one) = (at(0.0), at(1.0));
-        let coefficients =
-            std::array::from_fn(|k| [zero[k], one[k] * std::f64::consts::E - zero[k]]);
         Self {
             orders: L::ORDERS,
             z,
-            coefficients,
+            coefficients: homogeneous(material, L::radial),
         }
     }
 
+    /// h_ν at the squared distance s = r².
     pub(crate) fn at(&self, s: f64) -> [f64; N] {
         let z = self.z;
         let root = (s + z * z).sqrt();
@@ -272,7 +266,7 @@ impl<const N: usize> PointLoad<N> {
             let power = lean.powi(nu as i32) * inverse / (2.0 * std::f64::consts::PI);
             let first = (z + nu * root) * inverse * inverse;
             match kind {
-                Kind::Displacement => power * (c0 + c1 * z * first),
+                Kind::Displacement | Kind::Vanishing => power * (c0 + c1 * z * first),
                 Kind::Stress | Kind::Line => {
                     let second =
                         (3.0 * z * z + 3.0 * nu * z * root + (nu * nu - 1.0) * root * root)

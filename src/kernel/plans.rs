@@ -1,6 +1,7 @@
-//! What makes the coefficients of a body under pressure and traction.
+//! Plans of a body's kernels under pressure and traction, for cells or for strips.
 
 use super::loads::Load;
+use super::mesh::Multipliers;
 use super::plane::Plan;
 use super::strip::LinePlan;
 use crate::body::HalfSpace;
@@ -11,16 +12,16 @@ use crate::grid::Grid;
 pub(crate) enum Kernels {
     Plane {
         plan: Box<Plan>,
-        pressure: Vec<Vec<(f64, f64)>>,
-        /// Empty without friction.
-        traction: Vec<Vec<(f64, f64)>>,
+        pressure: Vec<Multipliers>,
+        /// Multipliers of traction; empty without friction.
+        traction: Vec<Multipliers>,
     },
     Line(LinePlan),
 }
 
 impl Kernels {
-    /// For loads P and T of pieces down to `finest` of a cell, at offsets up to `reach`. On the
-    /// threads of the caller.
+    /// Plans loads P and T (where the body `slides`) on pieces down to `finest` of a cell, at offsets up
+    /// to `reach`. On the threads of the caller.
     pub(crate) fn new<const N: usize, const M: usize, P: Load<N>, T: Load<M>>(
         body: &HalfSpace,
         grid: &Grid,

@@ -4,193 +4,102 @@
 //! H(r) = 1/2π ∫₀^∞ D(α) α^w J_ν(αr) dα          r η(r) = ∫₀^r H r' dr'
 //! ```
 //!
-//! with w = 1 for stresses, 0 for displacements (of which D is α times). α^b D, b = w for the first
-//! and ½ for the second, vanishes at both ends of the spectrum. Sampled evenly in ln α it is a
-//! Fourier series, of which each term has a transform in closed form, with μ = w − b + it:
-//!
-//! ```text
-//! ∫₀^∞ u^μ J_ν(u) du = 2^μ Γ((1+ν+μ)/2) / Γ((1+ν−μ)/2)          DLMF 10.22.43
-//! ```
-//!
-//! Talman, J. Comput. Phys. 29 (1978) 35; Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257,
-//! appendix B ("FFTLog").
+//! with w = 1 for stresses, 0 for displacements (D is α times those). α^b D, with the bias b of
+//! [`Kind`](super::mesh::Kind), vanishes at both ends of the spectrum. Sampled on a [`LogMesh`] it is a Fourier series in
+//! ln α, and each term has a transform in closed form. The series converges exponentially, since D is
+//! analytic in a sector around the positive axis.
 
-use std::f64::consts::{LN_2, PI};
+use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use crate::fft::{fast_length, fourier_coefficients};
+use super::mesh::{LogMesh, Multipliers, Order};
+use crate::fft::fourier_coefficients;
 
-/// What is transformed: order ν of the Bessel function, and kind.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Order {
-    pub(crate) nu: f64,
-    pub(crate) kind: Kind,
-}
-
-/// w and b of the module's formula.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Stress,
-    Displacement,
-    /// Cosine (ν = −½) and sine (ν = ½) transforms 1/π ∫ D {cos, sin} αy dα of a line contact;
-    /// η is then ∫₀^r H dr.
-    Line,
-}
-
-impl Kind {
-    /// b: the power of α that is transformed with D.
-    pub(crate) fn bias(self) -> f64 {
-        match self {
-            Self::Stress => 1.0,
-            Self::Displacement | Self::Line => 0.5,
-        }
-    }
-
-    /// w − b, and for a line 0: cos u = √(πu/2) J_{−½}(u).
-    fn shift(self) -> f64 {
-        match self {
-            Self::Stress | Self::Line => 0.0,
-            Self::Displacement => -0.5,
-        }
-    }
-
-    /// What the series is multiplied by: H = `scale`(r) · series.
-    fn scale(self, r: f64) -> f64 {
-        match self {
-            Self::Stress => 1.0 / (2.0 * PI * r),
-            Self::Displacement => 1.0 / (2.0 * PI * r.sqrt()),
-            Self::Line => 1.0 / (2.0 * PI * r).sqrt(),
-        }
-    }
-
-    /// The power of r, less −it, of the terms of r η.
-    fn power(self) -> f64 {
-        match self {
-            Self::Stress => 1.0,
-            Self::Displacement => 1.5,
-            Self::Line => 0.5,
-        }
-    }
-}
-
-/// Wavenumbers, even in their logarithms, and the transforms of the powers of them.
-#[derive(Debug)]
-pub(crate) struct LogMesh {
-    low: f64,
-    spacing: f64,
-    points: usize,
-    /// Those at which anything is left of a response.
-    sampled: usize,
-}
-
-/// How far, in ln r or ln α, what falls by ½ in its logarithm is followed: e^{−32} = 1e-14.
-const DECAY: f64 = 64.0;
-
-impl LogMesh {
-    /// For responses that vary between the wavenumbers `1/long` and `1/short`, and are nothing
-    /// beyond 80/short; transformed to distances in `range`.
-    pub(crate) fn new(short: f64, long: f64, range: [f64; 2]) -> Self {
-        let low = -long.ln() - DECAY;
-        let high = (HIGHEST / short).ln();
-        let outer = (range[1] / short).ln().max(0.0);
-        let inner = (long / range[0]).ln().max(0.0);
-        let period = (high - low).max(DECAY + outer).max(DECAY + inner) + 4.0;
-        let spacing = SPACING;
-        Self {
-            low,
-            spacing,
-            points: fast_length((period / spacing).ceil() as usize),
-            sampled: ((high - low) / spacing).ceil() as usize,
-        }
-    }
-
-    /// The wavenumbers at which responses are sampled.
-    pub(crate) fn wavenumbers(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.sampled).map(|n| (self.low + n as f64 * self.spacing).exp())
-    }
-
-    fn step(&self) -> f64 {
-        2.0 * PI / (self.points as f64 * self.spacing)
-    }
-
-    /// Transforms of α^{it} for every term: real and imaginary parts.
-    pub(crate) fn multipliers(&self, order: Order) -> Vec<(f64, f64)> {
-        let shift = order.kind.shift();
-        let (above, below) = (
-            0.5 * (1.0 + order.nu + shift),
-            0.5 * (1.0 + order.nu - shift),
-        );
-        (0..=self.points / 2)
-            .map(|m| {
-                let t = m as f64 * self.step();
-                let (num, den) = (ln_gamma(above, 0.5 * t), ln_gamma(below, 0.5 * t));
-                // The denominator is at −it: the conjugate.
-                let size = (shift * LN_2 + num.0 - den.0).exp();
-                let (sin, cos) = (t * LN_2 + num.1 + den.1).sin_cos();
-                (size * cos, size * sin)
-            })
-            .collect()
-    }
-}
-
-/// e^{−80}, times the highest power that [`Series`] takes moments of, is below rounding.
-const HIGHEST: f64 = 80.0;
-
-/// Terms of the power series of a transform at small distances.
+/// Number of terms of the power series of a transform at small distances.
 const MOMENTS: usize = 8;
 
-/// Spacing in ln α: a response that is analytic in a sector of half-angle θ leaves e^{−πθ/spacing}.
-const SPACING: f64 = 0.06;
+/// Distance, in depths, below which the power series is used: its first term that is left out is
+/// 0.2^16 of the first one, times a binomial coefficient.
+const POWER_SERIES_REACH: f64 = 0.2;
 
 /// N transforms at once.
 #[derive(Debug)]
 pub(crate) struct Series<const N: usize> {
+    /// ln of the lowest wavenumber.
     low: f64,
+    /// Step in t from term to term.
     step: f64,
-    /// Real and imaginary parts, of H and of r η.
+    /// Real and imaginary parts of the terms of H.
     terms: Vec<[[f64; N]; 2]>,
+    /// Real and imaginary parts of the terms of r η.
     means: Vec<[[f64; N]; 2]>,
     orders: [Order; N],
     depth: f64,
-    /// H/r^ν by powers of (r/depth)².
+    /// Coefficients of H/r^ν by powers of (r/depth)².
     powers: [[f64; MOMENTS]; N],
 }
 
+/// Fourier coefficients of one function on a mesh, and the size below which the last are dropped.
+struct Coefficients {
+    values: Vec<(f64, f64)>,
+    negligible: f64,
+}
+
 impl<const N: usize> Series<N> {
-    /// Of the functions of which `samples[k]` are α^b D at the mesh's wavenumbers; they fall off as
-    /// e^{−α depth}, or faster. On the threads of the caller.
+    /// The series of N functions; `samples[k]` are α^b D at the mesh's wavenumbers, which fall off as
+    /// e^{−α depth} or faster. On the threads of the caller.
     pub(crate) fn new(
         mesh: &LogMesh,
         orders: &[Order; N],
-        multipliers: &[Vec<(f64, f64)>],
+        multipliers: &[Multipliers],
         samples: [Vec<f64>; N],
         depth: f64,
     ) -> Self {
-        let step = mesh.step();
-        let mut terms = vec![[[0.0; N]; 2]; mesh.points / 2 + 1];
-        let mut means = terms.clone();
         let transformed: Vec<_> = samples
             .into_par_iter()
             .enumerate()
-            .map(|(k, mut samples)| {
+            .map(|(k, samples)| {
                 let powers = powers(mesh, orders[k], &samples, depth);
                 let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-                samples.resize(mesh.points, 0.0);
-                (powers, largest, fourier_coefficients(samples))
+                let spectrum = Coefficients {
+                    values: coefficients(mesh, samples),
+                    // All terms of this size together are rounding.
+                    negligible: 1e-15 * largest / mesh.points as f64,
+                };
+                (powers, spectrum)
             })
             .collect();
-        let powers = std::array::from_fn(|k| transformed[k].0);
-        let mut kept = 0;
-        for (k, (_, largest, coefficients)) in transformed.into_iter().enumerate() {
+        let (powers, spectra): (Vec<_>, Vec<_>) = transformed.into_iter().unzip();
+        Self {
+            depth,
+            powers: std::array::from_fn(|k| powers[k]),
+            ..Self::at_surface(mesh, orders, multipliers, &spectra)
+        }
+    }
+
+    /// The series of functions whose spectra are given; at small distances as elsewhere.
+    fn at_surface(
+        mesh: &LogMesh,
+        orders: &[Order; N],
+        multipliers: &[Multipliers],
+        spectra: &[Coefficients],
+    ) -> Self {
+        let step = mesh.step();
+        let kept = |spectrum: &Coefficients| {
+            let size = |c: &(f64, f64)| c.0.hypot(c.1);
+            let last = (spectrum.values.iter()).rposition(|c| size(c) > spectrum.negligible);
+            last.map_or(0, |last| last + 1)
+        };
+        let kept = spectra.iter().map(kept).max().unwrap_or(0);
+        let mut terms = vec![[[0.0; N]; 2]; kept];
+        let mut means = terms.clone();
+        for (k, spectrum) in spectra.iter().enumerate() {
             let power = orders[k].kind.power();
-            for (m, (re, im)) in coefficients.into_iter().enumerate() {
-                if re.hypot(im) * mesh.points as f64 > 1e-15 * largest {
-                    kept = kept.max(m + 1);
-                }
-                let (cos, sin) = multipliers[k][m];
+            let kept = spectrum.values[..kept].iter();
+            for (m, ((re, im), (cos, sin))) in kept.zip(&multipliers[k]).enumerate() {
                 let t = m as f64 * step;
-                // Real series: each term but the first stands for itself and its conjugate.
+                // The series is real: each term but the first stands for its conjugate, too.
                 let twice = if m == 0 { 1.0 } else { 2.0 };
                 let (hr, hi) = (twice * (re * cos - im * sin), twice * (re * sin + im * cos));
                 // Over power − it.
@@ -200,25 +109,23 @@ impl<const N: usize> Series<N> {
                 means[m][1][k] = (power * hi + t * hr) * norm;
             }
         }
-        terms.truncate(kept);
-        means.truncate(kept);
         Self {
             low: mesh.low,
             step,
-            orders: *orders,
             terms,
             means,
-            depth,
-            powers,
+            orders: *orders,
+            depth: 0.0,
+            powers: [[0.0; MOMENTS]; N],
         }
     }
 
-    /// H/r^ν at R distances r ≥ 0. Nearer than a fifth of the depth the series' rounding would grow by
-    /// r^{−ν}, and the powers of r² take its place.
+    /// H/r^ν at R distances r ≥ 0 (r > 0 at the surface). Near the axis of a deep plane the series'
+    /// rounding would grow by r^{−ν}, and the powers of r² take its place.
     pub(crate) fn reduced<const R: usize>(&self, distances: [f64; R]) -> [[f64; N]; R] {
         let mut values = self.sum(&self.terms, distances);
         for (values, r) in values.iter_mut().zip(distances) {
-            if r < 0.2 * self.depth {
+            if r < POWER_SERIES_REACH * self.depth {
                 let s = (r / self.depth).powi(2);
                 let horner = |sum: f64, c: &f64| sum * s + c;
                 *values = self.powers.map(|c| c.iter().rev().fold(0.0, horner));
@@ -242,7 +149,7 @@ impl<const N: usize> Series<N> {
         values
     }
 
-    /// Several at once, so that one recurrence does not wait for itself.
+    /// Sums at several distances together, so that no recurrence waits for itself.
     fn sum<const R: usize>(&self, terms: &[[[f64; N]; 2]], distances: [f64; R]) -> [[f64; N]; R] {
         let turns = distances.map(|r| (-self.step * (r.ln() + self.low)).sin_cos());
         let (mut re, mut im) = ([1.0; R], [0.0; R]);
@@ -260,6 +167,54 @@ impl<const N: usize> Series<N> {
         }
         std::array::from_fn(|p| std::array::from_fn(|k| sums[k][p]))
     }
+}
+
+impl Series<1> {
+    /// The series of one function `d` of α, sampled in ln α between `ends` ever closer until its terms
+    /// have fallen off, and the error that is left in 2πr H. `size` is that of the numbers whose
+    /// difference `d` is.
+    pub(crate) fn resolved(
+        d: impl Fn(f64) -> f64,
+        ends: [f64; 2],
+        period: f64,
+        order: Order,
+        size: f64,
+    ) -> (Self, f64) {
+        // 0.05, and four halvings at most: responses that vary faster keep a larger error.
+        const SPACINGS: [f64; 5] = [0.05, 0.025, 0.0125, 0.00625, 0.003125];
+        const CONVERGED: f64 = 1e-13;
+        const ROUNDING: f64 = 1e-15;
+        let sampled = |spacing: f64| {
+            let mesh = LogMesh::over(ends, period, spacing);
+            let samples = mesh.wavenumbers().map(&d).collect();
+            let coefficients = coefficients(&mesh, samples);
+            let last_tenth = &coefficients[coefficients.len() * 9 / 10..];
+            let largest = (last_tenth.iter()).fold(0.0, |a: f64, c| a.max(c.0.hypot(c.1)));
+            let tail = largest * coefficients.len() as f64;
+            (mesh, coefficients, tail)
+        };
+        let [first, finer @ ..] = SPACINGS;
+        let mut found = sampled(first);
+        for spacing in finer {
+            if found.2 < CONVERGED * size {
+                break;
+            }
+            found = sampled(spacing);
+        }
+        let (mesh, coefficients, tail) = found;
+        let spectrum = Coefficients {
+            values: coefficients,
+            negligible: 1e-3 * ROUNDING * size,
+        };
+        let series = Self::at_surface(&mesh, &[order], &[mesh.multipliers(order)], &[spectrum]);
+        (series, tail + ROUNDING * size)
+    }
+}
+
+/// Fourier coefficients of samples on a mesh, followed by zeros to the end of its period.
+fn coefficients(mesh: &LogMesh, mut samples: Vec<f64>) -> Vec<(f64, f64)> {
+    samples.resize(mesh.points, 0.0);
+    fourier_coefficients(samples)
 }
 
 /// Coefficients of (r/z)^{2k} in H/r^ν, z the `depth`; none at the surface.
@@ -297,43 +252,12 @@ fn powers(mesh: &LogMesh, order: Order, samples: &[f64], depth: f64) -> [f64; MO
     })
 }
 
-/// ln Γ(re + i im), re > 0: ln of the modulus, and phase. Stirling's series after ten steps of the
-/// recurrence; DLMF 5.11.1.
-fn ln_gamma(re: f64, im: f64) -> (f64, f64) {
-    const BERNOULLI: [f64; 5] = [
-        1.0 / 12.0,
-        -1.0 / 360.0,
-        1.0 / 1260.0,
-        -1.0 / 1680.0,
-        1.0 / 1188.0,
-    ];
-    let (mut log, mut phase) = (0.0, 0.0);
-    for k in 0..10 {
-        let x = re + f64::from(k);
-        log -= x.hypot(im).ln();
-        phase -= im.atan2(x);
-    }
-    let x = re + 10.0;
-    let (modulus, angle) = (x.hypot(im), im.atan2(x));
-    let ln = modulus.ln();
-    // (z − ½) ln z − z + ½ ln 2π + Σ B_2k / (2k (2k−1) z^{2k−1})
-    log += (x - 0.5) * ln - im * angle - x + 0.5 * (2.0 * PI).ln();
-    phase += (x - 0.5) * angle + im * ln - im;
-    for (k, b) in BERNOULLI.into_iter().enumerate() {
-        let power = 2 * k as i32 + 1;
-        let size = b * modulus.powi(-power);
-        let (sin, cos) = (f64::from(power) * angle).sin_cos();
-        log += size * cos;
-        phase -= size * sin;
-    }
-    (log, phase)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::mesh::Kind;
     use super::*;
 
-    /// Of e^{−αz}: t^ν/R and (z + νR) t^ν/R³ over 2π, with t = r/(R + z); Gradshteyn & Ryzhik
+    /// Transforms of e^{−αz}: t^ν/R and (z + νR) t^ν/R³ over 2π, with t = r/(R + z); Gradshteyn & Ryzhik
     /// 6.611.1 and its derivative.
     #[test]
     fn transform_of_an_exponential_is_that_of_the_tables() {

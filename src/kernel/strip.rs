@@ -9,24 +9,25 @@
 
 use std::f64::consts::PI;
 
-use super::loads::COMPONENTS;
-use super::series::{Kind, LogMesh, Order, Series};
+use super::COMPONENTS;
+use super::mesh::{Kind, Order, Spectrum, homogeneous};
+use super::series::Series;
 use crate::body::HalfSpace;
 use crate::grid::Grid;
 use crate::material::Elastic;
-use crate::response::interior::{Column, Fields, Place};
+use crate::response::interior::{Fields, Place};
 
-/// One function of the wavenumber: the component that it makes, with its sign.
+/// Output of one function of the wavenumber: the component that it makes, with its sign.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Part {
+pub(crate) struct Output {
     component: usize,
     sign: f64,
     sine: bool,
     displacement: bool,
 }
 
-const fn part(component: usize, sign: f64, sine: bool) -> Part {
-    Part {
+const fn output(component: usize, sign: f64, sine: bool) -> Output {
+    Output {
         component,
         sign,
         sine,
@@ -36,9 +37,9 @@ const fn part(component: usize, sign: f64, sine: bool) -> Part {
 
 /// A load on a strip.
 pub(crate) trait StripLoad<const N: usize> {
-    const PARTS: [Part; N];
+    const OUTPUTS: [Output; N];
 
-    /// D of each part; displacements times α.
+    /// D of each output; displacements times α.
     fn functions(fields: &Fields, material: Elastic) -> [f64; N];
 }
 
@@ -46,13 +47,13 @@ pub(crate) trait StripLoad<const N: usize> {
 pub(crate) struct Pressure;
 
 impl StripLoad<6> for Pressure {
-    const PARTS: [Part; 6] = [
-        part(0, 1.0, false),
-        part(1, 1.0, false),
-        part(2, -1.0, false),
-        part(4, 1.0, true),
-        part(7, -1.0, true),
-        part(8, 1.0, false),
+    const OUTPUTS: [Output; 6] = [
+        output(0, 1.0, false),
+        output(1, 1.0, false),
+        output(2, -1.0, false),
+        output(4, 1.0, true),
+        output(7, -1.0, true),
+        output(8, 1.0, false),
     ];
 
     fn functions(fields: &Fields, material: Elastic) -> [f64; 6] {
@@ -66,13 +67,13 @@ impl StripLoad<6> for Pressure {
 pub(crate) struct Across;
 
 impl StripLoad<6> for Across {
-    const PARTS: [Part; 6] = [
-        part(0, 1.0, true),
-        part(1, 1.0, true),
-        part(2, -1.0, true),
-        part(4, -1.0, false),
-        part(7, 1.0, false),
-        part(8, 1.0, true),
+    const OUTPUTS: [Output; 6] = [
+        output(0, 1.0, true),
+        output(1, 1.0, true),
+        output(2, -1.0, true),
+        output(4, -1.0, false),
+        output(7, 1.0, false),
+        output(8, 1.0, true),
     ];
 
     fn functions(fields: &Fields, material: Elastic) -> [f64; 6] {
@@ -86,10 +87,10 @@ impl StripLoad<6> for Across {
 pub(crate) struct Along;
 
 impl StripLoad<3> for Along {
-    const PARTS: [Part; 3] = [
-        part(3, -1.0, true),
-        part(5, -1.0, false),
-        part(6, 1.0, false),
+    const OUTPUTS: [Output; 3] = [
+        output(3, -1.0, true),
+        output(5, -1.0, false),
+        output(6, 1.0, false),
     ];
 
     fn functions(fields: &Fields, material: Elastic) -> [f64; 3] {
@@ -98,42 +99,30 @@ impl StripLoad<3> for Along {
     }
 }
 
-/// What all depths of a line contact share.
+/// The plan of a line contact's kernels, which all depths share.
 #[derive(Debug)]
 pub(crate) struct LinePlan {
     body: HalfSpace,
     cells: usize,
     width: f64,
-    /// Where the displacement is measured from.
+    /// Distance from the load at which the displacement is 0.
     datum: f64,
     thickness: f64,
-    spectrum: Option<(LogMesh, Vec<(f64, Column)>)>,
+    /// None where the body is homogeneous.
+    spectrum: Option<Spectrum>,
 }
 
 impl LinePlan {
-    /// For the grid's strips, and pieces down to `finest` of them.
+    /// Plans kernels of the grid's strips, and pieces down to `finest` of them.
     pub(crate) fn new(body: &HalfSpace, grid: &Grid, finest: f64) -> Self {
-        let thickness: f64 = body.layers().iter().map(crate::Layer::thickness).sum();
         let (width, datum) = (grid.spacing()[1], grid.size()[1]);
-        let spectrum = body.layers().first().map(|top| {
-            let mesh = LogMesh::new(
-                top.thickness(),
-                thickness,
-                [0.4 * finest * width, 2.0 * datum],
-            );
-            let columns = mesh
-                .wavenumbers()
-                .map(|alpha| (alpha, Column::new(body, alpha)))
-                .collect();
-            (mesh, columns)
-        });
         Self {
             body: body.clone(),
             cells: grid.shape()[1],
             width,
             datum,
-            thickness,
-            spectrum,
+            thickness: body.thickness(),
+            spectrum: Spectrum::new(body, [0.4 * finest * width, 2.0 * datum]),
         }
     }
 
@@ -158,38 +147,27 @@ impl LinePlan {
     /// Components of strips of any width at one place.
     pub(crate) fn strips<const N: usize, L: StripLoad<N>>(&self, place: &Place) -> Strips<N> {
         let (material, depth) = (place.material, place.depth);
-        let unit = |y: f64| L::functions(&Fields::homogeneous(material, y), material);
-        let (zero, one) = (unit(0.0), unit(1.0));
         Strips {
-            parts: L::PARTS,
-            closed: std::array::from_fn(|k| Closed {
-                c0: zero[k],
-                c1: one[k] * std::f64::consts::E - zero[k],
-                depth,
-            }),
+            outputs: L::OUTPUTS,
+            closed: homogeneous(material, L::functions).map(|[c0, c1]| Closed { c0, c1, depth }),
             rest: self.rest::<N, L>(place, self.thickness + depth),
             datum: self.datum,
         }
     }
 
-    /// Of the difference between the body and a half-space of what is at `place`.
+    /// Series of the difference between the body and a half-space of the material at `place`, and the
+    /// images that take the growth of its displacements.
     fn rest<const N: usize, L: StripLoad<N>>(
         &self,
         place: &Place,
         image_depth: f64,
     ) -> Option<(Series<N>, [Closed; N])> {
-        let (mesh, columns) = self.spectrum.as_ref()?;
-        let material = place.material;
-        let difference = |alpha: f64, column: &Column| -> [f64; N] {
-            let layered = L::functions(&column.at(&self.body, place), material);
-            let homogeneous = Fields::homogeneous(material, alpha * place.depth);
-            let homogeneous = L::functions(&homogeneous, material);
-            std::array::from_fn(|k| layered[k] - homogeneous[k])
-        };
-        let (lowest, column) = columns.first()?;
-        let limit = difference(*lowest, column);
+        let spectrum = self.spectrum.as_ref()?;
+        let mesh = &spectrum.mesh;
+        let differences = spectrum.differences(&self.body, place, L::functions);
+        let (_, limit) = *differences.first()?;
         let images = std::array::from_fn(|k| Closed {
-            c0: if L::PARTS[k].displacement {
+            c0: if L::OUTPUTS[k].displacement {
                 limit[k]
             } else {
                 0.0
@@ -198,13 +176,12 @@ impl LinePlan {
             depth: image_depth,
         });
         let mut samples: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
-        for (alpha, column) in columns {
-            let values = difference(*alpha, column);
+        for (alpha, values) in differences {
             // Below this wavenumber nothing is seen at any distance of interest, but D − D(0)
             // cancels.
             let seen = (alpha * self.thickness.max(self.datum) / 1e-10).powi(2);
             for k in 0..N {
-                let value = if L::PARTS[k].displacement {
+                let value = if L::OUTPUTS[k].displacement {
                     let image = images[k].c0 * (-alpha * image_depth).exp();
                     (values[k] - image) / alpha * (seen / (1.0 + seen))
                 } else {
@@ -213,8 +190,8 @@ impl LinePlan {
                 samples[k].push(value * alpha.sqrt());
             }
         }
-        let orders = L::PARTS.map(|part| Order {
-            nu: if part.sine { 0.5 } else { -0.5 },
+        let orders = L::OUTPUTS.map(|output| Order {
+            nu: if output.sine { 0.5 } else { -0.5 },
             kind: Kind::Line,
         });
         let multipliers = orders.map(|order| mesh.multipliers(order));
@@ -227,7 +204,7 @@ impl LinePlan {
 
 /// A load at one depth, on strips of any width.
 pub(crate) struct Strips<const N: usize> {
-    parts: [Part; N],
+    outputs: [Output; N],
     closed: [Closed; N],
     rest: Option<(Series<N>, [Closed; N])>,
     datum: f64,
@@ -239,31 +216,35 @@ impl<const N: usize> Strips<N> {
         self.components(&self.integral(y - half), &self.integral(y + half))
     }
 
-    /// S(y).
+    /// S(y) of each output.
     fn integral(&self, y: f64) -> [f64; N] {
         let mut sums: [f64; N] =
-            std::array::from_fn(|k| self.closed[k].integral(self.parts[k], y, self.datum));
+            std::array::from_fn(|k| self.closed[k].integral(self.outputs[k], y, self.datum));
         if let Some((series, images)) = &self.rest {
             let [mean] = series.mean([y.abs()]);
             for (k, sum) in sums.iter_mut().enumerate() {
-                let sign = if self.parts[k].sine { 1.0 } else { y.signum() };
-                *sum += sign * mean[k] + images[k].integral(self.parts[k], y, self.datum);
+                let sign = if self.outputs[k].sine {
+                    1.0
+                } else {
+                    y.signum()
+                };
+                *sum += sign * mean[k] + images[k].integral(self.outputs[k], y, self.datum);
             }
         }
         sums
     }
 
-    /// Between two places.
+    /// Components of a strip, from S at its edges.
     fn components(&self, before: &[f64; N], next: &[f64; N]) -> [f64; COMPONENTS] {
         let mut values = [0.0; COMPONENTS];
-        for (k, part) in self.parts.iter().enumerate() {
-            values[part.component] = part.sign * (next[k] - before[k]);
+        for (k, output) in self.outputs.iter().enumerate() {
+            values[output.component] = output.sign * (next[k] - before[k]);
         }
         values
     }
 }
 
-/// D = (c0 + c1 αz) e^{−αz}.
+/// A function of the wavenumber with a closed form: D = (c0 + c1 αz) e^{−αz}.
 struct Closed {
     c0: f64,
     c1: f64,
@@ -280,17 +261,17 @@ impl Closed {
     /// cos/α    −y ln(R/ℓ) + y − z atan(y/z)              z atan(y/z)
     /// sin/α    y atan(y/z) − z ln R                      z ln R
     /// ```
-    fn integral(&self, part: Part, y: f64, datum: f64) -> f64 {
+    fn integral(&self, output: Output, y: f64, datum: f64) -> f64 {
         let Self { c0, c1, depth: z } = *self;
         let square = y * y + z * z;
-        // In units of the datum, so that logarithms are of numbers.
+        // Lengths over the datum, so that logarithms are those of numbers.
         let log = 0.5 * (square / (datum * datum)).ln();
         let angle = if z > 0.0 {
             (y / z).atan()
         } else {
             0.5 * PI * y.signum()
         };
-        let (first, second) = match (part.sine, part.displacement) {
+        let (first, second) = match (output.sine, output.displacement) {
             (false, false) => (angle, z * y / square),
             (true, false) => (log, -z * z / square),
             (false, true) => (y - y * log - z * angle, z * angle),

@@ -1,10 +1,8 @@
-//! Tables of several functions of the squared distance at once.
+//! Tables of functions of the squared distance.
 
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
-
-use crate::influence::powers_of_lagrange;
 
 /// N functions of s = r² ≥ 0, smooth in ln(s + shift): polynomials over the pieces of octaves of
 /// v = (s + shift)/unit ≥ 1 that are numbered by the first `BITS` bits of the mantissa. They have
@@ -14,19 +12,23 @@ pub(crate) struct Table<const N: usize, const TERMS: usize, const BITS: u32> {
     shift: f64,
     inverse_unit: f64,
     last: f64,
-    /// Powers of the position in the piece, from −1 to 1.
+    /// Coefficients by powers of the position in the piece, from −1 to 1.
     pieces: Vec<[[f64; N]; TERMS]>,
 }
 
-/// Of few pieces, for functions that are costly: a singularity at v ≤ 0 leaves a relative error of
-/// 1e-10.
-pub(crate) type Coarse<const N: usize> = Table<N, 8, 2>;
+/// A table of four pieces an octave, for functions that are costly: a singularity at v ≤ 0 leaves a
+/// relative error of 1e-10.
+pub(crate) type FewPieces<const N: usize> = Table<N, 8, 2>;
 
-/// Of few terms, for many arguments; the relative error is the same.
-pub(crate) type Fine<const N: usize> = Table<N, 4, 7>;
+/// A table of four terms, for many arguments, with a relative error of 1e-10, too.
+pub(crate) type FewTerms<const N: usize> = Table<N, 4, 7>;
+
+/// A table of eight pieces an octave, with a relative error of 1e-13.
+pub(crate) type Precise<const N: usize> = Table<N, 8, 3>;
 
 impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> {
-    /// Of `f`, which is given four distances r in `range` at a time, on the threads of the caller.
+    /// The table of `f`, which is given four distances r in `range` at a time, on the threads of the
+    /// caller.
     pub(crate) fn new(
         range: [f64; 2],
         shift: f64,
@@ -88,5 +90,54 @@ impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> 
             }
         }
         sums
+    }
+}
+
+/// Coefficients by powers of the Lagrange polynomials of `nodes`.
+fn powers_of_lagrange<const NODES: usize>(nodes: &[f64; NODES]) -> [[f64; NODES]; NODES] {
+    std::array::from_fn(|k| {
+        let mut polynomial = [0.0; NODES];
+        polynomial[0] = 1.0;
+        for (degree, (_, node)) in nodes
+            .iter()
+            .enumerate()
+            .filter(|(j, _)| *j != k)
+            .enumerate()
+        {
+            let norm = 1.0 / (nodes[k] - node);
+            for power in (0..=degree + 1).rev() {
+                let below = if power > 0 {
+                    polynomial[power - 1]
+                } else {
+                    0.0
+                };
+                polynomial[power] = (below - node * polynomial[power]) * norm;
+            }
+        }
+        polynomial
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_hold_what_they_say() {
+        let range = [0.3, 500.0];
+        let f = |r: [f64; 4]| r.map(|r| [1.0 / r.hypot(0.2), (1.0 + r).ln() / r]);
+        let few_pieces = FewPieces::new(range, 0.04, f);
+        let few_terms = FewTerms::new(range, 0.04, f);
+        let precise = Precise::new(range, 0.04, f);
+        for k in 0..1000 {
+            let r = range[0] * (range[1] / range[0]).powf(f64::from(k) / 999.0);
+            let [exact, ..] = f([r; 4]);
+            let found = [few_pieces.at(r * r), few_terms.at(r * r), precise.at(r * r)];
+            for (found, error) in found.iter().zip([1e-9, 1e-9, 1e-12]) {
+                for (found, exact) in found.iter().zip(&exact) {
+                    assert!((found / exact - 1.0).abs() < error, "{r}: {found} {exact}");
+                }
+            }
+        }
     }
 }

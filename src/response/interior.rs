@@ -1,4 +1,5 @@
-//! Frequency response below the surface.
+//! Frequency response below the surface. The downward step through the layers is nacre's own, as the
+//! upward one is.
 //!
 //! Everything is per unit load on the surface: pressure P0, in-plane traction T0 = −i q_L, twist
 //! Q0 = q_T. At a depth, with α times the displacements,
@@ -13,20 +14,20 @@ use super::layer::Slab;
 use crate::body::{HalfSpace, Interface, Substrate};
 use crate::material::Elastic;
 
-/// Where a plane lies.
+/// Place of a plane: its depth, and the layer that it lies in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
-    /// Number of the layer, from the surface down; that of the substrate is the number of layers.
+    /// Number of the layer, from the surface down; the substrate has the number of layers.
     pub(crate) layer: usize,
     /// Depth below the top of that layer \[m\].
     pub(crate) below_top: f64,
     /// Depth below the surface \[m\].
     pub(crate) depth: f64,
-    /// What is there.
+    /// Material of that layer.
     pub(crate) material: Elastic,
 }
 
-/// Traction and displacement (times α) at a depth, under one of the in-plane loads.
+/// Traction and displacement (times α) at a depth, under an in-plane load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct InPlane {
     pub(crate) p: f64,
@@ -36,7 +37,7 @@ pub(crate) struct InPlane {
 }
 
 impl InPlane {
-    /// σ_LL and σ_TT; under T0 both times i.
+    /// Lateral stresses σ_LL and σ_TT; under T0 both times i.
     pub(crate) fn lateral_stress(&self, material: Elastic) -> (f64, f64) {
         let nu = material.poisson();
         let stretch = 2.0 * material.shear() * self.v;
@@ -47,7 +48,7 @@ impl InPlane {
     }
 }
 
-/// The fields at a depth, under unit loads.
+/// Fields at a depth, under unit loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fields {
     pub(crate) pressure: InPlane,
@@ -57,7 +58,7 @@ pub(crate) struct Fields {
 }
 
 impl Fields {
-    /// In a homogeneous half-space, at depth z, y = αz.
+    /// Fields in a homogeneous half-space, at depth z, y = αz.
     ///
     /// ```text
     /// P = (P0 + s y) e^{−y}   τ = (T0 − s y) e^{−y}   Q = Q0 e^{−y}   U = Q/(Gα)      s = P0 + T0
@@ -85,7 +86,7 @@ impl Fields {
         }
     }
 
-    /// In a homogeneous body below tractions of each load.
+    /// Fields in a homogeneous body below the tractions of each load.
     fn below(loads: &Loads, material: Elastic, y: f64) -> Self {
         let unit = Self::homogeneous(material, y);
         let combine = |[p, t]: [f64; 2]| {
@@ -113,15 +114,16 @@ struct Loads {
     twist: f64,
 }
 
-/// A body at one wavenumber: what each layer stands on, and what it carries.
+/// A half-space at one wavenumber: the compliance below each layer, and the traction on it.
 #[derive(Debug)]
 pub(crate) struct Column {
     alpha: f64,
-    /// At the top of each layer, and of the substrate.
+    /// Compliance and loads at the top of each layer and of the substrate.
     tops: Vec<(Compliance, Loads)>,
 }
 
 impl Column {
+    /// The column of `body` at wavenumber `alpha`.
     pub(crate) fn new(body: &HalfSpace, alpha: f64) -> Self {
         let layers = body.layers();
         let mut compliances = vec![match body.substrate() {
@@ -155,7 +157,7 @@ impl Column {
         Self { alpha, tops }
     }
 
-    /// The fields at `place`.
+    /// Fields at `place`.
     pub(crate) fn at(&self, body: &HalfSpace, place: &Place) -> Fields {
         let (compliance, loads) = &self.tops[place.layer];
         let Some(layer) = body.layers().get(place.layer) else {
@@ -185,7 +187,7 @@ impl Column {
     }
 }
 
-/// At the top of a body of `compliance` under `loads`.
+/// Fields at the top of a body of `compliance` under `loads`.
 fn on_top(compliance: &Compliance, loads: &Loads) -> Fields {
     let Compliance { c11, c12, c22, ct } = *compliance;
     let state = |[p, tau]: [f64; 2]| InPlane {

@@ -1,4 +1,4 @@
-//! One layer as an element between its two faces: the step of the recursion.
+//! One layer as an element between its two faces: the step of the recursion, which is nacre's own.
 
 use super::Compliance;
 use crate::body::Interface;
@@ -24,7 +24,8 @@ use crate::material::Elastic;
 /// ```
 ///
 /// Numerators and Δ are multiplied by 2e^{−2x}, so that nothing grows; the differences that cancel
-/// at small x come from their power series.
+/// at small x come from their power series. Derived for nacre from the stresses of a layer (Burmister,
+/// J. Appl. Phys. 16 (1945) 89).
 pub(super) struct Slab {
     h11: Symmetric,
     h12: [[f64; 2]; 2],
@@ -69,7 +70,7 @@ impl Slab {
         let (eta, epsilon, k) = (1.0 - nu, 1.0 - 2.0 * nu, 3.0 - 4.0 * nu);
         let e1 = (-x).exp();
         let e2 = e1 * e1;
-        // All times 2e^{−2x}:
+        // Numerators and Δ times 2e^{−2x}:
         let scale = 2.0 * e2;
         let (cosh, sinh) = (e1 * (1.0 + e2), -e1 * (-2.0 * x).exp_m1());
         let (xs, x2s) = (x * scale, x * x * scale);
@@ -159,8 +160,8 @@ impl Slab {
         }
     }
 
-    /// What reaches the bottom face of this layer, on a body of compliance `below`, under
-    /// `traction` (P, τ) on its top: traction, and α times the displacement of its own side.
+    /// Traction at the bottom face of this layer, on a body of compliance `below`, under `traction`
+    /// (P, τ) on its top, and α times the displacement of the layer's side of that face.
     ///
     /// Bonded, with f = H12ᵀ t and M = H22 C:
     ///
@@ -168,7 +169,7 @@ impl Slab {
     /// D = 1 + tr M + det M      t_bot = (I + adj M) f / D      u_bot = (C + det C · adj H22) f / D
     /// ```
     ///
-    /// Frictionless, the limit for C⁻¹ = diag(1/c11, 0), of which the shear traction is 0.
+    /// Frictionless: the limit for C⁻¹ = diag(1/c11, 0), where the shear traction is 0.
     pub(super) fn through(
         &self,
         below: Compliance,
@@ -204,7 +205,8 @@ impl Slab {
         }
     }
 
-    /// The same of the twist: traction Q and α times the displacement U at the bottom.
+    /// Traction Q at the bottom face of this layer under the twist `q` on its top, and α times the
+    /// displacement U there.
     pub(super) fn twist_through(
         &self,
         below: Compliance,

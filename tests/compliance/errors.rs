@@ -79,7 +79,7 @@ fn materials_and_bodies() -> Result<()> {
             "tolerance must be above 0 and below 1, got 0",
         ),
     ]);
-    // What the caller's own function finds wrong is kept.
+    // An error of the caller's own function is kept.
     let wrong = graded_layers(steel()?, 1.0, 1e-3, |_| Elastic::new(-1.0, 0.3));
     check([(wrong, "young must be finite and above 0, got -1")]);
     Ok(())

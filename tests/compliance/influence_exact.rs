@@ -13,14 +13,14 @@ use crate::support::reference::{cases, list, number};
 /// base, 1e-3 of the bare coating's.
 const EXACT: f64 = 1e-10;
 
-/// Of a rigid base: its share of the bare coating's coefficient.
+/// Share of the bare coating's coefficient that errors on a rigid base are measured by.
 const RIGID_SHARE: f64 = 1e-3;
 
 /// Estimated over true error, in the median: the true one is taken at the few offsets that the data
 /// have, and is often below rounding.
 const PESSIMISM: f64 = 1e2;
 
-/// Love's closed form, of which the corner terms cancel next to it.
+/// Rounding of Love's closed form, whose corner terms cancel next to the cell.
 const LOVE: f64 = 1e-12;
 
 /// A point load and its quadrupole, a thousand cells away: terms of relative order 1e-14 are left.
@@ -47,8 +47,8 @@ fn love(material: Elastic, [dx, dy]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     sum / (PI * material.plane_strain_modulus())
 }
 
-/// What the error of a coefficient is measured by, from Love's formula, or by the distance where
-/// that has no digits left.
+/// Scale that the error of a coefficient is measured by: from Love's formula, or from the distance where
+/// the formula has no digits left.
 fn scale(body: &HalfSpace, cell: [f64; 2], offset: [f64; 2], c: f64) -> f64 {
     let bare = |material: Elastic| {
         let r = offset[0].hypot(offset[1]);
@@ -77,7 +77,7 @@ struct Row {
     offset: [f64; 2],
     distance: f64,
     c: f64,
-    /// Of c itself.
+    /// Error of the reference value c.
     error: f64,
 }
 
@@ -128,7 +128,7 @@ fn coefficients_of_coatings_equal_those_of_a_second_program() -> Result<()> {
 
 #[test]
 fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
-    // Of C r/(dx dy), as the estimate's description says.
+    // Errors of C r/(dx dy), as the estimate's description says.
     let mut ratios = Vec::new();
     for (number, case) in cases("influence_random.json").iter().enumerate() {
         let (body, cell, planned) = planned(case)?;
@@ -137,7 +137,7 @@ fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
             let r = row.distance.max(0.5 * cell[0].min(cell[1]));
             let form = r / (cell[0] * cell[1]);
             let true_error = (planned.at(row.offset) - row.c).abs();
-            // What is not known of the reference, and the rounding of the result itself.
+            // Less the reference's own error, and the rounding of the result.
             let known = row.error + 4.0 * f64::EPSILON * row.c.abs();
             worst = worst.max((true_error - known) * form);
         }
@@ -147,7 +147,7 @@ fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
             ratios.push(estimate / worst);
         }
 
-        // Nor does it claim less than is asked: 1e-9 of the softer of surface and substrate.
+        // The estimate meets what is asked: 1e-9 of the softer of surface and substrate.
         let softest = match body.substrate() {
             Substrate::Elastic(s) => s
                 .plane_strain_modulus()
@@ -168,7 +168,7 @@ fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
 fn bare_body_equals_love() -> Result<()> {
     let steel = Elastic::new(210e9, 0.3)?;
     for cell in [[1.0, 1.0], [2.0, 0.5], [1e-3, 1.0]] {
-        let planned = CellInfluence::plan(&steel, cell, 1e4)?;
+        let planned = CellInfluence::plan(steel, cell, 1e4)?;
         let at = |i: f64, j: f64| [i * cell[0], j * cell[1]];
         for offset in [
             at(0.0, 0.0),

@@ -36,8 +36,8 @@ fn difference(a: Compliance, b: Compliance) -> f64 {
         .max((a.c12 - b.c12).abs() / (b.c11 * b.c22).sqrt())
 }
 
-/// The largest difference between `file` and the response of its bodies that `select` takes, and
-/// how many values were compared.
+/// The largest difference between `file` and the response of those of its bodies that `select` takes,
+/// and the number of values compared.
 fn difference_from(file: &str, select: impl Fn(&HalfSpace) -> bool) -> Result<(f64, usize)> {
     let (mut worst, mut compared) = (0.0_f64, 0);
     for case in cases(file) {
@@ -129,7 +129,7 @@ fn closed_form_with_the_printed_plus_sign_is_another_function() -> Result<()> {
     let worst = difference_from_closed_form(1.0, &[0.5])?;
     assert!(worst > 0.5, "{worst}");
 
-    // Nor has it the limit of a thin layer, which is the substrate's response.
+    // The wrong sign also misses the limit of a thin layer, the substrate's response.
     let (coating, substrate) = (Elastic::new(5.2, 0.3)?, Elastic::new(1.25, 0.25)?);
     let alpha = 1e-3;
     let limit = Compliance::homogeneous(substrate).c11;
@@ -160,7 +160,7 @@ fn thin_layer_is_the_substrate_and_its_own_compression() -> Result<()> {
         let tolerance = 10.0 * (alpha * a.max(1.0 / g1).powi(2) * g1 + f64::EPSILON * a / alpha);
         assert!((rest - constant).abs() < tolerance, "{rest} {constant}");
 
-        // One that slips is free to stretch: h (1−ν1)/2G1.
+        // A layer that slips is free to stretch: h (1−ν1)/2G1.
         let layer = Layer::new(coating, 1.0)?.with_interface(Interface::Frictionless);
         let rest = frequency_response(&HalfSpace::new(substrate, [layer])?, alpha)? - a / alpha;
         let constant = (1.0 - nu1) / (2.0 * g1);
@@ -176,7 +176,7 @@ fn thick_layer_is_a_half_space_of_its_material() -> Result<()> {
         for substrate in [Elastic::new(1.0, 0.3)?.into(), Substrate::Rigid] {
             let body = HalfSpace::new(substrate, [Layer::new(coating, 1.0)?])?;
             for alpha in [40.0, 1e4] {
-                // e^{−80} is nothing.
+                // e^{−80} is below rounding.
                 let half_space = surface_compliance(&coating.into(), alpha)?;
                 let found = surface_compliance(&body, alpha)?;
                 assert!(difference(found, half_space) < ONE_LAYER, "{found:?}");
