@@ -1,14 +1,12 @@
 //! Shapes: `nacre.Shape` and its kinds.
 
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyArray2};
-use pyo3::PyClass;
+use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple, PyType};
 
-use super::arrays::{array_repr, hash, read_only};
+use super::arguments::{array_repr, hash};
 use super::grid::PyGrid;
-use super::profiles;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::surface::{
@@ -16,58 +14,91 @@ use crate::surface::{
 };
 
 mod height_map;
+mod profiles;
 mod quadric;
 mod roller;
 
-pub(super) use height_map::PyHeightMap;
-pub(super) use quadric::{PyCylinder, PyFlatPunch, PyParaboloid, PySphere};
-pub(super) use roller::PyRoller;
+pub(super) use profiles::{PyLogarithmicProfile, PySampledProfile};
 
-/// Any shape that Python can name: so that it has a value to compare, copy and print.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
-    Sphere(Sphere),
-    Paraboloid(Paraboloid),
-    Cylinder(Cylinder),
-    Roller(Roller),
-    FlatPunch(FlatPunch),
-    HeightMap(HeightMap),
-    Sum(Box<[Shape; 2]>),
-    Shifted(Box<Shape>, [f64; 2]),
+use height_map::PyHeightMap;
+use quadric::{PyCylinder, PyFlatPunch, PyParaboloid, PySphere};
+use roller::PyRoller;
+
+/// The kinds of shapes and their Python classes. A class has a function `arguments`, which returns the
+/// arguments of its constructor in their order; `repr` and pickles are made of them.
+macro_rules! kinds {
+    ($($kind:ident => $class:ident),* $(,)?) => {
+        /// Any shape that Python can name, as a value to compare, copy and print.
+        #[derive(Debug, Clone, PartialEq)]
+        pub(super) enum Shape {
+            $($kind($kind),)*
+            Sum(Box<[Shape; 2]>),
+            Shifted(Box<Shape>, [f64; 2]),
+        }
+
+        impl Shape {
+            /// Calls `f` with the surface that this is.
+            fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
+                match self {
+                    $(Self::$kind(shape) => f(shape),)*
+                    Self::Sum(parts) => f(&(&parts[0]).plus(&parts[1])),
+                    Self::Shifted(shape, [x, y]) => match shape.as_ref().shifted(*x, *y) {
+                        Ok(shifted) => f(&shifted),
+                        Err(_) => unreachable!("checked when it was made"),
+                    },
+                }
+            }
+
+            /// Class and arguments of the constructor; none for sums and shifted shapes.
+            fn constructor<'py>(
+                &self,
+                py: Python<'py>,
+            ) -> PyResult<Option<(Bound<'py, PyType>, Bound<'py, PyDict>)>> {
+                Ok(match self {
+                    $(Self::$kind(shape) => Some((
+                        py.get_type::<$class>(),
+                        $class::arguments(py, shape)?,
+                    )),)*
+                    Self::Sum(_) | Self::Shifted(..) => None,
+                })
+            }
+        }
+
+        $(impl $class {
+            /// Object of this class.
+            fn make(shape: $kind) -> PyClassInitializer<Self> {
+                PyClassInitializer::from(PyShape(Shape::$kind(shape))).add_subclass(Self)
+            }
+
+            /// Shape that an object of this class holds.
+            fn shape<'a>(object: &'a Bound<'_, Self>) -> &'a $kind {
+                match &object.as_super().get().0 {
+                    Shape::$kind(shape) => shape,
+                    _ => unreachable!("made by its own constructor"),
+                }
+            }
+        })*
+
+        /// Adds every class of shapes to the module.
+        pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+            module.add_class::<PyShape>()?;
+            $(module.add_class::<$class>()?;)*
+            Ok(())
+        }
+    };
+}
+
+kinds! {
+    Sphere => PySphere,
+    Paraboloid => PyParaboloid,
+    Cylinder => PyCylinder,
+    Roller => PyRoller,
+    FlatPunch => PyFlatPunch,
+    HeightMap => PyHeightMap,
 }
 
 impl Shape {
-    /// Calls `f` with the surface that this is.
-    fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
-        match self {
-            Self::Sphere(shape) => f(shape),
-            Self::Paraboloid(shape) => f(shape),
-            Self::Cylinder(shape) => f(shape),
-            Self::Roller(shape) => f(shape),
-            Self::FlatPunch(shape) => f(shape),
-            Self::HeightMap(shape) => f(shape),
-            Self::Sum(parts) => f(&(&parts[0]).plus(&parts[1])),
-            Self::Shifted(shape, [x, y]) => match shape.as_ref().shifted(*x, *y) {
-                Ok(shifted) => f(&shifted),
-                Err(_) => unreachable!("checked when it was made"),
-            },
-        }
-    }
-
-    fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        let base = PyClassInitializer::from(PyShape(self.clone()));
-        Ok(match self {
-            Self::Sphere(_) => Bound::new(py, base.add_subclass(PySphere))?.into_any(),
-            Self::Paraboloid(_) => Bound::new(py, base.add_subclass(PyParaboloid))?.into_any(),
-            Self::Cylinder(_) => Bound::new(py, base.add_subclass(PyCylinder))?.into_any(),
-            Self::Roller(_) => Bound::new(py, base.add_subclass(PyRoller))?.into_any(),
-            Self::FlatPunch(_) => Bound::new(py, base.add_subclass(PyFlatPunch))?.into_any(),
-            Self::HeightMap(_) => Bound::new(py, base.add_subclass(PyHeightMap))?.into_any(),
-            Self::Sum(_) | Self::Shifted(..) => Bound::new(py, base)?.into_any(),
-        })
-    }
-
-    /// A text that equal shapes share: without the numbers of measured surfaces and profiles.
+    /// Text that equal shapes share, without the numbers of measured surfaces and profiles.
     fn key(&self) -> String {
         match self {
             Self::HeightMap(s) => format!("HeightMap {:?} {:?}", s.heights().dim(), s.spacing()),
@@ -80,59 +111,43 @@ impl Shape {
         }
     }
 
+    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self.constructor(py)? {
+            Some((class, arguments)) => class.call((), Some(&arguments)),
+            None => Ok(Bound::new(py, PyShape(self.clone()))?.into_any()),
+        }
+    }
+
     fn repr(&self, py: Python<'_>) -> PyResult<String> {
+        let in_brackets = |shape: &Self, nested: bool| -> PyResult<String> {
+            let text = shape.repr(py)?;
+            Ok(if nested { format!("({text})") } else { text })
+        };
+        if let Some((class, arguments)) = self.constructor(py)? {
+            let mut texts = Vec::new();
+            for (name, value) in arguments {
+                let text = match value.cast::<PyArrayDyn<f64>>() {
+                    Ok(array) => array_repr(py, array.to_owned_array())?,
+                    Err(_) => value.repr()?.to_string(),
+                };
+                texts.push(format!("{name}={text}"));
+            }
+            return Ok(format!("{}({})", class.name()?, texts.join(", ")));
+        }
         Ok(match self {
-            Self::Sphere(s) => format!("Sphere(radius={:?})", s.radius()),
-            Self::Paraboloid(s) => {
-                format!(
-                    "Paraboloid(radius_x={:?}, radius_y={:?})",
-                    s.radius_x(),
-                    s.radius_y()
-                )
-            }
-            Self::Cylinder(s) => format!("Cylinder(radius={:?})", s.radius()),
-            Self::Roller(s) => {
-                let length = s
-                    .length()
-                    .map_or("None".into(), |length| format!("{length:?}"));
-                let profile = match (s.profile(), profiles::to_python(py, s.profile())?) {
-                    (Profile::Crowned(p), _) => format!(
-                        "flat_length={:?}, crown_radius={:?}",
-                        p.flat_length(),
-                        p.crown_radius()
-                    ),
-                    (_, profile) => format!("profile={}", profile.into_pyobject(py)?.repr()?),
-                };
-                format!(
-                    "Roller(radius={:?}, {profile}, length={length})",
-                    s.radius()
-                )
-            }
-            Self::FlatPunch(s) => format!("FlatPunch(radius={:?})", s.radius()),
-            Self::HeightMap(s) => {
-                let ([dx, dy], [x, y]) = (s.spacing(), s.center());
-                let heights = array_repr(py, s.heights().to_owned())?;
-                format!("HeightMap({heights}, spacing=({dx:?}, {dy:?}), center=({x:?}, {y:?}))")
-            }
             Self::Sum(parts) => {
-                let second = parts[1].repr(py)?;
                 let nested = matches!(parts[1], Self::Sum(_));
-                let second = if nested {
-                    format!("({second})")
-                } else {
-                    second
-                };
-                format!("{} + {second}", parts[0].repr(py)?)
+                format!(
+                    "{} + {}",
+                    parts[0].repr(py)?,
+                    in_brackets(&parts[1], nested)?
+                )
             }
             Self::Shifted(shape, [x, y]) => {
-                let inner = shape.repr(py)?;
-                let inner = if matches!(**shape, Self::Sum(_)) {
-                    format!("({inner})")
-                } else {
-                    inner
-                };
-                format!("{inner}.shifted({x:?}, {y:?})")
+                let nested = matches!(**shape, Self::Sum(_));
+                format!("{}.shifted({x:?}, {y:?})", in_brackets(shape, nested)?)
             }
+            _ => unreachable!("all others have a constructor"),
         })
     }
 }
@@ -157,13 +172,13 @@ impl Surface for Shape {
 
 /// An undeformed shape: the gap h(x, y) to the plane z = 0.
 ///
-/// Shapes add (``sphere + roughness``) and move (``shape.shifted(x, y)``). A gap of +inf means
-/// 'cannot touch'.
+/// Shapes can be added (``sphere + roughness``) and moved (``shape.shifted(x, y)``). Where the gap is
+/// +inf, the shape cannot touch.
 ///
 /// Examples
 /// --------
 /// >>> nacre.Sphere(5e-3) + nacre.HeightMap([[0.0, 1e-9], [1e-9, 0.0]], spacing=1e-6)
-/// Sphere(radius=0.005) + HeightMap([[0.0, 1e-09], [1e-09, 0.0]], spacing=(1e-6, 1e-6), center=(0.0, 0.0))
+/// Sphere(radius=0.005) + HeightMap(heights=[[0.0, 1e-09], [1e-09, 0.0]], spacing=(1e-06, 1e-06), center=(0.0, 0.0))
 #[pyclass(name = "Shape", module = "nacre", frozen, eq, subclass)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyShape(pub(super) Shape);
@@ -197,12 +212,12 @@ impl PyShape {
         Ok(self.0.gaps(&grid.0)?.into_pyarray(py))
     }
 
-    /// The same shape, moved.
+    /// Shape that is moved along x and y.
     ///
     /// Parameters
     /// ----------
     /// x, y : float
-    ///     By how much [m].
+    ///     Distances by which it is moved [m].
     ///
     /// Returns
     /// -------
@@ -238,50 +253,33 @@ impl PyShape {
         hash(&self.0.key())
     }
 
-    /// How to make it again: a callable and its arguments.
+    /// Callable and arguments that make the shape again.
     fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
+        &self,
+        py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let py = slf.py();
-        let class = slf.get_type().into_any();
+        if let Some((class, arguments)) = self.0.constructor(py)? {
+            return Ok((class.into_any(), arguments.values().to_tuple()));
+        }
         let operator = py.import("operator")?;
-        Ok(match &slf.get().0 {
-            Shape::Sphere(s) => (class, (s.radius(),).into_pyobject(py)?),
-            Shape::Paraboloid(s) => (class, (s.radius_x(), s.radius_y()).into_pyobject(py)?),
-            Shape::Cylinder(s) => (class, (s.radius(),).into_pyobject(py)?),
-            Shape::Roller(s) => {
-                let (flat_length, crown_radius) = match s.profile() {
-                    Profile::Crowned(p) => (Some(p.flat_length()), Some(p.crown_radius())),
-                    _ => (None, None),
-                };
-                let profile = profiles::to_python(py, s.profile())?;
-                let arguments = (s.radius(), flat_length, crown_radius, s.length(), profile);
-                (class, arguments.into_pyobject(py)?)
-            }
-            Shape::FlatPunch(s) => (class, (s.radius(),).into_pyobject(py)?),
-            Shape::HeightMap(s) => {
-                let heights = read_only(py, s.heights().to_owned())?;
-                let (spacing, center): ((f64, f64), (f64, f64)) =
-                    (s.spacing().into(), s.center().into());
-                (class, (heights, spacing, center).into_pyobject(py)?)
-            }
+        Ok(match &self.0 {
             Shape::Sum(parts) => {
-                let [a, b] = parts.as_ref().clone();
-                let parts = (a.into_python(py)?, b.into_python(py)?).into_pyobject(py)?;
-                (operator.getattr("add")?, parts)
+                let parts = (parts[0].to_python(py)?, parts[1].to_python(py)?);
+                (operator.getattr("add")?, parts.into_pyobject(py)?)
             }
             Shape::Shifted(shape, [x, y]) => {
                 let shift = operator.call_method1("methodcaller", ("shifted", *x, *y))?;
-                (
-                    shift,
-                    (shape.as_ref().clone().into_python(py)?,).into_pyobject(py)?,
-                )
+                (shift, (shape.to_python(py)?,).into_pyobject(py)?)
             }
+            _ => unreachable!("all others have a constructor"),
         })
     }
 }
 
-/// A kind of shape, on its base.
-fn subclass<T: PyClass<BaseType = PyShape>>(kind: T, shape: Shape) -> PyClassInitializer<T> {
-    PyClassInitializer::from(PyShape(shape)).add_subclass(kind)
+/// Arguments of a constructor whose values are numbers.
+fn numbers<'py, const N: usize>(
+    py: Python<'py>,
+    arguments: [(&str, f64); N],
+) -> PyResult<Bound<'py, PyDict>> {
+    arguments.into_py_dict(py)
 }
