@@ -7,7 +7,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray
 from matplotlib.axes import Axes
-from scipy.sparse.linalg import LinearOperator
 from typing_extensions import disjoint_base
 
 from nacre import _keywords
@@ -55,25 +54,6 @@ _Pair: TypeAlias = tuple[float, float]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
 _Peak: TypeAlias = tuple[float, tuple[float, float, float]]
-
-__version__",
-    "frequency_response",
-    "graded_layers",
-    "influence_coefficients",
-    "solve",
-    "stress",
-    "surface_compliance",
-]
-
-_Field: TypeAlias = npt.NDArray[np.float64]
-_Real: TypeAlias = npt.NDArray[np.floating | np.integer | np.bool]
-_Vector: TypeAlias = _Real | Sequence[float]
-_Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
-_Pair: TypeAlias = tuple[float, float]
-_Interface: TypeAlias = Literal["bonded", "frictionless"]
-_Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
-_Peak: TypeAlias = tuple[float, tuple[float, float, float]]
-_Algorithm: TypeAlias = Literal["cascade", "polonsky-keer"]
 
 __version__: Final[str]
 RIGID: Final[Rigid]
@@ -379,9 +359,7 @@ class Solution:
     def stress(
         self, z: float | _Vector, **keywords: Unpack[_keywords.SolutionStress]
     ) -> Stress: ...
-    def stress_summary(
-        self, **keywords: Unpack[_keywords.SolutionSummary]
-    ) -> StressSummary: ...
+    def stress_summary(self, **keywords: Unpack[_keywords.SolutionSummary]) -> StressSummary: ...
     @property
     def report(self) -> Report: ...
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]: ...
@@ -523,7 +501,7 @@ class Convolution:
         **keywords: Unpack[_keywords.Plan],
     ) -> Convolution: ...
     def apply(self, pressure: _Matrix) -> _Field: ...
-    def as_linear_operator(self) -> LinearOperator: ...
+    def as_linear_operator(self) -> Any: ...
     @property
     def shape(self) -> tuple[int, int]: ...
     @property

@@ -1,6 +1,6 @@
 """State of format 0: tuples that are read by position, in pickles and NetCDF files.
 
-Nothing writes it any more. The functions that pickles call keep their names; `nacre._core` has them.
+No version writes it any more. Pickles call the functions here by their names in `nacre._core`.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class Journal:
 
 
 def _lock(file: IO[bytes]) -> None:
-    """Lock the file for this process until it is closed; child processes do not inherit the lock."""
+    """Lock the file for this process until it is closed; children do not inherit the lock."""
     try:
         if sys.platform == "win32":
             import msvcrt

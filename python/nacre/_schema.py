@@ -191,7 +191,8 @@ def _numbers(kind: str, made: type[nacre.Shape]) -> type[Shape]:
         one.name: (FiniteFloat, ...) if one.default is one.empty else (FiniteFloat | None, None)
         for one in parameters
     }
-    return create_model(made.__name__, __base__=Shape, kind=(Literal[kind], ...), **fields)
+    fields["kind"] = (Literal[kind], ...)  # type: ignore[valid-type]
+    return create_model(made.__name__, __base__=Shape, **fields)
 
 
 OWN_TABLES: dict[str, type[Shape]] = {"roller": Roller, "height_map": HeightMap, "sum": Sum}
@@ -218,7 +219,7 @@ def _checked(hint: Any) -> Any:
     """Return the type that a case file has for a keyword: finite numbers, positive integers."""
     known = {float: FiniteFloat, int: PositiveInt, _keywords.Freedoms: Freedoms | Pair}
     parts = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
-    return Union[(*(known.get(part, part) for part in parts), None)]  # noqa: UP007
+    return Union[(*(known.get(part, part) for part in parts), None)]
 
 
 class SolveKeywords(Table):
@@ -235,15 +236,18 @@ class SolveKeywords(Table):
         return found
 
 
-Solve = create_model(
-    "Solve",
-    __base__=SolveKeywords,
-    **{  # type: ignore[arg-type]
-        name: (_checked(hint), None)
-        for group in (_keywords.Motion, _keywords.Plan, _keywords.Search)
-        for name, hint in get_type_hints(group).items()
-    },
-)
+def _solve() -> type[SolveKeywords]:
+    """Return the table of those keywords."""
+    groups = (_keywords.Motion, _keywords.Plan, _keywords.Search)
+    hints = {name: hint for group in groups for name, hint in get_type_hints(group).items()}
+    fields: dict[str, Any] = {name: (_checked(hint), None) for name, hint in hints.items()}
+    return create_model("Solve", __base__=SolveKeywords, **fields)
+
+
+if TYPE_CHECKING:
+    Solve = SolveKeywords
+else:
+    Solve = _solve()
 
 
 class Stress(Table):
@@ -295,7 +299,7 @@ class CaseTable(Table):
     body: Body
     counterbody: Body | None = None
     grid: Grid | None = None
-    solve: Solve  # type: ignore[valid-type]
+    solve: Solve
     stress: Stress | None = None
     sweep: Sweep | None = None
 

@@ -174,7 +174,7 @@ def load(path: AnyPath) -> core.Solution:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary file, which replaces `path` at once in the end; nothing remains on an error."""
+    """Yield a temporary file that replaces `path` at once in the end; an error leaves no file."""
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:

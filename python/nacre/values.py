@@ -51,7 +51,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
     With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure,
-    which is enough to compare. Raises `TypeError` where a value is neither one of nacre's nor plain.
+    which is enough to compare. A value that is neither one of nacre's nor plain is a `TypeError`.
     """
 
     def of(value: Any) -> Any:
