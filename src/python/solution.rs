@@ -16,7 +16,7 @@ use super::report::PyReport;
 use super::stress::{PyStress, field};
 use super::summary::PyStressSummary;
 use crate::contact::Solution;
-use crate::stress::Limits;
+use crate::stress::Strengths;
 
 /// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 ///
@@ -377,7 +377,7 @@ impl PySolution {
     ) -> PyResult<PyStressSummary> {
         let member = evaluation::member(body)?;
         let of = self.solution.member(member)?;
-        let limits = Limits {
+        let strengths = Strengths {
             yield_stress: evaluation::by_layer("yield_stress", of, yield_stress)?,
             strength: evaluation::by_layer("strength", of, strength)?,
         };
@@ -394,7 +394,7 @@ impl PySolution {
         let options = keywords.options(of)?;
         let solution = Arc::clone(&self.solution);
         let summary = evaluation::watched(py, progress, move |progress| {
-            solution.stress_summary(member, &limits, &options, progress)
+            solution.stress_summary(member, &strengths, &options, progress)
         })?;
         Ok(PyStressSummary(summary))
     }
