@@ -64,7 +64,9 @@ mod core {
     #[pymodule_export]
     use super::solution::{PyReport, PySolution};
     #[pymodule_export]
-    use super::stress::{PyInterfaceStress, PyLayerStress, PyStress, PyStressSummary, stress};
+    use super::stress::{
+        PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,
+    };
     #[pymodule_export]
     use super::{ConvergenceError, NacreWarning};
     use super::{bodies::PyRigid, shapes, state};

@@ -191,7 +191,7 @@ def _numbers(kind: str, made: type[nacre.Shape]) -> type[Shape]:
         one.name: (FiniteFloat, ...) if one.default is one.empty else (FiniteFloat | None, None)
         for one in parameters
     }
-    fields["kind"] = (Literal[kind], ...)  # type: ignore[valid-type]
+    fields["kind"] = (Literal[kind], ...)
     return create_model(made.__name__, __base__=Shape, **fields)
 
 

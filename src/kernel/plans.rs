@@ -1,5 +1,7 @@
 //! What makes the coefficients of a body under pressure and traction.
 
+use std::sync::OnceLock;
+
 use super::loads::Load;
 use super::plane::Plan;
 use super::strip::LinePlan;
@@ -12,21 +14,20 @@ pub(crate) enum Kernels {
     Plane {
         plan: Box<Plan>,
         pressure: Vec<Vec<(f64, f64)>>,
-        /// Empty without friction.
-        traction: Vec<Vec<(f64, f64)>>,
+        /// Multipliers of the traction; its user makes them at the first place with friction.
+        traction: OnceLock<Vec<Vec<(f64, f64)>>>,
     },
     Line(LinePlan),
 }
 
 impl Kernels {
-    /// For loads P and T of pieces down to `finest` of a cell, at offsets up to `reach`. On the
-    /// threads of the caller.
-    pub(crate) fn new<const N: usize, const M: usize, P: Load<N>, T: Load<M>>(
+    /// For the load P of pieces down to `finest` of a cell, at offsets up to `reach`. On the threads of
+    /// the caller.
+    pub(crate) fn new<const N: usize, P: Load<N>>(
         body: &HalfSpace,
         grid: &Grid,
         finest: f64,
         reach: f64,
-        slides: bool,
     ) -> Self {
         if grid.is_line() {
             return Self::Line(LinePlan::new(body, grid, finest));
@@ -34,11 +35,7 @@ impl Kernels {
         let plan = Plan::new(body, grid.spacing(), finest, reach);
         Self::Plane {
             pressure: plan.multipliers::<N, P>(),
-            traction: if slides {
-                plan.multipliers::<M, T>()
-            } else {
-                Vec::new()
-            },
+            traction: OnceLock::new(),
             plan: Box::new(plan),
         }
     }

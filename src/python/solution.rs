@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::arguments::read_only;
+use super::arguments::{count, read_only};
 use super::background::{self, Caller};
 use super::bodies::PyHalfSpace;
 use super::keywords::Keywords;
@@ -18,10 +19,12 @@ use super::stress::keywords::{
     options, progress_docs, run_signature, section, section_docs, section_signature, strength_docs,
     strength_signature, strengths, threads_docs, traction_docs, traction_signature, watched,
 };
-use super::stress::{PyStress, PyStressSummary, keywords};
+use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
+use super::words::Word;
 use super::{ConvergenceError, NacreWarning};
 use crate::contact::{Report, Solution, Termination};
 use crate::error::Error;
+use crate::stress::Member;
 
 mod report;
 
@@ -303,6 +306,7 @@ impl PySolution {
         let member = keywords.word("body")?;
         let (depths, one) = keywords::depths(z)?;
         let mut options = options(&keywords, self.solution.member(member)?)?;
+        options.threads = keywords.count("threads", 1)?;
         let lines = section(&keywords, &mut options)?;
         let progress = keywords.callable("progress")?;
         keywords.finish("keywords of Solution.stress")?;
@@ -363,7 +367,8 @@ impl PySolution {
         let member = keywords.word("body")?;
         let body = self.solution.member(member)?;
         let strengths = strengths(&keywords, body)?;
-        let options = options(&keywords, body)?;
+        let mut options = options(&keywords, body)?;
+        options.threads = keywords.count("threads", 1)?;
         let progress = keywords.callable("progress")?;
         keywords.finish("keywords of Solution.stress_summary")?;
         let solution = Arc::clone(&self.solution);
@@ -371,6 +376,56 @@ impl PySolution {
             solution.stress_summary(member, &strengths, &options, progress)
         })?;
         Ok(PyStressSummary(summary))
+    }
+
+    /// Plan of the stress in one body, to be evaluated any number of times.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : {"body", "counterbody"}, optional
+    ///     Body in which stress is evaluated.
+    /// threads : int, optional
+    ///     Number of threads of the plan; all of the machine's by default.
+    ///
+    /// Returns
+    /// -------
+    /// StressPlan
+    ///     Plan, which keeps the solution alive.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no such body, the counterbody is rigid, or `threads` is below 1.
+    /// MemoryError
+    ///     If the grid does not fit.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> plan = solution.stress_plan()
+    /// >>> [round(plan.stress(z, x=0.0, y=0.0).zz / -solution.peak_pressure, 1) for z in (0.0, 5e-5)]
+    /// [1.0, 0.5]
+    #[pyo3(signature = (body="body", threads=None))]
+    fn stress_plan(
+        slf: &Bound<'_, Self>,
+        body: &str,
+        threads: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyStressPlan> {
+        let member = Member::from_word(body)?;
+        let threads = threads.map(|n| count("threads", 1, n)).transpose()?;
+        let solution = Arc::clone(&slf.get().solution);
+        let plan = watched(slf.py(), None, move |progress| {
+            solution.stress_plan_watched(member, threads, progress)
+        })?;
+        // Only an interrupt stops the planning, and that is an error above.
+        let plan = plan.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
+        Ok(PyStressPlan::new(
+            plan,
+            member,
+            threads,
+            slf.clone().into_any().unbind(),
+        ))
     }
 
     /// Report: how the solution came about, and how good it is.

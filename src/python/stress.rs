@@ -1,4 +1,4 @@
-//! `nacre.stress`, and what evaluations of stress return.
+//! `nacre.stress`, and the results of evaluations of stress.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,9 +12,11 @@ use crate::stress::stress_watched;
 
 mod field;
 pub(super) mod keywords;
+mod plan;
 mod summary;
 
 pub(super) use field::PyStress;
+pub(super) use plan::PyStressPlan;
 pub(super) use summary::{PyInterfaceStress, PyLayerStress, PyStressSummary};
 
 use keywords::{
@@ -86,6 +88,7 @@ pub(super) fn stress<'py>(
     let (depths, one) = keywords::depths(z)?;
     let keywords = Keywords::new(py, keywords)?;
     let mut options = keywords::options(&keywords, &body)?;
+    options.threads = keywords.count("threads", 1)?;
     let lines = keywords::section(&keywords, &mut options)?;
     let progress = keywords.callable("progress")?;
     keywords.finish("keywords of stress")?;

@@ -8,7 +8,7 @@ use crate::body::{HalfSpace, Substrate};
 use crate::python::arguments::{Repr, real_array};
 use crate::python::background;
 use crate::python::keywords::Keywords;
-use crate::stress::{Limits, Section, StressOptions, StressProgress};
+use crate::stress::{Section, Strengths, StressOptions, StressProgress};
 
 /// Signature of the keywords that say which fields are evaluated, and where.
 macro_rules! section_signature {
@@ -105,7 +105,7 @@ pub(in crate::python) use {
     strength_signature, threads_docs, traction_docs, traction_signature,
 };
 
-/// Section and displacement among the options; and whether x and y were given as numbers.
+/// Puts section, side and displacement into the options; returns whether x and y were given.
 pub(in crate::python) fn section(
     keywords: &Keywords,
     options: &mut StressOptions,
@@ -122,7 +122,7 @@ pub(in crate::python) fn section(
     Ok([x.is_some(), y.is_some()])
 }
 
-/// Friction, residual stress and threads among the options.
+/// Options with friction and residual stress.
 pub(in crate::python) fn options(keywords: &Keywords, body: &HalfSpace) -> PyResult<StressOptions> {
     let direction = match keywords.given("direction")? {
         None => [1.0, 0.0],
@@ -136,14 +136,13 @@ pub(in crate::python) fn options(keywords: &Keywords, body: &HalfSpace) -> PyRes
         friction: keywords.real("friction", 0.0)?,
         direction,
         residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
-        threads: keywords.count("threads", 1)?,
         ..StressOptions::default()
     })
 }
 
 /// Yield stresses and strengths.
-pub(in crate::python) fn strengths(keywords: &Keywords, body: &HalfSpace) -> PyResult<Limits> {
-    Ok(Limits {
+pub(in crate::python) fn strengths(keywords: &Keywords, body: &HalfSpace) -> PyResult<Strengths> {
+    Ok(Strengths {
         yield_stress: by_layer(keywords, "yield_stress", body)?,
         strength: by_layer(keywords, "strength", body)?,
     })
