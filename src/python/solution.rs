@@ -404,8 +404,8 @@ impl PySolution {
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
     /// >>> plan = solution.stress_plan()
-    /// >>> [round(plan.stress(z, x=0.0, y=0.0).zz / -solution.peak_pressure, 1) for z in (0.0, 5e-5)]
-    /// [1.0, 0.5]
+    /// >>> [bool(plan.stress(z, friction=0.1).xz.max() > 0.0) for z in (10e-6, 20e-6)]
+    /// [True, True]
     #[pyo3(signature = (body="body", threads=None))]
     fn stress_plan(
         slf: &Bound<'_, Self>,

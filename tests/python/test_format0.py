@@ -110,9 +110,7 @@ def case(load: float) -> dict[str, Any]:
     return {"shape": nacre.Sphere(5e-3), "body": COATED, "grid": GRID, "load": load}
 
 
-def test_a_study_goes_on_from_its_journal(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_goes_on_from_its_journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     journal = tmp_path / "study.journal"
     shutil.copy(FOLDER / "study.journal", journal)
     before = journal.read_bytes()
