@@ -1,50 +1,22 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
-//! The files in their order; each imports from earlier ones only: words, arguments, background, keywords,
+//! The files in their order; each imports from earlier ones only: errors, words, arguments, background,
 //! state, bodies, grid, shapes, coefficients, stress, solution, contact.
 
-use pyo3::create_exception;
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
-
-use crate::error::Error;
 
 mod arguments;
 mod background;
 mod bodies;
 mod coefficients;
 mod contact;
+mod errors;
 mod grid;
-mod keywords;
 mod shapes;
 mod solution;
 mod state;
 mod stress;
 mod words;
-
-create_exception!(
-    nacre,
-    ConvergenceError,
-    PyRuntimeError,
-    "The iteration did not reach its tolerance; the unfinished solution is `.solution`."
-);
-create_exception!(
-    nacre,
-    NacreWarning,
-    PyUserWarning,
-    "Warning about a solution that its user should read."
-);
-
-impl From<Error> for PyErr {
-    fn from(error: Error) -> Self {
-        let message = error.to_string();
-        match error {
-            Error::NotConverged { .. } => ConvergenceError::new_err(message),
-            Error::Memory { .. } => PyMemoryError::new_err(message),
-            _ => PyValueError::new_err(message),
-        }
-    }
-}
 
 #[pymodule(name = "_core")]
 mod core {
@@ -58,6 +30,8 @@ mod core {
     #[pymodule_export]
     use super::contact::{PyContact, solve};
     #[pymodule_export]
+    use super::errors::{ConvergenceError, NacreWarning};
+    #[pymodule_export]
     use super::grid::PyGrid;
     #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
@@ -67,8 +41,6 @@ mod core {
     use super::stress::{
         PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,
     };
-    #[pymodule_export]
-    use super::{ConvergenceError, NacreWarning};
     use super::{bodies::PyRigid, shapes, state};
     use pyo3::prelude::*;
 

@@ -56,6 +56,18 @@ _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
 _Peak: TypeAlias = tuple[float, tuple[float, float, float]]
 
+class _SingleSolve(_keywords.Motion, _keywords.Search, total=False):
+    initial: Solution | _Matrix | None
+    progress: Callable[[Report], object] | None
+    check: bool
+
+class _ManySolves(_keywords.Search, total=False):
+    progress: Callable[[int, int], object] | None
+    check: bool
+
+class _WholeSolve(_keywords.Plan, _SingleSolve, total=False):
+    grid: Grid | None
+
 __version__: Final[str]
 RIGID: Final[Rigid]
 _FORMAT: Final[int]
@@ -268,9 +280,9 @@ class Contact:
     def method(self) -> _Method: ...
     @property
     def threads(self) -> int: ...
-    def solve(self, shape: Shape, **keywords: Unpack[_keywords.Single]) -> Solution: ...
+    def solve(self, shape: Shape, **keywords: Unpack[_SingleSolve]) -> Solution: ...
     def solve_many(
-        self, cases: Iterable[Mapping[str, Any]], **keywords: Unpack[_keywords.Many]
+        self, cases: Iterable[Mapping[str, Any]], **keywords: Unpack[_ManySolves]
     ) -> list[Solution]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getnewargs_ex__(
@@ -553,7 +565,7 @@ def solve(
     shape: Shape,
     body: HalfSpace | Elastic,
     counterbody: HalfSpace | Elastic | None = None,
-    **keywords: Unpack[_keywords.Solve],
+    **keywords: Unpack[_WholeSolve],
 ) -> Solution: ...
 def stress(
     body: HalfSpace | Elastic,

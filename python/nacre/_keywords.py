@@ -1,16 +1,12 @@
 """Types of the keywords of solves and stresses: for type stubs, and for the tables of case files.
 
-Their order and defaults are those of the signatures, which the compiled module has; a test compares
-the two.
+The compiled module has the signatures with the defaults; a test compares the two.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
-
-if TYPE_CHECKING:
-    from nacre._core import Grid, Report, Solution
+from typing import Literal, TypedDict
 
 Freedoms = tuple[float | None, float | None]
 """Values along x and y; None where one is not given."""
@@ -45,27 +41,6 @@ class Search(TypedDict, total=False):
     tolerance: float
     max_iterations: int | None
     algorithm: Literal["cascade", "polonsky-keer"]
-
-
-class Single(Motion, Search, total=False):
-    """Keywords of `Contact.solve`."""
-
-    initial: Solution | Any
-    progress: Callable[[Report], object] | None
-    check: bool
-
-
-class Many(Search, total=False):
-    """Keywords of `Contact.solve_many`."""
-
-    progress: Callable[[int, int], object] | None
-    check: bool
-
-
-class Solve(Plan, Single, total=False):
-    """Keywords of `nacre.solve`."""
-
-    grid: Grid | None
 
 
 class Traction(TypedDict, total=False):

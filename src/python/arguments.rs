@@ -7,6 +7,8 @@ use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
+pub(super) mod keywords;
+
 /// Array of f64 with the numbers of `object`, which may have any real dtype, order and stride.
 ///
 /// Complex numbers, objects and text raise a `TypeError` that names the argument.

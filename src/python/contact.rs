@@ -2,19 +2,17 @@
 
 use std::sync::Arc;
 
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arguments::Repr;
-use super::background::{self, Caller};
-use super::bodies::{PyHalfSpace, body};
-use super::grid::PyGrid;
-use super::keywords::{
+use super::arguments::keywords::{
     self, Keywords, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
     search_signature, single_docs, single_signature,
 };
-use super::shapes::{PyShape, Shape};
+use super::background::{self, Caller};
+use super::bodies::{PyHalfSpace, body};
+use super::grid::PyGrid;
+use super::shapes::{Shape, shape};
 use super::solution::{PyReport, PySolution};
 use super::words::method_words;
 use crate::body::HalfSpace;
@@ -334,13 +332,6 @@ pub(super) fn solve<'py>(
             None => choose_grid(shape, &body, &setup, motion, options, progress)?,
         };
         Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
-    })
-}
-
-/// Shape of an argument.
-fn shape<'a, 'py>(shape: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyShape>> {
-    shape.cast::<PyShape>().map_err(|_| {
-        PyTypeError::new_err(format!("shape must be a nacre.Shape, got {}", Repr(shape)))
     })
 }
 

@@ -10,10 +10,11 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
+use super::arguments::keywords::Keywords;
 use super::arguments::{count, read_only};
 use super::background::{self, Caller};
 use super::bodies::PyHalfSpace;
-use super::keywords::Keywords;
+use super::errors::{ConvergenceError, NacreWarning};
 use super::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
 use super::stress::keywords::{
     options, progress_docs, run_signature, section, section_docs, section_signature, strength_docs,
@@ -21,7 +22,6 @@ use super::stress::keywords::{
 };
 use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
 use super::words::Word;
-use super::{ConvergenceError, NacreWarning};
 use crate::contact::{Report, Solution, Termination};
 use crate::error::Error;
 use crate::stress::Member;

@@ -3,10 +3,10 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use super::arguments::keywords::Keywords;
 use super::arguments::real_matrix;
 use super::bodies::body;
 use super::grid::PyGrid;
-use super::keywords::Keywords;
 use crate::body::HalfSpace;
 use crate::stress::stress_watched;
 

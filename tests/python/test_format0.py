@@ -27,7 +27,7 @@ NUMBERS = dict(np.load(FOLDER / "numbers.npz"))
 def same(found: Any, name: str) -> bool:
     expected = NUMBERS[name]
     array = np.asarray(found, dtype=np.float64)
-    return array.shape == expected.shape and array.tobytes() == expected.tobytes()
+    return bool(array.shape == expected.shape and array.tobytes() == expected.tobytes())
 
 
 def figures(solution: nacre.Solution) -> list[float]:

@@ -11,11 +11,11 @@ use crate::body::HalfSpace;
 use crate::convolution::Convolution;
 use crate::influence::coefficients_on;
 use crate::parallel::Threads;
+use crate::python::arguments::keywords::{self, Keywords, plan_docs, plan_signature};
 use crate::python::arguments::{count, read_only, real_matrix};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
 use crate::python::grid::PyGrid;
-use crate::python::keywords::{self, Keywords, plan_docs, plan_signature};
 use crate::response::Body;
 
 /// A planned convolution: the displacement of a surface under any pressure.

@@ -7,13 +7,12 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyMapping};
 
-use super::shape;
 use crate::contact::{Case, Contact, Motion, Options, Solution};
 use crate::error::Result;
 use crate::python::arguments::Repr;
+use crate::python::arguments::keywords::{self, Keywords};
 use crate::python::background::{self, Caller};
-use crate::python::keywords::{self, Keywords};
-use crate::python::shapes::PyShape;
+use crate::python::shapes::{PyShape, shape};
 use crate::python::solution::PySolution;
 
 /// Shape and motion of a case.

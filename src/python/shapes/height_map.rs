@@ -5,7 +5,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::PyShape;
+use super::base::{Kind, PyShape, held, object};
 use crate::python::arguments::{Repr, read_only, real_matrix};
 use crate::surface::HeightMap;
 
@@ -37,13 +37,13 @@ use crate::surface::HeightMap;
 #[pyclass(name = "HeightMap", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyHeightMap;
 
-impl PyHeightMap {
-    pub(super) fn arguments<'py>(py: Python<'py>, map: &HeightMap) -> PyResult<Bound<'py, PyDict>> {
-        let ([dx, dy], [x, y]) = (map.spacing(), map.center());
+impl Kind for HeightMap {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let ([dx, dy], [x, y]) = (self.spacing(), self.center());
         let arguments = PyDict::new(py);
         arguments.set_item(
             "heights",
-            read_only(py, map.heights().to_owned().into_dyn())?,
+            read_only(py, self.heights().to_owned().into_dyn())?,
         )?;
         arguments.set_item("spacing", (dx, dy))?;
         arguments.set_item("center", (x, y))?;
@@ -73,7 +73,7 @@ impl PyHeightMap {
                 ))
             })?;
         let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
-        Ok(Self::make(map.centered_at(center)?))
+        Ok(object(Self, map.centered_at(center)?))
     }
 
     /// Reads a measured surface from a file.
@@ -138,19 +138,19 @@ impl PyHeightMap {
     /// Heights ``(nx, ny)`` [m].
     #[getter]
     fn heights<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let map = Self::shape(slf);
+        let map = held::<_, HeightMap>(slf);
         read_only(slf.py(), map.heights().to_owned())
     }
 
     /// Distances between samples ``(dx, dy)`` [m].
     #[getter]
     fn spacing(slf: &Bound<'_, Self>) -> (f64, f64) {
-        Self::shape(slf).spacing().into()
+        held::<_, HeightMap>(slf).spacing().into()
     }
 
     /// Centre [m].
     #[getter]
     fn center(slf: &Bound<'_, Self>) -> (f64, f64) {
-        Self::shape(slf).center().into()
+        held::<_, HeightMap>(slf).center().into()
     }
 }

@@ -3,8 +3,16 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::{PyShape, numbers};
+use super::base::{Kind, PyShape, held, numbers, object};
 use crate::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
+
+/// Adds the classes to the module.
+pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<PySphere>()?;
+    module.add_class::<PyParaboloid>()?;
+    module.add_class::<PyCylinder>()?;
+    module.add_class::<PyFlatPunch>()
+}
 
 /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
 ///
@@ -25,9 +33,9 @@ use crate::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 #[pyclass(name = "Sphere", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PySphere;
 
-impl PySphere {
-    pub(super) fn arguments<'py>(py: Python<'py>, shape: &Sphere) -> PyResult<Bound<'py, PyDict>> {
-        numbers(py, [("radius", shape.radius())])
+impl Kind for Sphere {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        numbers(py, [("radius", self.radius())])
     }
 }
 
@@ -35,13 +43,13 @@ impl PySphere {
 impl PySphere {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(Self::make(Sphere::new(radius)?))
+        Ok(object(Self, Sphere::new(radius)?))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        Self::shape(slf).radius()
+        held::<_, Sphere>(slf).radius()
     }
 }
 
@@ -64,15 +72,9 @@ impl PySphere {
 #[pyclass(name = "Paraboloid", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyParaboloid;
 
-impl PyParaboloid {
-    pub(super) fn arguments<'py>(
-        py: Python<'py>,
-        shape: &Paraboloid,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let radii = [
-            ("radius_x", shape.radius_x()),
-            ("radius_y", shape.radius_y()),
-        ];
+impl Kind for Paraboloid {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let radii = [("radius_x", self.radius_x()), ("radius_y", self.radius_y())];
         numbers(py, radii)
     }
 }
@@ -81,19 +83,19 @@ impl PyParaboloid {
 impl PyParaboloid {
     #[new]
     fn new(radius_x: f64, radius_y: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(Self::make(Paraboloid::new(radius_x, radius_y)?))
+        Ok(object(Self, Paraboloid::new(radius_x, radius_y)?))
     }
 
     /// Radius of curvature along x [m].
     #[getter]
     fn radius_x(slf: &Bound<'_, Self>) -> f64 {
-        Self::shape(slf).radius_x()
+        held::<_, Paraboloid>(slf).radius_x()
     }
 
     /// Radius of curvature along y [m].
     #[getter]
     fn radius_y(slf: &Bound<'_, Self>) -> f64 {
-        Self::shape(slf).radius_y()
+        held::<_, Paraboloid>(slf).radius_y()
     }
 }
 
@@ -118,12 +120,9 @@ impl PyParaboloid {
 #[pyclass(name = "Cylinder", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyCylinder;
 
-impl PyCylinder {
-    pub(super) fn arguments<'py>(
-        py: Python<'py>,
-        shape: &Cylinder,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        numbers(py, [("radius", shape.radius())])
+impl Kind for Cylinder {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        numbers(py, [("radius", self.radius())])
     }
 }
 
@@ -131,13 +130,13 @@ impl PyCylinder {
 impl PyCylinder {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(Self::make(Cylinder::new(radius)?))
+        Ok(object(Self, Cylinder::new(radius)?))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        Self::shape(slf).radius()
+        held::<_, Cylinder>(slf).radius()
     }
 }
 
@@ -160,12 +159,9 @@ impl PyCylinder {
 #[pyclass(name = "FlatPunch", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyFlatPunch;
 
-impl PyFlatPunch {
-    pub(super) fn arguments<'py>(
-        py: Python<'py>,
-        shape: &FlatPunch,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        numbers(py, [("radius", shape.radius())])
+impl Kind for FlatPunch {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        numbers(py, [("radius", self.radius())])
     }
 }
 
@@ -173,12 +169,12 @@ impl PyFlatPunch {
 impl PyFlatPunch {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(Self::make(FlatPunch::new(radius)?))
+        Ok(object(Self, FlatPunch::new(radius)?))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        Self::shape(slf).radius()
+        held::<_, FlatPunch>(slf).radius()
     }
 }

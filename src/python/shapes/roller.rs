@@ -3,7 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::{PyShape, profiles};
+use super::base::{Kind, PyShape, held, object};
+use super::profiles;
 use crate::error::Error;
 use crate::surface::{CrownedProfile, Profile, Roller};
 
@@ -40,18 +41,18 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 #[pyclass(name = "Roller", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyRoller;
 
-impl PyRoller {
-    pub(super) fn arguments<'py>(py: Python<'py>, roller: &Roller) -> PyResult<Bound<'py, PyDict>> {
-        let (flat_length, crown_radius) = match roller.profile() {
+impl Kind for Roller {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (flat_length, crown_radius) = match self.profile() {
             Profile::Crowned(p) => (Some(p.flat_length()), Some(p.crown_radius())),
             Profile::Logarithmic(_) | Profile::Sampled(_) => (None, None),
         };
         let arguments = PyDict::new(py);
-        arguments.set_item("radius", roller.radius())?;
+        arguments.set_item("radius", self.radius())?;
         arguments.set_item("flat_length", flat_length)?;
         arguments.set_item("crown_radius", crown_radius)?;
-        arguments.set_item("length", roller.length())?;
-        arguments.set_item("profile", profiles::to_python(py, roller.profile())?)?;
+        arguments.set_item("length", self.length())?;
+        arguments.set_item("profile", profiles::to_python(py, self.profile())?)?;
         Ok(arguments)
     }
 }
@@ -84,13 +85,13 @@ impl PyRoller {
         if let Some(length) = length {
             roller = roller.with_length(length)?;
         }
-        Ok(Self::make(roller))
+        Ok(object(Self, roller))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        Self::shape(slf).radius()
+        held::<_, Roller>(slf).radius()
     }
 
     /// Length of the straight part of a crowned roller [m].
@@ -108,18 +109,18 @@ impl PyRoller {
     /// Whole length [m] of a roller that is cut off; None for an endless one.
     #[getter]
     fn length(slf: &Bound<'_, Self>) -> Option<f64> {
-        Self::shape(slf).length()
+        held::<_, Roller>(slf).length()
     }
 
     /// Axial profile; None for a crowned roller.
     #[getter]
     fn profile<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        profiles::to_python(slf.py(), Self::shape(slf).profile())
+        profiles::to_python(slf.py(), held::<_, Roller>(slf).profile())
     }
 }
 
-fn crown<'a>(object: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
-    match PyRoller::shape(object).profile() {
+fn crown<'a>(roller: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
+    match held::<_, Roller>(roller).profile() {
         Profile::Crowned(crown) => Some(crown),
         Profile::Logarithmic(_) | Profile::Sampled(_) => None,
     }

@@ -5,9 +5,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::body::{HalfSpace, Substrate};
+use crate::python::arguments::keywords::Keywords;
 use crate::python::arguments::{Repr, real_array};
 use crate::python::background;
-use crate::python::keywords::Keywords;
 use crate::stress::{Section, Strengths, StressOptions, StressProgress};
 
 /// Signature of the keywords that say which fields are evaluated, and where.

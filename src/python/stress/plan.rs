@@ -11,8 +11,8 @@ use super::keywords::{
     strength_signature, strengths, traction_docs, traction_signature, watched,
 };
 use super::summary::PyStressSummary;
+use crate::python::arguments::keywords::Keywords;
 use crate::python::bodies::PyHalfSpace;
-use crate::python::keywords::Keywords;
 use crate::python::words::Word;
 use crate::stress::{Member, StressPlan};
 

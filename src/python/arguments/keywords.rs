@@ -10,10 +10,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
-use super::arguments::{Repr, count, number, pair, real_matrix};
-use super::words::{REFINEMENT, Word, method};
+use super::{Repr, count, number, pair, real_matrix};
 use crate::contact::{Motion, Options};
 use crate::influence::Method;
+use crate::python::words::{REFINEMENT, Word, method};
 
 /// Signature of the keywords that say how coefficients are planned.
 macro_rules! plan_signature {
@@ -101,20 +101,20 @@ check : bool, optional
     };
 }
 
-pub(super) use {
+pub(in crate::python) use {
     motion_docs, motion_signature, plan_docs, plan_signature, search_docs, search_signature,
     single_docs, single_signature,
 };
 
 /// Method and threads of a plan.
-pub(super) fn plan(keywords: &Keywords) -> PyResult<(Method, Option<usize>)> {
+pub(in crate::python) fn plan(keywords: &Keywords) -> PyResult<(Method, Option<usize>)> {
     let word = keywords.text("method", "exact")?;
     let refinement = keywords.count("refinement", 1)?.unwrap_or(REFINEMENT);
     Ok((method(&word, refinement)?, keywords.count("threads", 1)?))
 }
 
 /// Rigid motion that is asked.
-pub(super) fn motion(keywords: &Keywords) -> PyResult<Motion> {
+pub(in crate::python) fn motion(keywords: &Keywords) -> PyResult<Motion> {
     Ok(Motion {
         load: number("load", keywords.given("load")?.as_ref())?,
         approach: number("approach", keywords.given("approach")?.as_ref())?,
@@ -125,7 +125,7 @@ pub(super) fn motion(keywords: &Keywords) -> PyResult<Motion> {
 }
 
 /// Way in which a solution is found, from a uniform pressure.
-pub(super) fn options(keywords: &Keywords) -> PyResult<Options> {
+pub(in crate::python) fn options(keywords: &Keywords) -> PyResult<Options> {
     Ok(Options {
         tolerance: keywords.real("tolerance", 1e-8)?,
         max_iterations: keywords.count("max_iterations", 0)?,
@@ -135,7 +135,9 @@ pub(super) fn options(keywords: &Keywords) -> PyResult<Options> {
 }
 
 /// Options, callback and check of a single solve.
-pub(super) fn single(keywords: &Keywords) -> PyResult<(Options, Option<Py<PyAny>>, bool)> {
+pub(in crate::python) fn single(
+    keywords: &Keywords,
+) -> PyResult<(Options, Option<Py<PyAny>>, bool)> {
     let mut options = options(keywords)?;
     if let Some(initial) = keywords.given("initial")? {
         let pressure = initial.getattr_opt("pressure")?.unwrap_or(initial);
@@ -146,14 +148,17 @@ pub(super) fn single(keywords: &Keywords) -> PyResult<(Options, Option<Py<PyAny>
 }
 
 /// Keyword arguments of one call. Each is taken once; [`Keywords::finish`] refuses the others.
-pub(super) struct Keywords<'py> {
+pub(in crate::python) struct Keywords<'py> {
     given: Bound<'py, PyDict>,
     taken: Bound<'py, PyDict>,
 }
 
 impl<'py> Keywords<'py> {
     /// Keywords that pyo3 collected.
-    pub(super) fn new(py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Self> {
+    pub(in crate::python) fn new(
+        py: Python<'py>,
+        given: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
         Ok(Self {
             given: given.map_or_else(|| Ok(PyDict::new(py)), |given| given.copy())?,
             taken: PyDict::new(py),
@@ -161,7 +166,7 @@ impl<'py> Keywords<'py> {
     }
 
     /// Keywords of a mapping.
-    pub(super) fn of_mapping(mapping: &Bound<'py, PyMapping>) -> PyResult<Self> {
+    pub(in crate::python) fn of_mapping(mapping: &Bound<'py, PyMapping>) -> PyResult<Self> {
         let given = PyDict::new(mapping.py());
         given.update(mapping)?;
         Self::new(mapping.py(), Some(&given))
@@ -178,7 +183,7 @@ impl<'py> Keywords<'py> {
     }
 
     /// Argument that was given and is not `None`.
-    pub(super) fn given(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+    pub(in crate::python) fn given(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.take(name)?.filter(|value| !value.is_none()))
     }
 
@@ -193,7 +198,7 @@ impl<'py> Keywords<'py> {
     }
 
     /// Object of a class that `kind` describes.
-    pub(super) fn object<T: FromPyObjectOwned<'py>>(
+    pub(in crate::python) fn object<T: FromPyObjectOwned<'py>>(
         &self,
         name: &str,
         kind: &str,
@@ -202,38 +207,38 @@ impl<'py> Keywords<'py> {
     }
 
     /// Real number.
-    pub(super) fn real(&self, name: &str, default: f64) -> PyResult<f64> {
+    pub(in crate::python) fn real(&self, name: &str, default: f64) -> PyResult<f64> {
         self.typed(name, "a real number", default)
     }
 
     /// Real number that may be missing.
-    pub(super) fn optional_real(&self, name: &str) -> PyResult<Option<f64>> {
+    pub(in crate::python) fn optional_real(&self, name: &str) -> PyResult<Option<f64>> {
         number(name, self.given(name)?.as_ref())
     }
 
     /// Truth value.
-    pub(super) fn flag(&self, name: &str, default: bool) -> PyResult<bool> {
+    pub(in crate::python) fn flag(&self, name: &str, default: bool) -> PyResult<bool> {
         self.typed(name, "a bool", default)
     }
 
     /// Text.
-    pub(super) fn text(&self, name: &str, default: &str) -> PyResult<String> {
+    pub(in crate::python) fn text(&self, name: &str, default: &str) -> PyResult<String> {
         self.typed(name, "a str", default.to_owned())
     }
 
     /// Value that the argument [`Word::ARGUMENT`] names by a word.
-    pub(super) fn word<W: Word>(&self, default: &str) -> PyResult<W> {
+    pub(in crate::python) fn word<W: Word>(&self, default: &str) -> PyResult<W> {
         W::from_word(&self.text(W::ARGUMENT, default)?)
     }
 
     /// Integer of at least `least`.
-    pub(super) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
+    pub(in crate::python) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
         let value = self.given(name)?;
         value.map(|value| count(name, least, &value)).transpose()
     }
 
     /// Function.
-    pub(super) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
+    pub(in crate::python) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
         match self.given(name)? {
             Some(value) if !value.is_callable() => Err(PyTypeError::new_err(format!(
                 "{name} must be callable, got {}",
@@ -247,7 +252,7 @@ impl<'py> Keywords<'py> {
     ///
     /// # Errors
     /// A `TypeError` if a keyword was given that nobody took; it lists those that `what` takes.
-    pub(super) fn finish(&self, what: &str) -> PyResult<()> {
+    pub(in crate::python) fn finish(&self, what: &str) -> PyResult<()> {
         match self.given.keys().iter().next() {
             None => Ok(()),
             Some(other) => Err(PyTypeError::new_err(format!(
