@@ -90,7 +90,7 @@ pub use grid::Grid;
 pub use influence::Method;
 pub use material::Elastic;
 pub use response::{Body, Response};
-pub use stress::{Member, Section, Side, Stress, StressOptions, stress};
+pub use stress::{Member, Section, Side, Stress, StressOptions, StressPlan, stress};
 pub use surface::{
     Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
     Surface,

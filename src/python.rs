@@ -1,85 +1,57 @@
-//! Python bindings: newtypes and one-line wrappers. Nothing else in the crate knows Python.
+//! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
+//!
+//! The files in their order; each imports from earlier ones only: errors, words, arguments, background,
+//! state, bodies, grid, shapes, coefficients, stress, solution, contact.
 
-use pyo3::create_exception;
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error::Error;
-
-mod arrays;
+mod arguments;
 mod background;
-mod batch;
 mod bodies;
-mod call;
+mod coefficients;
 mod contact;
-mod evaluation;
-mod functions;
+mod errors;
 mod grid;
-mod profiles;
-mod report;
 mod shapes;
 mod solution;
+mod state;
 mod stress;
-mod summary;
-
-create_exception!(
-    nacre,
-    ConvergenceError,
-    PyRuntimeError,
-    "The iteration did not reach its tolerance; the unfinished solution is `.solution`."
-);
-create_exception!(
-    nacre,
-    NacreWarning,
-    PyUserWarning,
-    "Something about a solution that its user should know."
-);
-
-impl From<Error> for PyErr {
-    fn from(error: Error) -> Self {
-        let message = error.to_string();
-        match error {
-            Error::NotConverged { .. } => ConvergenceError::new_err(message),
-            Error::Memory { .. } => PyMemoryError::new_err(message),
-            _ => PyValueError::new_err(message),
-        }
-    }
-}
+mod words;
 
 #[pymodule(name = "_core")]
 mod core {
     #[pymodule_export]
-    use super::bodies::{PyElastic, PyHalfSpace, PyLayer, PyRigid};
+    use super::bodies::{PyElastic, PyHalfSpace, PyLayer};
+    #[pymodule_export]
+    use super::coefficients::{
+        PyConvolution, frequency_response, graded_layers, influence_coefficients,
+        surface_compliance,
+    };
     #[pymodule_export]
     use super::contact::{PyContact, solve};
     #[pymodule_export]
-    use super::functions::{frequency_response, graded_layers, influence_coefficients};
+    use super::errors::{ConvergenceError, NacreWarning};
     #[pymodule_export]
     use super::grid::PyGrid;
     #[pymodule_export]
-    use super::profiles::{PyLogarithmicProfile, PySampledProfile};
+    use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
-    use super::report::{PyReport, restore_report};
+    use super::solution::{PyReport, PySolution};
     #[pymodule_export]
-    use super::shapes::{
-        PyCylinder, PyFlatPunch, PyHeightMap, PyParaboloid, PyRoller, PyShape, PySphere,
+    use super::stress::{
+        PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,
     };
-    #[pymodule_export]
-    use super::solution::{PySolution, restore_solution};
-    #[pymodule_export]
-    use super::stress::{PyStress, restore_stress, stress};
-    #[pymodule_export]
-    use super::summary::{
-        PyInterfaceStress, PyLayerStress, PyStressSummary, restore_interface_stress,
-        restore_layer_stress, restore_stress_summary,
-    };
-    #[pymodule_export]
-    use super::{ConvergenceError, NacreWarning};
+    use super::{bodies::PyRigid, shapes, state};
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        shapes::register(module)?;
         module.add("RIGID", Py::new(module.py(), PyRigid)?)?;
-        module.add("__version__", env!("CARGO_PKG_VERSION"))
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        // Not among the public names.
+        module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
+        module.setattr("_FORMAT", state::FORMAT)?;
+        state::add_restorers(module)
     }
 }

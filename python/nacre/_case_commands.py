@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,7 +20,7 @@ CaseFile = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, in SI units.")]
 ROWS = 30
-"""Cases of a study that are printed."""
+"""Largest number of cases of a study that are printed."""
 
 
 @app.command()
@@ -39,7 +38,7 @@ def solve(
     for path in save or []:
         _check_ending(path)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # they are printed with the solution
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             solution = nacre.solve(**arguments)
         except ValueError as error:
@@ -51,7 +50,7 @@ def solve(
     for path in save or []:
         _save(solution, path)
     if as_json:
-        extremes = {} if stress is None else {"stress": _extremes(stress)}
+        extremes = {} if stress is None else {"stress": stress.to_dict()}
         print(json.dumps(_plain(_figures(solution) | extremes), indent=2))
     else:
         print(solution if stress is None else f"{solution}\n\n{stress}")
@@ -66,7 +65,7 @@ def sweep(
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Solve the study that a case file describes, or what is left of it after a kill."""
+    """Solve the study that a case file describes, or the rest of it after a kill."""
     described = Case.read(case)
     study = described.study()
     if store is not None:
@@ -89,45 +88,15 @@ def sweep(
 
 
 def _figures(solution: nacre.Solution) -> dict[str, Any]:
-    """Return the key figures and how the iteration ended."""
-    report = solution.report
-    return {
-        **{name: getattr(solution, name) for name in FIGURES},
-        "termination": report.termination,
-        "iterations": report.iterations,
-        "residual": report.residual,
-        "overlap": report.overlap,
-        "warnings": report.warnings,
-        "nacre": nacre.__version__,
-    }
-
-
-def _extremes(summary: nacre.StressSummary) -> dict[str, Any]:
-    """Return the largest stresses in each layer and at each interface, with their places."""
-    parts: dict[str, tuple[Sequence[object], tuple[str, ...]]] = {
-        "layers": (
-            summary.layers,
-            ("depths", "von_mises", "tension", "max_shear", "yield_margin", "strength_margin"),
-        ),
-        "interfaces": (summary.interfaces, ("depth", "tension", "compression", "shear", "jump")),
-    }
-    peaks = ("von_mises", "tension", "max_shear", "compression", "shear", "jump")
-    return {
-        part: [
-            {
-                name: dict(zip(("value", "at"), value, strict=True))
-                if name in peaks and value is not None
-                else value
-                for name, value in ((name, getattr(one, name)) for name in names)
-            }
-            for one in ones
-        ]
-        for part, (ones, names) in parts.items()
-    }
+    """Return the key figures and the named state of the report, with its warnings in words."""
+    state = solution.report.to_dict()
+    state.pop("kind")
+    figures = {name: getattr(solution, name) for name in FIGURES}
+    return state | figures | {"warnings": solution.report.warnings}
 
 
 def _plain(data: Any) -> Any:
-    """Return data as JSON knows it: without NaN."""
+    """Return data for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(data, dict):
         return {str(key): _plain(value) for key, value in data.items()}
     if isinstance(data, list | tuple):
@@ -156,7 +125,7 @@ def _save(solution: nacre.Solution, path: Path) -> None:
 
 
 def _print_study(dataset: Any) -> None:
-    """Print parameters and the outputs that are numbers, for the first cases; and what failed."""
+    """Print parameters and numbers of the first cases, and the cases that failed."""
     frame = dataset[[*(n for n in dataset.data_vars if dataset[n].dims == dataset.error.dims)]]
     rows = frame.to_dataframe().reset_index()
     names = [name for name in rows.columns if name not in ("error", "warnings")]

@@ -35,14 +35,14 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-# As wide as the table, in a file as in a terminal.
+# Width of the table, in a file as in a terminal.
 WIDTH = 80
 FRACTIONS = {0.25: "1/4", 0.5: "1/2", 1.0: "1", 2.0: "2", 4.0: "4"}
 
 
 @app.command()
 def info() -> None:
-    """Print versions, and how many threads there are."""
+    """Print versions and the number of threads."""
     print(f"nacre   {nacre.__version__}")
     print(f"numpy   {np.__version__}")
     print(f"threads {os.cpu_count()}")
@@ -81,7 +81,7 @@ def paper(
 
     parts = (TextColumn("solving"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with warnings.catch_warnings(), Progress(*parts, console=console) as bar:
-        # They are in the reports, and printed below.
+        # The reports have the warnings, which are printed below.
         warnings.simplefilter("ignore", nacre.NacreWarning)
         task = bar.add_task("", total=None)
         results = run(out, threads=threads, quick=quick, progress=show)
@@ -132,7 +132,7 @@ def _print_results(console: Console, results: list[Result]) -> None:
 
 
 def _print_claims(console: Console, results: list[Result]) -> None:
-    """Print where the paper's closing claim holds."""
+    """Print the cases in which the paper's closing claim holds."""
     console.print(
         "\n[bold]The closing claim of the paper[/bold]\n"
         "A compliant coating (E₁ < E₂) brings a smaller riser and a larger contact area than "
@@ -155,7 +155,7 @@ def _print_claims(console: Console, results: list[Result]) -> None:
 
 
 def _print_reference(console: Console, results: list[Result]) -> None:
-    """Print how far the sphere is from its reference."""
+    """Print the deviations of the sphere from its reference."""
     found = deviations(results)
     peak, approach, pressure = (
         max((getattr(deviation, name) for deviation in found), key=abs)

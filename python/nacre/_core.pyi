@@ -1,7 +1,7 @@
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, final, overload
+from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, Unpack, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -9,10 +9,14 @@ import xarray
 from matplotlib.axes import Axes
 from typing_extensions import disjoint_base
 
+from nacre import _keywords
+from nacre._compliance import SurfaceCompliance
+
 __all__ = [
     "RIGID",
     "Contact",
     "ConvergenceError",
+    "Convolution",
     "Cylinder",
     "Elastic",
     "FlatPunch",
@@ -26,26 +30,21 @@ __all__ = [
     "NacreWarning",
     "Paraboloid",
     "Report",
-    "Rigid",
     "Roller",
     "SampledProfile",
     "Shape",
     "Solution",
     "Sphere",
     "Stress",
+    "StressPlan",
     "StressSummary",
     "__version__",
-    "_restore_interface_stress",
-    "_restore_layer_stress",
-    "_restore_report",
-    "_restore_solution",
-    "_restore_stress",
-    "_restore_stress_summary",
     "frequency_response",
     "graded_layers",
     "influence_coefficients",
     "solve",
     "stress",
+    "surface_compliance",
 ]
 
 _Field: TypeAlias = npt.NDArray[np.float64]
@@ -53,17 +52,25 @@ _Real: TypeAlias = npt.NDArray[np.floating | np.integer | np.bool]
 _Vector: TypeAlias = _Real | Sequence[float]
 _Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
 _Pair: TypeAlias = tuple[float, float]
-_Freedoms: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
-_Side: TypeAlias = Literal["below", "above"]
-_Member: TypeAlias = Literal["body", "counterbody"]
-_ByLayer: TypeAlias = Mapping[int | Literal["substrate"], float] | Sequence[float | None]
 _Peak: TypeAlias = tuple[float, tuple[float, float, float]]
-_Algorithm: TypeAlias = Literal["cascade", "polonsky-keer"]
+
+class _SingleSolve(_keywords.Motion, _keywords.Search, total=False):
+    initial: Solution | _Matrix | None
+    progress: Callable[[Report], object] | None
+    check: bool
+
+class _ManySolves(_keywords.Search, total=False):
+    progress: Callable[[int, int], object] | None
+    check: bool
+
+class _WholeSolve(_keywords.Plan, _SingleSolve, total=False):
+    grid: Grid | None
 
 __version__: Final[str]
 RIGID: Final[Rigid]
+_FORMAT: Final[int]
 
 class ConvergenceError(RuntimeError):
     solution: Solution
@@ -261,10 +268,7 @@ class Contact:
         body: HalfSpace | Elastic,
         grid: Grid,
         counterbody: HalfSpace | Elastic | None = None,
-        *,
-        method: _Method = "exact",
-        refinement: int | None = None,
-        threads: int | None = None,
+        **keywords: Unpack[_keywords.Plan],
     ) -> Self: ...
     @property
     def body(self) -> HalfSpace: ...
@@ -276,31 +280,9 @@ class Contact:
     def method(self) -> _Method: ...
     @property
     def threads(self) -> int: ...
-    def solve(
-        self,
-        shape: Shape,
-        *,
-        load: float | None = None,
-        approach: float | None = None,
-        eccentricity: _Freedoms | None = None,
-        moment: _Freedoms | None = None,
-        tilt: _Freedoms | None = None,
-        tolerance: float = 1e-8,
-        max_iterations: int | None = None,
-        algorithm: _Algorithm = "cascade",
-        initial: Solution | _Matrix | None = None,
-        progress: Callable[[Report], object] | None = None,
-        check: bool = True,
-    ) -> Solution: ...
+    def solve(self, shape: Shape, **keywords: Unpack[_SingleSolve]) -> Solution: ...
     def solve_many(
-        self,
-        cases: Iterable[Mapping[str, Any]],
-        *,
-        tolerance: float = 1e-8,
-        max_iterations: int | None = None,
-        algorithm: _Algorithm = "cascade",
-        progress: Callable[[int, int], object] | None = None,
-        check: bool = True,
+        self, cases: Iterable[Mapping[str, Any]], **keywords: Unpack[_ManySolves]
     ) -> list[Solution]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getnewargs_ex__(
@@ -314,6 +296,8 @@ class Report:
     def converged(self) -> bool: ...
     @property
     def termination(self) -> Literal["converged", "iteration limit", "stopped"]: ...
+    @property
+    def solver(self) -> Literal["preconditioned", "active-set", "polonsky-keer"] | None: ...
     @property
     def iterations(self) -> int: ...
     @property
@@ -344,6 +328,9 @@ class Report:
     def tolerance(self) -> float: ...
     @property
     def seconds(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> Report: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
@@ -385,32 +372,12 @@ class Solution:
     def line_load(self) -> _Field: ...
     def stiffness(self) -> _Field: ...
     def stress(
-        self,
-        z: float | _Vector,
-        *,
-        side: _Side = "below",
-        body: _Member = "body",
-        x: float | None = None,
-        y: float | None = None,
-        friction: float = 0.0,
-        direction: _Pair | None = None,
-        residual: _ByLayer | None = None,
-        displacement: bool = False,
-        threads: int | None = None,
-        progress: Callable[[float], object] | None = None,
+        self, z: float | _Vector, **keywords: Unpack[_keywords.SolutionStress]
     ) -> Stress: ...
-    def stress_summary(
-        self,
-        *,
-        body: _Member = "body",
-        yield_stress: _ByLayer | None = None,
-        strength: _ByLayer | None = None,
-        friction: float = 0.0,
-        direction: _Pair | None = None,
-        residual: _ByLayer | None = None,
-        threads: int | None = None,
-        progress: Callable[[float], object] | None = None,
-    ) -> StressSummary: ...
+    def stress_summary(self, **keywords: Unpack[_keywords.SolutionSummary]) -> StressSummary: ...
+    def stress_plan(
+        self, body: _keywords.Member = "body", threads: int | None = None
+    ) -> StressPlan: ...
     @property
     def report(self) -> Report: ...
     def plot(self, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]: ...
@@ -432,6 +399,9 @@ class Solution:
         **options: Any,
     ) -> Path: ...
     def _repr_html_(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> Solution: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
@@ -446,7 +416,7 @@ class Stress:
     @property
     def body(self) -> HalfSpace: ...
     @property
-    def side(self) -> _Side: ...
+    def side(self) -> _keywords.Side: ...
     @property
     def friction(self) -> _Pair: ...
     @property
@@ -476,6 +446,18 @@ class Stress:
     @property
     def principal(self) -> list[_Field]: ...
     def peak(self, field: str = "von_mises") -> _Peak: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> Stress: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class StressPlan:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def body(self) -> HalfSpace: ...
+    def stress(self, z: float | _Vector, **keywords: Unpack[_keywords.Section]) -> Stress: ...
+    def summary(self, **keywords: Unpack[_keywords.Strengths]) -> StressSummary: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
@@ -495,6 +477,9 @@ class LayerStress:
     def yield_margin(self) -> float | None: ...
     @property
     def strength_margin(self) -> float | None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> LayerStress: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
@@ -512,6 +497,9 @@ class InterfaceStress:
     def shear(self) -> _Peak: ...
     @property
     def jump(self) -> _Peak | None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> InterfaceStress: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
@@ -523,20 +511,45 @@ class StressSummary:
     def interfaces(self) -> list[InterfaceStress]: ...
     @property
     def finished(self) -> bool: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> StressSummary: ...
     def __eq__(self, other: object, /) -> bool: ...
 
-def _restore_stress(state: tuple[object, ...]) -> Stress: ...
-def _restore_layer_stress(state: tuple[object, ...]) -> LayerStress: ...
-def _restore_interface_stress(state: tuple[object, ...]) -> InterfaceStress: ...
-def _restore_stress_summary(state: tuple[object, ...]) -> StressSummary: ...
-def _restore_report(state: tuple[object, ...]) -> Report: ...
-def _restore_solution(
-    fields: tuple[_Field, _Field, _Field], motion: tuple[float, _Pair], report: Report
-) -> Solution: ...
+@final
+class Convolution:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(cls, coefficients: _Matrix, *, threads: int | None = None) -> Self: ...
+    @staticmethod
+    def of_bodies(
+        body: HalfSpace | Elastic,
+        grid: Grid,
+        counterbody: HalfSpace | Elastic | None = None,
+        **keywords: Unpack[_keywords.Plan],
+    ) -> Convolution: ...
+    def apply(self, pressure: _Matrix) -> _Field: ...
+    def as_linear_operator(self) -> Any: ...
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    @property
+    def coefficients(self) -> _Field: ...
+    @property
+    def threads(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[_Field], dict[str, object]]: ...
+
 @overload
 def frequency_response(body: HalfSpace | Elastic, wavenumber: float) -> float: ...
 @overload
 def frequency_response(body: HalfSpace | Elastic, wavenumber: _Vector | _Matrix) -> _Field: ...
+@overload
+def surface_compliance(
+    body: HalfSpace | Elastic, wavenumber: float
+) -> SurfaceCompliance[float]: ...
+@overload
+def surface_compliance(
+    body: HalfSpace | Elastic, wavenumber: _Vector | _Matrix
+) -> SurfaceCompliance[_Field]: ...
 def graded_layers(
     substrate: Elastic | Rigid,
     thickness: float,
@@ -554,36 +567,12 @@ def solve(
     shape: Shape,
     body: HalfSpace | Elastic,
     counterbody: HalfSpace | Elastic | None = None,
-    *,
-    grid: Grid | None = None,
-    method: _Method = "exact",
-    refinement: int | None = None,
-    threads: int | None = None,
-    load: float | None = None,
-    approach: float | None = None,
-    eccentricity: _Freedoms | None = None,
-    moment: _Freedoms | None = None,
-    tilt: _Freedoms | None = None,
-    tolerance: float = 1e-8,
-    max_iterations: int | None = None,
-    algorithm: _Algorithm = "cascade",
-    initial: Solution | _Matrix | None = None,
-    progress: Callable[[Report], object] | None = None,
-    check: bool = True,
+    **keywords: Unpack[_WholeSolve],
 ) -> Solution: ...
 def stress(
     body: HalfSpace | Elastic,
     grid: Grid,
     pressure: _Matrix,
     z: float | _Vector,
-    *,
-    side: _Side = "below",
-    x: float | None = None,
-    y: float | None = None,
-    friction: float = 0.0,
-    direction: _Pair | None = None,
-    residual: _ByLayer | None = None,
-    displacement: bool = False,
-    threads: int | None = None,
-    progress: Callable[[float], object] | None = None,
+    **keywords: Unpack[_keywords.Stress],
 ) -> Stress: ...

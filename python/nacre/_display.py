@@ -1,4 +1,4 @@
-"""What a solution prints: a short table; in a notebook with a small map of the pressure."""
+"""Printed form of a solution: a short table; in a notebook with a small map of the pressure."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Elastic, HalfSpace, Rigid, Solution, StressSummary
+from nacre._core import Elastic, HalfSpace, Report, Rigid, Solution, StressSummary
 from nacre.units import written
 
 Peak = tuple[float, tuple[float, float, float]]
@@ -20,8 +20,9 @@ Peak = tuple[float, tuple[float, float, float]]
 WIDEST = 240
 """Pixels along the longer side of the small map."""
 NOISE = 1e-9
-MOST_LAYERS = 4
-"""Layers that get a row each."""
+"""Share of its largest possible value below which a position or a moment is printed as 0."""
+LAYER_ROWS = 4
+"""Largest number of layers that get a row each."""
 
 # Matplotlib's viridis at nine places.
 VIRIDIS = (
@@ -42,7 +43,7 @@ def figures(solution: Solution) -> list[tuple[str, str]]:
     line = solution.report.grid.is_line
     force, moment = ("N/m", "N") if line else ("N", "N m")
     extent, report = solution.contact_extent, solution.report
-    # Rounding leaves moments of 1e-16 of what there could be: they are 0 to a reader.
+    # Rounding leaves moments of 1e-16 of the largest possible ones: a reader wants to see 0.
     arms = [NOISE * side for side in report.grid.size]
     sides = [written(high - low, "m") for low, high in extent]
     touching = solution.contact_area > 0
@@ -62,13 +63,18 @@ def figures(solution: Solution) -> list[tuple[str, str]]:
         *_body("counterbody", report.counterbody),
         *_moduli(report.body, report.counterbody),
         ("grid", f"{nx} × {ny} cells"),
-        ("ended", f"{report.termination}, residual {report.residual:.0e}"),
+        ("ended", f"{report.termination}{_fallback(report)}, residual {report.residual:.0e}"),
     ]
     return rows if touching else [row for row in rows if row[0] not in ("at", "contact", "area")]
 
 
+def _fallback(report: Report) -> str:
+    """Return the solver that ended the solve, where it is not the one that a cascade starts with."""
+    return "" if report.solver in (None, "preconditioned") else f" by the {report.solver} solver"
+
+
 def freedoms(motion: Mapping[str, Any]) -> str:
-    """Say which of the three freedoms are loaded, which given and which locked."""
+    """Return which of the three freedoms are loaded, given and locked, in words."""
     said = []
     for axis, name in enumerate("xy"):
         asked = [
@@ -153,7 +159,7 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes:
         margin = 1 + (high - low) // 10
         parts.append((max(low - margin, 0), min(high + margin, cells - 1)))
     spans = [high - low + 1 for low, high in parts]
-    # Whatever its shape, it stays legible: at least a quarter as high as wide.
+    # A narrow contact stays legible: its map is at least a quarter as high as wide.
     size = [max(WIDEST // 4, WIDEST * span // max(spans)) for span in spans]
     rows, columns = (
         np.linspace(low, high, count).round().astype(int)
@@ -181,7 +187,7 @@ def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
 
 
 def _estimated(solution: Solution, name: str, unit: str) -> str:
-    """Return a figure with the error that the size of the cells leaves, where it is estimated."""
+    """Return a figure, with the discretisation error where it is estimated."""
     value = getattr(solution, name)
     error = (solution.report.discretisation or {}).get(name, 0.0)
     return written(value, unit) + (
@@ -202,7 +208,7 @@ def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
         (f"  layer {number}", f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}")
         for number, layer in enumerate(body.layers, start=1)
     ]
-    if len(layers) > MOST_LAYERS:
+    if len(layers) > LAYER_ROWS:
         depth = written(body.interfaces[-1], "m", 3)
         layers = [("  layers", f"{len(layers)}, together {depth}")]
     return [(name, _material(body.substrate)), *layers]

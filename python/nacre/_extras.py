@@ -1,4 +1,4 @@
-"""Libraries that come with extras: imported where used, and named where missing."""
+"""Optional libraries: imported where they are used, named by an error where they are missing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def extra(name: str) -> Iterator[None]:
-    """Say in the error of a failing import which extra brings the library."""
+    """Name the extra that brings the library, in the error of a failing import."""
     try:
         yield
     except ModuleNotFoundError as missing:

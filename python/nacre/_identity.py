@@ -1,4 +1,4 @@
-"""What tells one case of a study from another, in any process and on any day."""
+"""Keys of the cases of a study, the same in any process and on any day."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from nacre.values import encode
 def key_of(
     arguments: Mapping[str, Any], outputs: Mapping[str, Any], stress: Mapping[str, Any]
 ) -> str:
-    """Return what tells a case, and what is kept of it, from any other."""
+    """Return a key that differs between cases, and between the outputs that are kept."""
     kept = {name: o if isinstance(o, str) else code_of(o) for name, o in outputs.items()}
     # Threads change no bit of a solution.
     asked = {name: value for name, value in arguments.items() if name != "threads"}
@@ -29,9 +29,9 @@ def key_of(
 
 
 def code_of(value: Any, seen: frozenset[int] = frozenset()) -> Any:
-    """Return what a function does, as data: its byte code, and the values and functions it uses.
+    """Return plain data for what a function does: its byte code, and the values that it uses.
 
-    Of what belongs to a library, the name stands for it.
+    An object of a library is represented by its name.
     """
     if id(value) in seen:
         return "itself"

@@ -1,4 +1,4 @@
-"""What a study keeps of each solution."""
+"""Outputs of a study: the numbers that it keeps of each solution."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
     "interface_shear": lambda summary: [face.shear[0] for face in summary.interfaces],
     "interface_tension": lambda summary: [face.tension[0] for face in summary.interfaces],
 }
-"""Outputs from `Solution.stress_summary`: the largest of such values; NaN where there is none."""
+"""Outputs from `Solution.stress_summary`: each is the largest of these values, or NaN."""
 
 
 def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
@@ -63,7 +63,7 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
 def evaluated(
     solution: core.Solution, outputs: Mapping[str, Output], stress: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return what is kept of a solution, as plain numbers; the summary of stresses is made once."""
+    """Return the outputs of a solution as plain numbers; the stresses are summed up once."""
     summary = None
     found: dict[str, Any] = {}
     for name, output in outputs.items():

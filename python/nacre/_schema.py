@@ -1,28 +1,44 @@
-"""The schema of case files: one class for each table."""
+"""The schema of case files: one class for each table.
+
+The tables of shapes whose arguments are all numbers, and the keywords of a solve, are made from the
+signatures in `nacre._core` and from `nacre._keywords`.
+"""
 
 from __future__ import annotations
 
+import inspect
+import re
+import types
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveInt, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    PositiveInt,
+    create_model,
+    model_validator,
+)
 
 import nacre
+from nacre import _keywords
 
 Pair = Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
 
 
 class Table(BaseModel):
-    """A table that holds the keys named, and no others."""
+    """A table with the named keys and no others."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
 class Material(Table):
-    """Constants of an elastic material, and what it bears."""
+    """Constants and strengths of an elastic material."""
 
     young: FiniteFloat
     poisson: FiniteFloat
@@ -30,7 +46,7 @@ class Material(Table):
     strength: FiniteFloat | None = None
 
     def make(self) -> nacre.Elastic:
-        """Return what is elastic of it."""
+        """Return the elastic constants."""
         return nacre.Elastic(self.young, self.poisson)
 
 
@@ -50,7 +66,7 @@ class Body(Table):
 
 
 class Grid(Table):
-    """Cells; or the strips of a line contact."""
+    """Cells of a grid, or the strips of a line contact."""
 
     shape: Annotated[list[PositiveInt], Field(min_length=2, max_length=2)] | None = None
     size: Pair | None = None
@@ -74,7 +90,7 @@ class Grid(Table):
 
 
 class Profile(Table):
-    """An axial profile of a roller, by the name of its maker, with that one's arguments."""
+    """An axial profile of a roller: the name of the function that makes it, and its arguments."""
 
     kind: Literal["logarithmic", "lundberg", "johns_gohar", "iso16281", "sampled"]
     amplitude: FiniteFloat | None = None
@@ -100,7 +116,7 @@ class Profile(Table):
 
 
 class Shape(Table):
-    """What every shape may have: a shift."""
+    """Keys that every shape may have: a shift."""
 
     shift: Pair | None = None
 
@@ -111,29 +127,21 @@ class Shape(Table):
         return shape if self.shift is None else shape.shifted(*self.shift)
 
     def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape in its own place."""
-        names = {"flat_punch": "FlatPunch"}
+        """Return the shape without its shift."""
         kind: str = self.kind  # type: ignore[attr-defined]
-        return _made(getattr(nacre, names.get(kind, kind.title())), given)  # type: ignore[no-any-return]
+        return _made(SHAPES[kind], given)  # type: ignore[no-any-return]
 
 
-class Round(Shape):
-    """A shape with one radius."""
-
-    kind: Literal["sphere", "cylinder", "flat_punch"]
-    radius: FiniteFloat
-
-
-class Paraboloid(Shape):
-    """An elliptic paraboloid."""
-
-    kind: Literal["paraboloid"]
-    radius_x: FiniteFloat
-    radius_y: FiniteFloat
+SHAPES: dict[str, type[nacre.Shape]] = {
+    re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower(): made
+    for made in vars(nacre._core).values()
+    if isinstance(made, type) and issubclass(made, nacre.Shape) and made is not nacre.Shape
+}
+"""Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
 
 
 class Roller(Shape):
-    """A roller, crowned or of another profile."""
+    """A roller with a crown or another profile."""
 
     kind: Literal["roller"]
     radius: FiniteFloat
@@ -143,13 +151,13 @@ class Roller(Shape):
     profile: Profile | None = None
 
     def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape in its own place."""
+        """Return the shape without its shift."""
         profile = {} if self.profile is None else {"profile": self.profile.make()}
         return nacre.Roller(**(given | profile))
 
 
 class HeightMap(Shape):
-    """A measured surface in a file, as `HeightMap.read` takes it."""
+    """A measured surface in a file, with the arguments of `HeightMap.read`."""
 
     kind: Literal["height_map"]
     path: str
@@ -158,7 +166,7 @@ class HeightMap(Shape):
     detrend: Literal["none", "mean", "plane", "quadratic"] = "plane"
 
     def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape in its own place."""
+        """Return the shape without its shift."""
         return nacre.HeightMap.read(folder / given.pop("path"), **given)
 
 
@@ -169,16 +177,35 @@ class Sum(Shape):
     parts: Annotated[list[AnyShape], Field(min_length=1)]
 
     def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape in its own place."""
+        """Return the shape without its shift."""
         first, *others = (part.make(folder) for part in self.parts)
         for other in others:
             first = first + other
         return first
 
 
-KINDS = "'sphere', 'cylinder', 'flat_punch', 'paraboloid', 'roller', 'height_map', 'sum'"
+def _numbers(kind: str, made: type[nacre.Shape]) -> type[Shape]:
+    """Return the table of a shape whose arguments are all numbers."""
+    parameters = inspect.signature(made).parameters.values()
+    fields: dict[str, Any] = {
+        one.name: (FiniteFloat, ...) if one.default is one.empty else (FiniteFloat | None, None)
+        for one in parameters
+    }
+    fields["kind"] = (Literal[kind], ...)
+    return create_model(made.__name__, __base__=Shape, **fields)
 
-AnyShape = Annotated[Round | Paraboloid | Roller | HeightMap | Sum, Field(discriminator="kind")]
+
+OWN_TABLES: dict[str, type[Shape]] = {"roller": Roller, "height_map": HeightMap, "sum": Sum}
+TABLES = {kind: _numbers(kind, made) for kind, made in SHAPES.items() if kind not in OWN_TABLES}
+KINDS = ", ".join(repr(kind) for kind in TABLES | OWN_TABLES)
+
+if TYPE_CHECKING:
+    AnyShape = Shape
+else:
+    AnyShape = Annotated[
+        Union[tuple((TABLES | OWN_TABLES).values())],  # noqa: UP007
+        Field(discriminator="kind"),
+    ]
 
 
 class Freedoms(Table):
@@ -188,35 +215,43 @@ class Freedoms(Table):
     y: FiniteFloat | None = None
 
 
-class Solve(Table):
-    """What is asked, and how it is found: keywords of `nacre.solve`."""
+def _checked(hint: Any) -> Any:
+    """Return the type that a case file has for a keyword: finite numbers, positive integers."""
+    known = {float: FiniteFloat, int: PositiveInt, _keywords.Freedoms: Freedoms | Pair}
+    parts = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
+    return Union[(*(known.get(part, part) for part in parts), None)]
 
-    load: FiniteFloat | None = None
-    approach: FiniteFloat | None = None
-    eccentricity: Freedoms | Pair | None = None
-    moment: Freedoms | Pair | None = None
-    tilt: Freedoms | Pair | None = None
-    method: Literal["exact", "plain", "difference", "image"] | None = None
-    refinement: PositiveInt | None = None
-    threads: PositiveInt | None = None
-    tolerance: FiniteFloat | None = None
-    max_iterations: PositiveInt | None = None
-    algorithm: Literal["cascade", "polonsky-keer"] | None = None
+
+class SolveKeywords(Table):
+    """Keywords of `nacre.solve` that a case file may have."""
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords that were given."""
         found = {name: value for name, value in self if value is not None}
-        for name in ("eccentricity", "moment", "tilt"):
-            value = found.get(name)
+        for name, value in found.items():
             if isinstance(value, Freedoms):
                 found[name] = (value.x, value.y)
-            elif value is not None:
+            elif isinstance(value, list):
                 found[name] = tuple(value)
         return found
 
 
+def _solve() -> type[SolveKeywords]:
+    """Return the table of those keywords."""
+    groups = (_keywords.Motion, _keywords.Plan, _keywords.Search)
+    hints = {name: hint for group in groups for name, hint in get_type_hints(group).items()}
+    fields: dict[str, Any] = {name: (_checked(hint), None) for name, hint in hints.items()}
+    return create_model("Solve", __base__=SolveKeywords, **fields)
+
+
+if TYPE_CHECKING:
+    Solve = SolveKeywords
+else:
+    Solve = _solve()
+
+
 class Stress(Table):
-    """Which stresses are summed up: keywords of `Solution.stress_summary`."""
+    """Keywords of `Solution.stress_summary`."""
 
     body: Literal["body", "counterbody"] = "body"
     friction: FiniteFloat = 0.0
@@ -249,7 +284,7 @@ class Range(Table):
 
 
 class Sweep(Table):
-    """A study: values by dotted key of the case, what is kept and where."""
+    """A study: values by dotted key of the case, the outputs and the file to store them in."""
 
     parameters: dict[str, Range | Annotated[list[Any], Field(min_length=1)]]
     outputs: list[str] | None = None
@@ -281,7 +316,7 @@ class CaseTable(Table):
         return found | self.solve.keywords()
 
     def limits(self) -> dict[str, list[float | None]]:
-        """Return what the layers and the substrate of the body with the stresses bear."""
+        """Return yield stresses and strengths of the layers and the substrate."""
         body = self.body if self.stress is None or self.stress.body == "body" else self.counterbody
         if body is None:
             return {}
@@ -315,7 +350,7 @@ class CaseTable(Table):
 
 
 def _made(maker: Any, given: dict[str, Any]) -> Any:
-    """Call `maker`, or say which of its arguments are not right."""
+    """Return what `maker` makes; a wrong argument is a `ValueError`."""
     try:
         return maker(**given)
     except TypeError as error:

@@ -1,4 +1,4 @@
-"""Rectilinear grids of VTK's, for ParaView: the surface, and what is below it."""
+"""VTK files with rectilinear grids, for ParaView: the surface, and the stresses below it."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Array = npt.NDArray[np.float64]
 SURFACE = ("pressure", "gap", "displacement")
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 OPTIONS = ("body", "friction", "direction", "residual", "displacement", "threads")
-"""Options of `Solution.stress` that a file may be written with."""
-ON = 1e-12
-"""Nearer than this to an interface, relatively, a depth is on it, as in `Solution.stress`."""
+"""Keywords of `Solution.stress` that `Solution.save` takes."""
+TOLERANCE = 1e-12
+"""Relative distance below which a depth lies on an interface, as in `Solution.stress`."""
 
 
 def write_surface(solution: core.Solution, path: Path) -> None:
@@ -40,9 +40,9 @@ def write_surface(solution: core.Solution, path: Path) -> None:
 def write_stress(
     solution: core.Solution, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
 ) -> None:
-    """Write stresses at points below the cell centres, and pressure and gap above them.
+    """Write stresses at points below the cell centres, and pressure and gap at the same x and y.
 
-    Of a depth on an interface there are two planes of points: above it and below it.
+    A depth on an interface has two planes of points, above and below the interface.
     """
     with extra("files"):
         from pyevtk.hl import gridToVTK
@@ -72,18 +72,21 @@ def _planes(
     report = solution.report
     body = report.counterbody if options.get("body") == "counterbody" else report.body
     faces = body.interfaces if body else []
-    on = [np.isclose(depths, face, rtol=ON, atol=0.0) for face in faces]
+    on = [np.isclose(depths, face, rtol=TOLERANCE, atol=0.0) for face in faces]
     above = np.any(on, axis=0) if on else np.full(depths.shape, False)
     # A rigid base has no side below.
     rigid = body is not None and isinstance(body.substrate, core.Rigid)
     below = ~on[-1] if rigid else np.full(depths.shape, True)
-    parts = [
-        solution.stress(depths[kept], side=side, **options)  # type: ignore[arg-type]
-        for kept, side in ((above, "above"), (below, "below"))
-        if kept.any()
-    ]
+    planned = {name: value for name, value in options.items() if name in ("body", "threads")}
+    plan = solution.stress_plan(**planned)
+    asked = {name: value for name, value in options.items() if name not in planned}
+    parts = []
+    if above.any():
+        parts.append(plan.stress(depths[above], side="above", **asked))
+    if below.any():
+        parts.append(plan.stress(depths[below], side="below", **asked))
     z = np.concatenate([part.z for part in parts])
-    order = np.argsort(z, kind="stable")  # what is above comes first
+    order = np.argsort(z, kind="stable")  # the side above comes first
     names = [*COMPONENTS, "von_mises", "max_shear"]
     names += ["ux", "uy", "uz"] if options.get("displacement") else []
     planes = {name: [getattr(part, name) for part in parts] for name in names}

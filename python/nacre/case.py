@@ -1,7 +1,7 @@
 """Case files: a contact, and a study of it, in TOML.
 
-A table for each thing that `nacre.solve` takes, and one for `Solution.stress_summary`; materials
-have names::
+There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`;
+materials have names::
 
     [materials]
     steel = { young = 210e9, poisson = 0.3, yield_stress = 1.5e9 }  # for margins
@@ -57,11 +57,11 @@ class Case:
     Parameters
     ----------
     data
-        What is in the file.
+        Content of the file.
     name
-        What errors call it.
+        Name of the case in errors.
     folder
-        Where its paths begin.
+        Folder to which its paths are relative.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Case:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Case:
-        """Read a file; a `CaseError` says what is wrong with it."""
+        """Return the case of a file; an unusable one is a `CaseError`."""
         path = Path(path)
         try:
             data = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -92,7 +92,7 @@ class Case:
             raise CaseError(f"{self.name}: {error}") from error
 
     def stress(self) -> dict[str, Any] | None:
-        """Return the arguments of `Solution.stress_summary`, or None where none was asked for."""
+        """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
         asked = self._table.stress
         return None if asked is None else asked.keywords() | self._table.limits()
 
@@ -150,9 +150,9 @@ class Case:
 
 
 def _first(error: ValidationError, data: Any) -> str:
-    """Say what is wrong first: key, what was expected, what was found."""
+    """Return a message about the first error: key, expected value and value found."""
     found = error.errors(include_url=False)
-    # A misspelt key is also a missing one: the former says more.
+    # A misspelt key is often also a missing one; the misspelt one says more.
     first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
     key = ".".join(str(part) for part in _path(first["loc"], data))
     if first["type"] == "missing":
@@ -169,7 +169,7 @@ def _first(error: ValidationError, data: Any) -> str:
 
 
 def _path(location: tuple[int | str, ...], data: Any) -> list[int | str]:
-    """Return a location without the names of alternatives that pydantic puts into it."""
+    """Return a location without the names of alternatives that pydantic inserts."""
     path: list[int | str] = []
     for number, part in enumerate(location):
         last = number == len(location) - 1

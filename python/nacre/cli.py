@@ -1,7 +1,7 @@
 """The command ``nacre``.
 
-It needs the extra ``nacre[cli]``. Exit codes: 0 where everything converged, 1 where something
-failed, 2 for bad input, 130 after Ctrl-C.
+The command needs the extra ``nacre[cli]``. Its exit code is 0 if everything converged, 1 if
+something failed, 2 for bad input and 130 after Ctrl-C.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Parameters
     ----------
     arguments
-        What follows the command's name; that of the process by default.
+        Arguments after the name of the command; those of the process by default.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -29,11 +29,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    """Run one command, and return its exit code; errors are one line on stderr."""
+    """Run one command and return its exit code; an error is one line on stderr."""
     try:
         import typer
 
-        import nacre._case_commands  # the rest of the commands of app
+        import nacre._case_commands  # adds commands to app
         from nacre._commands import app
         from nacre.case import CaseError
     except ModuleNotFoundError as missing:

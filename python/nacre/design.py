@@ -1,7 +1,7 @@
 """Studies that a designer of coatings and bearings asks for, on top of `nacre.sweep`.
 
-Each returns an `xarray.Dataset`, which `nacre.plot` draws. What a solve takes besides what is
-varied, and `store`, `executor` and `progress` of `nacre.sweep`, are passed on.
+Each function returns an `xarray.Dataset`, which `nacre.plot` draws. It passes on the other
+arguments of a solve, and `store`, `executor` and `progress` of `nacre.sweep`.
 """
 
 from __future__ import annotations
@@ -37,25 +37,24 @@ def coating_chart(
 ) -> xarray.Dataset:
     """Peak pressure and stresses over the thickness and the modulus of a single coating.
 
-    The stresses are those that crack a coating and peel it off: its largest tension (principal
-    stress), which is looked for on its two faces, and the largest shear traction at the interface.
-    `Solution.stress_summary` looks inside too, on over ten times as many planes.
+    The stresses are the ones that crack a coating and peel it off: the largest tension (principal
+    stress) on its two faces, and the largest shear traction at the interface.
+    `Solution.stress_summary` also searches inside the coating, on over ten times as many planes.
 
     Parameters
     ----------
     shape
-        What is pressed in.
+        Shape that is pressed in.
     substrate
-        What is coated.
+        Material under the coating.
     thickness, young
         Thicknesses [m] and Young's moduli [Pa] of the coating: every pair is solved.
     poisson
         Poisson's ratio of the coating.
     friction
-        Coefficient of friction: the stresses are those of sliding, the traction on the coating
-        along x.
+        Coefficient of friction of sliding, with the traction on the coating along x.
     options
-        Arguments of `nacre.solve`, as `load` and `counterbody`, and of `nacre.sweep`.
+        Arguments of `nacre.solve`, such as `load` and `counterbody`, and of `nacre.sweep`.
 
     Returns
     -------
@@ -103,13 +102,13 @@ def load_curve(
 ) -> xarray.Dataset:
     """Approach, normal stiffness dW/dδ, area and peak pressure over the load.
 
-    The stiffness is that of the approach alone, with the tilts held: the first element of
+    The stiffness belongs to the approach alone, with the tilts held: it is the first element of
     `Solution.stiffness`.
 
     Parameters
     ----------
     shape, body
-        What is pressed into what.
+        Shape that is pressed in, and body that it is pressed into.
     load
         Forces [N].
     options
@@ -122,7 +121,7 @@ def load_curve(
 
     Examples
     --------
-    Of a sphere, where W is as δ to the 3/2, the stiffness is 3/2 W/δ:
+    For a sphere W is proportional to δ to the 3/2, and the stiffness is 3/2 W/δ:
 
     >>> from nacre import design
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
@@ -152,12 +151,12 @@ def tilt_curve(
     load: float,
     **options: Any,
 ) -> xarray.Dataset:
-    """Moment, where the load acts and peak pressure over the tilt along x, under one load.
+    """Moment, point of the load and peak pressure over the tilt along x, under one load.
 
     Parameters
     ----------
     shape, body
-        What is pressed into what.
+        Shape that is pressed in, and body that it is pressed into.
     tilt
         Slopes along x.
     load
@@ -209,7 +208,7 @@ def normal_stiffness(solution: core.Solution) -> float:
 
 
 def _parted(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the options of `nacre.solve`, and those of `nacre.sweep`."""
+    """Return the options of `nacre.solve`, and the options of `nacre.sweep`."""
     bar = options.get("progress")
     study = {name: options[name] for name in ("store", "executor", "retry") if name in options}
     asked = {name: value for name, value in options.items() if name not in (*study, "progress")}

@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ import nacre._core as core
 from nacre._extras import extra
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS
-from nacre.values import decode, encode, reduced
+from nacre.values import decode, encode
 
 if TYPE_CHECKING:
     import xarray
@@ -45,20 +45,23 @@ NAMES = {
     "displacement": "normal displacement of both bodies together",
     "line_load": "force per length along x",
 }
+FIELDS = ("pressure", "gap", "displacement")
+"""Fields of the state that files hold as variables."""
 STATE = "nacre_solution"
+"""Attribute that holds the rest of the state, as JSON."""
 
 
 def to_xarray(solution: core.Solution) -> xarray.Dataset:
-    """Return the fields with coordinates, units and everything that was asked.
+    """Return the fields with coordinates, units and the whole problem.
 
-    Attributes hold the key figures, and bodies, motion and options as JSON: what a repetition needs
-    besides the shape, whose gap is `gap - displacement + approach + tilt_x x + tilt_y y`.
+    Attributes hold the key figures, and bodies, motion and options as JSON. A repetition needs only
+    the shape besides, whose gap is `gap - displacement + approach + tilt_x x + tilt_y y`.
     """
     with extra("files"):
         import xarray
 
     report = solution.report
-    fields = {name: (("x", "y"), getattr(solution, name)) for name in list(NAMES)[:3]}
+    fields = {name: (("x", "y"), getattr(solution, name)) for name in FIELDS}
     dataset = xarray.Dataset(
         {**fields, "line_load": (("x",), solution.line_load)},
         coords={"x": solution.x, "y": solution.y},
@@ -79,6 +82,7 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
         "refinement": report.refinement,
         "tolerance": report.tolerance,
         "termination": report.termination,
+        "solver": report.solver or "unknown",
         "residual": report.residual,
         "overlap": report.overlap,
         "balance": np.array(report.balance),
@@ -98,7 +102,7 @@ def save(
     depths: npt.ArrayLike | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Path:
-    """Write a file of the kind that its ending says, whole or not at all."""
+    """Write a file, whole or not at all; its ending chooses the kind."""
     path = Path(path)
     writers: dict[str, Callable[[core.Solution, Path], None]] = {
         ".nc": _write_netcdf,
@@ -120,24 +124,24 @@ def save(
 
 
 def load(path: AnyPath) -> core.Solution:
-    """Solution of a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre[files]``.
+    """Solution from a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre[files]``.
 
     Parameters
     ----------
     path : str or os.PathLike
-        The file.
+        File to read; older versions of nacre may have written it.
 
     Returns
     -------
     Solution
-        What was saved.
+        Solution that was saved.
 
     Raises
     ------
     ValueError
-        If the file holds no solution of nacre's.
+        If the file holds no solution of nacre's, or a newer version wrote it.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
 
     Examples
     --------
@@ -157,17 +161,21 @@ def load(path: AnyPath) -> core.Solution:
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     try:
         with xarray.open_dataset(path, engine="h5netcdf") as dataset:
-            state = decode(json.loads(dataset.attrs[STATE]))
-            fields = tuple(dataset[name].to_numpy() for name in list(NAMES)[:3])
+            state = json.loads(dataset.attrs[STATE])
+            fields = {name: dataset[name].to_numpy() for name in FIELDS}
     except (KeyError, OSError, ValueError) as error:
         raise ValueError(f"{str(path)!r} must be a solution that nacre saved") from error
-    report = core._restore_report(state["report"])
-    return core._restore_solution(cast("Any", fields), (state["approach"], state["tilt"]), report)
+    try:
+        if "format" not in state:
+            return _load_format0(state, fields)
+        return core.Solution.from_dict(state | fields)
+    except ValueError as error:
+        raise ValueError(f"{str(path)!r}: {error}") from error
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a file to write, which then takes the place of `path` at once; nothing on an error."""
+    """Yield a temporary file that replaces `path` at once in the end; an error leaves no file."""
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
@@ -179,7 +187,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
-    """Write any dataset as NetCDF, without changing a bit of it."""
+    """Write any dataset as NetCDF, to the bit."""
     with extra("files"):
         import h5netcdf  # noqa: F401
 
@@ -192,13 +200,17 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
 
 
 def _state(solution: core.Solution) -> dict[str, Any]:
-    """Return what a solution is besides its fields."""
-    _, (report,) = reduced(solution.report)
-    return {
-        "approach": solution.approach,
-        "tilt": encode(solution.tilt),
-        "report": encode(report),
-    }
+    """Return the named state of a solution without its fields."""
+    return {name: value for name, value in solution.to_dict().items() if name not in FIELDS}
+
+
+def _load_format0(state: dict[str, Any], fields: Mapping[str, Any]) -> core.Solution:
+    """Return the solution of a file that was written before states had names."""
+    from nacre import _format0
+
+    report = _format0._restore_report(decode(state["report"]))
+    motion = state["approach"], state["tilt"]
+    return _format0._restore_solution(tuple(fields.values()), motion, report)
 
 
 def _write_netcdf(solution: core.Solution, path: Path) -> None:
@@ -211,7 +223,7 @@ def _write_csv(solution: core.Solution, path: Path) -> None:
         int(np.argmin(np.abs(side - place)))
         for side, place in zip((solution.x, solution.y), solution.peak_position, strict=True)
     )
-    names = list(NAMES)[:3]
+    names = FIELDS
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["along", "x [m]", "y [m]", *(f"{n} [{UNITS[n]}]" for n in names)])

@@ -42,37 +42,38 @@ def sweep(
     progress: bool | None = None,
     retry: bool = False,
 ) -> xarray.Dataset:
-    """Solves for every combination of parameters; needs ``nacre[files]``.
+    """Study that solves every combination of parameters; needs ``nacre[files]``.
 
     A case that fails is recorded, and does not stop the others. With a `store`, a study that was
-    killed goes on where it was when the same call is made again.
+    killed continues when the same call is made again.
 
     Parameters
     ----------
     case : callable or mapping
-        Takes the parameters by name, and returns the arguments of `nacre.solve` as a dictionary; it
-        runs here, the solves where `executor` says. Or the arguments themselves, of which the
-        parameters replace some.
+        Function that takes the parameters by name and returns the arguments of `nacre.solve` as a
+        dictionary; it runs in this process, the solves in `executor`. Or a mapping of those
+        arguments, some of which the parameters replace.
     parameters : mapping
         Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
         labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
         vary together. All others are combined.
     outputs : sequence or mapping, optional
-        What is kept of each solution: names of its attributes, and functions of it that return a
-        number or an array, by name. By default load, approach, tilt, eccentricity, peak pressure
-        and where it is, and contact area, as far as they are no parameters. Of the stresses, the
-        largest anywhere are ``"von_mises"``, ``"tension"`` (principal) and ``"max_shear"``, the
-        largest tension in a layer is ``"coating_tension"``, and the largest tractions at an
-        interface are ``"interface_shear"`` and ``"interface_tension"``; NaN without layers.
+        Outputs that are kept of each solution: names of its attributes, and functions of it that
+        return a number or an array, by name. By default load, approach, tilt, eccentricity, peak
+        pressure and its position, and contact area, except for parameters. Outputs of the stresses
+        are the largest values anywhere, ``"von_mises"``, ``"tension"`` (principal) and
+        ``"max_shear"``; the largest tension in a layer, ``"coating_tension"``; and the largest
+        tractions at an interface, ``"interface_shear"`` and ``"interface_tension"``. The last three
+        are NaN without layers.
     stress : mapping, optional
-        Arguments of `Solution.stress_summary` for those: ``body``, ``friction``, ``direction``,
-        ``residual``.
+        Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
+        ``direction``, ``residual``.
     store : path, optional
-        A file, ``.nc``, for the finished Dataset. Finished cases are kept beside it, in a
-        ``.journal``, as they come.
+        File, ``.nc``, for the finished Dataset. Finished cases are kept beside it at once, in a
+        ``.journal``.
     executor : concurrent.futures.Executor, optional
-        Where the solves run; a thread for each core by default. Each solve has one thread, unless
-        the case says otherwise.
+        Executor of the solves; a thread for each core by default. Each solve has one thread, unless
+        the case has `threads`.
     progress : bool, optional
         Whether to show a bar; by default where there is a terminal or a notebook.
     retry : bool, optional
@@ -81,8 +82,8 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        Outputs over the parameters; NaN where a case failed, and why in ``error``. The same bits
-        whatever the executor.
+        Outputs over the parameters. Where a case failed they are NaN, and ``error`` holds the
+        reason. The executor does not change a bit.
 
     Raises
     ------
@@ -203,7 +204,7 @@ def _points(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[st
 
 
 def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
-    """Return the arguments of a solve, or why they could not be had."""
+    """Return the arguments of a solve, or the reason why the case has none."""
     try:
         arguments = dict({**case, **point} if isinstance(case, Mapping) else case(**point))
     except (ValueError, ArithmeticError) as error:
@@ -215,7 +216,7 @@ def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | 
 
 
 def _said(point: Mapping[str, Any]) -> dict[str, Any]:
-    """Return parameters as a reader of the journal wants them."""
+    """Return parameters as readable values for the journal."""
     return {k: v if isinstance(v, int | float | str) else repr(v) for k, v in point.items()}
 
 
@@ -226,10 +227,10 @@ def _run(
     executor: Executor | None,
     keep: Callable[[str, Record], None],
 ) -> Iterator[None]:
-    """Solve all tasks and keep what comes of each, one at a time; yield as often.
+    """Solve all tasks; keep their records one at a time, and yield after each.
 
-    A record is kept where its future ends, so that threads do not begin another case before: a kill
-    costs what is being solved, and no more.
+    A record is kept by the thread that solved it, before that thread begins another case: a kill
+    loses only the cases that are being solved.
     """
     pool = executor or ThreadPoolExecutor(max_workers=_cores())
     futures: list[Future[Record]] = []
@@ -240,7 +241,7 @@ def _run(
         try:
             with turn:
                 keep(key, future.result())
-        except BaseException as error:  # of the executor, or of the disk: raised below
+        except BaseException as error:  # from the executor or the disk: raised below
             ended.put(error)
         else:
             ended.put(None)
@@ -253,11 +254,11 @@ def _run(
                 task = arguments, dict(outputs), dict(stress), os.getpid()
                 futures.append(pool.submit(_solve, *task))
                 futures[-1].add_done_callback(partial(end, key))
-        except BaseException as error:  # of the executor: raised below
+        except BaseException as error:  # from the executor: raised below
             ended.put(error)
 
-    # Ctrl-C interrupts the main thread alone: no case is submitted there, so that none is begun
-    # whose end nobody would keep.
+    # Ctrl-C interrupts only the main thread. No case is submitted there, so that every case that
+    # begins is also kept.
     submitter = Thread(target=submit)
     submitter.start()
     try:
@@ -288,9 +289,9 @@ def _cores() -> int:
 def _solve(
     arguments: dict[str, Any], outputs: dict[str, Output], stress: dict[str, Any], parent: int
 ) -> Record:
-    """Solve one case, in any process: what is kept of it, or why it failed."""
+    """Solve one case, in any process; return its outputs, or the reason why it failed."""
     if os.getpid() != parent:
-        warnings.filterwarnings("ignore", category=core.NacreWarning)  # they are in the record
+        warnings.filterwarnings("ignore", category=core.NacreWarning)  # the record has them
     try:
         solution = core.solve(**arguments)
         values = evaluated(solution, outputs, {"threads": arguments["threads"], **stress})
@@ -336,7 +337,7 @@ def _assemble(
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep nacre's warnings from the screen: they are in the Dataset."""
+    """Keep nacre's warnings off the screen; the Dataset has them."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=core.NacreWarning)
         yield
@@ -344,7 +345,7 @@ def _quiet() -> Iterator[None]:
 
 @contextmanager
 def _bar(wanted: bool | None, total: int) -> Iterator[Callable[[], None]]:
-    """Yield what moves a progress bar on by one case."""
+    """Yield a function that advances a progress bar by one case."""
     if wanted is False:
         yield lambda: None
         return

@@ -28,8 +28,8 @@ METRES = {
     "cm": 1e-2,
 }
 TRENDS = ("none", "mean", "plane", "quadratic")
-FEWEST = 0.5
-"""Share of the points that must have been measured: with fewer the surface is mostly invented."""
+LEAST_MEASURED = 0.5
+"""Least share of points that must be measured; below it most of the surface would be a guess."""
 
 
 def read(
@@ -61,7 +61,7 @@ def read(
     if spacing is None:
         spacing = sides
     if spacing is None:
-        raise ValueError(f"spacing must be given: {str(path)!r} does not say it")
+        raise ValueError(f"spacing must be given: {str(path)!r} does not have it")
     heights = _filled(path, heights)
     return core.HeightMap(_without_trend(heights, detrend), spacing)
 
@@ -89,7 +89,7 @@ def _xyz(path: Path) -> tuple[Array, tuple[float, float], str | None]:
     places, steps = [], []
     for axis in (0, 1):
         values = np.unique(points[:, axis])
-        # Coordinates that differ by a rounding are one.
+        # Coordinates that differ only by rounding are the same.
         reach = np.ptp(values) or 1.0
         values = values[np.insert(np.diff(values) > 1e-6 * reach, 0, True)]
         if values.size < 2:
@@ -101,7 +101,7 @@ def _xyz(path: Path) -> tuple[Array, tuple[float, float], str | None]:
         places.append(place.round().astype(int))
         steps.append(float(np.ptp(values)) / int(places[-1].max()))
     cells = [int(place.max()) + 1 for place in places]
-    if cells[0] * cells[1] * FEWEST > len(points):
+    if cells[0] * cells[1] * LEAST_MEASURED > len(points):
         raise ValueError(
             f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}"
         )
@@ -115,7 +115,7 @@ def _measured(
 ) -> tuple[Array, tuple[float, float]]:
     """Return heights and spacing of an instrument's file, in metres, by SurfaceTopography."""
     with extra("surfaces"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", ImportWarning)  # it says that it runs without MPI
+        warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
         import SurfaceTopography
 
     try:
@@ -131,7 +131,7 @@ def _measured(
             surface = reader.topography(channel_index=index)
     except (OSError, ValueError):
         raise
-    except Exception as error:  # whatever a reader makes of a damaged file
+    except Exception as error:  # readers raise anything for a damaged file
         raise ValueError(f"{str(path)!r} cannot be read: {error}") from error
     found = unit or surface.unit
     if found not in METRES:
@@ -147,7 +147,7 @@ def _measured(
 
 
 def _said(path: Path) -> dict[str, str]:
-    """Return what comment lines ``# name: value`` say."""
+    """Return names and values of the comment lines ``# name: value``."""
     said: dict[str, str] = {}
     with path.open(encoding="utf-8", errors="replace") as file:
         for line in file:
@@ -204,13 +204,13 @@ def _matrix(path: Path, heights: npt.NDArray[Any]) -> Array:
 
 
 def _filled(path: Path, heights: Array) -> Array:
-    """Fill what is missing harmonically: smoothly from its rim, without new peaks or pits."""
+    """Return heights whose missing points are filled harmonically, without new peaks or pits."""
     missing = ~np.isfinite(heights)
     count = int(missing.sum())
     if count == 0:
         return heights
     measured = heights.size - count
-    if measured < FEWEST * heights.size:
+    if measured < LEAST_MEASURED * heights.size:
         raise ValueError(
             f"{str(path)!r} must have at least half its points measured, got {measured} of "
             f"{heights.size}"

@@ -25,7 +25,7 @@ UNITS = {
     "interface_shear": "Pa",
     "interface_tension": "Pa",
 }
-"""Units of what a solution holds, and of what studies keep of its stresses."""
+"""Units of a solution's quantities, and of the stresses that studies keep."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Scale:
         power = 2 if unit.endswith("²") else 1
         if not unit or largest == 0 or not math.isfinite(largest):
             return cls(1.0, unit)
-        # A little under 1000 is 1000 where it is printed.
+        # A number just below 1000 is printed as 1000.
         magnitude = math.floor(math.log10(abs(largest) * (1 + 1e-9)) / (3 * power)) * 3
         exponent = min(max(magnitude, min(PREFIXES)), max(PREFIXES))
         if unit in ("m", "m²"):

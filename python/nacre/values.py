@@ -1,12 +1,14 @@
 """Values of nacre as plain data, exactly: for files, and to tell one case from another.
 
-A value becomes its constructor call: ``{"Sphere": {"radius": 0.005}}``. Numbers
-keep every bit.
+A material, layer, body, grid, profile or shape becomes its constructor call:
+``{"Sphere": {"radius": 0.005}}``. Numbers keep every bit. A result, such as a solution, becomes the
+dictionary that its `to_dict` returns.
 """
 
 from __future__ import annotations
 
 import hashlib
+import inspect
 import operator
 from collections.abc import Mapping
 from typing import Any
@@ -15,26 +17,41 @@ import numpy as np
 
 import nacre._core as core
 
+FORMAT: int = core._FORMAT
+"""Number of the format in which states are written. Older ones are read, newer ones refused."""
+
 FIELDS: dict[type, tuple[str, ...]] = {
-    core.Elastic: ("young", "poisson"),
-    core.Layer: ("material", "thickness", "interface"),
-    core.HalfSpace: ("substrate", "layers"),
-    core.LogarithmicProfile: ("amplitude", "length", "flat_length", "end_factor"),
-    core.SampledProfile: ("x", "drop"),
-    core.Sphere: ("radius",),
-    core.Paraboloid: ("radius_x", "radius_y"),
-    core.Cylinder: ("radius",),
-    core.Roller: ("radius", "flat_length", "crown_radius", "length", "profile"),
-    core.FlatPunch: ("radius",),
-    core.HeightMap: ("heights", "spacing", "center"),
+    kind: tuple(inspect.signature(kind).parameters)
+    for kind in vars(core).values()
+    if isinstance(kind, type)
+    and kind is not core.Shape
+    and issubclass(
+        kind,
+        core.Elastic
+        | core.Layer
+        | core.HalfSpace
+        | core.LogarithmicProfile
+        | core.SampledProfile
+        | core.Shape,
+    )
 }
+"""Arguments of each class's constructor, which are attributes of the same names."""
+KINDS = {kind.__name__: kind for kind in FIELDS}
+RESULTS = (
+    core.Report
+    | core.Solution
+    | core.Stress
+    | core.StressSummary
+    | core.LayerStress
+    | core.InterfaceStress
+)
 
 
 def encode(value: Any, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
-    With `digest`, arrays are stood for by their shape and SHA-256, which is enough to compare.
-    Raises `TypeError` where a value is none of nacre's, nor plain.
+    With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure,
+    which is enough to compare. A value that is neither one of nacre's nor plain is a `TypeError`.
     """
 
     def of(value: Any) -> Any:
@@ -68,8 +85,10 @@ def encode(value: Any, *, digest: bool = False) -> Any:
                     "center": of(value.center),
                 }
             }
-        if isinstance(value, core.Solution):
+        if digest and isinstance(value, core.Solution):
             return {"Solution": of(value.pressure)}
+        if isinstance(value, RESULTS):
+            return of(value.to_dict())
         if type(value) in FIELDS:
             fields = {name: of(getattr(value, name)) for name in FIELDS[type(value)]}
             return {type(value).__name__: fields}
@@ -84,29 +103,69 @@ def encode(value: Any, *, digest: bool = False) -> Any:
 
 
 def reduced(value: Any) -> tuple[Any, Any]:
-    """Return how to make a value: a callable and its arguments."""
+    """Return the callable and the arguments that make a value."""
     make, arguments, *_ = value.__reduce__()
     return make, arguments
 
 
 def decode(data: Any) -> Any:
-    """Return the value that `encode` made into `data`; lists become tuples."""
+    """Return the value that `encode` made into `data`; lists become tuples.
+
+    Raises `ValueError` where a key is missing or unknown, or holds a value that does not fit.
+    """
     if isinstance(data, list):
         return tuple(decode(item) for item in data)
     if data == "rigid":
         return core.RIGID
     if not isinstance(data, dict):
         return data
+    if {"format", "nacre", "kind"} <= data.keys():
+        return _result(data)
     if len(data) == 1:
         ((name, content),) = data.items()
-        if name == "Grid.line":
-            return core.Grid.line(**content)
         if name == "sum":
-            first, second = decode(content)
+            first, second = _listed(name, content, 2)
             return first + second
         if name == "shifted":
-            shape, x, y = decode(content)
+            shape, x, y = _listed(name, content, 3)
             return shape.shifted(x, y)
-        if name == "Grid" or name in {kind.__name__ for kind in FIELDS}:
-            return getattr(core, name)(**decode(content))
+        if name == "Grid.line":
+            return _made(name, core.Grid.line, ("cells", "width", "center"), content)
+        if name == "Grid":
+            return _made(name, core.Grid, ("shape", "size", "center"), content)
+        if name in KINDS:
+            return _made(name, KINDS[name], FIELDS[KINDS[name]], content)
     return {key: decode(item) for key, item in data.items()}
+
+
+def _result(data: dict[str, Any]) -> Any:
+    for kind in RESULTS.__args__:
+        if kind.__name__ == data["kind"]:
+            return kind.from_dict(data)
+    raise ValueError(f"the key 'kind' must name a result of nacre, got {data['kind']!r}")
+
+
+def _made(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
+    """Call `make` with named arguments, all of them and no others."""
+    if not isinstance(content, dict):
+        raise ValueError(f"{name} must be a dict of named fields, got {content!r}")
+    for key in expected:
+        if key not in content:
+            raise ValueError(f"{name}: the key {key!r} is missing")
+    for key in content:
+        if key not in expected:
+            raise ValueError(f"{name}: the key {key!r} is unknown")
+    try:
+        return make(**decode(content))
+    except TypeError as error:
+        raise ValueError(f"{name}: {error}") from error
+
+
+def _listed(name: str, content: Any, length: int) -> Any:
+    if not isinstance(content, list) or len(content) != length:
+        raise ValueError(f"{name} must be a list of {length} items, got {content!r}")
+    first, *others = decode(content)
+    shapes = [first, *others] if name == "sum" else [first]
+    if not all(isinstance(shape, core.Shape) for shape in shapes):
+        raise ValueError(f"{name} must hold shapes, got {content!r}")
+    return first, *others

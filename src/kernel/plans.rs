@@ -1,5 +1,7 @@
 //! Plans of a body's kernels under pressure and traction, for cells or for strips.
 
+use std::sync::OnceLock;
+
 use super::loads::Load;
 use super::mesh::Multipliers;
 use super::plane::Plan;
@@ -13,21 +15,20 @@ pub(crate) enum Kernels {
     Plane {
         plan: Box<Plan>,
         pressure: Vec<Multipliers>,
-        /// Multipliers of traction; empty without friction.
-        traction: Vec<Multipliers>,
+        /// Multipliers of the traction, made at the first place with friction.
+        traction: OnceLock<Vec<Multipliers>>,
     },
     Line(LinePlan),
 }
 
 impl Kernels {
-    /// Plans loads P and T (where the body `slides`) on pieces down to `finest` of a cell, at offsets up
-    /// to `reach`. On the threads of the caller.
-    pub(crate) fn new<const N: usize, const M: usize, P: Load<N>, T: Load<M>>(
+    /// Plans the load P on pieces down to `finest` of a cell, at offsets up to `reach`. It runs on the threads
+    /// of the caller.
+    pub(crate) fn new<const N: usize, P: Load<N>>(
         body: &HalfSpace,
         grid: &Grid,
         finest: f64,
         reach: f64,
-        slides: bool,
     ) -> Self {
         if grid.is_line() {
             return Self::Line(LinePlan::new(body, grid, finest));
@@ -35,11 +36,7 @@ impl Kernels {
         let plan = Plan::new(body, grid.spacing(), finest, reach);
         Self::Plane {
             pressure: plan.multipliers::<N, P>(),
-            traction: if slides {
-                plan.multipliers::<M, T>()
-            } else {
-                Vec::new()
-            },
+            traction: OnceLock::new(),
             plan: Box::new(plan),
         }
     }

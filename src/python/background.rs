@@ -1,5 +1,5 @@
-//! Work on a thread of its own, while Python's own looks for Ctrl-C: whatever the work is at, a signal
-//! is seen within [`ASKED`]. What was interrupted ends by itself, at its next iteration.
+//! Work on a thread of its own, while Python's thread looks for Ctrl-C. A signal is seen within
+//! [`POLL_INTERVAL`], whatever the work does; interrupted work ends by itself, at its next iteration.
 
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
@@ -12,24 +12,24 @@ use std::time::Duration;
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 
-/// How often Ctrl-C is looked for.
-const ASKED: Duration = Duration::from_millis(50);
+/// Time between two looks for Ctrl-C: short enough to feel immediate, long enough to cost nothing.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 enum Message<M, T> {
-    /// Arguments of the callback, and whether its answer counts.
+    /// Arguments for the callback, and whether its answer counts.
     Told(M, bool),
     Done(T),
 }
 
-/// What the work asks whether to go on.
+/// Link of the work to its caller: it tells progress, and asks whether to go on.
 pub(super) struct Caller<M> {
     stopped: Arc<AtomicBool>,
-    /// Calls Python's callback, and says whether to go on.
+    /// Calls Python's callback and returns whether to go on.
     callback: Option<Box<dyn FnMut(M, bool) -> bool + Send>>,
 }
 
 impl<M> Caller<M> {
-    /// Whether nobody has interrupted.
+    /// Break if the work was interrupted.
     pub(super) fn go_on(&self) -> ControlFlow<()> {
         if self.stopped.load(Ordering::Relaxed) {
             ControlFlow::Break(())
@@ -38,7 +38,7 @@ impl<M> Caller<M> {
         }
     }
 
-    /// Whether neither anybody has interrupted nor the callback, if there is one, says to stop.
+    /// Calls the callback, if there is one. Break if it says to stop, or the work was interrupted.
     pub(super) fn ask(&mut self, message: impl FnOnce() -> M) -> ControlFlow<()> {
         if let Some(callback) = &mut self.callback
             && !callback(message(), true)
@@ -48,7 +48,7 @@ impl<M> Caller<M> {
         self.go_on()
     }
 
-    /// Calls the callback, if there is one, whatever it returns.
+    /// Calls the callback, if there is one, and ignores its result.
     pub(super) fn tell(&mut self, message: impl FnOnce() -> M) {
         if let Some(callback) = &mut self.callback {
             callback(message(), false);
@@ -56,7 +56,7 @@ impl<M> Caller<M> {
     }
 }
 
-/// What `work` returns. `callback` is called on this thread with the arguments that it tells.
+/// Result of `work`, which runs on a thread of its own. `callback` is called on this thread.
 pub(super) fn run<M, T>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
@@ -73,7 +73,7 @@ where
     let mut caller = Caller {
         stopped: Arc::clone(&stopped),
         callback: callback.is_some().then(|| {
-            // Where nobody listens any more, it was interrupted.
+            // After an interrupt nobody listens any more.
             Box::new(move |message, asks| {
                 told.send(Message::Told(message, asks)).is_ok() && answers.recv().unwrap_or(false)
             }) as Box<dyn FnMut(M, bool) -> bool + Send>
@@ -82,12 +82,12 @@ where
     let worker = thread::Builder::new().name("nacre".into()).spawn(move || {
         let done = work(&mut caller);
         drop(caller);
-        // Nobody waits for what was interrupted.
+        // After an interrupt nobody waits for the result.
         let _ = sender.send(Message::Done(done));
     })?;
     let outcome = loop {
         let messages = &mut messages;
-        match py.detach(move || messages.recv_timeout(ASKED)) {
+        match py.detach(move || messages.recv_timeout(POLL_INTERVAL)) {
             Ok(Message::Done(done)) => break Ok(done),
             Ok(Message::Told(message, asks)) => match tell(py, callback.as_ref(), message, asks) {
                 Ok(go_on) => {
@@ -102,7 +102,7 @@ where
             }
             Err(RecvTimeoutError::Disconnected) => match worker.join() {
                 Err(panic) => resume_unwind(panic),
-                Ok(()) => unreachable!("it sends what it has done"),
+                Ok(()) => unreachable!("the worker sends its result before it ends"),
             },
         }
     };
@@ -110,7 +110,7 @@ where
     outcome.and_then(|done| py.check_signals().map(|()| done))
 }
 
-/// Whether the callback says to go on, where it was asked.
+/// Calls the callback; returns whether to go on.
 fn tell<M: for<'py> PyCallArgs<'py>>(
     py: Python<'_>,
     callback: Option<&Py<PyAny>>,

@@ -4,9 +4,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arrays::{Repr, hash};
+use super::arguments::{Repr, hash};
+use super::words::Word;
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
-use crate::error::Error;
 use crate::material::Elastic;
 use crate::response::Body;
 
@@ -22,7 +22,7 @@ use crate::response::Body;
 /// Raises
 /// ------
 /// ValueError
-///     If either is out of range.
+///     If a constant is out of range.
 ///
 /// Examples
 /// --------
@@ -85,7 +85,7 @@ fn elastic_repr(material: &Elastic) -> String {
     )
 }
 
-/// The type of `nacre.RIGID`, a rigid base.
+/// Type of `nacre.RIGID`, a rigid base.
 #[pyclass(name = "Rigid", module = "nacre", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyRigid;
@@ -101,22 +101,22 @@ impl PyRigid {
     }
 }
 
-/// One layer of uniform thickness, and the interface below it.
+/// A layer of uniform thickness, and the interface below it.
 ///
 /// Parameters
 /// ----------
 /// material : Elastic
-///     What it is made of.
+///     Material of the layer.
 /// thickness : float
-///     Its thickness [m], above 0.
+///     Thickness [m], above 0.
 /// interface : {"bonded", "frictionless"}, optional
-///     How it is joined to what lies below: displacement and traction continuous, or slipping
-///     freely without ever opening.
+///     Interface below the layer. At a bonded one displacement and traction are continuous; a
+///     frictionless one slips freely and never opens.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If the thickness is not finite and above 0, or the interface is another word.
+///     If the thickness is not finite and above 0, or there is no such interface.
 ///
 /// Examples
 /// --------
@@ -132,42 +132,28 @@ impl PyLayer {
     #[new]
     #[pyo3(signature = (material, thickness, interface="bonded"))]
     fn new(material: PyElastic, thickness: f64, interface: &str) -> PyResult<Self> {
-        let interface = match interface {
-            "bonded" => Interface::Bonded,
-            "frictionless" => Interface::Frictionless,
-            other => {
-                return Err(Error::Choice {
-                    name: "interface",
-                    requirement: "\"bonded\" or \"frictionless\"",
-                    value: other.into(),
-                }
-                .into());
-            }
-        };
+        let interface = Interface::from_word(interface)?;
         Ok(Self(
             Layer::new(material.0, thickness)?.with_interface(interface),
         ))
     }
 
-    /// What it is made of.
+    /// Material of the layer.
     #[getter]
     fn material(&self) -> PyElastic {
         PyElastic(self.0.material())
     }
 
-    /// Its thickness [m].
+    /// Thickness [m].
     #[getter]
     fn thickness(&self) -> f64 {
         self.0.thickness()
     }
 
-    /// How it is joined to what lies below.
+    /// Interface below the layer: "bonded" or "frictionless".
     #[getter]
     fn interface(&self) -> &'static str {
-        match self.0.interface() {
-            Interface::Bonded => "bonded",
-            Interface::Frictionless => "frictionless",
-        }
+        self.0.interface().word()
     }
 
     fn __repr__(&self) -> String {
@@ -193,9 +179,9 @@ impl PyLayer {
 /// Parameters
 /// ----------
 /// substrate : Elastic or nacre.RIGID
-///     What lies below the layers.
+///     Material below the layers.
 /// layers : sequence of Layer, optional
-///     From the surface down.
+///     Layers from the surface down.
 ///
 /// Raises
 /// ------
@@ -213,7 +199,7 @@ impl PyLayer {
 pub(super) struct PyHalfSpace(pub(super) HalfSpace);
 
 impl PyHalfSpace {
-    /// The stack of layers that a body is, as all bodies of Python are.
+    /// Half-space of a body; every body that Python makes is one.
     pub(super) fn of(body: &Body) -> Self {
         match body.half_space() {
             Some(layers) => Self(layers.clone()),
@@ -231,7 +217,7 @@ impl PyHalfSpace {
         Ok(Self(HalfSpace::new(self::substrate(substrate)?, layers)?))
     }
 
-    /// What lies below the layers: an `Elastic`, or `nacre.RIGID`.
+    /// Material below the layers: an `Elastic`, or `nacre.RIGID`.
     #[getter]
     fn substrate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match self.0.substrate() {
@@ -240,7 +226,7 @@ impl PyHalfSpace {
         }
     }
 
-    /// The layers, from the surface down.
+    /// Layers from the surface down.
     #[getter]
     fn layers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.layers().iter().map(|layer| PyLayer(*layer)))
@@ -278,7 +264,7 @@ impl PyHalfSpace {
     }
 }
 
-/// The substrate that a caller gave.
+/// Substrate from an argument.
 pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
     if object.cast::<PyRigid>().is_ok() {
         return Ok(Substrate::Rigid);
@@ -292,7 +278,7 @@ pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {
     }
 }
 
-/// The body that a caller gave: a half-space, or a material that fills one.
+/// Body from an argument: a half-space, or a material that fills one.
 pub(super) fn body(object: &Bound<'_, PyAny>) -> PyResult<HalfSpace> {
     if let Ok(body) = object.extract::<PyHalfSpace>() {
         return Ok(body.0);

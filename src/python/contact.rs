@@ -3,73 +3,42 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use super::arrays::count;
+use super::arguments::keywords::{
+    self, Keywords, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
+    search_signature, single_docs, single_signature,
+};
 use super::background::{self, Caller};
-use super::batch;
 use super::bodies::{PyHalfSpace, body};
-use super::call::{Call, options};
 use super::grid::PyGrid;
-use super::solution::PySolution;
+use super::shapes::{Shape, shape};
+use super::solution::{PyReport, PySolution};
+use super::words::method_words;
 use crate::body::HalfSpace;
-use crate::contact::{Contact, Setup, choose_grid};
-use crate::error::Error;
-use crate::influence::Method;
+use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, choose_grid};
 use crate::response::Body;
 
-/// The method of that name.
-pub(super) fn method(word: &str, refinement: usize) -> PyResult<Method> {
-    Ok(match word {
-        "exact" => Method::Exact,
-        "plain" => Method::Plain { refinement },
-        "difference" => Method::Difference { refinement },
-        "image" => Method::Image { refinement },
-        other => {
-            return Err(Error::Choice {
-                name: "method",
-                requirement: "\"exact\", \"plain\", \"difference\" or \"image\"",
-                value: other.into(),
-            }
-            .into());
-        }
-    })
-}
-
-/// Name and refinement of a method.
-pub(super) fn method_words(method: Method) -> (&'static str, usize) {
-    match method {
-        Method::Exact => ("exact", REFINEMENT),
-        Method::Plain { refinement } => ("plain", refinement),
-        Method::Difference { refinement } => ("difference", refinement),
-        Method::Image { refinement } => ("image", refinement),
-    }
-}
-
-const REFINEMENT: usize = 4;
+mod batch;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     The body that the shape is pressed into.
+///     Body that the shape is pressed into.
 /// grid : Grid
-///     The cells.
+///     Cells of the pressure.
 /// counterbody : HalfSpace or Elastic, optional
-///     The body that carries the shape; rigid where there is none.
-/// method : {"exact", "plain", "difference", "image"}, optional
-///     How influence coefficients are computed; see `influence_coefficients`.
-/// refinement : int, optional
-///     Refinement of the spectral mesh of the conversions, 4 by default.
-/// threads : int, optional
-///     Threads that belong to the plan; all of the machine's by default.
+///     Body that carries the shape; rigid where there is none.
+#[doc = plan_docs!()]
 ///
 /// Raises
 /// ------
 /// ValueError
 ///     If an argument is out of range.
 /// MemoryError
-///     If the grid does not fit: a plan and a solve take up to 160 bytes a cell.
+///     If the grid does not fit into memory: a plan and a solve take up to 160 bytes a cell.
 ///
 /// Examples
 /// --------
@@ -83,39 +52,35 @@ pub(super) struct PyContact {
     contact: Arc<Contact>,
 }
 
-fn setup(
-    counterbody: Option<&Bound<'_, PyAny>>,
-    method: &str,
-    refinement: Option<&Bound<'_, PyAny>>,
-    threads: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Setup> {
-    let refinement = refinement.map_or(Ok(REFINEMENT), |r| count("refinement", 1, r))?;
+fn setup(counterbody: Option<&Bound<'_, PyAny>>, keywords: &Keywords) -> PyResult<Setup> {
+    let (method, threads) = keywords::plan(keywords)?;
     Ok(Setup {
         counterbody: counterbody.map(body).transpose()?.map(Body::from),
-        method: self::method(method, refinement)?,
-        threads: threads
-            .map(|value| count("threads", 1, value))
-            .transpose()?,
+        method,
+        threads,
     })
 }
 
-type NewArguments = (PyHalfSpace, PyGrid, Option<PyHalfSpace>);
-type NewKeywords = std::collections::BTreeMap<&'static str, Py<PyAny>>;
+/// Positional arguments of the constructor.
+type Arguments = (PyHalfSpace, PyGrid, Option<PyHalfSpace>);
 
 #[pymethods]
 impl PyContact {
     #[new]
-    #[pyo3(signature = (body, grid, counterbody=None, *, method="exact", refinement=None, threads=None))]
-    fn new(
-        py: Python<'_>,
+    #[pyo3(
+        signature = (body, grid, counterbody=None, **keywords),
+        text_signature = "(body, grid, counterbody=None, *, method='exact', refinement=None, threads=None)"
+    )]
+    fn new<'py>(
+        py: Python<'py>,
         #[pyo3(from_py_with = body)] body: HalfSpace,
         grid: PyGrid,
-        counterbody: Option<&Bound<'_, PyAny>>,
-        method: &str,
-        refinement: Option<&Bound<'_, PyAny>>,
-        threads: Option<&Bound<'_, PyAny>>,
+        counterbody: Option<&Bound<'py, PyAny>>,
+        keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
-        let setup = setup(counterbody, method, refinement, threads)?;
+        let keywords = Keywords::new(py, keywords)?;
+        let setup = setup(counterbody, &keywords)?;
+        keywords.finish("keywords of Contact")?;
         let contact = background::run(py, None, move |_: &mut Caller<()>| {
             Contact::plan(&body, grid.0, setup)
         })??;
@@ -124,13 +89,13 @@ impl PyContact {
         })
     }
 
-    /// The body that the shape is pressed into.
+    /// Body that the shape is pressed into.
     #[getter]
     fn body(&self) -> PyHalfSpace {
         PyHalfSpace::of(self.contact.body())
     }
 
-    /// The body that carries the shape; rigid where `None`.
+    /// Body that carries the shape; rigid where `None`.
     #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
         self.contact
@@ -140,58 +105,38 @@ impl PyContact {
             .map(PyHalfSpace::of)
     }
 
-    /// The cells.
+    /// Cells of the pressure.
     #[getter]
     fn grid(&self) -> PyGrid {
         PyGrid(*self.contact.grid())
     }
 
-    /// How influence coefficients are computed.
+    /// Method by which influence coefficients are computed.
     #[getter]
     fn method(&self) -> &'static str {
         method_words(self.contact.setup().method).0
     }
 
-    /// Threads of the plan.
+    /// Number of threads of the plan.
     #[getter]
     fn threads(&self) -> usize {
         self.contact.convolution().threads()
     }
 
+    #[doc = concat!("solve($self, shape, *, ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
     /// Presses `shape` into the body.
     ///
-    /// Each of the three freedoms of the rigid motion is prescribed or loaded, in any mixture:
-    /// exactly one of `load` and `approach`, and along x and along y at most one of
-    /// `eccentricity`, `moment` and `tilt`; with none of them the tilt is locked at 0.
+    /// Each of the three freedoms of the rigid motion is prescribed or loaded, in any mixture. Exactly
+    /// one of `load` and `approach` is given, and along x and along y at most one of `eccentricity`,
+    /// `moment` and `tilt`; with none of them the tilt is locked at 0.
     ///
     /// Parameters
     /// ----------
     /// shape : Shape
-    ///     What is pressed in.
-    /// load : float, optional
-    ///     Force W [N], above 0.
-    /// approach : float, optional
-    ///     Approach of the origin [m], from the datum h = 0.
-    /// eccentricity : tuple of float or None, optional
-    ///     Where the load acts, ``(e_x, e_y)`` [m].
-    /// moment : tuple of float or None, optional
-    ///     First moments of the pressure about the origin [N m].
-    /// tilt : tuple of float or None, optional
-    ///     Slopes ``(s_x, s_y)``.
-    /// tolerance : float, optional
-    ///     Largest residual and overlap of a converged solution.
-    /// max_iterations : int, optional
-    ///     Iterations after which to give up; 10 000 by default.
-    /// algorithm : {"cascade", "polonsky-keer"}, optional
-    ///     Preconditioned conjugate gradients on nested grids, in a window around the contact; or
-    ///     the paper's solver (doi:10.1016/S0043-1648(99)00113-1), as a reference.
-    /// initial : Solution or array_like, optional
-    ///     Pressure to start from ``(nx, ny)`` [Pa].
-    /// progress : callable, optional
-    ///     Called with a `Report` at each iteration; returning False stops, and gives the
-    ///     unfinished solution.
-    /// check : bool, optional
-    ///     Whether to raise where the tolerance was not met.
+    ///     Shape that is pressed in.
+    #[doc = motion_docs!()]
+    #[doc = search_docs!()]
+    #[doc = single_docs!()]
     ///
     /// Returns
     /// -------
@@ -211,72 +156,41 @@ impl PyContact {
     /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
     /// >>> contact.solve(nacre.Sphere(5e-3), approach=-1e-6).load
     /// 0.0
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "keywords of the public signature"
-    )]
-    #[pyo3(signature = (shape, *, load=None, approach=None, eccentricity=None, moment=None, tilt=None,
-        tolerance=1e-8, max_iterations=None, algorithm="cascade", initial=None, progress=None,
-        check=true))]
+    #[pyo3(signature = (shape, **keywords), text_signature = None)]
     fn solve<'py>(
         &self,
         py: Python<'py>,
         shape: &Bound<'py, PyAny>,
-        load: Option<&Bound<'py, PyAny>>,
-        approach: Option<&Bound<'py, PyAny>>,
-        eccentricity: Option<&Bound<'py, PyAny>>,
-        moment: Option<&Bound<'py, PyAny>>,
-        tilt: Option<&Bound<'py, PyAny>>,
-        tolerance: f64,
-        max_iterations: Option<&Bound<'py, PyAny>>,
-        algorithm: &str,
-        initial: Option<&Bound<'py, PyAny>>,
-        progress: Option<&Bound<'py, PyAny>>,
-        check: bool,
+        keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<PySolution> {
-        let call = Call::new(
-            shape,
-            load,
-            approach,
-            eccentricity,
-            moment,
-            tilt,
-            tolerance,
-            max_iterations,
-            algorithm,
-            initial,
-            progress,
-            check,
-        )?;
+        let keywords = Keywords::new(py, keywords)?;
+        let call = Call::new(shape, &keywords)?;
+        keywords.finish("keywords of Contact.solve")?;
         let contact = Arc::clone(&self.contact);
         call.run(py, move |shape, motion, options, progress| {
             contact.solve_watched(shape, motion, options, progress)
         })
     }
 
+    #[doc = concat!("solve_many($self, cases, *, ", search_signature!(), ", progress=None, check=True)\n--\n")]
     /// Solves many load cases side by side, each on a thread of its own.
     ///
     /// Parameters
     /// ----------
     /// cases : iterable of mapping
-    ///     Of each case, `shape` and the keywords of `solve` that say how it is pressed: `load`,
+    ///     Cases, each with `shape` and the keywords of `solve` that say how it is pressed: `load`,
     ///     `approach`, `eccentricity`, `moment`, `tilt`.
-    /// tolerance : float, optional
-    ///     Largest residual and overlap of a converged solution.
-    /// max_iterations : int, optional
-    ///     Iterations of one case after which to give up; 10 000 by default.
-    /// algorithm : {"cascade", "polonsky-keer"}, optional
-    ///     As in `solve`.
+    #[doc = search_docs!()]
     /// progress : callable, optional
-    ///     Called with the number of finished cases and of all, at most 50 times a second, and at
-    ///     the end. What it returns is ignored.
+    ///     Function that is called with the number of finished cases and of all cases, at most 50 times
+    ///     a second, and at the end. Its result is ignored.
     /// check : bool, optional
-    ///     Whether to raise where the tolerance was not met.
+    ///     Whether to raise an error if the tolerance was not met.
     ///
     /// Returns
     /// -------
     /// list of Solution
-    ///     In the order of the cases; each is that of `solve` to the bit.
+    ///     Solutions in the order of the cases; each has the bits that `solve` gives.
     ///
     /// Raises
     /// ------
@@ -289,11 +203,12 @@ impl PyContact {
     ///
     /// Notes
     /// -----
-    /// Once it solves, every exception that ends it, `KeyboardInterrupt` included, carries what was
-    /// finished as `solutions`: a list in the order of the cases, with `None` for those that were not.
+    /// Once the solves have begun, every exception that ends them, `KeyboardInterrupt` included, carries
+    /// the finished ones as `solutions`: a list in the order of the cases, with `None` for a case that
+    /// is not finished.
     ///
-    /// Under a load, successive cases of which the shape is the same object share its undeformed gap:
-    /// they take two thirds of the memory.
+    /// Under a load, successive cases whose shape is the same object share its undeformed gap: they take
+    /// two thirds of the memory.
     ///
     /// Examples
     /// --------
@@ -303,23 +218,18 @@ impl PyContact {
     /// >>> cases = [{"shape": ball, "load": load} for load in (5.0, 10.0)]
     /// >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
     /// [5.0, 10.0]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "keywords of the public signature"
-    )]
-    #[pyo3(signature = (cases, *, tolerance=1e-8, max_iterations=None, algorithm="cascade", progress=None,
-        check=true))]
-    fn solve_many(
+    #[pyo3(signature = (cases, **keywords), text_signature = None)]
+    fn solve_many<'py>(
         &self,
-        py: Python<'_>,
-        cases: &Bound<'_, PyAny>,
-        tolerance: f64,
-        max_iterations: Option<&Bound<'_, PyAny>>,
-        algorithm: &str,
-        progress: Option<&Bound<'_, PyAny>>,
-        check: bool,
+        py: Python<'py>,
+        cases: &Bound<'py, PyAny>,
+        keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Vec<Py<PySolution>>> {
-        let options = options(tolerance, max_iterations, algorithm, None)?;
+        let keywords = Keywords::new(py, keywords)?;
+        let options = keywords::options(&keywords)?;
+        let progress = keywords.callable("progress")?;
+        let check = keywords.flag("check", true)?;
+        keywords.finish("keywords of Contact.solve_many")?;
         batch::solve_many(py, &self.contact, cases, options, progress, check)
     }
 
@@ -343,56 +253,38 @@ impl PyContact {
         )
     }
 
-    fn __getnewargs_ex__(&self, py: Python<'_>) -> PyResult<(NewArguments, NewKeywords)> {
-        let (method, refinement) = method_words(self.contact.setup().method);
-        let keywords = [
-            ("method", method.into_pyobject(py)?.into_any().unbind()),
-            (
-                "refinement",
-                refinement.into_pyobject(py)?.into_any().unbind(),
-            ),
-            (
-                "threads",
-                self.contact
-                    .setup()
-                    .threads
-                    .into_pyobject(py)?
-                    .into_any()
-                    .unbind(),
-            ),
-        ];
-        Ok((
-            (self.body(), self.grid(), self.counterbody()),
-            keywords.into(),
-        ))
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Arguments, Bound<'py, PyDict>)> {
+        let setup = self.contact.setup();
+        let (method, refinement) = method_words(setup.method);
+        let keywords = PyDict::new(py);
+        keywords.set_item("method", method)?;
+        keywords.set_item("refinement", refinement)?;
+        keywords.set_item("threads", setup.threads)?;
+        Ok(((self.body(), self.grid(), self.counterbody()), keywords))
     }
 }
 
+#[doc = concat!("solve(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
 /// Presses a shape into a body, in one call: chooses a grid where none is given, plans, solves.
 ///
-/// The grid is a height map's own; else it has 64 cells across the narrower width of the contact,
-/// oblong where the contact is long, and a margin of a quarter of the contact on every side.
+/// By default the grid of a height map is its own. Any other shape gets a grid with 64 cells across the
+/// narrower width of the contact, oblong where the contact is long, and a margin of a quarter of the
+/// contact on every side.
 ///
 /// Parameters
 /// ----------
 /// shape : Shape
-///     What is pressed in.
+///     Shape that is pressed in.
 /// body : HalfSpace or Elastic
-///     What it is pressed into.
+///     Body that it is pressed into.
 /// counterbody : HalfSpace or Elastic, optional
-///     The body that carries the shape; rigid where there is none.
+///     Body that carries the shape; rigid where there is none.
 /// grid : Grid, optional
-///     The cells. A shape without end, as a cylinder, needs one.
-/// method : {"exact", "plain", "difference", "image"}, optional
-///     How influence coefficients are computed; see `influence_coefficients`.
-/// refinement : int, optional
-///     Refinement of the spectral mesh of the conversions, 4 by default.
-/// threads : int, optional
-///     All of the machine's by default.
-/// load, approach, eccentricity, moment, tilt : optional
-///     What is asked of the rigid motion; see `Contact.solve`.
-/// tolerance, max_iterations, algorithm, initial, progress, check : optional
-///     How it is found; see `Contact.solve`.
+///     Cells of the pressure. An endless shape, such as a cylinder, needs a grid.
+#[doc = plan_docs!()]
+#[doc = motion_docs!()]
+#[doc = search_docs!()]
+#[doc = single_docs!()]
 ///
 /// Returns
 /// -------
@@ -406,6 +298,10 @@ impl PyContact {
 /// ConvergenceError
 ///     If the tolerance was not met; the unfinished solution is its `solution`.
 ///
+/// See Also
+/// --------
+/// Contact.solve : explains the freedoms of the motion.
+///
 /// Examples
 /// --------
 /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
@@ -415,51 +311,20 @@ impl PyContact {
 /// >>> solution = nacre.solve(roller, body, load=1e3, eccentricity=(2.87e-3, None))
 /// >>> round(solution.eccentricity[0], 8)
 /// 0.00287
-#[expect(
-    clippy::too_many_arguments,
-    reason = "keywords of the public signature"
-)]
 #[pyfunction]
-#[pyo3(signature = (shape, body, counterbody=None, *, grid=None, method="exact", refinement=None,
-    threads=None, load=None, approach=None, eccentricity=None, moment=None, tilt=None,
-    tolerance=1e-8, max_iterations=None, algorithm="cascade", initial=None, progress=None,
-    check=true))]
+#[pyo3(signature = (shape, body, counterbody=None, **keywords), text_signature = None)]
 pub(super) fn solve<'py>(
     py: Python<'py>,
     shape: &Bound<'py, PyAny>,
     #[pyo3(from_py_with = body)] body: HalfSpace,
     counterbody: Option<&Bound<'py, PyAny>>,
-    grid: Option<PyGrid>,
-    method: &str,
-    refinement: Option<&Bound<'py, PyAny>>,
-    threads: Option<&Bound<'py, PyAny>>,
-    load: Option<&Bound<'py, PyAny>>,
-    approach: Option<&Bound<'py, PyAny>>,
-    eccentricity: Option<&Bound<'py, PyAny>>,
-    moment: Option<&Bound<'py, PyAny>>,
-    tilt: Option<&Bound<'py, PyAny>>,
-    tolerance: f64,
-    max_iterations: Option<&Bound<'py, PyAny>>,
-    algorithm: &str,
-    initial: Option<&Bound<'py, PyAny>>,
-    progress: Option<&Bound<'py, PyAny>>,
-    check: bool,
+    keywords: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<PySolution> {
-    let setup = setup(counterbody, method, refinement, threads)?;
-    let call = Call::new(
-        shape,
-        load,
-        approach,
-        eccentricity,
-        moment,
-        tilt,
-        tolerance,
-        max_iterations,
-        algorithm,
-        initial,
-        progress,
-        check,
-    )?;
+    let keywords = Keywords::new(py, keywords)?;
+    let grid: Option<PyGrid> = keywords.object("grid", "a nacre.Grid")?;
+    let setup = setup(counterbody, &keywords)?;
+    let call = Call::new(shape, &keywords)?;
+    keywords.finish("keywords of solve")?;
     let body = Body::from(body);
     call.run(py, move |shape, motion, options, progress| {
         let grid = match grid {
@@ -468,4 +333,51 @@ pub(super) fn solve<'py>(
         };
         Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
     })
+}
+
+/// Arguments that `solve` and `Contact.solve` share.
+struct Call {
+    shape: Shape,
+    motion: Motion,
+    options: Options,
+    progress: Option<Py<PyAny>>,
+    check: bool,
+}
+
+impl Call {
+    fn new(shape: &Bound<'_, PyAny>, keywords: &Keywords) -> PyResult<Self> {
+        let motion = keywords::motion(keywords)?;
+        let (options, progress, check) = keywords::single(keywords)?;
+        Ok(Self {
+            shape: self::shape(shape)?.get().0.clone(),
+            motion,
+            options,
+            progress,
+            check,
+        })
+    }
+
+    /// Runs `work` in the background; Ctrl-C and the callback can stop it.
+    fn run(
+        self,
+        py: Python<'_>,
+        work: impl FnOnce(&Shape, &Motion, &Options, &mut Progress) -> crate::Result<Solution>
+        + Send
+        + 'static,
+    ) -> PyResult<PySolution> {
+        let Self {
+            shape,
+            motion,
+            options,
+            progress,
+            check,
+        } = self;
+        let tolerance = options.tolerance;
+        let solution = background::run(py, progress, move |caller| {
+            work(&shape, &motion, &options, &mut |report| {
+                caller.ask(|| (PyReport(report.clone()),))
+            })
+        })?;
+        PySolution::finished(py, solution?, tolerance, check)
+    }
 }

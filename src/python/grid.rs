@@ -4,10 +4,10 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arrays::{count, hash, read_only};
+use super::arguments::{count, hash, read_only};
 use crate::grid::Grid;
 
-/// A uniform grid of rectangular cells, over each of which the pressure is constant.
+/// A uniform grid of rectangular cells, with constant pressure over each.
 ///
 /// Cell centres are ``x_i = center_x - lx/2 + (i + 1/2) dx``, ``dx = lx/nx``.
 ///
@@ -42,25 +42,25 @@ impl PyGrid {
         Ok(Self(Grid::new(shape, size)?.centered_at(center)?))
     }
 
-    /// The grid of a line contact: strips along y, endless along x, in plane strain.
+    /// Grid of a line contact: strips side by side along y, endless along x, in plane strain.
     ///
     /// Its shape is ``(1, cells)``, and loads on it are per unit length along x [N/m]. In plane
-    /// strain the displacement of an elastic half-space grows without end: it is relative to that
-    /// of the substrate's surface at a distance `width` from the load, and so is the approach.
+    /// strain the displacement of an elastic half-space has no limit at a distance. Displacement and
+    /// approach are therefore relative to the substrate's surface at a distance `width` from the load.
     ///
     /// Parameters
     /// ----------
     /// cells : int
     ///     Number of strips, at least 2.
     /// width : float
-    ///     Width of all of them together [m].
+    ///     Width of all strips together [m].
     /// center : float, optional
     ///     Centre along y [m].
     ///
     /// Returns
     /// -------
     /// Grid
-    ///     The grid.
+    ///     Grid of strips.
     ///
     /// Raises
     /// ------
@@ -134,7 +134,7 @@ impl PyGrid {
         hash(&self.__repr__())
     }
 
-    /// How to make it again: a callable and its arguments.
+    /// Callable and arguments that make the grid again.
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {

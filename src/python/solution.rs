@@ -1,22 +1,34 @@
-//! `nacre.Solution`.
+//! `nacre.Solution` and `nacre.Report`.
 
+use std::ffi::CString;
 use std::sync::Arc;
 
 use ndarray::Array2;
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::arrays::{read_only, real_matrix};
+use super::arguments::keywords::Keywords;
+use super::arguments::{count, read_only};
 use super::background::{self, Caller};
 use super::bodies::PyHalfSpace;
-use super::evaluation::{self, Keywords};
-use super::report::PyReport;
-use super::stress::{PyStress, field};
-use super::summary::PyStressSummary;
-use crate::contact::Solution;
-use crate::stress::Limits;
+use super::errors::{ConvergenceError, NacreWarning};
+use super::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
+use super::stress::keywords::{
+    options, progress_docs, run_signature, section, section_docs, section_signature, strength_docs,
+    strength_signature, strengths, threads_docs, traction_docs, traction_signature, watched,
+};
+use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
+use super::words::Word;
+use crate::contact::{Report, Solution, Termination};
+use crate::error::Error;
+use crate::stress::Member;
+
+mod report;
+
+pub(super) use report::PyReport;
 
 /// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 ///
@@ -46,12 +58,44 @@ impl From<Solution> for PySolution {
 }
 
 impl PySolution {
-    pub(super) fn pressure_field(&self) -> &Array2<f64> {
-        &self.solution.pressure
+    /// Solution whose warnings were issued.
+    ///
+    /// # Errors
+    /// With `check`, a `ConvergenceError` if the tolerance was not met.
+    pub(super) fn finished(
+        py: Python<'_>,
+        solution: Solution,
+        tolerance: f64,
+        check: bool,
+    ) -> PyResult<Self> {
+        let category = py.get_type::<NacreWarning>();
+        for warning in &solution.report.warnings {
+            let message = CString::new(warning.to_string())?;
+            PyErr::warn(py, &category, &message, 1)?;
+        }
+        if !check || solution.report.termination != Termination::IterationLimit {
+            return Ok(solution.into());
+        }
+        let Report {
+            iterations,
+            residual,
+            overlap,
+            ..
+        } = solution.report;
+        let message = Error::NotConverged {
+            iterations,
+            residual,
+            overlap,
+            tolerance,
+        };
+        let error = ConvergenceError::new_err(message.to_string());
+        let unfinished = Bound::new(py, Self::from(solution))?;
+        error.value(py).setattr("solution", unfinished)?;
+        Err(error)
     }
 }
 
-/// The array of `cell`: that of `field`, at the first use.
+/// Array in `cell`, which is made from `field` at the first use.
 fn cached<'py>(
     py: Python<'py>,
     cell: &PyOnceLock<Py<PyArray2<f64>>>,
@@ -69,7 +113,7 @@ impl PySolution {
         cached(py, &self.pressure, || self.solution.pressure.clone())
     }
 
-    /// Gap [m]: 0 in contact, within the tolerance; +inf where the shape cannot touch.
+    /// Gap [m]: 0 in contact, within the tolerance, and +inf where the shape cannot touch.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         cached(py, &self.gap, || py.detach(|| self.solution.gap()))
@@ -107,7 +151,7 @@ impl PySolution {
         self.solution.load()
     }
 
-    /// Where the force acts, ``(e_x, e_y)`` [m]; the origin where there is none.
+    /// Point where the force acts, ``(e_x, e_y)`` [m]; the origin where there is no force.
     #[getter]
     fn eccentricity(&self) -> (f64, f64) {
         self.solution.eccentricity().into()
@@ -137,7 +181,7 @@ impl PySolution {
         self.solution.contact_area()
     }
 
-    /// Ends of the contact ``((x0, x1), (y0, y1))`` [m], within a fraction of a cell.
+    /// Ends of the contact ``((x0, x1), (y0, y1))`` [m], accurate to a fraction of a cell.
     #[getter]
     fn contact_extent(&self) -> ((f64, f64), (f64, f64)) {
         let [x, y] = self.solution.contact_extent();
@@ -168,16 +212,16 @@ impl PySolution {
         read_only(py, self.solution.line_load())
     }
 
-    /// The exact tangent stiffness ``(3, 3)`` of ``(sum p dA, sum p x dA, sum p y dA)``.
+    /// Exact tangent stiffness ``(3, 3)`` of ``(sum p dA, sum p x dA, sum p y dA)``.
     ///
-    /// Its columns are the derivatives with respect to the approach [m] and the slopes ``s_x``,
-    /// ``s_y``, of the discrete contact; symmetric. The second row is the couple about y in which
-    /// force at positive x is positive. All zero where nothing touches.
+    /// The columns are the derivatives of the discrete contact with respect to the approach [m] and the
+    /// slopes ``s_x`` and ``s_y``. The matrix is symmetric. The second row is the couple about y, to
+    /// which force at positive x contributes positively. All elements are 0 where nothing touches.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     In N/m, N and N m.
+    ///     Stiffness in N/m, N and N m.
     ///
     /// Raises
     /// ------
@@ -186,7 +230,7 @@ impl PySolution {
     ///
     /// Examples
     /// --------
-    /// Of a sphere on a half-space, dW/dδ = 2 E* a:
+    /// For a sphere on a half-space, dW/dδ = 2 E* a:
     ///
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
@@ -205,34 +249,20 @@ impl PySolution {
         ))
     }
 
+    #[doc = concat!("stress($self, z, *, body='body', ", section_signature!(), ", ", traction_signature!(), ", ", run_signature!(), ")\n--\n")]
     /// Stress below the surface, at any depth of either body.
     ///
     /// Parameters
     /// ----------
     /// z : float or array_like
     ///     Depths into the body, at least 0 [m].
-    /// side : {"below", "above"}, optional
-    ///     The side that a depth on an interface is on.
     /// body : {"body", "counterbody"}, optional
-    ///     Which of the two; in the counterbody z points into it, and x and y are the same.
-    /// x, y : float, optional
-    ///     A vertical section: only the line ``x = const`` or ``y = const`` of every depth is kept,
-    ///     by linear interpolation between cell centres; only a point where both are given.
-    /// friction : float, optional
-    ///     Coefficient of friction: adds the traction ``friction * pressure``.
-    /// direction : tuple of float, optional
-    ///     Direction of the traction on the body, of any length, along x by default; the counterbody
-    ///     gets the opposite.
-    /// residual : dict or sequence, optional
-    ///     Residual stress [Pa], equal along x and y, that is added in a layer: from its number (0
-    ///     at the surface) or ``"substrate"``, or in that order.
-    /// displacement : bool, optional
-    ///     Whether displacements are evaluated too.
-    /// threads : int, optional
-    ///     Threads; all of the machine's by default.
-    /// progress : callable, optional
-    ///     Called with the part that is done, from 0 to 1; returning False stops, and gives the
-    ///     depths that are done.
+    ///     Body in which stress is evaluated. In the counterbody z points into that body, and x and y
+    ///     stay the same.
+    #[doc = section_docs!()]
+    #[doc = traction_docs!()]
+    #[doc = threads_docs!()]
+    #[doc = progress_docs!()]
     ///
     /// Returns
     /// -------
@@ -248,13 +278,13 @@ impl PySolution {
     ///
     /// Notes
     /// -----
-    /// Pressure is taken within cells too: inside with the slopes and curvatures that neighbours
-    /// tell, near a smooth edge as a root. `nacre.stress` takes it as uniform over a cell: within
-    /// some cells of the surface the two differ.
+    /// The pressure varies within cells: inside the contact with the slopes and curvatures that
+    /// neighbouring cells give, near a smooth edge as a square root. `nacre.stress` takes the pressure
+    /// as uniform over a cell; within some cells of the surface the two differ.
     ///
-    /// Friction does not act back on the pressure. That is exact where the bodies are alike or
-    /// incompressible, and good where friction is small: what is left out is of the order of
-    /// ``friction * (1 - 2 nu) / (2 - 2 nu)`` of the pressure.
+    /// Friction does not change the pressure. That is exact where the bodies are alike or
+    /// incompressible, and a good approximation where the friction is small: the neglected coupling
+    /// changes the pressure by the order of ``friction * (1 - 2 nu) / (2 - 2 nu)``.
     ///
     /// Examples
     /// --------
@@ -265,77 +295,48 @@ impl PySolution {
     /// >>> below = solution.stress(body.interfaces[0])
     /// >>> bool(np.allclose(above.xz, below.xz)), bool(np.allclose(above.xx, below.xx))
     /// (True, False)
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "keywords of the public signature"
-    )]
-    #[pyo3(signature = (z, *, side="below", body="body", x=None, y=None, friction=0.0,
-        direction=None, residual=None, displacement=false, threads=None, progress=None))]
-    fn stress(
+    #[pyo3(signature = (z, **keywords), text_signature = None)]
+    fn stress<'py>(
         &self,
-        py: Python<'_>,
-        z: &Bound<'_, PyAny>,
-        side: &str,
-        body: &str,
-        x: Option<f64>,
-        y: Option<f64>,
-        friction: f64,
-        direction: Option<(f64, f64)>,
-        residual: Option<&Bound<'_, PyAny>>,
-        displacement: bool,
-        threads: Option<&Bound<'_, PyAny>>,
-        progress: Option<&Bound<'_, PyAny>>,
+        py: Python<'py>,
+        z: &Bound<'py, PyAny>,
+        keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<PyStress> {
-        let member = evaluation::member(body)?;
-        let (depths, one) = evaluation::depths(z)?;
-        let keywords = Keywords {
-            side,
-            x,
-            y,
-            friction,
-            direction,
-            residual,
-            displacement,
-            threads,
-        };
-        let options = keywords.options(self.solution.member(member)?)?;
+        let keywords = Keywords::new(py, keywords)?;
+        let member = keywords.word("body")?;
+        let (depths, one) = keywords::depths(z)?;
+        let mut options = options(&keywords, self.solution.member(member)?)?;
+        options.threads = keywords.count("threads", 1)?;
+        let lines = section(&keywords, &mut options)?;
+        let progress = keywords.callable("progress")?;
+        keywords.finish("keywords of Solution.stress")?;
         let solution = Arc::clone(&self.solution);
-        let evaluated = evaluation::watched(py, progress, move |progress| {
+        let evaluated = watched(py, progress, move |progress| {
             solution.stress_watched(&depths, member, &options, progress)
         })?;
-        Ok(field(evaluated, one, &keywords))
+        Ok(PyStress::new(evaluated, one, lines))
     }
 
-    /// The extremes of the stress in each layer and at each interface, and margins.
+    #[doc = concat!("stress_summary($self, *, body='body', ", strength_signature!(), ", ", traction_signature!(), ", ", run_signature!(), ")\n--\n")]
+    /// Extremes of the stress in each layer and at each interface, and margins.
     ///
-    /// Depths are the faces of the layers and some 18 inside each, spread over its thickness and
-    /// over the width of the contact; peaks inside are then found by parabolas through three
-    /// depths.
+    /// Stress is evaluated on the faces of the layers and at some 18 depths inside each, spread over its
+    /// thickness and over the width of the contact. Peaks inside are then refined by parabolas through
+    /// three depths.
     ///
     /// Parameters
     /// ----------
     /// body : {"body", "counterbody"}, optional
-    ///     Which of the two.
-    /// yield_stress : dict or sequence, optional
-    ///     Yield stress [Pa] of layers: from their number (0 at the surface) or ``"substrate"``, or
-    ///     in that order, with None where it is not known.
-    /// strength : dict or sequence, optional
-    ///     Tensile strength [Pa], likewise.
-    /// friction : float, optional
-    ///     Coefficient of friction, as in `stress`.
-    /// direction : tuple of float, optional
-    ///     Direction of the traction on the body, along x by default.
-    /// residual : dict or sequence, optional
-    ///     Residual stress [Pa] that is added in a layer.
-    /// threads : int, optional
-    ///     Threads; all of the machine's by default.
-    /// progress : callable, optional
-    ///     Called with the part that is done; returning False stops, and gives what is done.
+    ///     Body in which stress is evaluated.
+    #[doc = strength_docs!()]
+    #[doc = traction_docs!()]
+    #[doc = threads_docs!()]
+    #[doc = progress_docs!()]
     ///
     /// Returns
     /// -------
     /// StressSummary
-    ///     Peaks and their places; printed it is a table.
+    ///     Peaks and their points; printing it shows a table.
     ///
     /// Raises
     /// ------
@@ -346,8 +347,7 @@ impl PySolution {
     ///
     /// Notes
     /// -----
-    /// As in `stress`, pressure is taken within cells too, near a smooth edge as a root;
-    /// `nacre.stress` takes it as uniform over a cell.
+    /// The pressure varies within cells, as in `stress`.
     ///
     /// Examples
     /// --------
@@ -357,49 +357,78 @@ impl PySolution {
     /// >>> summary = solution.stress_summary(yield_stress={"substrate": 1.8e9})
     /// >>> bool(summary.layers[0].yield_margin > 1.0)
     /// True
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "keywords of the public signature"
-    )]
-    #[pyo3(signature = (*, body="body", yield_stress=None, strength=None, friction=0.0,
-        direction=None, residual=None, threads=None, progress=None))]
-    fn stress_summary(
+    #[pyo3(signature = (**keywords), text_signature = None)]
+    fn stress_summary<'py>(
         &self,
-        py: Python<'_>,
-        body: &str,
-        yield_stress: Option<&Bound<'_, PyAny>>,
-        strength: Option<&Bound<'_, PyAny>>,
-        friction: f64,
-        direction: Option<(f64, f64)>,
-        residual: Option<&Bound<'_, PyAny>>,
-        threads: Option<&Bound<'_, PyAny>>,
-        progress: Option<&Bound<'_, PyAny>>,
+        py: Python<'py>,
+        keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<PyStressSummary> {
-        let member = evaluation::member(body)?;
-        let of = self.solution.member(member)?;
-        let limits = Limits {
-            yield_stress: evaluation::by_layer("yield_stress", of, yield_stress)?,
-            strength: evaluation::by_layer("strength", of, strength)?,
-        };
-        let keywords = Keywords {
-            side: "below",
-            x: None,
-            y: None,
-            friction,
-            direction,
-            residual,
-            displacement: false,
-            threads,
-        };
-        let options = keywords.options(of)?;
+        let keywords = Keywords::new(py, keywords)?;
+        let member = keywords.word("body")?;
+        let body = self.solution.member(member)?;
+        let strengths = strengths(&keywords, body)?;
+        let mut options = options(&keywords, body)?;
+        options.threads = keywords.count("threads", 1)?;
+        let progress = keywords.callable("progress")?;
+        keywords.finish("keywords of Solution.stress_summary")?;
         let solution = Arc::clone(&self.solution);
-        let summary = evaluation::watched(py, progress, move |progress| {
-            solution.stress_summary(member, &limits, &options, progress)
+        let summary = watched(py, progress, move |progress| {
+            solution.stress_summary(member, &strengths, &options, progress)
         })?;
         Ok(PyStressSummary(summary))
     }
 
-    /// How the solution came about, and how good it is.
+    /// Plan of the stress in one body, to be evaluated any number of times.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : {"body", "counterbody"}, optional
+    ///     Body in which stress is evaluated.
+    /// threads : int, optional
+    ///     Number of threads of the plan; all of the machine's by default.
+    ///
+    /// Returns
+    /// -------
+    /// StressPlan
+    ///     Plan, which keeps the solution alive.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no such body, the counterbody is rigid, or `threads` is below 1.
+    /// MemoryError
+    ///     If the grid does not fit.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> plan = solution.stress_plan()
+    /// >>> [bool(plan.stress(z, friction=0.1).xz.max() > 0.0) for z in (10e-6, 20e-6)]
+    /// [True, True]
+    #[pyo3(signature = (body="body", threads=None))]
+    fn stress_plan(
+        slf: &Bound<'_, Self>,
+        body: &str,
+        threads: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyStressPlan> {
+        let member = Member::from_word(body)?;
+        let threads = threads.map(|n| count("threads", 1, n)).transpose()?;
+        let solution = Arc::clone(&slf.get().solution);
+        let plan = watched(slf.py(), None, move |progress| {
+            solution.stress_plan_watched(member, threads, progress)
+        })?;
+        // Only an interrupt stops the planning, and that is an error above.
+        let plan = plan.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
+        Ok(PyStressPlan::new(
+            plan,
+            member,
+            threads,
+            slf.clone().into_any().unbind(),
+        ))
+    }
+
+    /// Report: how the solution came about, and how good it is.
     #[getter]
     fn report(&self) -> PyReport {
         PyReport(self.solution.report.clone())
@@ -410,8 +439,8 @@ impl PySolution {
     /// Parameters
     /// ----------
     /// axes : matplotlib.axes.Axes or dict of them, optional
-    ///     Where to draw: by any of the names "map", "x", "y" and "figures", as
-    ///     ``subplot_mosaic`` makes them, or one for the map; a new figure by default.
+    ///     Axes to draw into: a dict with any of the names "map", "x", "y" and "figures", as
+    ///     ``subplot_mosaic`` makes it, or one for the map; a new figure by default.
     ///
     /// Returns
     /// -------
@@ -442,7 +471,7 @@ impl PySolution {
     /// Parameters
     /// ----------
     /// axes : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
-    ///     Where to draw; a new figure by default.
+    ///     Axes to draw into; a new figure by default.
     /// interactive : bool, optional
     ///     Whether to open a window of PyVista's instead.
     ///
@@ -480,11 +509,11 @@ impl PySolution {
     /// along : {"x", "y"}, optional
     ///     Direction of the section.
     /// at : float, optional
-    ///     Its place in the other direction [m]; the row of the largest pressure by default.
+    ///     Position of the section in the other direction [m]; through the largest pressure by default.
     /// quantity : {"pressure", "gap", "displacement", "line_load"}, optional
-    ///     What to draw.
+    ///     Quantity to draw.
     /// axes : matplotlib.axes.Axes, optional
-    ///     Where to draw; a new figure by default.
+    ///     Axes to draw into; a new figure by default.
     ///
     /// Returns
     /// -------
@@ -494,7 +523,7 @@ impl PySolution {
     /// Raises
     /// ------
     /// ValueError
-    ///     If there is no such direction or quantity, or the place is off the grid.
+    ///     If there is no such direction or quantity, or the position is off the grid.
     ///
     /// Examples
     /// --------
@@ -512,7 +541,7 @@ impl PySolution {
         call(slf, "nacre.plot", "section", (along, at, quantity, axes))
     }
 
-    /// Fields with coordinates, units and everything that was asked; needs ``nacre[files]``.
+    /// Dataset of the fields, with coordinates, units and the whole problem; needs ``nacre[files]``.
     ///
     /// Returns
     /// -------
@@ -534,28 +563,28 @@ impl PySolution {
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     Its ending says what is written: ``.nc`` everything, as NetCDF, for `nacre.load` and
-    ///     xarray; ``.vtr`` the fields, for ParaView; ``.csv`` the sections along x and y through
-    ///     the largest pressure.
+    ///     File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
+    ///     `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is the sections
+    ///     along x and y through the largest pressure.
     /// depths : float or array_like, optional
     ///     Depths below the surface [m], each above the last. The ``.vtr`` then holds pressure and
     ///     gap, the stresses ``stress_xx`` … ``stress_xz``, ``von_mises``, ``max_shear`` and
-    ///     ``tension`` (the largest principal stress) at points below the cell centres; those of a
-    ///     depth on an interface twice, above and below it.
+    ///     ``tension`` (the largest principal stress) at points below the cell centres. A depth on an
+    ///     interface occurs twice, above and below it.
     /// options : optional
-    ///     With depths, those of `stress`: ``body``, ``friction``, ``direction``, ``residual``,
+    ///     Keywords of `stress`, with depths only: ``body``, ``friction``, ``direction``, ``residual``,
     ///     ``threads``, and ``displacement``, which adds a vector of that name.
     ///
     /// Returns
     /// -------
     /// pathlib.Path
-    ///     The file.
+    ///     Path of the file.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If the ending is another, depths do not grow or belong to no ``.vtr``, or `stress` would
-    ///     raise.
+    ///     If the ending is another, the depths do not increase, depths are given for another file than
+    ///     ``.vtr``, or `stress` would raise.
     /// TypeError
     ///     If there is no such option.
     /// OSError
@@ -612,15 +641,56 @@ impl PySolution {
         )
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Pickled<'py>)> {
-        let fields = (self.pressure(py)?, self.gap(py)?, self.displacement(py)?);
-        let motion = (self.approach(), self.tilt());
-        let restore = py.import("nacre._core")?.getattr("_restore_solution")?;
-        Ok((restore, (fields, motion, self.report())))
+    #[doc = to_dict_docs!()]
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> state = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).to_dict()
+    /// >>> state["format"], state["pressure"].ndim, state["report"]["body"]
+    /// (1, 2, {'HalfSpace': {'substrate': {'Elastic': {'young': 210000000000.0, 'poisson': 0.3}}, 'layers': []}})
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        state::to_dict(py, self)
+    }
+
+    #[doc = from_dict_docs!()]
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> nacre.Solution.from_dict(solution.to_dict()) == solution
+    /// True
+    #[staticmethod]
+    fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        state::from_dict(data)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        state::reduce(py, self)
     }
 }
 
-/// What a function of the Python package returns for a solution.
+impl State for PySolution {
+    const KIND: &'static str = "Solution";
+
+    fn write(&self, fields: &Fields) -> PyResult<()> {
+        let solution = &self.solution;
+        fields.set_array("pressure", &solution.pressure)?;
+        fields.set_array("gap", &solution.gap())?;
+        fields.set_array("displacement", &solution.displacement)?;
+        fields.set("approach", solution.approach)?;
+        fields.set("tilt", solution.tilt)?;
+        fields.set_fields("report", |report| self.report().write(report))
+    }
+
+    fn read(fields: &Fields) -> PyResult<Self> {
+        let arrays = [
+            fields.get_array("pressure")?,
+            fields.get_array("gap")?,
+            fields.get_array("displacement")?,
+        ];
+        let (approach, tilt) = (fields.get("approach")?, fields.get("tilt")?);
+        let report = fields.get_fields("report")?.read(PyReport::read)?;
+        Ok(Solution::from_fields(arrays, approach, tilt, report.0)?.into())
+    }
+}
+
+/// Result of a function of the Python package for a solution.
 fn call<'py, A>(
     solution: &Bound<'py, PySolution>,
     module: &str,
@@ -638,27 +708,4 @@ where
         .py()
         .import(module)?
         .call_method1(function, arguments)
-}
-
-type Field<'py> = Bound<'py, PyArray2<f64>>;
-type Pickled<'py> = (
-    (Field<'py>, Field<'py>, Field<'py>),
-    (f64, (f64, f64)),
-    PyReport,
-);
-
-/// A solution from its pickled state.
-#[pyfunction(name = "_restore_solution")]
-pub(super) fn restore_solution(
-    fields: [Bound<'_, PyAny>; 3],
-    motion: (f64, (f64, f64)),
-    report: PyReport,
-) -> PyResult<PySolution> {
-    let [pressure, gap, displacement] = fields;
-    let fields = [
-        real_matrix("pressure", &pressure)?,
-        real_matrix("gap", &gap)?,
-        real_matrix("displacement", &displacement)?,
-    ];
-    Ok(Solution::from_fields(fields, motion.0, motion.1.into(), report.0)?.into())
 }

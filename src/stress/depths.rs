@@ -1,36 +1,26 @@
-//! At which depths a summary looks for the extremes of the stress.
-
-use ndarray::ArrayRef2;
+//! Depths at which a summary looks for the extremes of the stress.
 
 use crate::body::{HalfSpace, Substrate};
 use crate::grid::Grid;
 use crate::response::interior::Place;
 
-/// Depths below the top of a layer, in half-widths of the contact.
+/// Depths below the top of a layer, in half-widths of the contact. Chosen by trial: dense where the
+/// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).
 const DEPTHS: [f64; 13] = [
     0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8, 2.5, 4.0,
 ];
 
-/// Depths within a layer, in thicknesses.
+/// Depths within a layer, in its thickness. Chosen by trial.
 const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
-/// Half the width of what is loaded, along its shorter side; of the grid, where nothing is.
-pub(super) fn half_width(grid: &Grid, pressure: &ArrayRef2<f64>) -> f64 {
-    let mut ends = [[usize::MAX, 0]; 2];
-    for ((i, j), p) in pressure.indexed_iter() {
-        if *p != 0.0 {
-            for (end, at) in ends.iter_mut().zip([i, j]) {
-                *end = [end[0].min(at), end[1].max(at)];
-            }
-        }
-    }
+/// Depth, in a layer's thickness, below which its bottom face stands for the depths of [`DEPTHS`].
+const BOTTOM: f64 = 0.999;
+
+/// Half the width of the loaded cells along their shorter side; of the whole grid if nothing is loaded.
+/// `loaded` holds the first and last row, and the first and last column.
+pub(super) fn half_width(grid: &Grid, loaded: Option<[[usize; 2]; 2]>) -> f64 {
     let width = |axis: usize| {
-        let [first, last] = ends[axis];
-        let cells = if first > last {
-            grid.shape()[axis]
-        } else {
-            last - first + 1
-        };
+        let cells = loaded.map_or(grid.shape()[axis], |ends| ends[axis][1] - ends[axis][0] + 1);
         0.5 * cells as f64 * grid.spacing()[axis]
     };
     if grid.is_line() {
@@ -40,7 +30,7 @@ pub(super) fn half_width(grid: &Grid, pressure: &ArrayRef2<f64>) -> f64 {
     }
 }
 
-/// Places in each layer and in the substrate, from above.
+/// Places in each layer and in the substrate, from the surface down.
 pub(super) fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
     let mut top = 0.0;
     let mut regions = Vec::new();
@@ -54,7 +44,7 @@ pub(super) fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
         let h = layer.thickness();
         let mut depths: Vec<f64> = DEPTHS.iter().map(|d| d * half_width).collect();
         depths.extend(FRACTIONS.map(|f| f * h));
-        depths.retain(|z| *z < 0.999 * h);
+        depths.retain(|z| *z < BOTTOM * h);
         depths.extend([0.0, h]);
         depths.sort_by(f64::total_cmp);
         let place = |z: &f64| at(count, top, *z, layer.material());
@@ -63,24 +53,28 @@ pub(super) fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
     }
     if let Substrate::Elastic(material) = body.substrate() {
         let depths = [0.0].into_iter().chain(DEPTHS.map(|d| d * half_width));
-        regions.push(
-            depths
-                .map(|z| at(body.layers().len(), top, z, material))
-                .collect(),
-        );
+        let place = |z: f64| at(body.layers().len(), top, z, material);
+        regions.push(depths.map(place).collect());
     }
     regions
 }
 
-/// Where the parabola through the largest value of those that were seen and its neighbours has its
-/// top, if it is inside and not yet known.
-pub(super) fn between(seen: &[(Place, f64)]) -> Option<Place> {
-    let value = |k: usize| seen[k].1;
-    let best = (0..seen.len()).reduce(|a, b| if value(b) > value(a) { b } else { a })?;
-    if best == 0 || best + 1 == seen.len() {
+/// Steps of less than this fraction of the distance to the next depth are not taken: the peak is at
+/// the depth already evaluated, or the value falls off there as at a kink.
+const SHORTEST_STEP: f64 = 1e-3;
+
+/// The largest step, as a fraction of the distance to the next depth.
+const LONGEST_STEP: f64 = 0.9;
+
+/// Place of the vertex of the parabola through the largest value in `evaluated` and its two
+/// neighbours. None where the largest value is the first or the last, or is that vertex already.
+pub(super) fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
+    let value = |k: usize| evaluated[k].1;
+    let best = (0..evaluated.len()).reduce(|a, b| if value(b) > value(a) { b } else { a })?;
+    if best == 0 || best + 1 == evaluated.len() {
         return None;
     }
-    let z = |k: usize| seen[k].0.below_top;
+    let z = |k: usize| evaluated[k].0.below_top;
     let (a, b) = (z(best) - z(best - 1), z(best + 1) - z(best));
     let (left, right) = (
         (value(best) - value(best - 1)) / a,
@@ -89,19 +83,50 @@ pub(super) fn between(seen: &[(Place, f64)]) -> Option<Place> {
     if left + right <= 0.0 {
         return None;
     }
-    // The slope of the parabola at `best`, and its curvature.
+    // The slope of the parabola at `best`, over its curvature.
     let slope = (left * b - right * a) / (a + b);
     let step = 0.5 * slope * (a + b) / (left + right);
-    // Where a value falls off at once there is nothing more to find.
-    let step = if step.abs() < 1e-3 * a.min(b) {
+    if step.abs() < SHORTEST_STEP * a.min(b) {
         return None;
-    } else {
-        step.clamp(-0.9 * a, 0.9 * b)
-    };
-    let place = seen[best].0;
+    }
+    let step = step.clamp(-LONGEST_STEP * a, LONGEST_STEP * b);
+    let place = evaluated[best].0;
     Some(Place {
         below_top: place.below_top + step,
         depth: place.depth + step,
         ..place
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use crate::material::Elastic;
+
+    /// On a parabola its vertex is found exactly; evaluated there, nothing is left to find.
+    #[test]
+    fn the_vertex_of_a_parabola_is_found() -> Result<()> {
+        const ROUNDING: f64 = 1e-15;
+        let material = Elastic::new(1.0, 0.3)?;
+        let at = |z: f64| {
+            let place = Place {
+                layer: 0,
+                below_top: z,
+                depth: z,
+                material,
+            };
+            (place, 3.0 - 2.0 * (z - 0.7) * (z - 0.7))
+        };
+        let mut evaluated = vec![at(0.0), at(0.5), at(1.1), at(2.0)];
+        let vertex = refined_peak(&evaluated).map(|place| place.depth);
+        assert!(
+            vertex.is_some_and(|z| (z - 0.7).abs() < ROUNDING),
+            "{vertex:?}"
+        );
+        evaluated.insert(2, at(0.7));
+        assert_eq!(refined_peak(&evaluated), None);
+        assert_eq!(refined_peak(&[at(0.7), at(1.0), at(2.0)]), None);
+        Ok(())
+    }
 }

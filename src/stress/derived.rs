@@ -1,13 +1,21 @@
-//! Invariants of the stress: von Mises, principal stresses, largest shear.
+//! Invariants of the stress: von Mises' stress, principal stresses, the largest shear stress.
 
 use ndarray::Array3;
 
-use super::Stress;
+use super::field::Stress;
 
-/// The six components at one point: xx, yy, zz, xy, yz, xz.
-pub(super) type Tensor = [f64; 6];
+/// Stress at one point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Tensor {
+    pub(super) xx: f64,
+    pub(super) yy: f64,
+    pub(super) zz: f64,
+    pub(super) xy: f64,
+    pub(super) yz: f64,
+    pub(super) xz: f64,
+}
 
-/// A value and where it is found.
+/// A value and its position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
     /// The value \[Pa\].
@@ -16,33 +24,69 @@ pub struct Peak {
     pub position: [f64; 3],
 }
 
-/// √{½ [(σxx−σyy)² + (σyy−σzz)² + (σzz−σxx)²] + 3 (σxy² + σyz² + σxz²)}.
-pub(super) fn von_mises([xx, yy, zz, xy, yz, xz]: Tensor) -> f64 {
-    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
-}
-
-/// Principal stresses, the largest first: Jacobi's rotations, which lose no digits where two are
-/// equal. Golub & Van Loan, Matrix Computations, 4th ed., §8.5.
-pub(super) fn principal([xx, yy, zz, xy, yz, xz]: Tensor) -> [f64; 3] {
-    let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    // Off the diagonal it converges quadratically: three sweeps are usual.
-    for _ in 0..8 {
-        let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
-        let on = a[0][0].abs() + a[1][1].abs() + a[2][2].abs();
-        if off <= f64::EPSILON * f64::EPSILON * on {
-            break;
-        }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            rotate(&mut a, p, q);
+impl Tensor {
+    /// The tensor from its components in the order of [`Stress::components`].
+    pub(super) fn new([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> Self {
+        Self {
+            xx,
+            yy,
+            zz,
+            xy,
+            yz,
+            xz,
         }
     }
-    let mut values = [a[0][0], a[1][1], a[2][2]];
-    values.sort_by(|a, b| b.total_cmp(a));
-    values
+
+    /// Von Mises' equivalent stress,
+    /// √{½ [(σxx−σyy)² + (σyy−σzz)² + (σzz−σxx)²] + 3 (σxy² + σyz² + σxz²)}.
+    pub(super) fn von_mises(&self) -> f64 {
+        let Self {
+            xx,
+            yy,
+            zz,
+            xy,
+            yz,
+            xz,
+        } = self;
+        let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+        (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
+    }
+
+    /// Mean of the normal stresses.
+    pub(super) fn mean(&self) -> f64 {
+        (self.xx + self.yy + self.zz) / 3.0
+    }
+
+    /// Principal stresses, the largest first, by Jacobi's rotations, which lose no digits where two
+    /// are equal: Golub & Van Loan, Matrix Computations, 4th ed. (2013), §8.5.
+    pub(super) fn principal(&self) -> [f64; 3] {
+        let Self {
+            xx,
+            yy,
+            zz,
+            xy,
+            yz,
+            xz,
+        } = *self;
+        let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        // What is off the diagonal falls quadratically: three sweeps are usual.
+        for _ in 0..8 {
+            let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
+            let on = a[0][0].abs() + a[1][1].abs() + a[2][2].abs();
+            if off <= f64::EPSILON * f64::EPSILON * on {
+                break;
+            }
+            for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+                rotate(&mut a, p, q);
+            }
+        }
+        let mut values = [a[0][0], a[1][1], a[2][2]];
+        values.sort_by(|a, b| b.total_cmp(a));
+        values
+    }
 }
 
-/// The rotation in the plane (p, q) that makes `a[p][q]` zero.
+/// Applies the rotation in the plane (p, q) that makes `a[p][q]` zero.
 fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
     let shear = a[p][q];
     if shear == 0.0 {
@@ -65,7 +109,7 @@ fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
 impl Stress {
     /// Von Mises' equivalent stress \[Pa\].
     pub fn von_mises(&self) -> Array3<f64> {
-        self.map(von_mises)
+        self.map(|tensor| tensor.von_mises())
     }
 
     /// Principal stresses \[Pa\], the largest first.
@@ -79,25 +123,25 @@ impl Stress {
             .zip(third.iter_mut())
             .zip(tensors)
         {
-            [*a, *b, *c] = principal(tensor);
+            [*a, *b, *c] = tensor.principal();
         }
         all
     }
 
-    /// Tresca's equivalent stress, the largest principal stress less the smallest \[Pa\].
+    /// Tresca's equivalent stress \[Pa\]: the largest principal stress minus the smallest.
     pub fn tresca(&self) -> Array3<f64> {
         self.map(|tensor| {
-            let [first, _, last] = principal(tensor);
+            let [first, _, last] = tensor.principal();
             first - last
         })
     }
 
-    /// Largest shear stress on any plane \[Pa\]: half of Tresca's.
+    /// Largest shear stress on any plane \[Pa\]: half of Tresca's stress.
     pub fn max_shear(&self) -> Array3<f64> {
         0.5 * self.tresca()
     }
 
-    /// The largest of `values` (depths, nx, ny), and where it is; none where there are none.
+    /// The largest of `values` (depths, nx, ny) and its position; none if there are no values.
     pub fn peak(&self, values: &Array3<f64>) -> Option<Peak> {
         let found = values
             .indexed_iter()
@@ -114,15 +158,15 @@ impl Stress {
         let shear = xy.iter().zip(yz).zip(xz);
         normal
             .zip(shear)
-            .map(|(((xx, yy), zz), ((xy, yz), xz))| [*xx, *yy, *zz, *xy, *yz, *xz])
+            .map(|(((xx, yy), zz), ((xy, yz), xz))| Tensor::new([*xx, *yy, *zz, *xy, *yz, *xz]))
     }
 
-    fn map(&self, f: impl Fn(Tensor) -> f64) -> Array3<f64> {
+    fn map(&self, f: impl Fn(&Tensor) -> f64) -> Array3<f64> {
         let mut values = Array3::zeros(self.components[0].raw_dim());
         values
             .iter_mut()
             .zip(self.tensors())
-            .for_each(|(value, tensor)| *value = f(tensor));
+            .for_each(|(value, tensor)| *value = f(&tensor));
         values
     }
 }
@@ -131,10 +175,12 @@ impl Stress {
 mod tests {
     use super::*;
 
-    /// Uniaxial, equibiaxial, pure shear, and a tensor turned by known angles.
+    /// Uniaxial stress, equibiaxial stress, pure shear, and a tensor turned by known angles.
     #[test]
     fn invariants_of_known_states() {
         const ROUNDING: f64 = 1e-15;
+        let von_mises = |components| Tensor::new(components).von_mises();
+        let principal = |components| Tensor::new(components).principal();
         assert!((von_mises([3.0, 0.0, 0.0, 0.0, 0.0, 0.0]) - 3.0).abs() < 3.0 * ROUNDING);
         let shear = von_mises([0.0, 0.0, 0.0, 0.0, 2.0, 0.0]);
         assert!((shear / (2.0 * 3.0_f64.sqrt()) - 1.0).abs() < 2.0 * ROUNDING);

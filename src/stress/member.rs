@@ -2,9 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use super::loaded::Form;
-use super::summary::{Limits, StressSummary, stress_summary};
-use super::{Stress, StressOptions, StressProgress, watched};
+use super::field::Stress;
+use super::options::{StressOptions, StressProgress};
+use super::plan::{Source, StressPlan};
+use super::request::stress_once;
+use super::summary::{Strengths, StressSummary, summary_once};
 use crate::body::HalfSpace;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
@@ -16,16 +18,17 @@ pub enum Member {
     /// The body that the shape is pressed into.
     #[default]
     Body,
-    /// The body that carries the shape: z points into it, x and y are the same.
+    /// The body that carries the shape. z points into it; x and y are those of the contact.
     Counterbody,
 }
 
 impl Solution {
-    /// Stress at `depths` in one of the bodies. The traction of friction is that on the body; the
-    /// counterbody gets the opposite.
+    /// Stress at `depths` in one of the bodies. Friction's direction is that of the traction on the
+    /// body; the counterbody gets the opposite.
     ///
-    /// Pressure is taken within cells too, near a smooth edge as a root;
-    /// [`stress`](crate::stress()) takes it as uniform over a cell.
+    /// The pressure is reconstructed within cells, with a square-root profile near a smooth edge;
+    /// [`stress`](crate::stress()) takes it as uniform over each cell. To evaluate a solution several
+    /// times, make its [`StressPlan`] with [`Solution::stress_plan`].
     ///
     /// # Errors
     /// Bad input, a counterbody that is rigid, too little memory.
@@ -46,12 +49,12 @@ impl Solution {
         member: Member,
         options: &StressOptions,
     ) -> Result<Stress> {
-        let mut go_on = |_| ControlFlow::Continue(());
-        self.stress_watched(depths, member, options, &mut go_on)
+        let mut progress = |_| ControlFlow::Continue(());
+        self.stress_watched(depths, member, options, &mut progress)
     }
 
-    /// [`Solution::stress`], telling `progress` how far it is; its break ends with the depths that
-    /// are done.
+    /// [`Solution::stress`] with a callback: `progress` is told the fraction done, 0 while planning.
+    /// When it breaks, the result holds the depths finished so far.
     ///
     /// # Errors
     /// As [`Solution::stress`].
@@ -62,45 +65,52 @@ impl Solution {
         options: &StressOptions,
         progress: &mut StressProgress,
     ) -> Result<Stress> {
-        let (body, options) = self.loaded_member(member, options)?;
-        watched(
-            body,
-            self.grid(),
-            &self.pressure,
-            Form::Solved,
-            depths,
-            &options,
-            progress,
-        )
+        stress_once(&self.source(member)?, depths, options, progress)
     }
 
-    /// What is worth knowing of the stress in one of the bodies: peaks in each layer, tractions at
-    /// each interface, margins. Pressure is taken within cells, as in [`Solution::stress`].
+    /// Peaks in each layer and tractions at each interface of one of the bodies, compared with
+    /// `strengths`; see [`StressPlan::summary`]. The pressure is that of [`Solution::stress`].
     ///
     /// # Errors
-    /// As [`Solution::stress`], and where a limit is not finite and above 0.
+    /// As [`Solution::stress`], and a strength that is not finite and above 0.
     pub fn stress_summary(
         &self,
         member: Member,
-        limits: &Limits,
+        strengths: &Strengths,
         options: &StressOptions,
         progress: &mut StressProgress,
     ) -> Result<StressSummary> {
-        let (body, options) = self.loaded_member(member, options)?;
-        stress_summary(
-            body,
-            self.grid(),
-            &self.pressure,
-            limits,
-            &options,
-            progress,
-        )
+        summary_once(&self.source(member)?, strengths, options, progress)
     }
 
-    /// That body.
+    /// A plan of the stress in one of the bodies, evaluated any number of times without planning again.
+    /// It works on `threads` threads; none: all of the machine's. The pressure is that of
+    /// [`Solution::stress`], and the plan does not borrow the solution.
     ///
     /// # Errors
-    /// Where it is rigid.
+    /// A counterbody that is rigid, no threads, or too little memory.
+    pub fn stress_plan(&self, member: Member, threads: Option<usize>) -> Result<StressPlan> {
+        self.source(member)?.plan_unwatched(threads)
+    }
+
+    /// [`Solution::stress_plan`] with a callback: `progress` is told 0 while planning; when it breaks,
+    /// there is no plan.
+    ///
+    /// # Errors
+    /// As [`Solution::stress_plan`].
+    pub fn stress_plan_watched(
+        &self,
+        member: Member,
+        threads: Option<usize>,
+        progress: &mut StressProgress,
+    ) -> Result<Option<StressPlan>> {
+        self.source(member)?.plan(threads, progress)
+    }
+
+    /// The layers of one of the bodies.
+    ///
+    /// # Errors
+    /// A rigid counterbody, or a body that is known by its normal response alone.
     pub fn member(&self, member: Member) -> Result<&HalfSpace> {
         match (member, &self.report.counterbody) {
             (Member::Body, _) => layered(&self.report.body),
@@ -111,24 +121,26 @@ impl Solution {
         }
     }
 
-    /// That body, and the options with the traction that acts on it.
-    fn loaded_member(
-        &self,
-        member: Member,
-        options: &StressOptions,
-    ) -> Result<(&HalfSpace, StressOptions)> {
+    /// The pressure on one of the bodies, with the sign of friction there.
+    fn source(&self, member: Member) -> Result<Source<'_>> {
+        let friction_sign = match member {
+            Member::Body => 1.0,
+            Member::Counterbody => -1.0,
+        };
         let body = self.member(member)?;
-        let mut options = options.clone();
-        if member == Member::Counterbody {
-            options.direction = options.direction.map(|d| -d);
-        }
-        Ok((body, options))
+        Ok(Source::solved(
+            body,
+            self.grid(),
+            &self.pressure,
+            friction_sign,
+        ))
     }
 }
 
 /// The layers of a body.
 fn layered(body: &Body) -> Result<&HalfSpace> {
     body.half_space().ok_or(Error::Inconsistent(
-        "stresses need a body that is a stack of layers: this one tells its normal response alone",
+        "stresses need a body that is a stack of layers: this one is a normal response alone; \
+         give the contact a HalfSpace",
     ))
 }

@@ -1,18 +1,23 @@
-//! Where fields are evaluated: the place of a depth in a body, and the part of a plane that is kept.
+//! Where fields are evaluated: the layer that a depth lies in, and the points of a plane.
 
 use ndarray::Array1;
 
-use super::{Section, Side};
+use super::options::{Section, Side};
 use crate::body::{HalfSpace, Substrate};
 use crate::error::{Error, Result, finite};
 use crate::grid::Grid;
 use crate::response::interior::Place;
 
-/// Where the depth `z` lies in `body`.
+/// Relative distance within which a depth counts as that of an interface: depths of interfaces are
+/// sums of thicknesses, which round by some 1e-16 each.
+const INTERFACE_TOLERANCE: f64 = 1e-12;
+
+/// Distance, in cells, within which a coordinate counts as that of a cell centre or of the grid's
+/// border: some 1e6 times the rounding of a coordinate.
+const CENTRE_TOLERANCE: f64 = 1e-9;
+
+/// Place of the depth `z` in `body`.
 pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
-    /// Nearer than this to an interface, relatively, a depth lies on it: sums of thicknesses are
-    /// rounded.
-    const ON: f64 = 1e-12;
     if !(z >= 0.0 && z.is_finite()) {
         return Err(Error::Parameter {
             name: "z",
@@ -22,7 +27,7 @@ pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
     }
     let mut top = 0.0;
     for ((layer, count), interface) in body.layers().iter().zip(0..).zip(body.interfaces()) {
-        let on = (z - interface).abs() <= ON * interface;
+        let on = (z - interface).abs() <= INTERFACE_TOLERANCE * interface;
         if z < interface && !on || on && side == Side::Above {
             let below_top = if on { layer.thickness() } else { z - top };
             return Ok(Place {
@@ -49,24 +54,25 @@ pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
     }
 }
 
-/// The part of a plane that is kept.
-pub(super) struct Lines {
+/// Points of a plane at which fields are returned.
+pub(super) struct Points {
     pub(super) x: Array1<f64>,
     pub(super) y: Array1<f64>,
     pub(super) shape: [usize; 2],
-    /// Where each axis is cut.
-    cuts: [Option<Cut>; 2],
+    /// Interpolation along x and along y; none along an axis of which all cells are returned.
+    interpolation: [Option<Interpolation>; 2],
 }
 
-/// A place between the cells `lower` and `upper` of an axis.
+/// Linear interpolation between the cells `lower` and `upper` of one axis; `weight` is that of `upper`.
 #[derive(Debug, Clone, Copy)]
-struct Cut {
+struct Interpolation {
     lower: usize,
     upper: usize,
     weight: f64,
 }
 
-impl Lines {
+impl Points {
+    /// Points of `section` on `grid`.
     pub(super) fn new(grid: &Grid, section: Section) -> Result<Self> {
         let at = match section {
             Section::Plane => [None, None],
@@ -74,11 +80,11 @@ impl Lines {
             Section::Y(y) => [None, Some(y)],
             Section::Axis([x, y]) => [Some(x), Some(y)],
         };
-        let mut lines = Self {
+        let mut points = Self {
             x: grid.x(),
             y: grid.y(),
             shape: grid.shape(),
-            cuts: [None; 2],
+            interpolation: [None; 2],
         };
         for (axis, at) in at.into_iter().enumerate() {
             let Some(at) = at else { continue };
@@ -86,33 +92,38 @@ impl Lines {
             if axis == 0 && grid.is_line() {
                 continue;
             }
-            lines.cuts[axis] = Some(cut(grid, axis, at)?);
-            lines.shape[axis] = 1;
+            points.interpolation[axis] = Some(interpolation(grid, axis, at)?);
+            points.shape[axis] = 1;
             let centres = if axis == 0 {
-                &mut lines.x
+                &mut points.x
             } else {
-                &mut lines.y
+                &mut points.y
             };
             *centres = Array1::from_elem(1, at);
         }
-        Ok(lines)
+        Ok(points)
     }
 
-    /// Whether whole planes are kept.
-    pub(super) fn whole(&self) -> bool {
-        self.cuts.iter().all(Option::is_none)
+    /// How many points there are.
+    pub(super) fn count(&self) -> usize {
+        self.shape[0] * self.shape[1]
     }
 
-    /// The section of a plane.
-    pub(super) fn keep(&self, plane: &[f64], [nx, ny]: [usize; 2], kept: &mut [f64]) {
+    /// Whether they are all cell centres.
+    pub(super) fn are_all_cells(&self) -> bool {
+        self.interpolation.iter().all(Option::is_none)
+    }
+
+    /// Writes the values of `plane`, of (nx, ny) cells, at these points to `values`.
+    pub(super) fn interpolate(&self, plane: &[f64], [nx, ny]: [usize; 2], values: &mut [f64]) {
         let everywhere = |n: usize| (0..n).map(|k| (k, k, 0.0)).collect::<Vec<_>>();
-        let nodes = |axis: usize, n: usize| match self.cuts[axis] {
-            Some(cut) => vec![(cut.lower, cut.upper, cut.weight)],
+        let nodes = |axis: usize, n: usize| match self.interpolation[axis] {
+            Some(at) => vec![(at.lower, at.upper, at.weight)],
             None => everywhere(n),
         };
         let (rows, columns) = (nodes(0, nx), nodes(1, ny));
         let mix = |a: f64, b: f64, weight: f64| a + weight * (b - a);
-        for (out, (i, i2, wx)) in kept.chunks_exact_mut(columns.len()).zip(rows) {
+        for (out, (i, i2, wx)) in values.chunks_exact_mut(columns.len()).zip(rows) {
             for (value, (j, j2, wy)) in out.iter_mut().zip(&columns) {
                 let row = |i: usize| mix(plane[i * ny + j], plane[i * ny + j2], *wy);
                 *value = mix(row(i), row(i2), wx);
@@ -121,12 +132,13 @@ impl Lines {
     }
 }
 
-fn cut(grid: &Grid, axis: usize, at: f64) -> Result<Cut> {
+/// Interpolation along `axis` to the coordinate `at`.
+fn interpolation(grid: &Grid, axis: usize, at: f64) -> Result<Interpolation> {
     let n = grid.shape()[axis];
     let name = ["x", "y"][axis];
     finite(name, at)?;
     let position = (at - grid.center()[axis]) / grid.spacing()[axis] + 0.5 * (n - 1) as f64;
-    if !(-0.5 - 1e-9..=n as f64 - 0.5 + 1e-9).contains(&position) {
+    if !(-0.5 - CENTRE_TOLERANCE..=n as f64 - 0.5 + CENTRE_TOLERANCE).contains(&position) {
         return Err(Error::Parameter {
             name,
             requirement: "on the grid",
@@ -135,14 +147,14 @@ fn cut(grid: &Grid, axis: usize, at: f64) -> Result<Cut> {
     }
     // Rounding must not mix a neighbour into a line through cell centres.
     let nearest = position.round();
-    let position = if (position - nearest).abs() < 1e-9 {
+    let position = if (position - nearest).abs() < CENTRE_TOLERANCE {
         nearest
     } else {
         position
     };
     let position = position.clamp(0.0, (n - 1) as f64);
     let lower = position as usize;
-    Ok(Cut {
+    Ok(Interpolation {
         lower,
         upper: (lower + 1).min(n - 1),
         weight: position - lower as f64,

@@ -2,23 +2,23 @@
 
 use std::ops::ControlFlow;
 
-use ndarray::ArrayRef2;
-
-use super::depths::{between, half_width, regions};
-use super::derived::{Peak, Tensor, principal, von_mises};
-use super::loaded::{Form, Loaded, Scratch};
+use super::depths::{refined_peak, regions};
+use super::derived::{Peak, Tensor};
+use super::friction::friction;
+use super::options::{Side, StressOptions, StressProgress};
+use super::plan::{Source, StressPlan};
+use super::plane::PlaneEvaluator;
 use super::section::place;
-use super::{Side, StressOptions, StressProgress, residual};
-use crate::body::HalfSpace;
+use crate::body::{HalfSpace, Layer};
 use crate::error::{Result, positive};
 use crate::grid::Grid;
 use crate::parallel::check_memory;
 use crate::response::interior::Place;
 
-/// What the layers bear: of each from the surface down, and of the substrate. Those that are left
-/// out are not known.
+/// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
+/// not known.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Limits {
+pub struct Strengths {
     /// Yield stresses \[Pa\], which von Mises' stress is compared with.
     pub yield_stress: Vec<Option<f64>>,
     /// Tensile strengths \[Pa\], which the largest principal stress is compared with.
@@ -28,9 +28,9 @@ pub struct Limits {
 /// The extremes in one layer, or in the substrate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerSummary {
-    /// Its number, from the surface down; that of the substrate is the number of layers.
+    /// Number of the layer, from the surface down; the substrate's is the number of layers.
     pub layer: usize,
-    /// Depths of its faces \[m\]; of the substrate, that of its top and infinity.
+    /// Depths of the top and bottom faces \[m\]; the substrate's bottom is at infinity.
     pub depths: [f64; 2],
     /// Largest von Mises stress.
     pub von_mises: Peak,
@@ -40,16 +40,16 @@ pub struct LayerSummary {
     pub shear: Peak,
     /// Yield stress over the largest von Mises stress.
     pub yield_margin: Option<f64>,
-    /// Strength over the largest tension; none where there is no tension.
+    /// Tensile strength over the largest tension; none where there is no tension.
     pub strength_margin: Option<f64>,
 }
 
 /// The extremes at one interface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterfaceSummary {
-    /// Its number, from the surface down.
+    /// Number of the interface, from the surface down.
     pub interface: usize,
-    /// Its depth \[m\].
+    /// Depth of the interface \[m\].
     pub depth: f64,
     /// Largest normal traction σ_zz: tension where it is positive.
     pub tension: Peak,
@@ -63,146 +63,232 @@ pub struct InterfaceSummary {
 }
 
 /// The extremes of all layers and interfaces.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct StressSummary {
-    /// From the surface down; the substrate last, unless it is rigid.
+    /// Layers from the surface down; the substrate last, unless it is rigid.
     pub layers: Vec<LayerSummary>,
-    /// From the surface down.
+    /// Interfaces from the surface down.
     pub interfaces: Vec<InterfaceSummary>,
-    /// Whether `progress` let it finish: otherwise peaks are those of the depths that were done.
+    /// Whether all was done. If `progress` stopped it, layers and interfaces are those finished before.
     pub finished: bool,
 }
 
-/// How often the neighbourhood of a peak is looked at again.
+/// How many times a peak inside a layer is refined by a parabola. Chosen by trial.
 const REFINEMENTS: usize = 3;
 
-/// The summary of `body` under the `pressure` (nx, ny) of a contact on `grid`; `section` and
-/// `displacement` of the options are not used.
-///
-/// Depths are the faces of layers, and inside them some 18 that are spread over its thickness and
-/// over the width of the contact; a peak inside is then found by parabolas through three depths.
-/// Positions are cell centres.
-///
-/// # Errors
-/// Bad input, or too little memory.
-pub(super) fn stress_summary(
-    body: &HalfSpace,
-    grid: &Grid,
-    pressure: &ArrayRef2<f64>,
-    limits: &Limits,
+impl StressPlan {
+    /// Peaks in each layer and tractions at each interface. `side`, `section` and `displacement` of the
+    /// options are not used.
+    ///
+    /// Depths are the faces of the layers, and some 18 inside each, spread over its thickness and over
+    /// the width of the contact; a peak inside is then refined by parabolas through three depths
+    /// (successive parabolic interpolation). Positions are cell centres.
+    ///
+    /// # Errors
+    /// Bad options, a strength that is not finite and above 0, or too little memory.
+    pub fn summary(
+        &self,
+        strengths: &Strengths,
+        options: &StressOptions,
+        progress: &mut StressProgress,
+    ) -> Result<StressSummary> {
+        let request = SummaryRequest::checked(
+            &self.body,
+            &self.grid,
+            self.friction_sign,
+            strengths,
+            options,
+        )?;
+        check_memory(self.grid.shape(), request.memory)?;
+        Ok(request.evaluate(self, progress))
+    }
+}
+
+/// The summary by a plan that is made for this call. Bad options are refused before planning.
+pub(super) fn summary_once(
+    source: &Source,
+    strengths: &Strengths,
     options: &StressOptions,
     progress: &mut StressProgress,
 ) -> Result<StressSummary> {
-    let limit = |name, values: &[Option<f64>], layer: usize| {
-        let value = values.get(layer).copied().flatten();
-        value.map(|value| positive(name, value)).transpose()
-    };
-    let count = body.layers().len() + 1;
-    let mut bears = Vec::new();
-    for layer in 0..count {
-        bears.push((
-            limit("yield_stress", &limits.yield_stress, layer)?,
-            limit("strength", &limits.strength, layer)?,
-        ));
-    }
-    check_memory(
-        grid.shape(),
-        8 * 7 * pressure.len() as u64 + Loaded::memory(grid, Form::Solved, options),
-    )?;
-    let options = &StressOptions {
-        displacement: false,
-        ..options.clone()
-    };
-    let residual = residual(body, &options.residual)?;
-    let mut summary = StressSummary {
-        layers: Vec::new(),
-        interfaces: Vec::new(),
-        finished: false,
-    };
-    let mut go_on = || progress(0.0) == ControlFlow::Continue(());
-    let loaded = Loaded::new(body, grid, pressure, Form::Solved, options, &mut go_on)?;
-    let Some(loaded) = loaded else {
-        return Ok(summary);
-    };
-    let mut planes = Planes {
-        body,
-        grid,
-        residual,
-        scratch: loaded.scratch(6),
-        loaded,
-        fields: (0..6).map(|_| vec![0.0; pressure.len()]).collect(),
-        progress,
-        done: 0,
-        planned: 0,
-    };
-    let regions = regions(body, half_width(grid, pressure));
-    planes.planned = regions
-        .iter()
-        .map(|region| region.len() + 3 * REFINEMENTS)
-        .sum();
-    planes.planned += body.layers().len();
-    let finished = planes.layers(&regions, &bears, &mut summary.layers)
-        && planes.interfaces(&mut summary.interfaces);
-    if finished {
-        let _ = (planes.progress)(1.0);
-    }
-    summary.finished = finished;
-    Ok(summary)
+    let (body, grid) = (source.body, source.grid);
+    let request = SummaryRequest::checked(body, grid, source.friction_sign, strengths, options)?;
+    check_memory(grid.shape(), request.memory + source.memory())?;
+    Ok(match source.plan(options.threads, progress)? {
+        Some(plan) => request.evaluate(&plan, progress),
+        None => StressSummary::default(),
+    })
 }
 
-/// Planes of stress, one after another.
+/// Arguments of one summary, checked.
+struct SummaryRequest {
+    /// Strengths of each layer and of the substrate.
+    strengths: Vec<LayerStrength>,
+    /// Residual stress of each layer and of the substrate.
+    residual: Vec<f64>,
+    /// μ times the unit vector of the traction on the body.
+    friction: [f64; 2],
+    /// Bytes that the summary takes, without the plan.
+    memory: u64,
+}
+
+/// Strengths of one layer, where they are known.
+struct LayerStrength {
+    yield_stress: Option<f64>,
+    strength: Option<f64>,
+}
+
+impl SummaryRequest {
+    fn checked(
+        body: &HalfSpace,
+        grid: &Grid,
+        friction_sign: f64,
+        strengths: &Strengths,
+        options: &StressOptions,
+    ) -> Result<Self> {
+        let of_layer = |name, values: &[Option<f64>], layer: usize| {
+            let value = values.get(layer).copied().flatten();
+            value.map(|value| positive(name, value)).transpose()
+        };
+        let strength = |layer| {
+            Ok(LayerStrength {
+                yield_stress: of_layer("yield_stress", &strengths.yield_stress, layer)?,
+                strength: of_layer("strength", &strengths.strength, layer)?,
+            })
+        };
+        let [nx, ny] = grid.shape();
+        // Six components, and the in-plane stress above an interface.
+        let planes = 8 * 9 * (nx * ny) as u64;
+        Ok(Self {
+            strengths: (0..=body.layers().len())
+                .map(strength)
+                .collect::<Result<_>>()?,
+            residual: options.residual_by_layer(body)?,
+            friction: friction(body, friction_sign, options)?,
+            memory: planes + PlaneEvaluator::memory(grid, options.friction != 0.0, false),
+        })
+    }
+
+    fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> StressSummary {
+        let regions = regions(&plan.body, plan.half_width);
+        let in_layers: usize = regions
+            .iter()
+            .map(|region| region.len() + 3 * REFINEMENTS)
+            .sum();
+        let mut planes = Planes {
+            body: &plan.body,
+            grid: &plan.grid,
+            residual: &self.residual,
+            evaluator: PlaneEvaluator::new(plan, self.friction, false),
+            fields: std::array::from_fn(|_| vec![0.0; plan.grid.shape().iter().product()]),
+            progress,
+            done: 0,
+            planned: in_layers + plan.body.layers().len(),
+        };
+        let mut summary = StressSummary::default();
+        let finished = planes.summarise(&regions, &self.strengths, &mut summary);
+        summary.finished = finished.is_continue();
+        if summary.finished {
+            // All is done: a break has nothing left to stop.
+            let _ = (planes.progress)(1.0);
+        }
+        summary
+    }
+}
+
+/// The plane of stress that was evaluated last, and what evaluates the next.
 struct Planes<'a, 'b> {
     body: &'a HalfSpace,
     grid: &'a Grid,
-    residual: Vec<f64>,
-    loaded: Loaded,
-    scratch: Scratch,
-    /// The six components.
-    fields: Vec<Vec<f64>>,
+    residual: &'a [f64],
+    evaluator: PlaneEvaluator<'a>,
+    /// The six components at the cells.
+    fields: [Vec<f64>; 6],
     progress: &'a mut StressProgress<'b>,
+    /// Planes evaluated so far.
     done: usize,
+    /// Planes that are evaluated at most, but for those below an interface.
     planned: usize,
 }
 
-/// Von Mises, tension and shear.
-type Extremes = [Peak; 3];
+/// The extremes on one plane, or in one layer.
+#[derive(Debug, Clone, Copy)]
+struct Extremes {
+    von_mises: Peak,
+    tension: Peak,
+    shear: Peak,
+}
 
-/// One of the extremes at each place.
-fn values(seen: &[(Place, Extremes)], which: usize) -> Vec<(Place, f64)> {
-    let value = |(place, extremes): &(Place, Extremes)| (*place, extremes[which].value);
-    seen.iter().map(value).collect()
+impl Extremes {
+    /// Each of the extremes, to be refined by itself.
+    const EACH: [fn(&Self) -> Peak; 3] = [|e| e.von_mises, |e| e.tension, |e| e.shear];
+}
+
+/// The largest value found so far, and its cell.
+#[derive(Debug, Clone, Copy)]
+struct Largest {
+    value: f64,
+    cell: usize,
+}
+
+impl Largest {
+    /// Before any value.
+    const NONE: Self = Self {
+        value: f64::NEG_INFINITY,
+        cell: 0,
+    };
+
+    fn offer(&mut self, value: f64, cell: usize) {
+        if value > self.value {
+            *self = Self { value, cell };
+        }
+    }
 }
 
 impl Planes<'_, '_> {
-    /// Computes the stress at `place`; false where it is to stop.
-    fn compute(&mut self, place: &Place) -> bool {
-        self.loaded.coefficients(place, &mut self.scratch);
+    /// Adds the summaries of all layers and interfaces to `summary`.
+    fn summarise(
+        &mut self,
+        regions: &[Vec<Place>],
+        strengths: &[LayerStrength],
+        summary: &mut StressSummary,
+    ) -> ControlFlow<()> {
+        let mut top = 0.0;
+        for (region, strengths) in regions.iter().zip(strengths) {
+            let layer = self.layer(region, top, strengths)?;
+            top = layer.depths[1];
+            summary.layers.push(layer);
+        }
+        for (number, depth) in self.body.interfaces().into_iter().enumerate() {
+            let interface = self.interface(number, depth)?;
+            summary.interfaces.push(interface);
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Evaluates the stress at `place`.
+    fn evaluate(&mut self, place: &Place) -> ControlFlow<()> {
         let (done, planned) = (self.done as f64, self.planned as f64);
         let progress = &mut self.progress;
-        let mut go_on =
-            |part: f64| progress(((done + part) / planned).min(1.0)) == ControlFlow::Continue(());
-        let mut outputs: Vec<_> = self.fields.iter_mut().map(Vec::as_mut_slice).collect();
-        if !self
-            .loaded
-            .plane(&mut outputs, &mut self.scratch, &mut go_on)
-        {
-            return false;
-        }
+        let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
+        let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
+        self.evaluator
+            .evaluate(place, &mut outputs, &mut progress)?;
+        let residual = self.residual[place.layer];
         for field in &mut self.fields[..2] {
-            field
-                .iter_mut()
-                .for_each(|s| *s += self.residual[place.layer]);
+            field.iter_mut().for_each(|s| *s += residual);
         }
         self.done += 1;
-        true
+        ControlFlow::Continue(())
     }
 
     fn tensor(&self, cell: usize) -> Tensor {
-        std::array::from_fn(|k| self.fields[k][cell])
+        Tensor::new(self.fields.each_ref().map(|field| field[cell]))
     }
 
-    fn peak(&self, value: f64, cell: usize, depth: f64) -> Peak {
+    fn peak(&self, largest: Largest, depth: f64) -> Peak {
         let ny = self.grid.shape()[1];
+        let Largest { value, cell } = largest;
         let (x, y) = (self.grid.x()[cell / ny], self.grid.y()[cell % ny]);
         Peak {
             value,
@@ -210,144 +296,121 @@ impl Planes<'_, '_> {
         }
     }
 
-    /// Extremes of the plane that was computed last.
-    fn extremes(&self, depth: f64) -> Extremes {
-        let mut best = [(f64::NEG_INFINITY, 0); 3];
+    /// Extremes at `place`.
+    fn extremes(&mut self, place: &Place) -> ControlFlow<(), Extremes> {
+        self.evaluate(place)?;
+        let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
         for cell in 0..self.fields[0].len() {
             let tensor = self.tensor(cell);
-            let mises = von_mises(tensor);
-            let mean = (tensor[0] + tensor[1] + tensor[2]) / 3.0;
-            // σ1 ≤ mean + 2/3 of von Mises' stress, the shear ≤ 1/√3 of it: most cells need no
-            // principal stresses.
-            if mises > best[0].0 {
-                best[0] = (mises, cell);
-            }
-            if mean + 0.67 * mises > best[1].0 || 0.58 * mises > best[2].0 {
-                let [first, _, last] = principal(tensor);
-                if first > best[1].0 {
-                    best[1] = (first, cell);
-                }
-                if 0.5 * (first - last) > best[2].0 {
-                    best[2] = (0.5 * (first - last), cell);
-                }
+            let mises = tensor.von_mises();
+            von_mises.offer(mises, cell);
+            // The largest principal stress is at most the mean plus 2/3 of von Mises' stress, and the
+            // largest shear stress at most 1/√3 of it: most cells need no principal stresses.
+            if tensor.mean() + 0.67 * mises > tension.value || 0.58 * mises > shear.value {
+                let [first, _, last] = tensor.principal();
+                tension.offer(first, cell);
+                shear.offer(0.5 * (first - last), cell);
             }
         }
-        best.map(|(value, cell)| self.peak(value, cell, depth))
+        ControlFlow::Continue(Extremes {
+            von_mises: self.peak(von_mises, place.depth),
+            tension: self.peak(tension, place.depth),
+            shear: self.peak(shear, place.depth),
+        })
     }
 
-    /// Summaries of all layers; false where it was stopped.
-    fn layers(
+    /// Summary of the layer whose top face is at depth `top`, from the places of `region`.
+    fn layer(
         &mut self,
-        regions: &[Vec<Place>],
-        bears: &[(Option<f64>, Option<f64>)],
-        summaries: &mut Vec<LayerSummary>,
-    ) -> bool {
-        let mut top = 0.0;
-        for (region, (yields, strength)) in regions.iter().zip(bears) {
-            let mut seen: Vec<(Place, Extremes)> = Vec::new();
-            for place in region {
-                if !self.compute(place) {
-                    return false;
-                }
-                seen.push((*place, self.extremes(place.depth)));
-            }
-            for which in 0..3 {
-                for _ in 0..REFINEMENTS {
-                    let Some(place) = between(&values(&seen, which)) else {
-                        break;
-                    };
-                    if !self.compute(&place) {
-                        return false;
-                    }
-                    seen.push((place, self.extremes(place.depth)));
-                    seen.sort_by(|a, b| a.0.depth.total_cmp(&b.0.depth));
-                }
-            }
-            let peak = |which: usize| {
-                let peaks = seen.iter().map(|(_, extremes)| extremes[which]);
-                peaks.reduce(|a, b| if b.value > a.value { b } else { a })
-            };
-            let (Some(von_mises), Some(tension), Some(shear)) = (peak(0), peak(1), peak(2)) else {
-                return false;
-            };
-            let layer = seen[0].0.layer;
-            let thickness = self.body.layers().get(layer).map(crate::Layer::thickness);
-            let bottom = thickness.map_or(f64::INFINITY, |h| top + h);
-            let over = |limit: &Option<f64>, value: f64| {
-                limit.filter(|_| value > 0.0).map(|limit| limit / value)
-            };
-            summaries.push(LayerSummary {
-                layer,
-                depths: [top, bottom],
-                yield_margin: over(yields, von_mises.value),
-                strength_margin: over(strength, tension.value),
-                von_mises,
-                tension,
-                shear,
-            });
-            top = bottom;
+        region: &[Place],
+        top: f64,
+        strengths: &LayerStrength,
+    ) -> ControlFlow<(), LayerSummary> {
+        let mut evaluated: Vec<(Place, Extremes)> = Vec::new();
+        for place in region {
+            evaluated.push((*place, self.extremes(place)?));
         }
-        true
+        for which in Extremes::EACH {
+            for _ in 0..REFINEMENTS {
+                let value = |(place, e): &(Place, Extremes)| (*place, which(e).value);
+                let values: Vec<_> = evaluated.iter().map(value).collect();
+                let Some(place) = refined_peak(&values) else {
+                    break;
+                };
+                evaluated.push((place, self.extremes(&place)?));
+                evaluated.sort_by(|a, b| a.0.depth.total_cmp(&b.0.depth));
+            }
+        }
+        let [von_mises, tension, shear] = Extremes::EACH.map(|which| {
+            let peaks = evaluated[1..].iter().map(|(_, extremes)| which(extremes));
+            let first = which(&evaluated[0].1);
+            peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
+        });
+        let layer = region[0].layer;
+        let thickness = self.body.layers().get(layer).map(Layer::thickness);
+        let margin = |strength: Option<f64>, peak: Peak| {
+            let strength = strength.filter(|_| peak.value > 0.0);
+            strength.map(|strength| strength / peak.value)
+        };
+        ControlFlow::Continue(LayerSummary {
+            layer,
+            depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
+            yield_margin: margin(strengths.yield_stress, von_mises),
+            strength_margin: margin(strengths.strength, tension),
+            von_mises,
+            tension,
+            shear,
+        })
     }
 
-    /// Summaries of all interfaces; false where it was stopped.
-    fn interfaces(&mut self, summaries: &mut Vec<InterfaceSummary>) -> bool {
-        for (count, depth) in self.body.interfaces().into_iter().enumerate() {
-            let Ok(above) = place(self.body, depth, Side::Above) else {
-                return false;
-            };
-            if !self.compute(&above) {
-                return false;
-            }
-            let mut best = [(f64::NEG_INFINITY, 0); 3];
-            let mut keep = |which: usize, value: f64, cell: usize| {
-                if value > best[which].0 {
-                    best[which] = (value, cell);
-                }
-            };
-            for cell in 0..self.fields[0].len() {
-                let [_, _, zz, _, yz, xz] = self.tensor(cell);
-                keep(0, zz, cell);
-                keep(1, -zz, cell);
-                keep(2, xz.hypot(yz), cell);
-            }
-            let [tension, compression, shear] =
-                best.map(|(value, cell)| self.peak(value, cell, depth));
-            let in_plane = [0, 1, 3].map(|k| self.fields[k].clone());
-            let jump = match place(self.body, depth, Side::Below) {
-                Ok(below) => {
-                    if !self.compute(&below) {
-                        return false;
-                    }
-                    let mut largest = (f64::NEG_INFINITY, 0);
-                    let [above_xx, above_yy, above_xy] = &in_plane;
-                    let above = above_xx.iter().zip(above_yy).zip(above_xy).enumerate();
-                    for (cell, ((xx, yy), xy)) in above {
-                        let [below_xx, below_yy, _, below_xy, ..] = self.tensor(cell);
-                        let (xx, yy, xy) = (below_xx - xx, below_yy - yy, below_xy - xy);
-                        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-                        let value = mean.abs() + half.hypot(xy);
-                        if value > largest.0 {
-                            largest = (value, cell);
-                        }
-                    }
-                    Some(self.peak(largest.0, largest.1, depth))
-                }
-                // Nothing is below a rigid base's surface.
-                Err(_) => None,
-            };
-            summaries.push(InterfaceSummary {
-                interface: count,
-                depth,
-                tension,
-                compression: Peak {
-                    value: -compression.value,
-                    ..compression
-                },
-                shear,
-                jump,
-            });
+    /// Summary of interface `number`, which is at `depth`.
+    fn interface(&mut self, number: usize, depth: f64) -> ControlFlow<(), InterfaceSummary> {
+        let on = |side: Side| place(self.body, depth, side).ok();
+        let (above, below) = (on(Side::Above), on(Side::Below));
+        // Every interface has a layer above it.
+        let Some(above) = above else {
+            return ControlFlow::Break(());
+        };
+        self.evaluate(&above)?;
+        let [mut tension, mut compression, mut shear] = [Largest::NONE; 3];
+        for cell in 0..self.fields[0].len() {
+            let Tensor { zz, yz, xz, .. } = self.tensor(cell);
+            tension.offer(zz, cell);
+            compression.offer(-zz, cell);
+            shear.offer(xz.hypot(yz), cell);
         }
-        true
+        compression.value = -compression.value;
+        let jump = match below {
+            Some(below) => Some(self.jump(&below)?),
+            // On a rigid base there is no stress below.
+            None => None,
+        };
+        ControlFlow::Continue(InterfaceSummary {
+            interface: number,
+            depth,
+            tension: self.peak(tension, depth),
+            compression: self.peak(compression, depth),
+            shear: self.peak(shear, depth),
+            jump,
+        })
+    }
+
+    /// Largest jump of the in-plane stress from the plane evaluated last to that at `below`.
+    fn jump(&mut self, below: &Place) -> ControlFlow<(), Peak> {
+        let [above_xx, above_yy, above_xy] = [0, 1, 3].map(|k| self.fields[k].clone());
+        self.evaluate(below)?;
+        let mut largest = Largest::NONE;
+        let above = above_xx.iter().zip(&above_yy).zip(&above_xy).enumerate();
+        for (cell, ((above_xx, above_yy), above_xy)) in above {
+            let below = self.tensor(cell);
+            let (xx, yy, xy) = (
+                below.xx - above_xx,
+                below.yy - above_yy,
+                below.xy - above_xy,
+            );
+            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+            largest.offer(mean.abs() + half.hypot(xy), cell);
+        }
+        ControlFlow::Continue(self.peak(largest, below.depth))
     }
 }

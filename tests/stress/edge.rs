@@ -170,7 +170,7 @@ fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
         ..StressOptions::default()
     };
     let mut go_on = |_| std::ops::ControlFlow::Continue(());
-    let limits = nacre::stress::Limits::default();
+    let limits = nacre::stress::Strengths::default();
     let summary = solution.stress_summary(Member::Body, &limits, &options, &mut go_on)?;
     let tension = summary.layers[0].tension;
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use nacre::stress::Limits;
+use nacre::stress::Strengths;
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, Layer, Member, Motion, Options, Paraboloid, Result, Setup,
     Solution, Stress, StressOptions, stress,
@@ -62,7 +62,7 @@ fn bits_do_not_depend_on_the_number_of_threads() -> Result<()> {
 #[test]
 fn looking_for_the_edge_stops_when_told() -> Result<()> {
     let solution = solution()?;
-    let (options, limits) = (options(2), Limits::default());
+    let (options, limits) = (options(2), Strengths::default());
     for last in 1..=3 {
         let mut calls = 0;
         let mut stop = |part: f64| {

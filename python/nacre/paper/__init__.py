@@ -96,7 +96,7 @@ def run(
 
 
 def make_directory(out: Path) -> None:
-    """Make `out` if need be.
+    """Make the directory `out` if it does not exist.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def make_directory(out: Path) -> None:
 
 
 def _write(path: Path, content: bytes | None) -> None:
-    """Write a file whole or not at all; with no content only try to."""
+    """Write a file whole or not at all; without content only check that it can be written."""
     part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         part.write_bytes(content or b"")

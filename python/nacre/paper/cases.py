@@ -111,7 +111,7 @@ PROBLEM = (
     "on a coating of modulus E₁ and thickness h, bonded to a half-space of modulus "
     f"E₂ = {1e-9 * SUBSTRATE.young:g} GPa; ν = {SUBSTRATE.poisson:g} in both."
 )
-"""What is solved, in words."""
+"""The problem in words."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What the solved contacts show: the table, the paper's claim, the sphere against its reference."""
+"""Evaluation of the solved contacts: the table, the paper's claim, the sphere and its reference."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def deviations(results: Iterable[Result]) -> list[Deviation]:
         solution = result.solution
         radius, pressure = sphere_profile(result)
         inner = reference.radius < 0.95 * reference.radius[-1]
-        # p² is nearly linear in r²: so is it interpolated.
+        # p² is nearly linear in r², and is interpolated so.
         squares = np.interp(reference.radius[inner] ** 2, radius**2, pressure**2)
         found.append(
             Deviation(
@@ -145,7 +145,7 @@ def thickness_note(results: Iterable[Result]) -> str:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the table: what it shows, in which unit, and how many decimals are printed.
+    """A column of the table: its quantity, its unit and the number of decimals.
 
     `heading` is its name over several lines, for a narrow table.
     """

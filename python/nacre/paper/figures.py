@@ -30,7 +30,7 @@ from nacre.paper.cases import (
 from nacre.paper.evaluation import references, sphere_profile, thickness_note
 from nacre.plot.style import STYLE, WIDTH
 
-# Of Okabe and Ito's palette: soft coatings cold, stiff ones warm.
+# Colours of the palette of Okabe and Ito: soft coatings cold, stiff ones warm.
 COLOURS = ("#0072B2", "#56B4E9", "#000000", "#E69F00", "#D55E00")
 DASHES = ((0, (6, 1.5)), (0, (6, 1.5, 1, 1.5)), "-", (0, (3, 1)), (0, (1, 0.7)))
 LOOKS: dict[float, dict[str, Any]] = {
@@ -199,7 +199,7 @@ def _mesh(result: Result) -> tuple[Array, Array, Array]:
     for k, i in enumerate(lines, start=1):
         edge = half_width(solution.y, solution.pressure[i])
         y[k] = edge * across
-        # Without the outermost cell, whose pressure is the least exact; the edge stands for it.
+        # The outermost cell has the least accurate pressure: the edge replaces it.
         inner = np.flatnonzero((solution.y >= 0) & (solution.pressure[i] > 0))
         inner = inner[: max(1, len(inner) - 1)]
         places, pressures = solution.y[inner], solution.pressure[i, inner]
@@ -209,14 +209,14 @@ def _mesh(result: Result) -> tuple[Array, Array, Array]:
 
 
 def _loaded(position: Array, pressure: Array) -> tuple[Array, Array]:
-    """Cut off what is free of pressure on both sides, but for one cell on each."""
+    """Cut off the cells without pressure on both sides, except for one on each."""
     loaded = np.flatnonzero(pressure)
     part = slice(max(0, loaded[0] - 1), loaded[-1] + 2)
     return position[part], pressure[part]
 
 
 def _rows(*columns: str | float | Array) -> list[Row]:
-    """Return rows of what `columns` hold; what is no array is repeated in every row."""
+    """Return rows of the values in `columns`; a value that is no array is repeated in every row."""
     arrays = [column for column in columns if isinstance(column, np.ndarray)]
     return [
         (*(column for column in columns if not isinstance(column, np.ndarray)), *values)
@@ -249,4 +249,4 @@ FIGURES: dict[int, Callable[[list[Result]], Drawing]] = {
     ),
     6: lambda results: _surface(results, _MAIN),
 }
-"""What each figure is drawn by, from the results of all cases."""
+"""Functions that draw the figures from the results of all cases."""

@@ -36,14 +36,14 @@ def interface_map(
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     interface
         Its number, from 0 below the first layer.
     quantity
         "shear": its magnitude, and arrows along the traction that acts on the layer above;
         "normal": tension positive.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
     options
         Passed on to `Solution.stress`: `body`, `friction`, `direction`, `threads`.
 

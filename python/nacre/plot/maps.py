@@ -26,7 +26,7 @@ def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) 
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     axes
         Where to draw: axes by any of the names "map", "x", "y" and "figures", as
         ``subplot_mosaic`` makes them, or one for the map; a new figure by default.
@@ -74,9 +74,9 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
 
     Returns
     -------

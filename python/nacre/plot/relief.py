@@ -1,4 +1,4 @@
-"""The pressure as a relief: with Matplotlib, and to be turned by hand with PyVista."""
+"""The pressure as a relief: a picture with Matplotlib, or an interactive view with PyVista."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ with extra("plot"):
     import matplotlib.pyplot as plt
 
 MOST = 120
-"""Facets along one side of a relief."""
+"""Largest number of facets along one side of a relief; chosen by trial for a quick drawing."""
 
 
 def relief(solution: Solution, axes: Any = None) -> Any:
@@ -26,7 +26,7 @@ def relief(solution: Solution, axes: Any = None) -> Any:
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     axes
         Three-dimensional axes to draw into; a new figure by default.
 
@@ -76,7 +76,7 @@ def view(solution: Solution, *, show: bool = True) -> Any:
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     show
         Whether to open the window; without, the plotter is returned to be added to.
 
@@ -135,7 +135,7 @@ def _unit(side: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 
 def _contact(solution: Solution) -> tuple[npt.NDArray[np.float64], ...]:
-    """Return x, y and pressure of the contact and two cells around it; not all of many."""
+    """Return x, y and pressure of the contact and two cells around it; thinned out if many."""
     if solution.report.grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a relief, got a line")
     pressure, parts = solution.pressure, []

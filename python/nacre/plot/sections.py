@@ -1,4 +1,4 @@
-"""Sections through a solution, and those of several solutions in one picture."""
+"""Sections through one solution, or through several solutions in one picture."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def section(
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     along
         Direction of the section.
     at
@@ -44,7 +44,7 @@ def section(
     quantity
         "pressure", "gap", "displacement" or "line_load".
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
     style
         Passed on to `matplotlib.axes.Axes.plot`.
 
@@ -89,7 +89,7 @@ def compare(
     along, at, quantity
         As in `section`; where `at` is not given, each is cut through its own largest pressure.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
 
     Returns
     -------
@@ -132,7 +132,7 @@ def compare(
 def cut(
     solution: Solution, along: str, at: float | None, quantity: str
 ) -> tuple[Array, Array, float]:
-    """Return positions, values there, and the place of the section in the other direction."""
+    """Return positions, values there, and the position of the section in the other direction."""
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
     if quantity not in QUANTITIES:
@@ -154,7 +154,7 @@ def cut(
 
 
 def _window(solution: Solution, along: str, quantity: str) -> Array:
-    """Return the ends of what is shown: the contact and a margin, the whole grid for other fields.
+    """Return the ends of the range: contact and margin, or the whole grid for other fields.
 
     Without a contact, and far beyond it, there is nothing to see of the pressure.
     """

@@ -33,7 +33,7 @@ LABELS = {
     "max_shear": "largest shear stress",
     "tension": "largest principal stress",
 }
-"""What can be drawn, and what it is called."""
+"""Labels of the quantities that can be drawn."""
 
 
 def stress_section(
@@ -55,7 +55,7 @@ def stress_section(
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     quantity
         A component ("xx" …), "von_mises", "tresca", "max_shear" or "tension".
     along
@@ -63,11 +63,11 @@ def stress_section(
     at
         Its place in the other direction [m].
     depth
-        How deep it goes [m]; 2.5 half-widths of the contact by default.
+        Largest depth [m]; 2.5 half-widths of the contact by default.
     rows
-        Depths that are evaluated; every layer gets four at least.
+        Number of depths that are evaluated; every layer gets at least four.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
     options
         Passed on to `Solution.stress`: `body`, `friction`, `direction`, `residual`, `threads`.
 
@@ -156,17 +156,17 @@ def stress_depth(
     Parameters
     ----------
     solution
-        What to draw.
+        Solution to draw.
     quantities
         Components, "von_mises", "tresca", "max_shear" or "tension".
     at
         The point (x, y) [m].
     depth
-        How deep it goes [m]; 2.5 half-widths of the contact by default.
+        Largest depth [m]; 2.5 half-widths of the contact by default.
     points
-        Depths that are evaluated; every layer gets four at least.
+        Number of depths that are evaluated; every layer gets at least four.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
     options
         Passed on to `Solution.stress`: `body`, `friction`, `direction`, `residual`, `threads`.
 
@@ -194,10 +194,12 @@ def stress_depth(
         _check(quantity)
     body, bottom = _reach(solution, depth, options)
     edges = _edges(body, bottom, points)
-    above = solution.stress(edges, x=at[0], y=at[1], side="above", **options)
+    planned = {name: options.pop(name) for name in ("body", "threads") if name in options}
+    plan = solution.stress_plan(**planned)
+    above = plan.stress(edges, x=at[0], y=at[1], side="above", **options)
     # A rigid base has no side below; there the curve ends.
     inner = edges[:-1] if bottom in body.interfaces else edges
-    below = solution.stress(inner, x=at[0], y=at[1], **options)
+    below = plan.stress(inner, x=at[0], y=at[1], **options)
     z = np.concatenate([edges, inner])
     order = np.argsort(z, kind="stable")
     drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
@@ -232,13 +234,13 @@ def _check(quantity: str) -> None:
 
 
 def _values(field: Stress, quantity: str) -> Array:
-    """Return a quantity; of a line contact the one row that there is."""
+    """Return a quantity; a line contact has a single row."""
     values: Array = field.principal[0] if quantity == "tension" else getattr(field, quantity)
     return values.reshape(values.shape[0], -1) if values.ndim > 1 else values
 
 
 def body_of(solution: Solution, options: dict[str, Any]) -> HalfSpace:
-    """Return the body that options of `Solution.stress` name."""
+    """Return the body that the options of `Solution.stress` name."""
     body = solution.report.body
     if options.get("body") == "counterbody" and solution.report.counterbody is not None:
         body = solution.report.counterbody
@@ -258,13 +260,13 @@ def _reach(
         depth = 1.25 * float(narrow)
     elif not 0 < depth < np.inf:
         raise ValueError(f"depth must be finite and above 0, got {depth:g}")
-    # A rigid base has nothing to show.
+    # A rigid base has no stresses to show.
     rigid = not hasattr(body.substrate, "young")
     return body, min(depth, body.interfaces[-1]) if rigid else depth
 
 
 def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
-    """Return depths that hold every interface, and about `rows` between."""
+    """Return every interface, and about `rows` depths between them."""
     if rows < 1:
         raise ValueError(f"the number of depths must be at least 1, got {rows}")
     faces = [0.0, *(z for z in body.interfaces if z < bottom), bottom]
@@ -276,6 +278,6 @@ def _edges(body: HalfSpace, bottom: float, rows: int) -> Array:
 
 
 def around(solution: Solution, axis: int, width: float) -> Array:
-    """Return the ends of what is shown: the contact, and half of `width` beside it."""
+    """Return the ends of the range: the contact, and half of `width` on both sides."""
     low, high = solution.contact_extent[axis]
     return np.array([low - 0.5 * width, high + 0.5 * width])

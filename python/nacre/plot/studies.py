@@ -29,7 +29,7 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
     quantity
         What to draw.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def curve(
     quantity
         What to draw.
     axes
-        Where to draw; a new figure by default.
+        Axes to draw into; a new figure by default.
     style
         Passed on to `matplotlib.axes.Axes.plot`.
 

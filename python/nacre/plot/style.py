@@ -1,4 +1,4 @@
-"""How pictures look: the width of a page, small type, colours that everybody can tell apart."""
+"""Style of the pictures: the width of a page, small type, colours that everybody can tell apart."""
 
 from __future__ import annotations
 
@@ -39,24 +39,24 @@ STYLE: dict[Any, Any] = {
     "ytick.major.width": 0.6,
 }
 
-# Of Okabe and Ito's palette.
+# Colours of the palette of Okabe and Ito.
 COLOURS = ("#0072B2", "#D55E00", "#000000", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
 DASHES = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (6, 1.5, 1, 1.5)), (0, (1, 0.7)))
 COLOURMAP = "viridis"
 SIGNED = "RdBu_r"
-"""Colours of what may be tension or compression."""
+"""Colours of a quantity that may be tension or compression."""
 LONGEST = 6.0
 """Side ratio up to which a picture is true to scale."""
 
 
 def new_axes(width: float, height: float) -> Axes:
-    """Return axes of a new figure, of a size in widths of a page."""
+    """Return axes of a new figure whose size is given in widths of a page."""
     size = (width * WIDTH, height * WIDTH)
     return plt.figure(figsize=size, layout="constrained").add_subplot()
 
 
 def look(number: int) -> dict[str, Any]:
-    """Return colour and dashes of the curve of that number."""
+    """Return colour and dashes of the curve with that number."""
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
 
 

@@ -5,8 +5,8 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::super::arrays::{Repr, read_only, real_matrix};
-use super::{PyShape, Shape, subclass};
+use super::base::{Kind, PyShape, held, object};
+use crate::python::arguments::{Repr, read_only, real_matrix};
 use crate::surface::HeightMap;
 
 /// A measured surface: heights at cell centres, positive towards the other body.
@@ -35,7 +35,21 @@ use crate::surface::HeightMap;
 /// >>> nacre.HeightMap([[0.0, 1e-6], [2e-6, 3e-6]], spacing=1e-6).spacing
 /// (1e-06, 1e-06)
 #[pyclass(name = "HeightMap", module = "nacre", frozen, extends = PyShape)]
-pub(in crate::python) struct PyHeightMap;
+pub(super) struct PyHeightMap;
+
+impl Kind for HeightMap {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let ([dx, dy], [x, y]) = (self.spacing(), self.center());
+        let arguments = PyDict::new(py);
+        arguments.set_item(
+            "heights",
+            read_only(py, self.heights().to_owned().into_dyn())?,
+        )?;
+        arguments.set_item("spacing", (dx, dy))?;
+        arguments.set_item("center", (x, y))?;
+        Ok(arguments)
+    }
+}
 
 #[pymethods]
 impl PyHeightMap {
@@ -59,29 +73,29 @@ impl PyHeightMap {
                 ))
             })?;
         let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
-        Ok(subclass(Self, Shape::HeightMap(map.centered_at(center)?)))
+        Ok(object(Self, map.centered_at(center)?))
     }
 
     /// Reads a measured surface from a file.
     ///
-    /// Instruments' files are read by SurfaceTopography, with ``nacre[surfaces]``. Missing points
-    /// are filled smoothly from around them, and counted in a `nacre.NacreWarning`.
+    /// Files of instruments are read by SurfaceTopography, with ``nacre[surfaces]``. Missing points are
+    /// filled smoothly from their surroundings; a `nacre.NacreWarning` tells how many there were.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     ``.npy``: a matrix of heights ``(nx, ny)``. ``.csv``: likewise, one line for each x;
-    ///     comments ``# unit: um`` and ``# spacing: 0.5 0.5`` may precede. ``.xyz``: points on a
-    ///     grid. Anything else that SurfaceTopography knows.
+    ///     A file ``.npy`` holds a matrix of heights ``(nx, ny)``; ``.csv`` likewise, with one line
+    ///     for each x, after optional comments ``# unit: um`` and ``# spacing: 0.5 0.5``; ``.xyz``
+    ///     holds points on a grid. SurfaceTopography reads any other file.
     /// spacing : float or tuple of float, optional
-    ///     Distances between samples [m]; needed where the file does not say.
+    ///     Distances between samples [m]; needed where the file does not give them.
     /// unit : str, optional
-    ///     Unit of the numbers in the file ("nm", "um", "mm", ...); the file's by default, metres
-    ///     where it names none.
+    ///     Unit of the numbers in the file ("nm", "um", "mm", ...). By default the unit that the file
+    ///     names, or metres where it names none.
     /// detrend : {"plane", "none", "mean", "quadratic"}, optional
-    ///     What is subtracted: the plane, the mean or the paraboloid that fits best.
+    ///     Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
     /// channel : str or int, optional
-    ///     Which of an instrument's channels to read.
+    ///     Channel of the instrument that is read.
     ///
     /// Returns
     /// -------
@@ -93,7 +107,7 @@ impl PyHeightMap {
     /// ValueError
     ///     If the file cannot be understood, or less than half of it was measured.
     /// OSError
-    ///     If it cannot be read.
+    ///     If the file cannot be read.
     ///
     /// Examples
     /// --------
@@ -121,29 +135,22 @@ impl PyHeightMap {
         surfaces.call_method("read", (path,), Some(&options))
     }
 
-    /// The heights ``(nx, ny)`` [m].
+    /// Heights ``(nx, ny)`` [m].
     #[getter]
     fn heights<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let map = height_map(slf);
+        let map = held::<_, HeightMap>(slf);
         read_only(slf.py(), map.heights().to_owned())
     }
 
     /// Distances between samples ``(dx, dy)`` [m].
     #[getter]
     fn spacing(slf: &Bound<'_, Self>) -> (f64, f64) {
-        height_map(slf).spacing().into()
+        held::<_, HeightMap>(slf).spacing().into()
     }
 
     /// Centre [m].
     #[getter]
     fn center(slf: &Bound<'_, Self>) -> (f64, f64) {
-        height_map(slf).center().into()
-    }
-}
-
-fn height_map<'a>(object: &'a Bound<'_, PyHeightMap>) -> &'a HeightMap {
-    match &object.as_super().get().0 {
-        Shape::HeightMap(map) => map,
-        _ => unreachable!("made by its own constructor"),
+        held::<_, HeightMap>(slf).center().into()
     }
 }

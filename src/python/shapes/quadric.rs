@@ -1,9 +1,18 @@
 //! `nacre.Sphere`, `nacre.Paraboloid`, `nacre.Cylinder` and `nacre.FlatPunch`.
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use super::{PyShape, Shape, subclass};
+use super::base::{Kind, PyShape, held, numbers, object};
 use crate::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
+
+/// Adds the classes to the module.
+pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<PySphere>()?;
+    module.add_class::<PyParaboloid>()?;
+    module.add_class::<PyCylinder>()?;
+    module.add_class::<PyFlatPunch>()
+}
 
 /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
 ///
@@ -15,29 +24,32 @@ use crate::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 /// Raises
 /// ------
 /// ValueError
-///     If it is not finite and above 0.
+///     If the radius is not finite and above 0.
 ///
 /// Examples
 /// --------
 /// >>> nacre.Sphere(radius=5e-3)
 /// Sphere(radius=0.005)
 #[pyclass(name = "Sphere", module = "nacre", frozen, extends = PyShape)]
-pub(in crate::python) struct PySphere;
+pub(super) struct PySphere;
+
+impl Kind for Sphere {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        numbers(py, [("radius", self.radius())])
+    }
+}
 
 #[pymethods]
 impl PySphere {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(subclass(Self, Shape::Sphere(Sphere::new(radius)?)))
+        Ok(object(Self, Sphere::new(radius)?))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        match &slf.as_super().get().0 {
-            Shape::Sphere(shape) => shape.radius(),
-            _ => unreachable!("made by its own constructor"),
-        }
+        held::<_, Sphere>(slf).radius()
     }
 }
 
@@ -51,47 +63,45 @@ impl PySphere {
 /// Raises
 /// ------
 /// ValueError
-///     If one is not finite and above 0.
+///     If a radius is not finite and above 0.
 ///
 /// Examples
 /// --------
 /// >>> nacre.Paraboloid(5e-3, 5e-3)
 /// Paraboloid(radius_x=0.005, radius_y=0.005)
 #[pyclass(name = "Paraboloid", module = "nacre", frozen, extends = PyShape)]
-pub(in crate::python) struct PyParaboloid;
+pub(super) struct PyParaboloid;
+
+impl Kind for Paraboloid {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let radii = [("radius_x", self.radius_x()), ("radius_y", self.radius_y())];
+        numbers(py, radii)
+    }
+}
 
 #[pymethods]
 impl PyParaboloid {
     #[new]
     fn new(radius_x: f64, radius_y: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(subclass(
-            Self,
-            Shape::Paraboloid(Paraboloid::new(radius_x, radius_y)?),
-        ))
+        Ok(object(Self, Paraboloid::new(radius_x, radius_y)?))
     }
 
     /// Radius of curvature along x [m].
     #[getter]
     fn radius_x(slf: &Bound<'_, Self>) -> f64 {
-        match &slf.as_super().get().0 {
-            Shape::Paraboloid(shape) => shape.radius_x(),
-            _ => unreachable!("made by its own constructor"),
-        }
+        held::<_, Paraboloid>(slf).radius_x()
     }
 
     /// Radius of curvature along y [m].
     #[getter]
     fn radius_y(slf: &Bound<'_, Self>) -> f64 {
-        match &slf.as_super().get().0 {
-            Shape::Paraboloid(shape) => shape.radius_y(),
-            _ => unreachable!("made by its own constructor"),
-        }
+        held::<_, Paraboloid>(slf).radius_y()
     }
 }
 
 /// An endless cylinder, axis along x: ``h = R - sqrt(R**2 - y**2)``, +inf beyond R.
 ///
-/// Its contact is as long as the grid, which must be given.
+/// The contact is as long as the grid, which must be given.
 ///
 /// Parameters
 /// ----------
@@ -101,29 +111,32 @@ impl PyParaboloid {
 /// Raises
 /// ------
 /// ValueError
-///     If it is not finite and above 0.
+///     If the radius is not finite and above 0.
 ///
 /// Examples
 /// --------
 /// >>> nacre.Cylinder(radius=5e-3)
 /// Cylinder(radius=0.005)
 #[pyclass(name = "Cylinder", module = "nacre", frozen, extends = PyShape)]
-pub(in crate::python) struct PyCylinder;
+pub(super) struct PyCylinder;
+
+impl Kind for Cylinder {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        numbers(py, [("radius", self.radius())])
+    }
+}
 
 #[pymethods]
 impl PyCylinder {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(subclass(Self, Shape::Cylinder(Cylinder::new(radius)?)))
+        Ok(object(Self, Cylinder::new(radius)?))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        match &slf.as_super().get().0 {
-            Shape::Cylinder(shape) => shape.radius(),
-            _ => unreachable!("made by its own constructor"),
-        }
+        held::<_, Cylinder>(slf).radius()
     }
 }
 
@@ -137,28 +150,31 @@ impl PyCylinder {
 /// Raises
 /// ------
 /// ValueError
-///     If it is not finite and above 0.
+///     If the radius is not finite and above 0.
 ///
 /// Examples
 /// --------
 /// >>> nacre.FlatPunch(radius=1e-3)
 /// FlatPunch(radius=0.001)
 #[pyclass(name = "FlatPunch", module = "nacre", frozen, extends = PyShape)]
-pub(in crate::python) struct PyFlatPunch;
+pub(super) struct PyFlatPunch;
+
+impl Kind for FlatPunch {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        numbers(py, [("radius", self.radius())])
+    }
+}
 
 #[pymethods]
 impl PyFlatPunch {
     #[new]
     fn new(radius: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(subclass(Self, Shape::FlatPunch(FlatPunch::new(radius)?)))
+        Ok(object(Self, FlatPunch::new(radius)?))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        match &slf.as_super().get().0 {
-            Shape::FlatPunch(shape) => shape.radius(),
-            _ => unreachable!("made by its own constructor"),
-        }
+        held::<_, FlatPunch>(slf).radius()
     }
 }

@@ -1,9 +1,10 @@
 //! `nacre.Roller`.
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use super::super::profiles;
-use super::{PyShape, Shape, subclass};
+use super::base::{Kind, PyShape, held, object};
+use super::profiles;
 use crate::error::Error;
 use crate::surface::{CrownedProfile, Profile, Roller};
 
@@ -25,7 +26,7 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 /// length : float, optional
 ///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
 /// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
-///     Another axial profile, in place of `flat_length` and `crown_radius`; a pair is positions and
+///     Another axial profile, in place of `flat_length` and `crown_radius`. A pair holds positions and
 ///     drops.
 ///
 /// Raises
@@ -36,9 +37,25 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 /// Examples
 /// --------
 /// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
-/// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None)
+/// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None, profile=None)
 #[pyclass(name = "Roller", module = "nacre", frozen, extends = PyShape)]
-pub(in crate::python) struct PyRoller;
+pub(super) struct PyRoller;
+
+impl Kind for Roller {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (flat_length, crown_radius) = match self.profile() {
+            Profile::Crowned(p) => (Some(p.flat_length()), Some(p.crown_radius())),
+            Profile::Logarithmic(_) | Profile::Sampled(_) => (None, None),
+        };
+        let arguments = PyDict::new(py);
+        arguments.set_item("radius", self.radius())?;
+        arguments.set_item("flat_length", flat_length)?;
+        arguments.set_item("crown_radius", crown_radius)?;
+        arguments.set_item("length", self.length())?;
+        arguments.set_item("profile", profiles::to_python(py, self.profile())?)?;
+        Ok(arguments)
+    }
+}
 
 #[pymethods]
 impl PyRoller {
@@ -68,13 +85,13 @@ impl PyRoller {
         if let Some(length) = length {
             roller = roller.with_length(length)?;
         }
-        Ok(subclass(Self, Shape::Roller(roller)))
+        Ok(object(Self, roller))
     }
 
     /// Radius [m].
     #[getter]
     fn radius(slf: &Bound<'_, Self>) -> f64 {
-        roller(slf).radius()
+        held::<_, Roller>(slf).radius()
     }
 
     /// Length of the straight part of a crowned roller [m].
@@ -89,28 +106,21 @@ impl PyRoller {
         crown(slf).map(|crown| crown.crown_radius())
     }
 
-    /// Whole length [m], where it is cut off.
+    /// Whole length [m] of a roller that is cut off; None for an endless one.
     #[getter]
     fn length(slf: &Bound<'_, Self>) -> Option<f64> {
-        roller(slf).length()
+        held::<_, Roller>(slf).length()
     }
 
-    /// The axial profile, where it is not a crown.
+    /// Axial profile; None for a crowned roller.
     #[getter]
     fn profile<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        profiles::to_python(slf.py(), roller(slf).profile())
+        profiles::to_python(slf.py(), held::<_, Roller>(slf).profile())
     }
 }
 
-fn roller<'a>(object: &'a Bound<'_, PyRoller>) -> &'a Roller {
-    match &object.as_super().get().0 {
-        Shape::Roller(roller) => roller,
-        _ => unreachable!("made by its own constructor"),
-    }
-}
-
-fn crown<'a>(object: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
-    match roller(object).profile() {
+fn crown<'a>(roller: &'a Bound<'_, PyRoller>) -> Option<&'a CrownedProfile> {
+    match held::<_, Roller>(roller).profile() {
         Profile::Crowned(crown) => Some(crown),
         Profile::Logarithmic(_) | Profile::Sampled(_) => None,
     }

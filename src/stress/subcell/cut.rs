@@ -1,74 +1,100 @@
-//! How a cell is cut into rectangles, to be seen from the centre of another or from its own.
+//! Cells cut into rectangles, whose stresses are summed: the nearer the target, the finer the cut.
 
-/// A rectangle in a cell: its centre, from that of the cell, and half sides, in cells.
+/// A rectangle in a cell, in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Piece {
+    /// Distance from the cell's centre.
     pub(super) centre: [f64; 2],
+    /// Half sides.
     pub(super) half: [f64; 2],
 }
 
 impl Piece {
-    /// All of the cell.
-    pub(super) const WHOLE: Self = Self {
+    /// The whole cell.
+    pub(super) const CELL: Self = Self {
         centre: [0.0; 2],
         half: [0.5; 2],
     };
 
-    /// Part of the cell that it covers.
+    /// Area over the cell's.
     pub(super) fn area(&self) -> f64 {
         4.0 * self.half[0] * self.half[1]
     }
 
-    /// Mean of the squared distance from the cell's centre along one axis.
+    /// Mean over the piece of the squared distance from the cell's centre along one axis.
     pub(super) fn mean_square(&self, axis: usize) -> f64 {
         self.centre[axis].powi(2) + self.half[axis].powi(2) / 3.0
     }
 }
 
-/// The cuts that are used, the finer the nearer.
+/// A cell cut into pieces.
 #[derive(Debug)]
-pub(super) struct Cuts {
-    /// That of a target's own cell: 5 × 5, of which the inner 3 × 3 are cut by three in each
-    /// direction, and again, and again, towards the centre. That of the cells next to it: 5 × 5.
-    /// That of cells farther off: 3 × 3.
-    pub(super) all: [Vec<Piece>; 3],
-    /// 1/12 over the second moments of the pieces' centres, along x and y.
-    pub(super) norms: [[f64; 2]; 3],
+pub(super) struct Cut {
+    pub(super) pieces: Vec<Piece>,
+    /// Along x and y, 1/12 over the second moment of the pieces' centres: 1 for infinitely many pieces,
+    /// 0 along an axis that is not cut.
+    pub(super) norms: [f64; 2],
+    /// Points along a side of a piece at which a pressure is sampled for the piece's mean.
+    pub(super) points: usize,
 }
 
+impl Cut {
+    fn new(pieces: Vec<Piece>, points: usize) -> Self {
+        let norms = [0, 1].map(|axis| {
+            let second = |piece: &Piece| piece.area() * piece.centre[axis].powi(2);
+            let sum: f64 = pieces.iter().map(second).sum();
+            if sum > 0.0 { 1.0 / (12.0 * sum) } else { 0.0 }
+        });
+        Self {
+            pieces,
+            norms,
+            points,
+        }
+    }
+}
+
+/// How many cuts there are.
+pub(super) const CUTS: usize = 3;
+
+/// Cuts of a cell, seen from its own centre, from the cells next to it, and from those farther off.
+#[derive(Debug)]
+pub(super) struct Cuts([Cut; CUTS]);
+
 impl Cuts {
-    /// Of cells, or of strips along x.
+    /// Side of the smallest pieces, in cells.
+    pub(super) const SMALLEST: f64 = 1.0 / 135.0;
+
+    /// Cuts of cells, or of strips along x if `line`. A cell's own cut is 5 × 5, of which the inner
+    /// 3 × 3 are cut by three in each direction, three times over towards the centre; its neighbours'
+    /// is 5 × 5, that of cells farther off 3 × 3.
     pub(super) fn new(line: bool) -> Self {
         let mut own = Vec::new();
-        grade(pieces(Piece::WHOLE, 5, line), 0.2, 3, line, &mut own);
-        let all = [
-            own,
-            pieces(Piece::WHOLE, 5, line),
-            pieces(Piece::WHOLE, 3, line),
-        ];
-        let norms = all.each_ref().map(|pieces| {
-            [0, 1].map(|axis| {
-                let second = |piece: &Piece| piece.area() * piece.centre[axis].powi(2);
-                let sum: f64 = pieces.iter().map(second).sum();
-                if sum > 0.0 { 1.0 / (12.0 * sum) } else { 0.0 }
-            })
-        });
-        Self { all, norms }
+        grade(pieces(Piece::CELL, 5, line), 0.2, 3, line, &mut own);
+        Self([
+            Cut::new(own, 1),
+            Cut::new(pieces(Piece::CELL, 5, line), 2),
+            Cut::new(pieces(Piece::CELL, 3, line), 2),
+        ])
     }
 
-    /// Which one a target sees that is so many cells off, at a depth in cells: what is left out of
-    /// pieces of side s falls off as e^{−2πz/s}.
+    /// The cut of this number.
+    pub(super) fn get(&self, number: usize) -> &Cut {
+        &self.0[number]
+    }
+
+    /// Number of the cut for a target `offset` cells away, at a depth in cells.
     pub(super) fn seen_from(&self, offset: [isize; 2], depth: f64) -> usize {
         let near = match offset.map(isize::unsigned_abs) {
             [0, 0] => 0,
             [0 | 1, 0 | 1] => 1,
             _ => 2,
         };
-        near.max(Self::finest(depth))
+        near.max(Self::finest_at(depth))
     }
 
-    /// The first cut that is used at a depth.
-    pub(super) fn finest(depth: f64) -> usize {
+    /// Number of the finest cut that is used at a depth in cells: what pieces of side s leave out falls
+    /// off as e^{−2πz/s}.
+    pub(super) fn finest_at(depth: f64) -> usize {
         if depth < 0.4 {
             0
         } else if depth < 0.8 {
@@ -79,7 +105,7 @@ impl Cuts {
     }
 }
 
-/// `count` × `count` equal pieces of one.
+/// `count` × `count` equal pieces of one; of a strip, `count` across.
 pub(super) fn pieces(whole: Piece, count: usize, line: bool) -> Vec<Piece> {
     let place = |k: usize| (2 * k + 1) as f64 / count as f64 - 1.0;
     let rows = if line { 1 } else { count };
@@ -105,7 +131,7 @@ pub(super) fn pieces(whole: Piece, count: usize, line: bool) -> Vec<Piece> {
     pieces
 }
 
-/// Cuts those of `pieces`, of side `side`, that touch the middle one, `levels` times.
+/// Cuts the middle one of the `coarse` pieces, of side `side`, and those that touch it, `levels` times.
 fn grade(coarse: Vec<Piece>, side: f64, levels: usize, line: bool, graded: &mut Vec<Piece>) {
     if levels == 0 {
         graded.extend(coarse);
@@ -132,12 +158,12 @@ mod tests {
     fn pieces_make_up_the_cell() {
         for line in [false, true] {
             let cuts = Cuts::new(line);
-            for pieces in &cuts.all {
-                let area: f64 = pieces.iter().map(Piece::area).sum();
+            for cut in &cuts.0 {
+                let area: f64 = cut.pieces.iter().map(Piece::area).sum();
                 assert!((area - 1.0).abs() < 1e-14);
                 for axis in 0..2 {
                     let second = |piece: &Piece| piece.area() * piece.mean_square(axis);
-                    let inertia: f64 = pieces.iter().map(second).sum();
+                    let inertia: f64 = cut.pieces.iter().map(second).sum();
                     assert!((inertia - 1.0 / 12.0).abs() < 1e-14);
                 }
             }
@@ -147,7 +173,10 @@ mod tests {
             } else {
                 16 + 72 + 72 + 81
             };
-            assert_eq!(cuts.all[0].len(), count);
+            assert_eq!(cuts.0[0].pieces.len(), count);
+            let sides = cuts.0[0].pieces.iter().map(|piece| 2.0 * piece.half[1]);
+            let smallest = sides.fold(1.0, f64::min);
+            assert!((smallest / Cuts::SMALLEST - 1.0).abs() < 1e-14);
         }
     }
 }

@@ -1,12 +1,24 @@
-//! A polynomial through values at the centres of cells, by least squares.
+//! A polynomial through values at cell centres, by weighted least squares.
 
-use super::edge::around;
+use super::neighbours::around;
 
-/// Cells to each side that a fit looks at: over more of them p² of a small contact is no polynomial,
-/// over fewer the solver's staircase is felt more. Chosen by trial.
-pub(super) const WINDOW: usize = 8;
+/// Cells to each side of a cell that its fit uses. Chosen by trial: over more of them p² of a small
+/// contact is no polynomial, over fewer the solver's staircase is felt more.
+const WINDOW: usize = 8;
 
-/// Terms of a polynomial of third degree: powers of u and of v.
+/// Square of the distance, in windows, at which the weight (1.1 − r²)² of a value falls to 0: cells at
+/// the window's sides still count a little.
+const WEIGHT_RADIUS_SQUARED: f64 = 1.1;
+
+/// Smallest pivot of Cholesky's factorisation, over the diagonal entry that it comes from: below it
+/// the values do not determine the polynomial. Far above rounding and far below the pivots of windows
+/// that are half filled.
+const PIVOT_LIMIT: f64 = 1e-9;
+
+/// Terms of a polynomial of third degree in two variables.
+const TERMS: usize = 10;
+
+/// Powers of u and of v in each term.
 const POWERS: [[u8; 2]; TERMS] = [
     [0, 0],
     [1, 0],
@@ -20,13 +32,13 @@ const POWERS: [[u8; 2]; TERMS] = [
     [0, 3],
 ];
 
-const TERMS: usize = 10;
-
-/// A polynomial in the distances u, v from a cell's centre, in cells.
+/// The square of the pressure near a cell: a polynomial in the distances u, v from the cell's centre,
+/// in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Square([f64; TERMS]);
+pub(super) struct SquaredPressure([f64; TERMS]);
 
-impl Square {
+impl SquaredPressure {
+    /// Value at (u, v); negative beyond the edge.
     pub(super) fn at(&self, u: f64, v: f64) -> f64 {
         let [c, cu, cv, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
         let along = cu + u * (cuu + u * cuuu);
@@ -34,135 +46,153 @@ impl Square {
         c + u * along + v * across + u * v * (cuv + u * cuuv + v * cuvv)
     }
 
+    /// The polynomial plus a constant, which shifts the edge.
     pub(super) fn raised(mut self, by: f64) -> Self {
         self.0[0] += by;
         self
     }
 
-    /// How much it changes from the centre to the corners of a piece of half sides (a, b), at the
-    /// slope of the cell's centre.
-    pub(super) fn varies(&self, [a, b]: [f64; 2]) -> f64 {
+    /// Change from the centre to a corner of a rectangle of half sides (a, b), at the slope of the
+    /// cell's centre.
+    pub(super) fn variation(&self, [a, b]: [f64; 2]) -> f64 {
         self.0[1].abs() * a + self.0[2].abs() * b
     }
 
-    /// Its slope at the centre.
+    /// Magnitude of the gradient at the cell's centre.
     pub(super) fn slope(&self) -> f64 {
         self.0[1].hypot(self.0[2])
     }
 }
 
-/// The fewest values that a polynomial of so many terms is fitted to.
-fn fewest(terms: usize, line: bool) -> usize {
+/// A fitted polynomial, and how certain it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    pub(super) polynomial: SquaredPressure,
+    /// Standard deviation of the place of the edge, in cells, from the residuals of the fit.
+    pub(super) uncertainty: f64,
+}
+
+/// Fewest values that a polynomial of so many terms is fitted to.
+fn fewest_values(terms: usize, line: bool) -> usize {
     if line { terms + 2 } else { 2 * terms }
 }
 
-/// Whether there may be values enough around a cell for a polynomial of second degree: they are
-/// counted in a square, of which the fit takes a circle. To count is far cheaper than to sum.
-pub(super) fn may_fit(squares: &[Option<f64>], shape: [usize; 2], cell: [usize; 2]) -> bool {
+/// Whether there may be values enough around a cell for a polynomial of second degree. They are
+/// counted in a square, of which the fit uses a circle: counting is far cheaper than summing.
+pub(super) fn may_be_fitted(values: &[Option<f64>], shape: [usize; 2], cell: [usize; 2]) -> bool {
     let line = shape[0] == 1;
     let terms = if line { 3 } else { 6 };
-    let known = |[i, j]: &[usize; 2]| squares[i * shape[1] + j].is_some();
-    around(shape, cell, WINDOW).filter(known).count() >= fewest(terms, line)
+    let known = |[i, j]: &[usize; 2]| values[i * shape[1] + j].is_some();
+    around(shape, cell, WINDOW).filter(known).count() >= fewest_values(terms, line)
 }
 
-/// Sums over the cells around one, nearer ones counting more, for least squares.
-pub(super) struct Samples {
+/// Normal equations of the values around one cell.
+pub(super) struct NormalEquations {
     line: bool,
-    normal: [[f64; TERMS]; TERMS],
+    /// Lower triangle of the matrix.
+    matrix: [[f64; TERMS]; TERMS],
     right: [f64; TERMS],
-    squares: f64,
+    /// Weighted sum of the squares of the values.
+    values_squared: f64,
     weights: f64,
     count: usize,
 }
 
-impl Samples {
+impl NormalEquations {
+    /// Sums over the known `values` of the cells around `cell`, nearer ones weighing more.
     pub(super) fn around(
-        squares: &[Option<f64>],
+        values: &[Option<f64>],
         shape: [usize; 2],
         cell @ [i, j]: [usize; 2],
     ) -> Self {
         let scale = 1.0 / WINDOW as f64;
-        let mut samples = Self {
+        let mut equations = Self {
             line: shape[0] == 1,
-            normal: [[0.0; TERMS]; TERMS],
+            matrix: [[0.0; TERMS]; TERMS],
             right: [0.0; TERMS],
-            squares: 0.0,
+            values_squared: 0.0,
             weights: 0.0,
             count: 0,
         };
         for [k, l] in around(shape, cell, WINDOW) {
-            let Some(square) = squares[k * shape[1] + l] else {
+            let Some(value) = values[k * shape[1] + l] else {
                 continue;
             };
             let u = (k as f64 - i as f64) * scale;
             let v = (l as f64 - j as f64) * scale;
             let (uu, vv) = (u * u, v * v);
-            let rest = 1.1 - (uu + vv);
+            let rest = WEIGHT_RADIUS_SQUARED - (uu + vv);
             if rest > 0.0 {
                 let basis = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
-                samples.add(rest * rest, basis, square);
+                equations.add(rest * rest, basis, value);
             }
         }
-        samples
+        equations
     }
 
-    fn add(&mut self, weight: f64, basis: [f64; TERMS], square: f64) {
-        for (a, row) in self.normal.iter_mut().enumerate() {
+    fn add(&mut self, weight: f64, basis: [f64; TERMS], value: f64) {
+        for (a, row) in self.matrix.iter_mut().enumerate() {
             let along = weight * basis[a];
             for (sum, across) in row[..=a].iter_mut().zip(&basis) {
                 *sum += along * across;
             }
-            self.right[a] += along * square;
+            self.right[a] += along * value;
         }
-        self.squares += weight * square * square;
+        self.values_squared += weight * value * value;
         self.weights += weight;
         self.count += 1;
     }
 
-    /// The polynomial of some degree that fits best, and how uncertain the edge is by it, in cells;
-    /// none where there are too few cells.
-    pub(super) fn fit(&self, degree: u8) -> Option<(Square, f64)> {
+    /// The polynomial of `degree` that fits best; none where there are too few values, or they do not
+    /// determine it.
+    pub(super) fn fit(&self, degree: u8) -> Option<Fit> {
         let used = |[a, b]: [u8; 2]| a + b <= degree && !(self.line && a > 0);
         let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
         let terms = powers.len();
-        if self.count < fewest(terms, self.line) {
+        if self.count < fewest_values(terms, self.line) {
             return None;
         }
-        let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+        let (mut matrix, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
         for (a, row) in powers.iter().enumerate() {
             for (b, column) in powers[..=a].iter().enumerate() {
-                normal[a][b] = self.normal[*row][*column];
+                matrix[a][b] = self.matrix[*row][*column];
             }
             right[a] = self.right[*row];
         }
-        cholesky(&mut normal, terms)?;
-        let solution = solved(&normal, right, terms);
+        factorise(&mut matrix, terms)?;
+        let solution = solved(&matrix, right, terms);
         let mut first = [0.0; TERMS];
         first[0] = 1.0;
-        let spread = solved(&normal, first, terms)[0];
+        // The first entry of the inverse: the variance of the value at the centre, over that of values.
+        let spread = solved(&matrix, first, terms)[0];
         let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
         let count = self.count as f64;
         let free = count / (count - terms as f64);
-        let variance = ((self.squares - product) / self.weights * free).max(0.0);
-        let mut square = Square([0.0; TERMS]);
+        let variance = ((self.values_squared - product) / self.weights * free).max(0.0);
+        let mut polynomial = SquaredPressure([0.0; TERMS]);
         for (value, k) in solution.iter().zip(&powers) {
             let [a, b] = POWERS[*k];
-            square.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
+            polynomial.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
         }
-        let uncertain = (variance * spread * self.weights / count).sqrt() / square.slope();
-        uncertain.is_finite().then_some((square, uncertain))
+        let deviation = (variance * spread * self.weights / count).sqrt();
+        let uncertainty = deviation / polynomial.slope();
+        uncertainty.is_finite().then_some(Fit {
+            polynomial,
+            uncertainty,
+        })
     }
 }
 
-/// The factor of Cholesky in the lower triangle, in place; none where a pivot is lost.
-fn cholesky(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
+/// Replaces the lower triangle of `matrix` by its Cholesky factor; none where a pivot is lost. Golub &
+/// Van Loan, Matrix Computations, 4th ed. (2013), §4.2.
+fn factorise(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
     for a in 0..terms {
         let scale = matrix[a][a];
         for b in 0..=a {
             let sum: f64 = (0..b).map(|k| matrix[a][k] * matrix[b][k]).sum();
             let rest = matrix[a][b] - sum;
             if a == b {
-                if rest <= 1e-9 * scale {
+                if rest <= PIVOT_LIMIT * scale {
                     return None;
                 }
                 matrix[a][a] = rest.sqrt();
@@ -174,7 +204,7 @@ fn cholesky(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
     Some(())
 }
 
-/// Solution with that factor.
+/// Solution of the system whose Cholesky factor is `factor`.
 fn solved(factor: &[[f64; TERMS]; TERMS], mut right: [f64; TERMS], terms: usize) -> [f64; TERMS] {
     for a in 0..terms {
         let sum: f64 = (0..a).map(|k| factor[a][k] * right[k]).sum();
@@ -185,4 +215,54 @@ fn solved(factor: &[[f64; TERMS]; TERMS], mut right: [f64; TERMS], terms: usize)
         right[a] = (right[a] - sum) / factor[a][a];
     }
     right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::neighbours::edge_distances;
+    use super::*;
+
+    const SHAPE: [usize; 2] = [41, 44];
+
+    /// A polynomial is found from cells that are three cells inside of its zero and farther, and
+    /// continued over it: three cells beyond those that are fitted, rounding grows by 1e4.
+    #[test]
+    fn polynomials_are_exact() {
+        const ROUNDING: f64 = 1e-12;
+        const BAND: u8 = 3;
+        let ellipse = |x: f64, y: f64| 1.0 - x * x / 200.0 - y * y / 310.0 + x * y / 900.0;
+        let cubic = |x: f64, y: f64| ellipse(x, y) + x.powi(3) / 3e4 - x * y * y / 5e4;
+        let check = |q: &dyn Fn(f64, f64) -> f64, degree: u8| {
+            let place = |cell: usize| [cell / SHAPE[1], cell % SHAPE[1]];
+            let value = |cell: usize| {
+                let [i, j] = place(cell);
+                q(i as f64 - 20.3, j as f64 - 21.1)
+            };
+            let values: Vec<f64> = (0..SHAPE[0] * SHAPE[1]).map(value).collect();
+            let distances = edge_distances(&values, SHAPE, BAND + 1);
+            let inside = |(q, d): (&f64, &u8)| (*d >= BAND).then_some(*q);
+            let known: Vec<_> = values.iter().zip(&distances).map(inside).collect();
+            let mut count = 0;
+            for (cell, distance) in distances.iter().enumerate() {
+                if *distance == 0 || *distance > BAND {
+                    continue;
+                }
+                let cell @ [i, j] = place(cell);
+                let Some(fit) = NormalEquations::around(&known, SHAPE, cell).fit(degree) else {
+                    panic!("too few values around {cell:?}")
+                };
+                let (x, y) = (i as f64 - 20.3, j as f64 - 21.1);
+                for (u, v) in [(0.0, 0.0), (0.5, -0.5), (-1.0, 0.7)] {
+                    let error = fit.polynomial.at(u, v) - q(x + u, y + v);
+                    assert!(error.abs() < 1e4 * ROUNDING, "{cell:?}: {error:.1e}");
+                }
+                // The residual is a difference of squares.
+                assert!(fit.uncertainty < 1e-5, "{cell:?}: {:.1e}", fit.uncertainty);
+                count += 1;
+            }
+            assert!(count > 200);
+        };
+        check(&ellipse, 2);
+        check(&cubic, 3);
+    }
 }

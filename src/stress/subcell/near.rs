@@ -1,100 +1,113 @@
-//! What pressure within cells adds to the stress nearby.
+//! The stress that pressure within cells adds nearby.
 //!
-//! The load of a cell less its mean and the shares of its first moment
-//! ([`super::reconstruction`]) has neither force nor moment: its stresses fall off as the fourth
-//! power of the distance. They are summed over some cells around each, at shallow depths, from the
+//! The load of a cell, less its mean and the shares of its first moment
+//! ([`super::reconstruction`]), has neither force nor moment: its stresses fall off as the fourth
+//! power of the distance. At shallow depths they are summed over some cells around each, from the
 //! stresses of pieces of a cell ([`super::cut`]).
+
+use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::cut::{Cuts, Piece};
-use super::reconstruction::{INERTIA, Reconstruction, RootCell, root};
+use super::cut::{CUTS, Cuts, Piece};
+use super::reconstruction::{INERTIA, Interior, Reconstruction, RootCell, mean_root};
 use crate::grid::Grid;
 use crate::parallel::Threads;
+use crate::stress::options::StressProgress;
 
-/// Stresses, as there are no displacements here.
+/// Number of stress components; pressure within cells adds no displacements.
 pub(in crate::stress) const STRESSES: usize = 6;
 
-// These four leave little: with 5, 7, 3 and 4 in their places, errors of Hertz' contacts of 128 cells
-// to the half-width change by 3e-5 of the peak pressure at most, less than a tenth of the largest.
+/// The stress components σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz.
+pub(super) type Components = [f64; STRESSES];
 
-/// How far the load of a cell is followed, in cells of the longer side.
+// The next four constants were chosen by trial. With 5, 7, 3 and 4 in their places, errors of Hertz'
+// contacts of 128 cells to the half-width change by 3e-5 of the peak pressure at most, less than a
+// tenth of the largest.
+
+/// Distance to which the load of a cell near the edge is followed, in cells of the longer side.
 const REACH: f64 = 3.0;
 
-/// Depth, in shorter sides of a cell, below which the edge's loads are not felt.
-const EDGES: f64 = 4.0;
+/// Depth, in shorter sides of a cell, below which loads near the edge are not felt.
+const DEPTH_LIMIT: f64 = 4.0;
 
-/// The same of slopes inside, which fall off as e^{−2πz/dx}.
-const BENDS: f64 = 1.5;
+/// Depth, in shorter sides of a cell, below which parabolas of the interior are not felt: they fall off
+/// as e^{−2πz/dx}.
+const INTERIOR_DEPTH_LIMIT: f64 = 1.5;
 
-/// How far they are followed, in cells.
-const CLOSE: usize = 2;
+/// Distance, in cells, to which parabolas of the interior are followed.
+const INTERIOR_REACH: usize = 2;
 
-/// The most cells of the shorter side that a load is followed, for the sake of time: cells more than
-/// 3.3 times as long as wide lose some. Twelve times is tested (`tests/stress_edge.rs`).
-const MOST: usize = 10;
+/// Largest number of cells along the shorter side to which a load is followed, which bounds the time:
+/// cells more than 3.3 times as long as wide lose some. Twelve times is tested (`tests/stress/edge.rs`).
+const REACH_LIMIT: usize = 10;
 
-/// Cells at a time.
+/// Cells near the edge whose stresses are held at a time, which bounds the memory.
 const BLOCK: usize = 512;
 
-/// How cells are cut and followed.
+/// The pressure within cells, and how its stresses are summed at any depth.
 #[derive(Debug)]
-pub(in crate::stress) struct NearPlan {
-    pub(in crate::stress) reconstruction: Reconstruction,
+pub(super) struct NearPlan {
+    pub(super) reconstruction: Reconstruction,
     shape: [usize; 2],
-    /// Of a cell; a strip's width, twice.
+    /// Sides of a cell; a strip's width, twice.
     sides: [f64; 2],
     line: bool,
+    /// Cells along x and y to which a load is followed.
     reach: [usize; 2],
     cuts: Cuts,
 }
 
-/// A target, seen from a cell.
+/// Stresses at a target, of the parts of the load of one cell.
 #[derive(Debug)]
 struct Offset {
+    /// Target minus loaded cell, in cells.
     by: [isize; 2],
-    /// Of the pieces that it sees; 0 those of its own cell.
+    /// Number of the cut into pieces.
     cut: usize,
-    /// Of uniform pressure, of unit slopes and curvatures, and of shares of a unit first moment.
-    uniform: [f64; STRESSES],
-    bends: [[f64; STRESSES]; 4],
-    shares: [[f64; STRESSES]; 2],
-    /// Of unit pressure on each piece.
-    pieces: Vec<[f64; STRESSES]>,
+    /// Under uniform unit pressure.
+    uniform: Components,
+    /// Under unit slopes along x and along y, less the shares of their first moments.
+    slopes: [Components; 2],
+    /// Under unit curvatures along x and along y.
+    curvatures: [Components; 2],
+    /// Under the shares of unit first moments along x and along y.
+    shares: [Components; 2],
+    /// Under unit pressure on each piece.
+    pieces: Vec<Components>,
 }
 
 impl Offset {
-    /// Whether bends are felt.
-    fn is_close(&self) -> bool {
-        self.by.iter().all(|by| by.unsigned_abs() <= CLOSE)
+    /// Whether parabolas of the interior are felt.
+    fn feels_interior(&self) -> bool {
+        self.by.iter().all(|by| by.unsigned_abs() <= INTERIOR_REACH)
     }
 }
 
-/// Stresses of the parts of one cell at one depth.
+/// Stresses of the parts of a cell's load at one depth; empty where none are felt.
 #[derive(Debug, Default)]
 pub(in crate::stress) struct NearTable {
     offsets: Vec<Offset>,
-    /// The first cut that is used.
+    /// Number of the finest cut that is used.
     finest: usize,
-    bends: bool,
-    surface: bool,
+    feels_interior: bool,
+    at_surface: bool,
 }
 
 impl NearTable {
-    /// Whether it is the surface's.
-    pub(in crate::stress) fn at_surface(&self) -> bool {
-        self.surface
+    /// Whether the depth is 0.
+    pub(super) fn at_surface(&self) -> bool {
+        self.at_surface
     }
 }
 
 impl NearPlan {
-    /// None where `go_on` stops it.
-    pub(in crate::stress) fn new(
+    pub(super) fn new(
         pressure: &[f64],
         grid: &Grid,
         threads: &Threads,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Option<Self> {
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Self> {
         let (shape, line) = (grid.shape(), grid.is_line());
         let sides = if line {
             [grid.spacing()[1]; 2]
@@ -102,9 +115,9 @@ impl NearPlan {
             grid.spacing()
         };
         let longer = sides[0].max(sides[1]);
-        let reach = |side: f64| ((REACH * longer / side).ceil() as usize).min(MOST);
-        Some(Self {
-            reconstruction: Reconstruction::new(pressure, shape, threads, go_on)?,
+        let reach = |side: f64| ((REACH * longer / side).ceil() as usize).min(REACH_LIMIT);
+        ControlFlow::Continue(Self {
+            reconstruction: Reconstruction::new(pressure, shape, threads, progress)?,
             shape,
             sides,
             line,
@@ -113,74 +126,42 @@ impl NearPlan {
         })
     }
 
-    /// How far a piece of a cell is from a target, at most.
-    pub(in crate::stress) fn farthest(&self) -> f64 {
+    /// Largest distance of a piece of a cell from a target.
+    pub(super) fn farthest(&self) -> f64 {
         let [along, across] = [0, 1].map(|axis| (self.reach[axis] + 2) as f64 * self.sides[axis]);
         along.hypot(across)
     }
 
     /// Whether anything is felt at a depth.
-    pub(in crate::stress) fn reaches(&self, depth: f64) -> bool {
-        depth < EDGES * self.shorter()
+    pub(super) fn reaches(&self, depth: f64) -> bool {
+        depth < DEPTH_LIMIT * self.shorter()
     }
 
     fn shorter(&self) -> f64 {
         self.sides[0].min(self.sides[1])
     }
 
-    /// The table at a depth, of the stresses at (x, y) from the centre of a unit load of half sides
-    /// (a, b). On the threads of the caller.
-    pub(in crate::stress) fn table(
+    /// The table at a depth. `stresses` gives those at (x, y) from the centre of a rectangle of half sides
+    /// (a, b) under unit pressure. On the threads of the caller.
+    pub(super) fn table(
         &self,
         depth: f64,
-        load: impl Fn([f64; 2], [f64; 2]) -> [f64; STRESSES] + Sync,
+        stresses: impl Fn([f64; 2], [f64; 2]) -> Components + Sync,
     ) -> NearTable {
         let [rx, ry] = self.reach.map(|reach| reach as isize);
-        // One more, for the shares.
+        // One more, for the shares on the neighbours.
         let ends = [if self.line { 0 } else { rx + 1 }, ry + 1];
         let range = |end: isize| -end..=end;
         let all: Vec<[isize; 2]> = range(ends[0])
             .flat_map(|i| range(ends[1]).map(move |j| [i, j]))
             .collect();
-        let [dx, dy] = self.sides;
         let mut offsets: Vec<Offset> = all
             .into_par_iter()
-            .map(|by @ [i, j]| {
-                let cut = self.cuts.seen_from(by, depth / self.shorter());
-                let pieces = &self.cuts.all[cut];
-                let values: Vec<[f64; STRESSES]> = pieces
-                    .iter()
-                    .map(|Piece { centre, half }| {
-                        let at = [(i as f64 - centre[0]) * dx, (j as f64 - centre[1]) * dy];
-                        load(at, [half[0] * dx, half[1] * dy])
-                    })
-                    .collect();
-                let mut uniform = [0.0; STRESSES];
-                let mut bends = [[0.0; STRESSES]; 4];
-                let norms = self.cuts.norms[cut];
-                for (value, piece) in values.iter().zip(pieces) {
-                    let means = [0, 1].map(|axis| piece.mean_square(axis));
-                    for k in 0..STRESSES {
-                        uniform[k] += value[k];
-                        for axis in 0..2 {
-                            bends[axis][k] += norms[axis] * piece.centre[axis] * value[k];
-                            bends[axis + 2][k] += 0.5 * (means[axis] - INERTIA) * value[k];
-                        }
-                    }
-                }
-                Offset {
-                    by,
-                    cut,
-                    uniform,
-                    bends,
-                    shares: [[0.0; STRESSES]; 2],
-                    pieces: values,
-                }
-            })
+            .map(|by| self.offset(by, depth, &stresses))
             .collect();
         let width = 2 * ends[1] + 1;
         let place = |[i, j]: [isize; 2]| ((i + ends[0]) * width + j + ends[1]) as usize;
-        let uniform: Vec<[f64; STRESSES]> = offsets.iter().map(|o| o.uniform).collect();
+        let uniform: Vec<Components> = offsets.iter().map(|o| o.uniform).collect();
         offsets.retain(|o| o.by[0].abs() <= rx && o.by[1].abs() <= ry);
         for offset in &mut offsets {
             let [i, j] = offset.by;
@@ -196,27 +177,66 @@ impl NearPlan {
                 );
                 for k in 0..STRESSES {
                     offset.shares[axis][k] = 0.5 * (right[k] - left[k]);
-                    offset.bends[axis][k] -= INERTIA * offset.shares[axis][k];
+                    offset.slopes[axis][k] -= INERTIA * offset.shares[axis][k];
                 }
             }
         }
         NearTable {
             offsets,
-            finest: Cuts::finest(depth / self.shorter()),
-            bends: depth < BENDS * self.shorter(),
-            surface: depth == 0.0,
+            finest: Cuts::finest_at(depth / self.shorter()),
+            feels_interior: depth < INTERIOR_DEPTH_LIMIT * self.shorter(),
+            at_surface: depth == 0.0,
         }
     }
 
-    /// Adds the stresses of pressure within cells to those on a plane. On the threads of the caller.
-    pub(in crate::stress) fn add(&self, near: &NearTable, outputs: &mut [&mut [f64]]) {
+    /// Stresses at a target `by` cells away, without those of shares.
+    fn offset(
+        &self,
+        by @ [i, j]: [isize; 2],
+        depth: f64,
+        stresses: impl Fn([f64; 2], [f64; 2]) -> Components,
+    ) -> Offset {
+        let [dx, dy] = self.sides;
+        let number = self.cuts.seen_from(by, depth / self.shorter());
+        let cut = self.cuts.get(number);
+        let stress = |Piece { centre, half }: &Piece| {
+            let at = [(i as f64 - centre[0]) * dx, (j as f64 - centre[1]) * dy];
+            stresses(at, [half[0] * dx, half[1] * dy])
+        };
+        let pieces: Vec<Components> = cut.pieces.iter().map(stress).collect();
+        let mut uniform = [0.0; STRESSES];
+        let [mut slopes, mut curvatures] = [[[0.0; STRESSES]; 2]; 2];
+        for (value, piece) in pieces.iter().zip(&cut.pieces) {
+            let means = [0, 1].map(|axis| piece.mean_square(axis));
+            for k in 0..STRESSES {
+                uniform[k] += value[k];
+                for axis in 0..2 {
+                    slopes[axis][k] += cut.norms[axis] * piece.centre[axis] * value[k];
+                    curvatures[axis][k] += 0.5 * (means[axis] - INERTIA) * value[k];
+                }
+            }
+        }
+        Offset {
+            by,
+            cut: number,
+            uniform,
+            slopes,
+            curvatures,
+            shares: [[0.0; STRESSES]; 2],
+            pieces,
+        }
+    }
+
+    /// Adds the stresses of pressure within cells to `outputs`, one plane of each component. On the
+    /// threads of the caller.
+    pub(super) fn add(&self, near: &NearTable, outputs: &mut [&mut [f64]]) {
         if near.offsets.is_empty() {
             return;
         }
         for block in self.reconstruction.roots.chunks(BLOCK) {
             let stresses: Vec<_> = block
                 .par_iter()
-                .map(|cell| self.stresses(near, cell))
+                .map(|cell| self.root_stresses(near, cell))
                 .collect();
             outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
                 for (cell, stresses) in block.iter().zip(&stresses) {
@@ -228,53 +248,50 @@ impl NearPlan {
                 }
             });
         }
-        if near.bends {
+        if near.feels_interior {
             outputs
                 .par_iter_mut()
                 .enumerate()
-                .for_each(|(k, output)| self.add_bends(near, k, output));
+                .for_each(|(k, output)| self.add_interior(near, k, output));
         }
     }
 
-    /// Pressure on the pieces of a cut, less the mean, with the moments that are left to the
-    /// convolution.
-    fn loads(&self, cell: &RootCell, cut: usize) -> Vec<f64> {
-        // Points along a side of a piece.
-        const POINTS: [usize; 3] = [1, 2, 2];
-        let pieces = &self.cuts.all[cut];
-        let value = |piece| root(&cell.square, piece, POINTS[cut], self.line);
-        let mut values: Vec<f64> = pieces.iter().map(value).collect();
+    /// Pressures on the pieces of a cut, less the cell's mean, and linearly corrected: their first
+    /// moments are those that the shares in the convolution stand for.
+    fn piece_pressures(&self, cell: &RootCell, cut: usize) -> Vec<f64> {
+        let cut = self.cuts.get(cut);
+        let pressure = |piece| mean_root(&cell.squared, piece, cut.points, self.line);
+        let mut pressures: Vec<f64> = cut.pieces.iter().map(pressure).collect();
         let (mut mean, mut missing) = (0.0, cell.moments);
-        for (value, piece) in values.iter().zip(pieces) {
-            let load = value * piece.area();
+        for (pressure, piece) in pressures.iter().zip(&cut.pieces) {
+            let load = pressure * piece.area();
             mean += load;
             missing[0] -= load * piece.centre[0];
             missing[1] -= load * piece.centre[1];
         }
-        let norms = self.cuts.norms[cut];
-        let [along, across] = [0, 1].map(|axis| missing[axis] * norms[axis] / INERTIA);
-        for (value, piece) in values.iter_mut().zip(pieces) {
-            *value += along * piece.centre[0] + across * piece.centre[1] - mean;
+        let [along, across] = [0, 1].map(|axis| missing[axis] * cut.norms[axis] / INERTIA);
+        for (pressure, piece) in pressures.iter_mut().zip(&cut.pieces) {
+            *pressure += along * piece.centre[0] + across * piece.centre[1] - mean;
         }
-        values
+        pressures
     }
 
     /// Stresses of the load of one cell near the edge, at all offsets.
-    fn stresses(&self, near: &NearTable, cell: &RootCell) -> Vec<[f64; STRESSES]> {
-        let loads = [0, 1, 2].map(|cut| {
+    fn root_stresses(&self, near: &NearTable, cell: &RootCell) -> Vec<Components> {
+        let pressures: [Vec<f64>; CUTS] = std::array::from_fn(|cut| {
             if cut < near.finest {
                 Vec::new()
             } else {
-                self.loads(cell, cut)
+                self.piece_pressures(cell, cut)
             }
         });
         let [mx, my] = cell.moments;
         let stress = |offset: &Offset| {
             let [along, across] = &offset.shares;
             let mut sum = std::array::from_fn(|k| -mx * along[k] - my * across[k]);
-            for (coefficients, load) in offset.pieces.iter().zip(&loads[offset.cut]) {
+            for (coefficients, pressure) in offset.pieces.iter().zip(&pressures[offset.cut]) {
                 for (sum, coefficient) in sum.iter_mut().zip(coefficients) {
-                    *sum += coefficient * load;
+                    *sum += coefficient * pressure;
                 }
             }
             sum
@@ -290,19 +307,20 @@ impl NearPlan {
         Some(i * ny + j)
     }
 
-    /// Adds component `k` of the loads of cells with slopes.
-    fn add_bends(&self, near: &NearTable, k: usize, output: &mut [f64]) {
+    /// Adds component `k` of the parabolas of the interior.
+    fn add_interior(&self, near: &NearTable, k: usize, output: &mut [f64]) {
         let [nx, ny] = self.shape;
-        let bends = &self.reconstruction.bends;
+        let Interior { slopes, curvatures } = &self.reconstruction.interior;
         for i in 0..nx {
             let row = i * ny..(i + 1) * ny;
-            let [ax, ay, bx, by] = bends.each_ref().map(|bend| &bend[row.clone()]);
-            let bent = |j: usize| [ax, ay, bx, by].iter().any(|bend| bend[j] != 0.0);
-            let Some(first) = (0..ny).find(|j| bent(*j)) else {
+            let [sx, sy] = slopes.each_ref().map(|part| &part[row.clone()]);
+            let [kx, ky] = curvatures.each_ref().map(|part| &part[row.clone()]);
+            let is_curved = |j: &usize| [sx, sy, kx, ky].iter().any(|part| part[*j] != 0.0);
+            let Some(first) = (0..ny).find(is_curved) else {
                 continue;
             };
-            let end = (0..ny).rfind(|j| bent(*j)).map_or(first, |j| j + 1);
-            for offset in near.offsets.iter().filter(|offset| offset.is_close()) {
+            let end = (0..ny).rfind(is_curved).map_or(first, |j| j + 1);
+            for offset in near.offsets.iter().filter(|offset| offset.feels_interior()) {
                 let Some(target) = i.checked_add_signed(offset.by[0]).filter(|i| *i < nx) else {
                     continue;
                 };
@@ -312,14 +330,15 @@ impl NearPlan {
                 if start >= end {
                     continue;
                 }
-                let [cax, cay, cbx, cby] = offset.bends.map(|bend| bend[k]);
+                let [of_sx, of_sy] = offset.slopes.map(|stresses| stresses[k]);
+                let [of_kx, of_ky] = offset.curvatures.map(|stresses| stresses[k]);
                 let begin = (target * ny + start).saturating_add_signed(off);
                 let targets = &mut output[begin..begin + end - start];
-                let slopes = ax[start..end].iter().zip(&ay[start..end]);
-                let curvatures = bx[start..end].iter().zip(&by[start..end]);
+                let slopes = sx[start..end].iter().zip(&sy[start..end]);
+                let curvatures = kx[start..end].iter().zip(&ky[start..end]);
                 let sources = slopes.zip(curvatures);
-                for (output, ((ax, ay), (bx, by))) in targets.iter_mut().zip(sources) {
-                    *output += cax * ax + cay * ay + cbx * bx + cby * by;
+                for (output, ((sx, sy), (kx, ky))) in targets.iter_mut().zip(sources) {
+                    *output += of_sx * sx + of_sy * sy + of_kx * kx + of_ky * ky;
                 }
             }
         }

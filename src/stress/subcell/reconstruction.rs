@@ -1,131 +1,145 @@
-//! Pressure inside of the cells of a solved contact.
+//! The pressure of a solved contact, in cells and within them.
 //!
-//! A solver's pressure is uniform over each cell, and right for what is farther off than a cell or
-//! two. Within that
+//! - In the interior p is parabolic in a cell, with the slopes and curvatures of the neighbours'
+//!   pressures.
+//! - Near the edge it is the root of a polynomial ([`super::edge`]), shifted by thousandths of a cell
+//!   until the cells around bear the force that the solver's cells do.
+//! - Elsewhere it stays uniform.
 //!
-//! - inside the contact p is parabolic in a cell, with the slopes and curvatures of its neighbours;
-//! - near the edge it is the root of a polynomial ([`super::edge`]), of which the edge is moved, by
-//!   thousandths of a cell, until the cells around bear the force that the solver's do;
-//! - where neither is known it stays uniform.
-//!
-//! Within a cell, p less its mean has a first moment m, which is felt far off. The convolution takes
-//! it, as ±m/2 on the two neighbours. What remains has neither force nor moment, and is felt within a
-//! few cells only ([`super::near`]). Inside the contact the solver's pressure holds those shares
-//! already: deep planes change by the edge alone.
+//! The uniform part of a cell is its mean plus the shares ±m/2 that it takes of its neighbours' first
+//! moments m. In the interior the solver's pressure is that sum already: deep planes change by the edge
+//! alone.
+
+use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
 use super::cut::{Piece, pieces};
-use super::edge::{BAND, EdgeCell, distances, edge_cells};
-use super::fit::Square;
+use super::edge::{BAND, EdgeCell, edge_cells};
+use super::fit::SquaredPressure;
+use super::neighbours::{RectangleSums, edge_distances};
 use crate::parallel::Threads;
+use crate::stress::options::StressProgress;
 
-/// The pressure of a solved contact, in cells and within them.
+/// The pressure of a solved contact, reconstructed.
 #[derive(Debug)]
 pub(super) struct Reconstruction {
-    /// What is to be taken as uniform over cells, at all depths.
+    /// Pressure that is taken as uniform over cells, at all depths.
     pub(super) uniform: Vec<f64>,
-    /// Slopes within cells, per cell, and curvatures, per cell squared, along x and along y; 0
-    /// outside of the inside.
-    pub(super) bends: [Vec<f64>; 4],
-    /// Where p is the root of a polynomial.
+    pub(super) interior: Interior,
+    /// Cells near the edge, in which p is the root of a polynomial.
     pub(super) roots: Vec<RootCell>,
+}
+
+/// Parabolas within the cells of the interior; zero in all cells up to [`BAND`] from the edge.
+#[derive(Debug)]
+pub(super) struct Interior {
+    /// Slopes along x and along y, per cell.
+    pub(super) slopes: [Vec<f64>; 2],
+    /// Curvatures along x and along y, per cell squared.
+    pub(super) curvatures: [Vec<f64>; 2],
 }
 
 /// A cell near the edge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RootCell {
     pub(super) cell: [usize; 2],
-    pub(super) square: Square,
+    /// p²; the pressure is its root where it is positive, and 0 elsewhere.
+    pub(super) squared: SquaredPressure,
+    /// Mean of p.
     pub(super) mean: f64,
-    /// First moments of p over the cell, along x and y.
+    /// First moments of p along x and along y.
     pub(super) moments: [f64; 2],
     /// Change of the mean per change of p².
     rate: f64,
 }
 
-/// Second moment of a cell.
+/// Second moment of a cell, in cells.
 pub(super) const INERTIA: f64 = 1.0 / 12.0;
 
-/// Pieces along each side of a cell for its mean. Where the edge is in reach each is cut by four
-/// again, so that a root is missed in 1/24 of a cell.
-const FINE: usize = 6;
+/// Pieces along each side of a cell for the mean of a root. Where the edge is in reach each piece is
+/// sampled at four points along each side, so that a root is missed within 1/24 of a cell.
+const MEAN_DIVISIONS: usize = 6;
 
-/// Steps that move the edge until it bears the force of the solver's cells. As Newton's they leave
-/// the square of what the one before left: the first moves by thousandths of a cell.
-const STEPS: usize = 2;
+/// Steps of Newton's method that balance the force. Each leaves the square of the shift before, and the
+/// first shifts by thousandths of a cell.
+const BALANCE_STEPS: usize = 2;
 
-/// Cells to each side that bear it together: some runs of the staircase. Chosen by trial.
-const BEARERS: usize = 12;
+/// Cells to each side whose forces are balanced together: some runs of the staircase. Chosen by trial.
+const BALANCE_REACH: usize = 12;
 
-/// By how many cells the edge may be moved: twice as far as a fit may be uncertain of it
-/// ([`super::edge`]).
-const FARTHEST: f64 = 0.1;
+/// Largest shift of the edge in one step, in cells; a cell whose edge would have to shift more keeps its
+/// uniform pressure. Twice the largest uncertainty of a fit ([`super::edge`]).
+const SHIFT_LIMIT: f64 = 0.1;
+
+/// Step of p² for [`RootCell::rate`], over the change of p² across a cell: the edge shifts by about a
+/// hundredth of a cell.
+const RATE_STEP: f64 = 0.01;
 
 impl Reconstruction {
-    /// None where `go_on`, which is asked many times, stops it.
+    /// The reconstruction of `pressure`. `progress` is asked many times, with 0.
     pub(super) fn new(
         pressure: &[f64],
-        shape @ [nx, ny]: [usize; 2],
+        shape: [usize; 2],
         threads: &Threads,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Option<Self> {
-        let line = nx == 1;
-        let distances = distances(pressure, shape, BAND + 1);
-        if !go_on() {
-            return None;
-        }
-        let fine = pieces(Piece::WHOLE, FINE, line);
-        let inside = |cell: usize| distances[cell] > BAND;
-        let mut bends: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; pressure.len()]);
-        for cell in (0..pressure.len()).filter(|cell| inside(*cell)) {
-            let steps = if line { [0, 1] } else { [ny, 1] };
-            for axis in 0..2 {
-                let [left, here, right] = [cell - steps[axis], cell, cell + steps[axis]];
-                let [left, here, right] = [left, here, right].map(|cell| pressure[cell]);
-                bends[axis][cell] = 0.5 * (right - left);
-                bends[axis + 2][cell] = right - 2.0 * here + left;
-            }
-        }
-        if !go_on() {
-            return None;
-        }
-        let edges = edge_cells(pressure, &distances, shape, threads, go_on)?;
-        let root = |edge| RootCell::new(edge, &fine, line);
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Self> {
+        let line = shape[0] == 1;
+        let distances = edge_distances(pressure, shape, BAND + 1);
+        progress(0.0)?;
+        let interior = Interior::new(pressure, &distances, shape);
+        progress(0.0)?;
+        let edges = edge_cells(pressure, &distances, shape, threads, progress)?;
+        let divisions = pieces(Piece::CELL, MEAN_DIVISIONS, line);
+        let root = |edge| RootCell::new(edge, &divisions, line);
         let mut roots: Vec<RootCell> = threads.run(|| edges.into_par_iter().map(root).collect());
-        let mut uniform = uniform_part(pressure, &bends, &roots, shape);
-        for _ in 0..STEPS {
-            if !go_on() {
-                return None;
-            }
-            let moves = moves(pressure, &uniform, &roots, shape);
-            if !go_on() {
-                return None;
-            }
-            let moved = roots.into_par_iter().zip(moves);
-            let root = |(root, by): (RootCell, f64)| root.moved(by, &fine, line);
-            roots = threads.run(|| moved.filter_map(root).collect());
-            uniform = uniform_part(pressure, &bends, &roots, shape);
+        let mut uniform = uniform_part(pressure, &interior, &roots, shape);
+        for _ in 0..BALANCE_STEPS {
+            progress(0.0)?;
+            let raises = balancing_raises(pressure, &uniform, &roots, shape);
+            progress(0.0)?;
+            let raised = roots.into_par_iter().zip(raises);
+            let root = |(root, by): (RootCell, f64)| root.raised(by, &divisions, line);
+            roots = threads.run(|| raised.filter_map(root).collect());
+            uniform = uniform_part(pressure, &interior, &roots, shape);
         }
-        // Those beyond the edge hold nothing.
+        // Cells beyond the edge hold nothing.
         roots.retain(|root| root.mean > 0.0);
-        Some(Self {
+        ControlFlow::Continue(Self {
             uniform,
-            bends,
+            interior,
             roots,
         })
     }
 }
 
-/// What is to be taken as uniform over cells: means and shares.
+impl Interior {
+    fn new(pressure: &[f64], distances: &[u8], [nx, ny]: [usize; 2]) -> Self {
+        let zeros = || [0, 1].map(|_| vec![0.0; pressure.len()]);
+        let (mut slopes, mut curvatures) = (zeros(), zeros());
+        // The neighbours along x of a cell of line contact are the cell itself.
+        let steps = if nx == 1 { [0, 1] } else { [ny, 1] };
+        for cell in (0..pressure.len()).filter(|cell| distances[*cell] > BAND) {
+            for axis in 0..2 {
+                let [left, here, right] = [cell - steps[axis], cell, cell + steps[axis]];
+                let [left, here, right] = [left, here, right].map(|cell| pressure[cell]);
+                slopes[axis][cell] = 0.5 * (right - left);
+                curvatures[axis][cell] = right - 2.0 * here + left;
+            }
+        }
+        Self { slopes, curvatures }
+    }
+}
+
+/// Pressure that is taken as uniform over cells: means, and shares of the neighbours' first moments.
 fn uniform_part(
     pressure: &[f64],
-    bends: &[Vec<f64>; 4],
+    interior: &Interior,
     roots: &[RootCell],
     [nx, ny]: [usize; 2],
 ) -> Vec<f64> {
     let mut means = pressure.to_vec();
-    let moment = |cell: usize| [0, 1].map(|axis| INERTIA * bends[axis][cell]);
+    let moment = |cell: usize| [0, 1].map(|axis| INERTIA * interior.slopes[axis][cell]);
     let mut moments: Vec<[f64; 2]> = (0..pressure.len()).map(moment).collect();
     let mut is_root = vec![false; pressure.len()];
     for root in roots {
@@ -134,7 +148,7 @@ fn uniform_part(
         moments[cell] = root.moments;
         is_root[cell] = true;
     }
-    // The solver's pressure holds shares already; those at the edge have gone with it.
+    // The solver's pressure holds shares already, but cells at the edge no longer have it.
     let takes = |cell: usize, neighbour: usize| {
         is_root[cell] || is_root[neighbour] && pressure[cell] == 0.0
     };
@@ -156,80 +170,56 @@ fn uniform_part(
     uniform
 }
 
-/// By how much p² is to be raised, for the cells around each to bear the force that they are given.
-fn moves(pressure: &[f64], uniform: &[f64], roots: &[RootCell], shape: [usize; 2]) -> Vec<f64> {
+/// For each root, by how much p² must rise so that the cells around it bear the solver's force.
+fn balancing_raises(
+    pressure: &[f64],
+    uniform: &[f64],
+    roots: &[RootCell],
+    shape: [usize; 2],
+) -> Vec<f64> {
     let ny = shape[1];
     let missing: Vec<f64> = pressure.iter().zip(uniform).map(|(p, u)| p - u).collect();
     let mut rates = vec![0.0; pressure.len()];
     for root in roots {
         rates[root.cell[0] * ny + root.cell[1]] = root.rate;
     }
-    let (missing, rates) = (Sums::new(&missing, shape), Sums::new(&rates, shape));
-    let move_of = |root: &RootCell| {
-        let rate = rates.around(root.cell, BEARERS);
+    let missing = RectangleSums::new(&missing, shape);
+    let rates = RectangleSums::new(&rates, shape);
+    let raise = |root: &RootCell| {
+        let rate = rates.around(root.cell, BALANCE_REACH);
         if rate > 0.0 {
-            missing.around(root.cell, BEARERS) / rate
+            missing.around(root.cell, BALANCE_REACH) / rate
         } else {
             0.0
         }
     };
-    roots.iter().map(move_of).collect()
-}
-
-/// Sums over rectangles of cells, from those over all that begin at the first.
-struct Sums {
-    shape: [usize; 2],
-    sums: Vec<f64>,
-}
-
-impl Sums {
-    fn new(values: &[f64], shape @ [nx, ny]: [usize; 2]) -> Self {
-        let width = ny + 1;
-        let mut sums = vec![0.0; (nx + 1) * width];
-        for i in 0..nx {
-            let mut row = 0.0;
-            for j in 0..ny {
-                row += values[i * ny + j];
-                sums[(i + 1) * width + j + 1] = sums[i * width + j + 1] + row;
-            }
-        }
-        Self { shape, sums }
-    }
-
-    fn around(&self, [i, j]: [usize; 2], reach: usize) -> f64 {
-        let [nx, ny] = self.shape;
-        let at = |i: usize, j: usize| self.sums[i * (ny + 1) + j];
-        let (top, left) = (i.saturating_sub(reach), j.saturating_sub(reach));
-        let (bottom, right) = ((i + reach + 1).min(nx), (j + reach + 1).min(ny));
-        at(bottom, right) - at(top, right) - at(bottom, left) + at(top, left)
-    }
+    roots.iter().map(raise).collect()
 }
 
 impl RootCell {
-    fn new(edge: EdgeCell, fine: &[Piece], line: bool) -> Self {
-        let EdgeCell { cell, square } = edge;
-        let (mean, moments) = moments(&square, fine, line);
-        // A hundredth of a cell.
-        let step = 0.01 * square.varies([1.0, 1.0]);
-        let (higher, _) = self::moments(&square.raised(step), fine, line);
+    fn new(edge: EdgeCell, divisions: &[Piece], line: bool) -> Self {
+        let EdgeCell { cell, squared } = edge;
+        let (mean, moments) = mean_and_moments(&squared, divisions, line);
+        let step = RATE_STEP * squared.variation([1.0, 1.0]);
+        let (higher, _) = mean_and_moments(&squared.raised(step), divisions, line);
         Self {
             cell,
-            square,
+            squared,
             mean,
             moments,
             rate: (higher - mean) / step,
         }
     }
 
-    /// With p² raised; none where that moves the edge too far.
-    fn moved(self, by: f64, fine: &[Piece], line: bool) -> Option<Self> {
-        if by.abs() > FARTHEST * self.square.slope() {
+    /// The cell with p² raised; none where that shifts the edge too far.
+    fn raised(self, by: f64, divisions: &[Piece], line: bool) -> Option<Self> {
+        if by.abs() > SHIFT_LIMIT * self.squared.slope() {
             return None;
         }
-        let square = self.square.raised(by);
-        let (mean, moments) = moments(&square, fine, line);
+        let squared = self.squared.raised(by);
+        let (mean, moments) = mean_and_moments(&squared, divisions, line);
         Some(Self {
-            square,
+            squared,
             mean,
             moments,
             ..self
@@ -237,11 +227,11 @@ impl RootCell {
     }
 }
 
-/// Mean and first moments over the cell.
-fn moments(square: &Square, fine: &[Piece], line: bool) -> (f64, [f64; 2]) {
+/// Mean and first moments of the root over the cell.
+fn mean_and_moments(squared: &SquaredPressure, divisions: &[Piece], line: bool) -> (f64, [f64; 2]) {
     let (mut mean, mut moments) = (0.0, [0.0; 2]);
-    for piece in fine {
-        let p = piece.area() * root(square, piece, 1, line);
+    for piece in divisions {
+        let p = piece.area() * mean_root(squared, piece, 1, line);
         mean += p;
         moments[0] += p * piece.centre[0];
         moments[1] += p * piece.centre[1];
@@ -249,10 +239,11 @@ fn moments(square: &Square, fine: &[Piece], line: bool) -> (f64, [f64; 2]) {
     (mean, moments)
 }
 
-/// Mean of √max(p², 0) over a piece, of `count` points along each side.
-pub(super) fn root(square: &Square, piece: &Piece, count: usize, line: bool) -> f64 {
+/// Mean of √max(p², 0) over a piece, from `count` points along each side.
+pub(super) fn mean_root(squared: &SquaredPressure, piece: &Piece, count: usize, line: bool) -> f64 {
     let half = piece.half.map(|half| half / count as f64);
-    let varies = 2.0 * square.varies(half);
+    // Twice the variation, so that curvature does not hide the edge.
+    let variation = 2.0 * squared.variation(half);
     let rows = if line { 1 } else { count };
     let mut sum = 0.0;
     for a in 0..rows {
@@ -260,26 +251,32 @@ pub(super) fn root(square: &Square, piece: &Piece, count: usize, line: bool) -> 
             let u = piece.centre[0] + half[0] * (2 * a + 1) as f64 - half[0] * count as f64;
             let u = if line { 0.0 } else { u };
             let v = piece.centre[1] + half[1] * (2 * b + 1) as f64 - half[1] * count as f64;
-            let value = square.at(u, v);
-            if value > varies {
+            let value = squared.at(u, v);
+            if value > variation {
                 sum += value.sqrt();
-            } else if value > -varies {
-                sum += finer_root(square, [u, v], half, line);
+            } else if value > -variation {
+                sum += mean_root_at_edge(squared, [u, v], half, line);
             }
         }
     }
     sum / (rows * count) as f64
 }
 
-/// The same where the edge is in reach: of four points along each side.
+/// Mean of √max(p², 0) over the rectangle of half sides (hu, hv) around (u, v), which the edge may cross,
+/// from four points along each side.
 #[cold]
-fn finer_root(square: &Square, [u, v]: [f64; 2], [hu, hv]: [f64; 2], line: bool) -> f64 {
+fn mean_root_at_edge(
+    squared: &SquaredPressure,
+    [u, v]: [f64; 2],
+    [hu, hv]: [f64; 2],
+    line: bool,
+) -> f64 {
     const PLACES: [f64; 4] = [-0.75, -0.25, 0.25, 0.75];
     let along = if line { &[0.0] } else { &PLACES[..] };
     let mut sum = 0.0;
     for a in along {
         for b in &PLACES {
-            sum += square.at(u + a * hu, v + b * hv).max(0.0).sqrt();
+            sum += squared.at(u + a * hu, v + b * hv).max(0.0).sqrt();
         }
     }
     sum / (along.len() * PLACES.len()) as f64
@@ -288,11 +285,15 @@ fn finer_root(square: &Square, [u, v]: [f64; 2], [hu, hv]: [f64; 2], line: bool)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::{Error, Result};
+    use crate::error::Result;
 
     fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Result<Reconstruction> {
-        Reconstruction::new(pressure, shape, &Threads::new(Some(2))?, &mut || true)
-            .ok_or(Error::Inconsistent("it was stopped"))
+        let threads = Threads::new(Some(2))?;
+        let mut progress = |_| ControlFlow::Continue(());
+        match Reconstruction::new(pressure, shape, &threads, &mut progress) {
+            ControlFlow::Continue(reconstruction) => Ok(reconstruction),
+            ControlFlow::Break(()) => panic!("nothing stops it"),
+        }
     }
 
     /// Where the grid's border cuts a contact, its cells stay as they are, though pressure is smooth
@@ -309,11 +310,17 @@ mod tests {
                 })
                 .collect();
             let found = reconstructed(&pressure, shape)?;
+            let Interior { slopes, curvatures } = &found.interior;
             let reach = usize::from(BAND);
             for i in (0..reach).chain(nx - reach..nx) {
                 for cell in i * ny..(i + 1) * ny {
                     assert_eq!(found.uniform[cell].to_bits(), pressure[cell].to_bits());
-                    assert!(found.bends.iter().all(|bend| bend[cell] == 0.0));
+                    assert!(
+                        slopes
+                            .iter()
+                            .chain(curvatures)
+                            .all(|part| part[cell] == 0.0)
+                    );
                 }
             }
             let is_cut = |root: &RootCell| root.cell[0] < reach || root.cell[0] >= nx - reach;
@@ -323,7 +330,7 @@ mod tests {
         Ok(())
     }
 
-    /// The edge bears what it is given: two steps leave the square of the first move, a tenth of a
+    /// The edge bears the solver's force: two steps leave the square of the first shift, a tenth of a
     /// cell at most, of what the edge's cells bear, a twentieth of all.
     #[test]
     fn the_force_is_kept() -> Result<()> {
@@ -339,9 +346,9 @@ mod tests {
         let force = |pressure: &[f64]| pressure.iter().sum::<f64>();
         let change = force(&reconstruction.uniform) / force(&pressure) - 1.0;
         assert!(change.abs() < 5e-4, "{change:.1e}");
-        // What is not near the edge is the solver's.
-        for (cell, bend) in reconstruction.bends[2].iter().enumerate() {
-            if *bend != 0.0 {
+        // The interior keeps the solver's pressure.
+        for (cell, curvature) in reconstruction.interior.curvatures[0].iter().enumerate() {
+            if *curvature != 0.0 {
                 assert_eq!(
                     reconstruction.uniform[cell].to_bits(),
                     pressure[cell].to_bits()

@@ -5,7 +5,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::arrays::{Repr, array_repr, hash, read_only, real_array};
+use crate::python::arguments::{Repr, array_repr, hash, read_only, real_array};
 use crate::surface::{LogarithmicProfile, Profile, SampledProfile};
 
 /// A logarithmic axial profile of a roller, straight over its middle where `flat_length` > 0.
@@ -43,7 +43,7 @@ use crate::surface::{LogarithmicProfile, Profile, SampledProfile};
     from_py_object
 )]
 #[derive(Clone, PartialEq)]
-pub(super) struct PyLogarithmicProfile(pub(super) LogarithmicProfile);
+pub(in crate::python) struct PyLogarithmicProfile(pub(super) LogarithmicProfile);
 
 #[pymethods]
 impl PyLogarithmicProfile {
@@ -227,9 +227,10 @@ impl PyLogarithmicProfile {
 /// Raises
 /// ------
 /// TypeError
-///     If they are not real numbers.
+///     If positions or drops are not real numbers.
 /// ValueError
-///     If their numbers differ, one is not finite, or the positions do not increase.
+///     If there are not as many drops as positions, one is not finite, or the positions do not
+///     increase.
 ///
 /// Examples
 /// --------
@@ -237,7 +238,7 @@ impl PyLogarithmicProfile {
 /// >>> roller = nacre.Roller(radius=5e-3, profile=profile)
 #[pyclass(name = "SampledProfile", module = "nacre", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
-pub(super) struct PySampledProfile(pub(super) SampledProfile);
+pub(in crate::python) struct PySampledProfile(pub(super) SampledProfile);
 
 #[pymethods]
 impl PySampledProfile {
@@ -283,7 +284,7 @@ impl PySampledProfile {
 
 type Line<'py> = Bound<'py, PyArray1<f64>>;
 
-/// The profile that a caller gave: one of the classes, or a pair (x, drop).
+/// Profile from an argument: an object of either class, or a pair (x, drop).
 pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
     if let Ok(profile) = object.extract::<PyLogarithmicProfile>() {
         return Ok(profile.0.into());
@@ -300,7 +301,7 @@ pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {
     }
 }
 
-/// The profile as Python names it; `None` for the crowned one, which is arguments of its own.
+/// Python object for a profile; `None` for a crown, which a roller has as arguments of its own.
 pub(super) fn to_python<'py>(
     py: Python<'py>,
     profile: &Profile,

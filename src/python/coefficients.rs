@@ -1,31 +1,36 @@
-//! `nacre.frequency_response`, `nacre.influence_coefficients` and `nacre.graded_layers`.
+//! Response of a body to loads on its surface: `nacre.frequency_response`, `nacre.surface_compliance`,
+//! `nacre.influence_coefficients`, `nacre.graded_layers` and `nacre.Convolution`.
 
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::arrays::{Repr, count, real_array};
+use super::arguments::{Repr, count, real_array};
 use super::background::{self, Caller};
 use super::bodies::{PyLayer, body, substrate};
-use super::contact::method;
 use super::grid::PyGrid;
+use super::words::{self, REFINEMENT};
 use crate::influence;
-use crate::response;
+use crate::response::{self, Compliance};
 
-/// Normal surface displacement per unit pressure at one wavenumber.
+mod convolution;
+
+pub(super) use convolution::PyConvolution;
+
+/// Normal surface displacement per unit pressure of one wavenumber.
 ///
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     The body.
+///     Body under the pressure.
 /// wavenumber : float or array_like
 ///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
 ///
 /// Returns
 /// -------
 /// float or numpy.ndarray
-///     ``u_z/p`` [m/Pa], in the shape of `wavenumber`. One layer: Nogi & Kato, J. Tribol. 119
-///     (1997) 493, with the sign of the denominator put right.
+///     ``u_z/p`` [m/Pa], in the shape of `wavenumber`. For one layer it equals the formula of Nogi &
+///     Kato, J. Tribol. 119 (1997) 493, with the sign of its denominator corrected.
 ///
 /// Raises
 /// ------
@@ -57,20 +62,89 @@ pub(super) fn frequency_response<'py>(
     Ok(values.into_pyarray(py).into_any())
 }
 
-/// Displacement at cell offsets from a cell under unit pressure.
+/// Surface displacements per unit traction of one wavenumber, normal and lateral.
+///
+/// With the x axis along the wave, under pressure p and tractions q_x, q_y on the body::
+///
+///     u_z = c11 p - i c12 q_x      u_x = i c12 p + c22 q_x      u_y = ct q_y
 ///
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     The body.
+///     Body under the tractions.
+/// wavenumber : float or array_like
+///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
+///
+/// Returns
+/// -------
+/// SurfaceCompliance
+///     Named tuple ``(c11, c12, c22, ct)`` of numbers or arrays [m/Pa] in the shape of `wavenumber`;
+///     ``c11`` equals `frequency_response`.
+///
+/// Raises
+/// ------
+/// TypeError
+///     If the wavenumbers are not real numbers.
+/// ValueError
+///     If a wavenumber is not finite and above 0.
+///
+/// Examples
+/// --------
+/// On a half-space ``c12/c11 = (1 - 2 nu)/(2 - 2 nu)``:
+///
+/// >>> compliance = nacre.surface_compliance(nacre.Elastic(young=1.0, poisson=0.25), [1.0, 2.0])
+/// >>> (compliance.c12 / compliance.c11).round(12)
+/// array([0.33333333, 0.33333333])
+#[pyfunction]
+pub(super) fn surface_compliance<'py>(
+    py: Python<'py>,
+    #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+    wavenumber: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let wavenumbers = real_array("wavenumber", wavenumber)?;
+    let at = |alpha: &f64| response::surface_compliance(&body, *alpha);
+    let compliances = py.detach(|| {
+        wavenumbers
+            .iter()
+            .map(at)
+            .collect::<crate::Result<Vec<_>>>()
+    })?;
+    let component = |value: fn(&Compliance) -> f64| {
+        let mut values = wavenumbers.clone();
+        let targets = values.iter_mut().zip(&compliances);
+        targets.for_each(|(target, compliance)| *target = value(compliance));
+        match values.ndim() {
+            0 => values.sum().into_pyobject(py).map(Bound::into_any),
+            _ => Ok(values.into_pyarray(py).into_any()),
+        }
+    };
+    let components = (
+        component(|c| c.c11)?,
+        component(|c| c.c12)?,
+        component(|c| c.c22)?,
+        component(|c| c.ct)?,
+    );
+    let class = py
+        .import("nacre._compliance")?
+        .getattr("SurfaceCompliance")?;
+    class.call1(components)
+}
+
+/// Displacement at offsets from a cell under unit pressure.
+///
+/// Parameters
+/// ----------
+/// body : HalfSpace or Elastic
+///     Body under the pressure.
 /// grid : Grid
-///     Gives the cell and the number of offsets.
+///     Grid with that cell; there is an offset for each of its cells.
 /// method : {"exact", "plain", "difference", "image"}, optional
-///     ``"exact"`` has no aliasing, for any thickness and any cell. The others sample the frequency
-///     response and transform it back: ``"plain"`` the response alone, ``"difference"`` what it
-///     differs from a body of the coating's material, ``"image"`` what is left of that beside an
-///     image potential. The first two go wrong on long thin domains; ``"image"`` needs layers that
-///     are thicker than a cell.
+///     ``"exact"`` has no aliasing, for any thickness and any cell. The other methods sample a
+///     frequency response and transform it back: ``"plain"`` the response of the body;
+///     ``"difference"`` its difference from the response of a half-space of the coating's material;
+///     ``"image"`` the remainder of that difference beside an image potential. ``"plain"`` and
+///     ``"difference"`` are inaccurate on long thin domains; ``"image"`` needs layers thicker than a
+///     cell.
 /// refinement : int, optional
 ///     Refinement of the spectral mesh of the conversions.
 ///
@@ -101,24 +175,24 @@ pub(super) fn influence_coefficients<'py>(
     method: &str,
     refinement: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let refinement = refinement.map_or(Ok(4), |r| count("refinement", 1, r))?;
-    let method = self::method(method, refinement)?;
+    let refinement = refinement.map_or(Ok(REFINEMENT), |r| count("refinement", 1, r))?;
+    let method = words::method(method, refinement)?;
     let coefficients = background::run(py, None, move |_: &mut Caller<()>| {
         influence::influence_coefficients(&body, &grid.0, method)
     })??;
     Ok(coefficients.into_pyarray(py))
 }
 
-/// Layers that stand for a coating whose properties vary with depth.
+/// Layers that replace a coating whose properties vary with depth.
 ///
-/// The coating is cut into equal layers, each of the properties at its middle; their number is
+/// The coating is cut into equal layers, each with the properties at its middle. Their number is
 /// doubled until the frequency response, at wavelengths down to a fifth of the thickness, is within
 /// `tolerance` of its limit. The error falls with the second power of the layers' thickness.
 ///
 /// Parameters
 /// ----------
 /// substrate : Elastic or nacre.RIGID
-///     What lies below the coating.
+///     Material below the coating.
 /// thickness : float
 ///     Thickness of the coating [m].
 /// young : float or callable
@@ -131,7 +205,7 @@ pub(super) fn influence_coefficients<'py>(
 /// Returns
 /// -------
 /// list of Layer
-///     From the surface down; its length is the number of layers.
+///     Layers from the surface down.
 ///
 /// Raises
 /// ------

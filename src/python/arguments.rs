@@ -1,4 +1,4 @@
-//! Arrays and numbers from Python: real ones of any dtype, order and stride.
+//! Arrays and numbers from Python, checked, and arrays for Python.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -7,14 +7,16 @@ use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// `object` as an array of f64.
+pub(super) mod keywords;
+
+/// Array of f64 with the numbers of `object`, which may have any real dtype, order and stride.
 ///
-/// Complex numbers, objects and text are a `TypeError` that names the argument.
+/// Complex numbers, objects and text raise a `TypeError` that names the argument.
 pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
     let numpy = object.py().import("numpy")?;
     if object.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
         return Err(PyTypeError::new_err(format!(
-            "{name} must be a real array without a mask: fill what is missing first"
+            "{name} must be a real array without a mask: fill the missing values first"
         )));
     }
     let ragged =
@@ -32,7 +34,7 @@ pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Arra
     Ok(array.as_array().to_owned())
 }
 
-/// `object` as an array of two dimensions.
+/// Array (nx, ny) of f64 with the numbers of `object`.
 pub(super) fn real_matrix(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Array2<f64>> {
     let array = real_array(name, object)?;
     let shape = array.shape().to_vec();
@@ -43,7 +45,7 @@ pub(super) fn real_matrix(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Arr
     })
 }
 
-/// `array` moved into NumPy, and locked.
+/// NumPy array that takes over the memory of `array` and cannot be written.
 pub(super) fn read_only<'py, D: ndarray::Dimension, T: numpy::Element>(
     py: Python<'py>,
     array: ndarray::Array<T, D>,
@@ -55,7 +57,7 @@ pub(super) fn read_only<'py, D: ndarray::Dimension, T: numpy::Element>(
     Ok(array)
 }
 
-/// A number of things, ≥ `least`.
+/// Integer that is at least `least`.
 pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyResult<usize> {
     let refuse = || {
         let few = value.lt(least).unwrap_or(false);
@@ -77,7 +79,7 @@ pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyRes
         .ok_or_else(refuse)
 }
 
-/// Two numbers, either of which may be `None`.
+/// Pair of numbers, each of which may be `None`; no numbers where `value` is `None`.
 pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2]> {
     let Some(value) = value else {
         return Ok([None; 2]);
@@ -90,7 +92,7 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
     })
 }
 
-/// A real number.
+/// Real number, or `None` where `value` is.
 pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
     let extract = |value: &Bound<'_, PyAny>| {
         value.extract::<f64>().map_err(|_| {
@@ -100,14 +102,14 @@ pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<O
     value.map(extract).transpose()
 }
 
-/// Hash of a value, by its `repr`: equal values print alike.
+/// Hash of a value from its `repr`, which equal values share.
 pub(super) fn hash(repr: &str) -> u64 {
     let mut hasher = DefaultHasher::new();
     repr.hash(&mut hasher);
     hasher.finish()
 }
 
-/// Prints what Python's `repr` does.
+/// Displays a Python object by its `repr`, in messages.
 pub(super) struct Repr<'a, 'py>(pub(super) &'a Bound<'py, PyAny>);
 
 impl std::fmt::Display for Repr<'_, '_> {
@@ -119,7 +121,7 @@ impl std::fmt::Display for Repr<'_, '_> {
     }
 }
 
-/// An array as Python text: exact where it is short, abbreviated where it is long.
+/// Python text of an array: exact up to 1000 numbers, abbreviated beyond.
 pub(super) fn array_repr<D: ndarray::Dimension>(
     py: Python<'_>,
     array: ndarray::Array<f64, D>,

@@ -5,24 +5,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyMapping};
+use pyo3::types::{PyList, PyMapping};
 
-use super::arrays::Repr;
-use super::background::{self, Caller};
-use super::call::{finish, motion, progress_callable, shape};
-use super::shapes::PyShape;
-use super::solution::PySolution;
 use crate::contact::{Case, Contact, Motion, Options, Solution};
 use crate::error::Result;
-
-const KEYS: [&str; 6] = [
-    "shape",
-    "load",
-    "approach",
-    "eccentricity",
-    "moment",
-    "tilt",
-];
+use crate::python::arguments::Repr;
+use crate::python::arguments::keywords::{self, Keywords};
+use crate::python::background::{self, Caller};
+use crate::python::shapes::{PyShape, shape};
+use crate::python::solution::PySolution;
 
 /// Shape and motion of a case.
 fn case(case: &Bound<'_, PyAny>) -> PyResult<(Py<PyShape>, Motion)> {
@@ -32,43 +23,15 @@ fn case(case: &Bound<'_, PyAny>) -> PyResult<(Py<PyShape>, Motion)> {
             "a case must be a mapping of keywords of `solve`, got {got}"
         ))
     })?;
-    let keywords = PyDict::new(case.py());
-    for item in mapping.items()?.iter() {
-        let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
-        if !key
-            .extract::<String>()
-            .is_ok_and(|key| KEYS.contains(&key.as_str()))
-        {
-            return Err(PyTypeError::new_err(format!(
-                "a case's keys must be among {}, got {}",
-                KEYS.join(", "),
-                Repr(&key)
-            )));
-        }
-        keywords.set_item(key, value)?;
-    }
-    let get = |key: &str| -> PyResult<Option<Bound<'_, PyAny>>> {
-        Ok(keywords.get_item(key)?.filter(|value| !value.is_none()))
-    };
-    let pressed = get("shape")?.ok_or_else(|| PyTypeError::new_err("a case must have a shape"))?;
-    let [load, approach, eccentricity, moment, tilt] = [
-        get("load")?,
-        get("approach")?,
-        get("eccentricity")?,
-        get("moment")?,
-        get("tilt")?,
-    ];
-    let motion = motion(
-        load.as_ref(),
-        approach.as_ref(),
-        eccentricity.as_ref(),
-        moment.as_ref(),
-        tilt.as_ref(),
-    )?;
+    let keywords = Keywords::of_mapping(mapping)?;
+    let pressed = keywords.given("shape")?;
+    let motion = keywords::motion(&keywords)?;
+    keywords.finish("a case's keys")?;
+    let pressed = pressed.ok_or_else(|| PyTypeError::new_err("a case must have a shape"))?;
     Ok((shape(&pressed)?.clone().unbind(), motion))
 }
 
-/// `error`, saying which case it is of.
+/// `error` with a note that names its case.
 fn of_case(py: Python<'_>, error: PyErr, number: usize) -> PyErr {
     let noted = error
         .value(py)
@@ -76,23 +39,23 @@ fn of_case(py: Python<'_>, error: PyErr, number: usize) -> PyErr {
     noted.err().unwrap_or(error)
 }
 
-/// Solutions by the number of their case, as they are finished.
+/// Finished solutions, at the place of their case.
 type Finished = Arc<Mutex<Vec<Option<Result<Solution>>>>>;
 
 fn lock(finished: &Finished) -> MutexGuard<'_, Vec<Option<Result<Solution>>>> {
     finished.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Solves `cases` on `contact`; whatever interrupts it carries the finished ones as `solutions`.
+/// Solutions of `cases` on `contact`. An error that interrupts it carries the finished ones as its
+/// `solutions`.
 pub(super) fn solve_many(
     py: Python<'_>,
     contact: &Arc<Contact>,
     cases: &Bound<'_, PyAny>,
     options: Options,
-    progress: Option<&Bound<'_, PyAny>>,
+    progress: Option<Py<PyAny>>,
     check: bool,
 ) -> PyResult<Vec<Py<PySolution>>> {
-    let progress = progress_callable(progress)?;
     let mut parsed = Vec::new();
     let iterable = cases.try_iter().map_err(|_| {
         let got = Repr(cases);
@@ -116,7 +79,7 @@ pub(super) fn solve_many(
         contact.check_memory_for(&cases)?;
         let done = AtomicUsize::new(0);
         let keep = |number: usize, solved| {
-            // There is no place left where it was interrupted.
+            // After an interrupt there is no place left.
             if let Some(place) = lock(&kept).get_mut(number) {
                 *place = Some(solved);
                 done.fetch_add(1, Ordering::Relaxed);
@@ -139,7 +102,7 @@ pub(super) fn solve_many(
     let solved = std::mem::take(&mut *lock(&finished));
     let mut solutions: Vec<Option<Py<PySolution>>> = Vec::with_capacity(total);
     for (number, solved) in solved.into_iter().enumerate() {
-        let outcome = solved.map(|solved| finish(py, solved?, tolerance, check));
+        let outcome = solved.map(|solved| PySolution::finished(py, solved?, tolerance, check));
         let solution = match outcome {
             None => None,
             Some(Ok(solution)) => Some(Py::new(py, solution)?),

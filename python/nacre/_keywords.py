@@ -1,0 +1,90 @@
+"""Types of the keywords of solves and stresses: for type stubs, and for the tables of case files.
+
+The compiled module has the signatures with the defaults; a test compares the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal, TypedDict
+
+Freedoms = tuple[float | None, float | None]
+"""Values along x and y; None where one is not given."""
+Direction = tuple[float, float]
+Side = Literal["below", "above"]
+Member = Literal["body", "counterbody"]
+ByLayer = Mapping[int | Literal["substrate"], float] | Sequence[float | None]
+"""Values from the surface down; or by number of a layer, or "substrate"."""
+
+
+class Plan(TypedDict, total=False):
+    """Keywords that say how coefficients are planned."""
+
+    method: Literal["exact", "plain", "difference", "image"]
+    refinement: int | None
+    threads: int | None
+
+
+class Motion(TypedDict, total=False):
+    """Keywords that say what is asked of the rigid motion."""
+
+    load: float | None
+    approach: float | None
+    eccentricity: Freedoms | None
+    moment: Freedoms | None
+    tilt: Freedoms | None
+
+
+class Search(TypedDict, total=False):
+    """Keywords that say how a solution is found."""
+
+    tolerance: float
+    max_iterations: int | None
+    algorithm: Literal["cascade", "polonsky-keer"]
+
+
+class Traction(TypedDict, total=False):
+    """Keywords that say what acts on a body beside the pressure."""
+
+    friction: float
+    direction: Direction | None
+    residual: ByLayer | None
+    progress: Callable[[float], object] | None
+
+
+class Section(Traction, total=False):
+    """Keywords of `StressPlan.stress`."""
+
+    side: Side
+    x: float | None
+    y: float | None
+    displacement: bool
+
+
+class Strengths(Traction, total=False):
+    """Keywords of `StressPlan.summary`."""
+
+    yield_stress: ByLayer | None
+    strength: ByLayer | None
+
+
+class Threads(TypedDict, total=False):
+    """Number of threads."""
+
+    threads: int | None
+
+
+class Stress(Section, Threads, total=False):
+    """Keywords of `nacre.stress`."""
+
+
+class SolutionStress(Stress, total=False):
+    """Keywords of `Solution.stress`."""
+
+    body: Member
+
+
+class SolutionSummary(Strengths, Threads, total=False):
+    """Keywords of `Solution.stress_summary`."""
+
+    body: Member

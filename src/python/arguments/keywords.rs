@@ -1,0 +1,270 @@
+//! Keyword arguments: signature, documentation and meaning of each stand here, once for every function
+//! that takes it.
+//!
+//! A function takes `**keywords`, and the macros here spell out its signature and its documentation. To
+//! add a keyword to all solves, add it to `search_signature`, `search_docs` and [`options`], and its type
+//! to `python/nacre/_keywords.py`, from which type stubs and case files take it.
+
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+
+use super::{Repr, count, number, pair, real_matrix};
+use crate::contact::{Motion, Options};
+use crate::influence::Method;
+use crate::python::words::{REFINEMENT, Word, method};
+
+/// Signature of the keywords that say how coefficients are planned.
+macro_rules! plan_signature {
+    () => {
+        "method='exact', refinement=None, threads=None"
+    };
+}
+
+/// Documentation of the keywords of `plan_signature`.
+macro_rules! plan_docs {
+    () => {
+        "\
+method : {\"exact\", \"plain\", \"difference\", \"image\"}, optional
+    How influence coefficients are computed; see `influence_coefficients`.
+refinement : int, optional
+    Refinement of the spectral mesh of the conversions, 4 by default.
+threads : int, optional
+    Number of threads; all of the machine's by default."
+    };
+}
+
+/// Signature of the keywords that say what is asked of the rigid motion.
+macro_rules! motion_signature {
+    () => {
+        "load=None, approach=None, eccentricity=None, moment=None, tilt=None"
+    };
+}
+
+/// Documentation of the keywords of `motion_signature`.
+macro_rules! motion_docs {
+    () => {
+        "\
+load : float, optional
+    Force W [N], above 0.
+approach : float, optional
+    Approach of the origin [m], from the datum h = 0.
+eccentricity : tuple of float or None, optional
+    Point where the load acts, ``(e_x, e_y)`` [m].
+moment : tuple of float or None, optional
+    First moments of the pressure about the origin [N m].
+tilt : tuple of float or None, optional
+    Slopes ``(s_x, s_y)``."
+    };
+}
+
+/// Signature of the keywords that say how a solution is found.
+macro_rules! search_signature {
+    () => {
+        "tolerance=1e-8, max_iterations=None, algorithm='cascade'"
+    };
+}
+
+/// Documentation of the keywords of `search_signature`.
+macro_rules! search_docs {
+    () => {
+        "\
+tolerance : float, optional
+    Largest residual and overlap of a converged solution.
+max_iterations : int, optional
+    Iterations of one solve before it gives up; 10 000 by default.
+algorithm : {\"cascade\", \"polonsky-keer\"}, optional
+    Preconditioned conjugate gradients on nested grids, in a window around the contact; or the
+    paper's solver (doi:10.1016/S0043-1648(99)00113-1), as a reference."
+    };
+}
+
+/// Signature of the keywords that only a single solve takes.
+macro_rules! single_signature {
+    () => {
+        "initial=None, progress=None, check=True"
+    };
+}
+
+/// Documentation of the keywords of `single_signature`.
+macro_rules! single_docs {
+    () => {
+        "\
+initial : Solution or array_like, optional
+    Pressure to start from ``(nx, ny)`` [Pa].
+progress : callable, optional
+    Function that is called with a `Report` at each iteration; returning False stops, and gives
+    the unfinished solution.
+check : bool, optional
+    Whether to raise an error if the tolerance was not met."
+    };
+}
+
+pub(in crate::python) use {
+    motion_docs, motion_signature, plan_docs, plan_signature, search_docs, search_signature,
+    single_docs, single_signature,
+};
+
+/// Method and threads of a plan.
+pub(in crate::python) fn plan(keywords: &Keywords) -> PyResult<(Method, Option<usize>)> {
+    let word = keywords.text("method", "exact")?;
+    let refinement = keywords.count("refinement", 1)?.unwrap_or(REFINEMENT);
+    Ok((method(&word, refinement)?, keywords.count("threads", 1)?))
+}
+
+/// Rigid motion that is asked.
+pub(in crate::python) fn motion(keywords: &Keywords) -> PyResult<Motion> {
+    Ok(Motion {
+        load: number("load", keywords.given("load")?.as_ref())?,
+        approach: number("approach", keywords.given("approach")?.as_ref())?,
+        eccentricity: pair("eccentricity", keywords.given("eccentricity")?.as_ref())?,
+        moment: pair("moment", keywords.given("moment")?.as_ref())?,
+        tilt: pair("tilt", keywords.given("tilt")?.as_ref())?,
+    })
+}
+
+/// Way in which a solution is found, from a uniform pressure.
+pub(in crate::python) fn options(keywords: &Keywords) -> PyResult<Options> {
+    Ok(Options {
+        tolerance: keywords.real("tolerance", 1e-8)?,
+        max_iterations: keywords.count("max_iterations", 0)?,
+        algorithm: keywords.word("cascade")?,
+        initial: None,
+    })
+}
+
+/// Options, callback and check of a single solve.
+pub(in crate::python) fn single(
+    keywords: &Keywords,
+) -> PyResult<(Options, Option<Py<PyAny>>, bool)> {
+    let mut options = options(keywords)?;
+    if let Some(initial) = keywords.given("initial")? {
+        let pressure = initial.getattr_opt("pressure")?.unwrap_or(initial);
+        options.initial = Some(real_matrix("initial", &pressure)?);
+    }
+    let progress = keywords.callable("progress")?;
+    Ok((options, progress, keywords.flag("check", true)?))
+}
+
+/// Keyword arguments of one call. Each is taken once; [`Keywords::finish`] refuses the others.
+pub(in crate::python) struct Keywords<'py> {
+    given: Bound<'py, PyDict>,
+    taken: Bound<'py, PyDict>,
+}
+
+impl<'py> Keywords<'py> {
+    /// Keywords that pyo3 collected.
+    pub(in crate::python) fn new(
+        py: Python<'py>,
+        given: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            given: given.map_or_else(|| Ok(PyDict::new(py)), |given| given.copy())?,
+            taken: PyDict::new(py),
+        })
+    }
+
+    /// Keywords of a mapping.
+    pub(in crate::python) fn of_mapping(mapping: &Bound<'py, PyMapping>) -> PyResult<Self> {
+        let given = PyDict::new(mapping.py());
+        given.update(mapping)?;
+        Self::new(mapping.py(), Some(&given))
+    }
+
+    /// Argument as it was given, `None` included.
+    fn take(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.taken.set_item(name, true)?;
+        let found = self.given.get_item(name)?;
+        if found.is_some() {
+            self.given.del_item(name)?;
+        }
+        Ok(found)
+    }
+
+    /// Argument that was given and is not `None`.
+    pub(in crate::python) fn given(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Ok(self.take(name)?.filter(|value| !value.is_none()))
+    }
+
+    /// Argument of type `T`, or the default; `kind` describes it in the error.
+    fn typed<T: FromPyObjectOwned<'py>>(&self, name: &str, kind: &str, default: T) -> PyResult<T> {
+        let Some(value) = self.take(name)? else {
+            return Ok(default);
+        };
+        value.extract().map_err(|_| {
+            PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(&value)))
+        })
+    }
+
+    /// Object of a class that `kind` describes.
+    pub(in crate::python) fn object<T: FromPyObjectOwned<'py>>(
+        &self,
+        name: &str,
+        kind: &str,
+    ) -> PyResult<Option<T>> {
+        self.typed(name, kind, None)
+    }
+
+    /// Real number.
+    pub(in crate::python) fn real(&self, name: &str, default: f64) -> PyResult<f64> {
+        self.typed(name, "a real number", default)
+    }
+
+    /// Real number that may be missing.
+    pub(in crate::python) fn optional_real(&self, name: &str) -> PyResult<Option<f64>> {
+        number(name, self.given(name)?.as_ref())
+    }
+
+    /// Truth value.
+    pub(in crate::python) fn flag(&self, name: &str, default: bool) -> PyResult<bool> {
+        self.typed(name, "a bool", default)
+    }
+
+    /// Text.
+    pub(in crate::python) fn text(&self, name: &str, default: &str) -> PyResult<String> {
+        self.typed(name, "a str", default.to_owned())
+    }
+
+    /// Value that the argument [`Word::ARGUMENT`] names by a word.
+    pub(in crate::python) fn word<W: Word>(&self, default: &str) -> PyResult<W> {
+        W::from_word(&self.text(W::ARGUMENT, default)?)
+    }
+
+    /// Integer of at least `least`.
+    pub(in crate::python) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
+        let value = self.given(name)?;
+        value.map(|value| count(name, least, &value)).transpose()
+    }
+
+    /// Function.
+    pub(in crate::python) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
+        match self.given(name)? {
+            Some(value) if !value.is_callable() => Err(PyTypeError::new_err(format!(
+                "{name} must be callable, got {}",
+                Repr(&value)
+            ))),
+            value => Ok(value.map(Bound::unbind)),
+        }
+    }
+
+    /// Ends the reading.
+    ///
+    /// # Errors
+    /// A `TypeError` if a keyword was given that nobody took; it lists those that `what` takes.
+    pub(in crate::python) fn finish(&self, what: &str) -> PyResult<()> {
+        match self.given.keys().iter().next() {
+            None => Ok(()),
+            Some(other) => Err(PyTypeError::new_err(format!(
+                "{what} must be among {}, got {}",
+                self.known()?,
+                Repr(&other)
+            ))),
+        }
+    }
+
+    fn known(&self) -> PyResult<String> {
+        let names: Vec<String> = self.taken.keys().extract()?;
+        Ok(names.join(", "))
+    }
+}

@@ -1,0 +1,245 @@
+//! `nacre.Convolution`.
+
+use std::sync::Arc;
+
+use ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::body::HalfSpace;
+use crate::convolution::Convolution;
+use crate::influence::coefficients_on;
+use crate::parallel::Threads;
+use crate::python::arguments::keywords::{self, Keywords, plan_docs, plan_signature};
+use crate::python::arguments::{count, read_only, real_matrix};
+use crate::python::background::{self, Caller};
+use crate::python::bodies::body;
+use crate::python::grid::PyGrid;
+use crate::response::Body;
+
+/// A planned convolution: the displacement of a surface under any pressure.
+///
+/// ``u[i, j] = sum over k, l of C[|i - k|, |j - l|] p[k, l]``: as a matrix it is symmetric, and its own
+/// adjoint.
+///
+/// Parameters
+/// ----------
+/// coefficients : array_like
+///     Influence coefficients C ``(nx, ny)`` [m/Pa] of the offsets ``(i dx, j dy)``, ``i, j >= 0``.
+/// threads : int, optional
+///     Number of threads; all of the machine's by default.
+///
+/// Raises
+/// ------
+/// TypeError
+///     If the coefficients are not real numbers.
+/// ValueError
+///     If a coefficient is not finite, there is none, or `threads` is below 1.
+///
+/// Examples
+/// --------
+/// >>> convolution = nacre.Convolution([[1.0, 0.5], [0.25, 0.125]])
+/// >>> convolution.apply([[2.0, 0.0], [0.0, 0.0]]).round(12)
+/// array([[2.  , 1.  ],
+///        [0.5 , 0.25]])
+#[pyclass(name = "Convolution", module = "nacre", frozen)]
+pub(in crate::python) struct PyConvolution {
+    convolution: Arc<Convolution>,
+    coefficients: Array2<f64>,
+    /// Number of threads that was asked for.
+    threads: Option<usize>,
+}
+
+impl PyConvolution {
+    fn plan(
+        coefficients: Array2<f64>,
+        threads: Option<usize>,
+        shared: Arc<Threads>,
+    ) -> crate::Result<Self> {
+        Ok(Self {
+            convolution: Arc::new(Convolution::plan_on(&coefficients, shared)?),
+            coefficients,
+            threads,
+        })
+    }
+}
+
+#[pymethods]
+impl PyConvolution {
+    #[new]
+    #[pyo3(signature = (coefficients, *, threads=None))]
+    fn new(
+        py: Python<'_>,
+        coefficients: &Bound<'_, PyAny>,
+        threads: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let coefficients = real_matrix("coefficients", coefficients)?;
+        let threads = threads.map(|n| count("threads", 1, n)).transpose()?;
+        Ok(background::run(py, None, move |_: &mut Caller<()>| {
+            Self::plan(coefficients, threads, Arc::new(Threads::new(threads)?))
+        })??)
+    }
+
+    #[doc = concat!("of_bodies(body, grid, counterbody=None, *, ", plan_signature!(), ")\n--\n")]
+    /// Convolution with the influence coefficients of one or two bodies.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : HalfSpace or Elastic
+    ///     Body under the pressure.
+    /// grid : Grid
+    ///     Cells of the pressure.
+    /// counterbody : HalfSpace or Elastic, optional
+    ///     Second body under the same pressure; rigid where there is none.
+    #[doc = plan_docs!()]
+    ///
+    /// Returns
+    /// -------
+    /// Convolution
+    ///     Convolution that gives the displacement of both surfaces together.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If an argument is out of range.
+    /// MemoryError
+    ///     If the grid does not fit.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> grid = nacre.Grid(shape=(8, 6), size=(8e-6, 6e-6))
+    /// >>> nacre.Convolution.of_bodies(steel, grid).shape
+    /// (8, 6)
+    #[staticmethod]
+    #[pyo3(signature = (body, grid, counterbody=None, **keywords), text_signature = None)]
+    fn of_bodies<'py>(
+        py: Python<'py>,
+        #[pyo3(from_py_with = body)] body: HalfSpace,
+        grid: PyGrid,
+        counterbody: Option<&Bound<'py, PyAny>>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
+        let keywords = Keywords::new(py, keywords)?;
+        let (method, threads) = keywords::plan(&keywords)?;
+        keywords.finish("keywords of Convolution.of_bodies")?;
+        let counterbody = counterbody.map(self::body).transpose()?;
+        Ok(background::run(py, None, move |_: &mut Caller<()>| {
+            let grid = grid.0;
+            crate::parallel::check_memory(grid.shape(), Convolution::memory(grid.shape()))?;
+            let shared = Arc::new(Threads::new(threads)?);
+            let mut coefficients = coefficients_on(&*Body::from(body), &grid, method, &shared)?;
+            if let Some(counterbody) = counterbody {
+                let body = Body::from(counterbody);
+                coefficients += &coefficients_on(&*body, &grid, method, &shared)?;
+            }
+            Self::plan(coefficients, threads, shared)
+        })??)
+    }
+
+    /// Displacement under a pressure.
+    ///
+    /// Parameters
+    /// ----------
+    /// pressure : array_like
+    ///     Pressure ``(nx, ny)`` [Pa].
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Displacement ``(nx, ny)`` [m].
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     If the pressure is not real.
+    /// ValueError
+    ///     If the pressure has another shape.
+    ///
+    /// Examples
+    /// --------
+    /// >>> convolution = nacre.Convolution(np.ones((3, 2)))
+    /// >>> convolution.apply(np.ones((3, 2))).round(12)
+    /// array([[6., 6.],
+    ///        [6., 6.],
+    ///        [6., 6.]])
+    fn apply<'py>(
+        &self,
+        py: Python<'py>,
+        pressure: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let pressure = real_matrix("pressure", pressure)?;
+        let displacement = py.detach(|| self.convolution.apply(&pressure))?;
+        Ok(displacement.into_pyarray(py))
+    }
+
+    /// SciPy's linear operator that applies the convolution; needs SciPy.
+    ///
+    /// Returns
+    /// -------
+    /// scipy.sparse.linalg.LinearOperator
+    ///     Symmetric operator ``(nx ny, nx ny)`` on pressures that are flattened in C order.
+    ///
+    /// Raises
+    /// ------
+    /// ModuleNotFoundError
+    ///     If SciPy is missing.
+    ///
+    /// Examples
+    /// --------
+    /// The pressure under a flat rigid punch that covers the grid:
+    ///
+    /// >>> from scipy.sparse.linalg import cg
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> grid = nacre.Grid(shape=(8, 6), size=(8e-6, 6e-6))
+    /// >>> convolution = nacre.Convolution.of_bodies(steel, grid)
+    /// >>> pressure, failed = cg(convolution.as_linear_operator(), np.full(48, 1e-9), rtol=1e-10)
+    /// >>> displacement = convolution.apply(pressure.reshape(8, 6))
+    /// >>> failed, bool(np.allclose(displacement, 1e-9, rtol=1e-8))
+    /// (0, True)
+    fn as_linear_operator<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let module = slf.py().import("nacre._operator")?;
+        module.call_method1("linear_operator", (slf,))
+    }
+
+    /// Shape ``(nx, ny)`` of pressures and displacements.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        self.convolution.shape().into()
+    }
+
+    /// Influence coefficients ``(nx, ny)`` [m/Pa].
+    #[getter]
+    fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        read_only(py, self.coefficients.clone())
+    }
+
+    /// Number of threads.
+    #[getter]
+    fn threads(&self) -> usize {
+        self.convolution.threads()
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.coefficients == other.coefficients && self.threads == other.threads
+    }
+
+    fn __repr__(&self) -> String {
+        let [nx, ny] = self.convolution.shape();
+        format!(
+            "<nacre.Convolution on {nx} x {ny} cells, {} threads>",
+            self.convolution.threads()
+        )
+    }
+
+    #[expect(clippy::type_complexity, reason = "arguments of the constructor")]
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<((Bound<'py, PyArray2<f64>>,), Bound<'py, PyDict>)> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("threads", self.threads)?;
+        Ok(((self.coefficients(py)?,), keywords))
+    }
+}

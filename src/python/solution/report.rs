@@ -1,0 +1,303 @@
+//! `nacre.Report`.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::contact::{Balance, Discretisation, Motion, Report};
+use crate::python::bodies::PyHalfSpace;
+use crate::python::grid::PyGrid;
+use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
+use crate::python::words::{Word, method, method_words, warning, warning_words};
+
+/// Report of a solve: how the solution came about and how good it is, computed afresh at the end.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
+/// >>> report.termination, report.residual < 1e-8, report.warnings
+/// ('converged', True, [])
+#[pyclass(name = "Report", module = "nacre", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(in crate::python) struct PyReport(pub(in crate::python) Report);
+
+/// Named state of a report: a field stands here once in `write`, once in `read`, and once as a getter of
+/// [`PyReport`].
+impl State for PyReport {
+    const KIND: &'static str = "Report";
+
+    fn write(&self, fields: &Fields) -> PyResult<()> {
+        let report = &self.0;
+        let (method, refinement) = method_words(report.method);
+        fields.set("termination", report.termination.word())?;
+        fields.set("solver", report.solver.map(Word::word))?;
+        fields.set("iterations", report.iterations)?;
+        fields.set("convolutions", report.convolutions)?;
+        fields.set("residual", report.residual)?;
+        fields.set("overlap", report.overlap)?;
+        fields.set_fields("balance", |balance| {
+            balance.set("force", report.balance.force)?;
+            balance.set("moment", report.balance.moment)
+        })?;
+        match &report.discretisation {
+            None => fields.set("discretisation", None::<f64>)?,
+            Some(errors) => fields.set_fields("discretisation", |fields| {
+                fields.set("peak_pressure", errors.peak_pressure)?;
+                fields.set("approach", errors.approach)?;
+                fields.set("load", errors.load)
+            })?,
+        }
+        fields.set_list("warnings", &report.warnings, |warning, fields| {
+            let (kind, axis, figure) = warning_words(warning);
+            fields.set("kind", kind)?;
+            fields.set("axis", axis)?;
+            fields.set("figure", figure)
+        })?;
+        fields.set_part("grid", PyGrid(report.grid))?;
+        fields.set_part("body", PyHalfSpace::of(&report.body))?;
+        fields.set_part("counterbody", self.counterbody())?;
+        fields.set("method", method)?;
+        fields.set("refinement", refinement)?;
+        fields.set_fields("motion", |motion| {
+            motion.set("load", report.motion.load)?;
+            motion.set("approach", report.motion.approach)?;
+            motion.set("eccentricity", report.motion.eccentricity)?;
+            motion.set("moment", report.motion.moment)?;
+            motion.set("tilt", report.motion.tilt)
+        })?;
+        fields.set("tolerance", report.tolerance)?;
+        fields.set("seconds", report.seconds)
+    }
+
+    fn read(fields: &Fields) -> PyResult<Self> {
+        let termination: String = fields.get("termination")?;
+        let solver: Option<String> = fields.get("solver")?;
+        let word: String = fields.get("method")?;
+        let counterbody: Option<PyHalfSpace> = fields.get_part("counterbody")?;
+        Ok(Self(Report {
+            termination: Word::from_word(&termination)?,
+            solver: solver.as_deref().map(Word::from_word).transpose()?,
+            iterations: fields.get("iterations")?,
+            convolutions: fields.get("convolutions")?,
+            residual: fields.get("residual")?,
+            overlap: fields.get("overlap")?,
+            balance: fields.get_fields("balance")?.read(|balance| {
+                Ok(Balance {
+                    force: balance.get("force")?,
+                    moment: balance.get("moment")?,
+                })
+            })?,
+            discretisation: match fields.get_optional("discretisation")? {
+                None => None,
+                Some(errors) => Some(errors.read(|errors| {
+                    Ok(Discretisation {
+                        peak_pressure: errors.get("peak_pressure")?,
+                        approach: errors.get("approach")?,
+                        load: errors.get("load")?,
+                    })
+                })?),
+            },
+            warnings: fields.get_list("warnings", |fields| {
+                let kind: String = fields.get("kind")?;
+                warning(&kind, fields.get("axis")?, fields.get("figure")?)
+            })?,
+            grid: fields.get_part::<PyGrid>("grid")?.0,
+            body: fields.get_part::<PyHalfSpace>("body")?.0.into(),
+            counterbody: counterbody.map(|body| body.0.into()),
+            method: method(&word, fields.get("refinement")?)?,
+            motion: fields.get_fields("motion")?.read(|motion| {
+                Ok(Motion {
+                    load: motion.get("load")?,
+                    approach: motion.get("approach")?,
+                    eccentricity: motion.get("eccentricity")?,
+                    moment: motion.get("moment")?,
+                    tilt: motion.get("tilt")?,
+                })
+            })?,
+            tolerance: fields.get("tolerance")?,
+            seconds: fields.get("seconds")?,
+        }))
+    }
+}
+
+#[pymethods]
+impl PyReport {
+    /// Whether the tolerance was met.
+    #[getter]
+    fn converged(&self) -> bool {
+        self.0.converged()
+    }
+
+    /// End of the iteration: "converged", "iteration limit" or "stopped".
+    #[getter]
+    fn termination(&self) -> &'static str {
+        self.0.termination.word()
+    }
+
+    /// Iteration that produced the solution: "preconditioned", "active-set" or "polonsky-keer".
+    ///
+    /// The algorithm "cascade" starts with the first and falls back to the others. `None` where it is not
+    /// known: before the end, and in files of format 0.
+    #[getter]
+    fn solver(&self) -> Option<&'static str> {
+        self.0.solver.map(Word::word)
+    }
+
+    /// Iterations done.
+    #[getter]
+    fn iterations(&self) -> usize {
+        self.0.iterations
+    }
+
+    /// Work done, in convolutions of the whole grid.
+    #[getter]
+    fn convolutions(&self) -> f64 {
+        self.0.convolutions
+    }
+
+    /// Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch.
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.0.residual
+    }
+
+    /// ``max(-g, 0) / max(u)`` over the cells that can touch.
+    #[getter]
+    fn overlap(&self) -> f64 {
+        self.0.overlap
+    }
+
+    /// Mismatch of the force, over W, and of the moments along x and y, over W times half the side.
+    #[getter]
+    fn balance(&self) -> (f64, f64, f64) {
+        let Balance {
+            force,
+            moment: [x, y],
+        } = self.0.balance;
+        (force, x, y)
+    }
+
+    /// Errors due to the size of the cells, estimated from coarser grids.
+    ///
+    /// The keys are ``peak_pressure`` [Pa], ``approach`` [m] and ``load`` [N]; a prescribed quantity
+    /// has the error 0. `None` where no coarser grid was solved: on small grids, from a given
+    /// pressure, by another algorithm, or without convergence.
+    #[getter]
+    fn discretisation<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(errors) = self.0.discretisation else {
+            return Ok(None);
+        };
+        let named = PyDict::new(py);
+        named.set_item("peak_pressure", errors.peak_pressure)?;
+        named.set_item("approach", errors.approach)?;
+        named.set_item("load", errors.load)?;
+        Ok(Some(named))
+    }
+
+    /// Warnings about the solution; each was also issued as a `nacre.NacreWarning`.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// Grid of the solve.
+    #[getter]
+    fn grid(&self) -> PyGrid {
+        PyGrid(self.0.grid)
+    }
+
+    /// Body that the shape was pressed into.
+    #[getter]
+    fn body(&self) -> PyHalfSpace {
+        PyHalfSpace::of(&self.0.body)
+    }
+
+    /// Body that carries the shape; rigid where `None`.
+    #[getter]
+    fn counterbody(&self) -> Option<PyHalfSpace> {
+        self.0.counterbody.as_ref().map(PyHalfSpace::of)
+    }
+
+    /// Method by which the influence coefficients were computed.
+    #[getter]
+    fn method(&self) -> &'static str {
+        method_words(self.0.method).0
+    }
+
+    /// Refinement of the spectral mesh of the conversions; 4 with exact coefficients, which do not use it.
+    #[getter]
+    fn refinement(&self) -> usize {
+        method_words(self.0.method).1
+    }
+
+    /// Motion that was asked, as keywords of `Contact.solve`: load or approach, and the tilts.
+    #[getter]
+    fn motion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let motion = &self.0.motion;
+        let keywords = PyDict::new(py);
+        for (name, value) in [("load", motion.load), ("approach", motion.approach)] {
+            if let Some(value) = value {
+                keywords.set_item(name, value)?;
+            }
+        }
+        for (name, pair) in [
+            ("eccentricity", motion.eccentricity),
+            ("moment", motion.moment),
+            ("tilt", motion.tilt),
+        ] {
+            if pair != [None; 2] {
+                keywords.set_item(name, (pair[0], pair[1]))?;
+            }
+        }
+        Ok(keywords)
+    }
+
+    /// Tolerance that was asked.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.0.tolerance
+    }
+
+    /// Seconds that the solve took, planning excluded.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.0.seconds
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<nacre.Report: {} after {} iterations, {:.1} convolutions, {:.3} s; residual {:.1e}, \
+             overlap {:.1e}; {} warnings>",
+            self.termination(),
+            self.0.iterations,
+            self.0.convolutions,
+            self.0.seconds,
+            self.0.residual,
+            self.0.overlap,
+            self.0.warnings.len()
+        )
+    }
+
+    #[doc = to_dict_docs!()]
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> state = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report.to_dict()
+    /// >>> state["format"], state["termination"], state["motion"]["load"]
+    /// (1, 'converged', 10.0)
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        state::to_dict(py, self)
+    }
+
+    #[doc = from_dict_docs!()]
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
+    /// >>> nacre.Report.from_dict(report.to_dict()) == report
+    /// True
+    #[staticmethod]
+    fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        state::from_dict(data)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        state::reduce(py, self)
+    }
+}

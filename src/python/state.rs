@@ -1,0 +1,313 @@
+//! Named state: results as dictionaries of plain data, which pickles and files keep.
+//!
+//! A dictionary holds the fields of a result by their names. Under "format" it holds the number of the
+//! format, under "nacre" the version that wrote it and under "kind" the name of the class. Materials,
+//! layers, bodies and grids stand in it as `nacre.values` encodes them: by the call that makes them.
+
+use ndarray::{Array, Dimension};
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict, PyList, PyTuple};
+
+use super::arguments::{Repr, read_only, real_array};
+
+/// Number of the format. Files that were written before there was one have format 0; the Python package
+/// reads them (`_format0.py`).
+pub(super) const FORMAT: u64 = 1;
+
+/// A result that has a named state.
+pub(super) trait State: Sized {
+    /// Name of the Python class.
+    const KIND: &'static str;
+
+    /// Writes every field.
+    fn write(&self, fields: &Fields) -> PyResult<()>;
+
+    /// Reads every field that [`State::write`] wrote.
+    fn read(fields: &Fields) -> PyResult<Self>;
+}
+
+/// Named state of `value`.
+pub(super) fn to_dict<'py, S: State>(py: Python<'py>, value: &S) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py, S::KIND);
+    fields.set("format", FORMAT)?;
+    fields.set("nacre", env!("CARGO_PKG_VERSION"))?;
+    fields.set("kind", S::KIND)?;
+    value.write(&fields)?;
+    Ok(fields.dict)
+}
+
+/// Result with the named state `data`.
+///
+/// # Errors
+/// A `ValueError` if the state is of a newer format or of another kind, or if a key is missing, unknown or
+/// holds a value that does not fit.
+pub(super) fn from_dict<S: State>(data: &Bound<'_, PyAny>) -> PyResult<S> {
+    let fields = Fields::of(S::KIND, data)?;
+    let (format, version): (u64, String) = (fields.get("format")?, fields.get("nacre")?);
+    if format > FORMAT {
+        return Err(PyValueError::new_err(format!(
+            "this {} has format {format}, written by nacre {version}; nacre {} reads formats up to \
+             {FORMAT}: install a newer version",
+            S::KIND,
+            env!("CARGO_PKG_VERSION"),
+        )));
+    }
+    let kind: String = fields.get("kind")?;
+    if kind != S::KIND {
+        return Err(PyValueError::new_err(format!(
+            "the key \"kind\" must be {:?}, got {kind:?}",
+            S::KIND
+        )));
+    }
+    fields.read(S::read)
+}
+
+/// What `__reduce__` returns: `from_dict` of the class, and the named state.
+pub(super) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyDict>,));
+
+/// Pickled form of `value`.
+pub(super) fn reduce<'py, S: State>(py: Python<'py>, value: &S) -> PyResult<Reduced<'py>> {
+    let class = py.import("nacre._core")?.getattr(S::KIND)?;
+    Ok((class.getattr("from_dict")?, (to_dict(py, value)?,)))
+}
+
+/// Functions that pickles of format 0 call. `_format0.py` has them under the same names.
+const RESTORERS: [&str; 6] = [
+    "_restore_report",
+    "_restore_solution",
+    "_restore_stress",
+    "_restore_stress_summary",
+    "_restore_layer_stress",
+    "_restore_interface_stress",
+];
+
+/// Adds the functions of [`RESTORERS`] to the module, outside of its public names.
+pub(super) fn add_restorers(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    for name in RESTORERS {
+        let restore = move |arguments: &Bound<'_, PyTuple>, _: Option<&Bound<'_, PyDict>>| {
+            let format = arguments.py().import("nacre._format0")?;
+            format.call_method1(name, arguments).map(Bound::unbind)
+        };
+        let restore = PyCFunction::new_closure(module.py(), None, None, restore)?;
+        module.setattr(name, restore)?;
+    }
+    Ok(())
+}
+
+/// Fields of a state by their names, to be written or read. Each is read once.
+pub(super) struct Fields<'py> {
+    /// Place of the fields in the whole state, for messages.
+    place: String,
+    dict: Bound<'py, PyDict>,
+}
+
+impl<'py> Fields<'py> {
+    fn new(py: Python<'py>, place: &str) -> Self {
+        Self {
+            place: place.into(),
+            dict: PyDict::new(py),
+        }
+    }
+
+    fn of(place: &str, data: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let dict = data.cast::<PyDict>().map_err(|_| {
+            PyValueError::new_err(format!(
+                "{place} must be a dict of named fields, got {}",
+                Repr(data)
+            ))
+        })?;
+        Ok(Self {
+            place: place.into(),
+            dict: dict.copy()?,
+        })
+    }
+
+    fn py(&self) -> Python<'py> {
+        self.dict.py()
+    }
+
+    /// Writes a number, a text or a list of them.
+    pub(super) fn set(&self, name: &str, value: impl IntoPyObject<'py>) -> PyResult<()> {
+        self.dict.set_item(name, value)
+    }
+
+    /// Writes an array.
+    pub(super) fn set_array<D: Dimension>(
+        &self,
+        name: &str,
+        array: &Array<f64, D>,
+    ) -> PyResult<()> {
+        self.set(name, read_only(self.py(), array.clone())?)
+    }
+
+    /// Writes a material, layer, body or grid, or `None`.
+    pub(super) fn set_part(&self, name: &str, part: impl IntoPyObject<'py>) -> PyResult<()> {
+        let values = self.py().import("nacre.values")?;
+        self.set(name, values.call_method1("encode", (part,))?)
+    }
+
+    /// Writes fields of their own, which `write` writes.
+    pub(super) fn set_fields(
+        &self,
+        name: &str,
+        write: impl FnOnce(&Fields<'py>) -> PyResult<()>,
+    ) -> PyResult<()> {
+        let fields = Fields::new(self.py(), name);
+        write(&fields)?;
+        self.set(name, fields.dict)
+    }
+
+    /// Writes the states of several results.
+    pub(super) fn set_list<T>(
+        &self,
+        name: &str,
+        items: &[T],
+        write: impl Fn(&T, &Fields<'py>) -> PyResult<()>,
+    ) -> PyResult<()> {
+        let list = PyList::empty(self.py());
+        for item in items {
+            let fields = Fields::new(self.py(), name);
+            write(item, &fields)?;
+            list.append(fields.dict)?;
+        }
+        self.set(name, list)
+    }
+
+    fn take(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let value = self.dict.get_item(name)?.ok_or_else(|| {
+            PyValueError::new_err(format!("{}: the key {name:?} is missing", self.place))
+        })?;
+        self.dict.del_item(name)?;
+        Ok(value)
+    }
+
+    fn refuse(&self, name: &str, value: &Bound<'py, PyAny>) -> PyErr {
+        PyValueError::new_err(format!(
+            "{}: the key {name:?} holds what is not its value: {}",
+            self.place,
+            Repr(value)
+        ))
+    }
+
+    /// Reads a number, a text or a list of them.
+    pub(super) fn get<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
+        let value = self.take(name)?;
+        value.extract().map_err(|_| self.refuse(name, &value))
+    }
+
+    /// Reads an array, or nested lists of numbers.
+    pub(super) fn get_array<D: Dimension>(&self, name: &str) -> PyResult<Array<f64, D>> {
+        let value = self.take(name)?;
+        let array = real_array(name, &value).map_err(|_| self.refuse(name, &value))?;
+        let shape = array.shape().to_vec();
+        array.into_dimensionality().map_err(|_| {
+            PyValueError::new_err(format!(
+                "{}: the key {name:?} holds an array of the wrong number of dimensions: shape {shape:?}",
+                self.place
+            ))
+        })
+    }
+
+    /// Reads a material, layer, body or grid, or `None`.
+    pub(super) fn get_part<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
+        let data = self.take(name)?;
+        let values = self.py().import("nacre.values")?;
+        let value = values.call_method1("decode", (&data,))?;
+        value.extract().map_err(|_| self.refuse(name, &data))
+    }
+
+    /// Reads fields of their own.
+    pub(super) fn get_fields(&self, name: &str) -> PyResult<Fields<'py>> {
+        Fields::of(&format!("{}.{name}", self.place), &self.take(name)?)
+    }
+
+    /// Reads fields of their own, or `None`.
+    pub(super) fn get_optional(&self, name: &str) -> PyResult<Option<Fields<'py>>> {
+        let data = self.take(name)?;
+        let place = format!("{}.{name}", self.place);
+        Ok(match data.is_none() {
+            true => None,
+            false => Some(Fields::of(&place, &data)?),
+        })
+    }
+
+    /// Reads the states of several results.
+    pub(super) fn get_list<T>(
+        &self,
+        name: &str,
+        read: impl Fn(&Fields<'py>) -> PyResult<T>,
+    ) -> PyResult<Vec<T>> {
+        let value = self.take(name)?;
+        let items: Vec<Bound<'py, PyAny>> =
+            value.extract().map_err(|_| self.refuse(name, &value))?;
+        let place = |number: usize| format!("{}.{name}[{number}]", self.place);
+        let items = items
+            .iter()
+            .enumerate()
+            .map(|(number, item)| Fields::of(&place(number), item)?.read(&read));
+        items.collect()
+    }
+
+    /// Value that `read` reads from these fields.
+    ///
+    /// # Errors
+    /// Those of `read`, and a `ValueError` that names a key that it did not read.
+    pub(super) fn read<T>(&self, read: impl FnOnce(&Self) -> PyResult<T>) -> PyResult<T> {
+        let value = read(self)?;
+        match self.dict.keys().iter().next() {
+            None => Ok(value),
+            Some(other) => Err(PyValueError::new_err(format!(
+                "{}: the key {} is unknown",
+                self.place,
+                Repr(&other)
+            ))),
+        }
+    }
+}
+
+/// Documentation of `to_dict`; an example follows it.
+macro_rules! to_dict_docs {
+    () => {
+        "\
+Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
+
+Returns
+-------
+dict
+    Fields by name. ``format`` is the number of the format, ``nacre`` the version that wrote it and
+    ``kind`` the class. Bodies and grids stand in it as the calls that make them.
+
+Examples
+--------"
+    };
+}
+
+/// Documentation of `from_dict`; an example follows it.
+macro_rules! from_dict_docs {
+    () => {
+        "\
+Value whose named state `to_dict` returned, to the bit.
+
+Parameters
+----------
+data : dict
+    Named state; lists may stand for arrays, as in JSON.
+
+Returns
+-------
+object
+    Value of this class.
+
+Raises
+------
+ValueError
+    If the format is newer than this version, or a key is missing, unknown or holds a wrong value.
+
+Examples
+--------"
+    };
+}
+
+pub(super) use {from_dict_docs, to_dict_docs};

@@ -1,0 +1,170 @@
+//! Words of Python and the values that they stand for, both ways.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::body::Interface;
+use crate::contact::{Algorithm, Solver, Termination, Warning};
+use crate::influence::Method;
+use crate::stress::{Member, Side};
+
+/// A value that Python names by a word.
+pub(super) trait Word: Copy + 'static {
+    /// Name of the argument that takes the word.
+    const ARGUMENT: &'static str;
+    /// Every value, in the order in which messages list the words.
+    const VALUES: &'static [Self];
+
+    /// Word for the value.
+    fn word(self) -> &'static str;
+
+    /// Value for a word.
+    fn from_word(word: &str) -> PyResult<Self> {
+        let found = Self::VALUES.iter().find(|value| value.word() == word);
+        found.copied().ok_or_else(|| {
+            let words: Vec<_> = Self::VALUES.iter().map(|value| value.word()).collect();
+            unknown(Self::ARGUMENT, &words, word)
+        })
+    }
+}
+
+/// `ValueError` for a word that is none of `words`.
+fn unknown(argument: &str, words: &[&str], got: &str) -> PyErr {
+    let quoted: Vec<_> = words.iter().map(|word| format!("{word:?}")).collect();
+    let listed = match quoted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => quoted.concat(),
+    };
+    PyValueError::new_err(format!("{argument} must be {listed}, got {got:?}"))
+}
+
+impl Word for Interface {
+    const ARGUMENT: &'static str = "interface";
+    const VALUES: &'static [Self] = &[Self::Bonded, Self::Frictionless];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Bonded => "bonded",
+            Self::Frictionless => "frictionless",
+        }
+    }
+}
+
+impl Word for Algorithm {
+    const ARGUMENT: &'static str = "algorithm";
+    const VALUES: &'static [Self] = &[Self::Cascade, Self::PolonskyKeer];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Cascade => "cascade",
+            Self::PolonskyKeer => "polonsky-keer",
+        }
+    }
+}
+
+impl Word for Termination {
+    const ARGUMENT: &'static str = "termination";
+    const VALUES: &'static [Self] = &[Self::Converged, Self::IterationLimit, Self::Stopped];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::IterationLimit => "iteration limit",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+impl Word for Solver {
+    const ARGUMENT: &'static str = "solver";
+    const VALUES: &'static [Self] = &[Self::Preconditioned, Self::ActiveSet, Self::PolonskyKeer];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Preconditioned => "preconditioned",
+            Self::ActiveSet => "active-set",
+            Self::PolonskyKeer => "polonsky-keer",
+        }
+    }
+}
+
+impl Word for Side {
+    const ARGUMENT: &'static str = "side";
+    const VALUES: &'static [Self] = &[Self::Above, Self::Below];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Above => "above",
+            Self::Below => "below",
+        }
+    }
+}
+
+impl Word for Member {
+    const ARGUMENT: &'static str = "body";
+    const VALUES: &'static [Self] = &[Self::Body, Self::Counterbody];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Body => "body",
+            Self::Counterbody => "counterbody",
+        }
+    }
+}
+
+/// Refinement of the spectral mesh where none is given.
+pub(super) const REFINEMENT: usize = 4;
+
+/// Method with that name and that refinement.
+pub(super) fn method(word: &str, refinement: usize) -> PyResult<Method> {
+    Ok(match word {
+        "exact" => Method::Exact,
+        "plain" => Method::Plain { refinement },
+        "difference" => Method::Difference { refinement },
+        "image" => Method::Image { refinement },
+        other => {
+            let words = ["exact", "plain", "difference", "image"];
+            return Err(unknown("method", &words, other));
+        }
+    })
+}
+
+/// Name and refinement of a method.
+pub(super) fn method_words(method: Method) -> (&'static str, usize) {
+    match method {
+        Method::Exact => ("exact", REFINEMENT),
+        Method::Plain { refinement } => ("plain", refinement),
+        Method::Difference { refinement } => ("difference", refinement),
+        Method::Image { refinement } => ("image", refinement),
+    }
+}
+
+/// Kind, axis and figure of a warning; 0 where it has none.
+pub(super) fn warning_words(warning: &Warning) -> (&'static str, usize, f64) {
+    match *warning {
+        Warning::GridEdge => ("grid edge", 0, 0.0),
+        Warning::SharpEnd { axis } => ("sharp end", axis, 0.0),
+        Warning::Coarse { axis, cells } => ("coarse", axis, cells as f64),
+        Warning::LargeContact { axis, ratio } => ("large contact", axis, ratio),
+    }
+}
+
+/// Warning of that kind, with its axis and figure.
+pub(super) fn warning(kind: &str, axis: usize, figure: f64) -> PyResult<Warning> {
+    Ok(match kind {
+        "grid edge" => Warning::GridEdge,
+        "sharp end" => Warning::SharpEnd { axis },
+        "coarse" => Warning::Coarse {
+            axis,
+            cells: figure as usize,
+        },
+        "large contact" => Warning::LargeContact {
+            axis,
+            ratio: figure,
+        },
+        other => {
+            let kinds = ["grid edge", "sharp end", "coarse", "large contact"];
+            return Err(unknown("kind of a warning", &kinds, other));
+        }
+    })
+}

@@ -1,0 +1,254 @@
+//! Everything about a stress field that depends on the body, the grid and the pressure alone.
+
+use std::ops::ControlFlow;
+
+use ndarray::ArrayRef2;
+
+use super::depths::half_width;
+use super::options::StressProgress;
+use super::subcell::SubcellStress;
+use crate::body::HalfSpace;
+use crate::error::{Error, Result};
+use crate::fft::{PaddedTransform, QuarterTransform, Transformed};
+use crate::grid::Grid;
+use crate::kernel::loads;
+use crate::kernel::plans::Kernels;
+use crate::parallel::{Threads, check_memory};
+
+/// Stress below a pressure, planned once and evaluated any number of times.
+///
+/// A plan owns what is costly and does not depend on depths or options: the pressure within cells, the
+/// spectrum of the layered body and the transforms of the loads. What friction needs is planned at
+/// the first evaluation with friction. Results are the same to the bit as those of
+/// [`Solution::stress`](crate::Solution::stress) and [`stress`](crate::stress()), which plan for one
+/// call. A plan can be shared between threads.
+///
+/// ```
+/// use nacre::{Elastic, Member, Motion, Section, Sphere, StressOptions, solve};
+/// let steel = Elastic::new(210e9, 0.3)?;
+/// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
+/// let plan = solution.stress_plan(Member::Body, None)?;
+/// let axis = StressOptions { section: Section::Axis([0.0, 0.0]), ..StressOptions::default() };
+/// let sliding = StressOptions { friction: 0.3, ..StressOptions::default() };
+/// let below = plan.stress(&[1e-5, 2e-5, 4e-5], &axis)?;
+/// let surface = plan.stress(&[0.0], &sliding)?;
+/// assert!(below.components[2].iter().all(|zz| *zz < 0.0));
+/// assert_eq!(surface, solution.stress(&[0.0], Member::Body, &sliding)?);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct StressPlan {
+    pub(super) body: HalfSpace,
+    pub(super) grid: Grid,
+    /// Sign of the options' direction of friction; see [`Source`].
+    pub(super) friction_sign: f64,
+    /// Half the width of the loaded cells \[m\]; see [`half_width`].
+    pub(super) half_width: f64,
+    pub(super) kernels: Kernels,
+    /// Number of offsets along x and y between a loaded cell and any other.
+    pub(super) offsets: [usize; 2],
+    pub(super) transform: PaddedTransform,
+    pub(super) quarter: QuarterTransform,
+    /// Transform of the pressure that is taken as uniform over cells for stresses.
+    pub(super) uniform: Transformed,
+    /// Present where the pressure is reconstructed within cells.
+    pub(super) solved: Option<Solved>,
+    pub(super) threads: Threads,
+}
+
+/// What a solved contact's plan has beside the uniform pressure.
+#[derive(Debug)]
+pub(super) struct Solved {
+    pub(super) subcell: SubcellStress,
+    /// Transform of the solver's pressure, whose convolution gives displacements.
+    pub(super) given: Transformed,
+}
+
+/// Distribution of the pressure over a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// Uniform over each cell.
+    Uniform,
+    /// That of a solved contact, reconstructed within cells.
+    Solved,
+}
+
+/// What a plan is made from.
+pub(super) struct Source<'a> {
+    pub(super) body: &'a HalfSpace,
+    pub(super) grid: &'a Grid,
+    pressure: &'a ArrayRef2<f64>,
+    form: Form,
+    /// 1, or −1 for a counterbody, on which friction acts the other way.
+    pub(super) friction_sign: f64,
+}
+
+impl<'a> Source<'a> {
+    /// A pressure that is uniform over each cell.
+    pub(super) fn uniform(
+        body: &'a HalfSpace,
+        grid: &'a Grid,
+        pressure: &'a ArrayRef2<f64>,
+    ) -> Self {
+        Self {
+            body,
+            grid,
+            pressure,
+            form: Form::Uniform,
+            friction_sign: 1.0,
+        }
+    }
+
+    /// The pressure of a solved contact.
+    pub(super) fn solved(
+        body: &'a HalfSpace,
+        grid: &'a Grid,
+        pressure: &'a ArrayRef2<f64>,
+        friction_sign: f64,
+    ) -> Self {
+        Self {
+            body,
+            grid,
+            pressure,
+            form: Form::Solved,
+            friction_sign,
+        }
+    }
+
+    /// Bytes that planning takes.
+    pub(super) fn memory(&self) -> u64 {
+        // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
+        // and the transform of the solver's pressure, as 24.
+        let arrays = 8 + if self.form == Form::Solved { 24 } else { 0 };
+        transforms_memory(self.grid, arrays)
+    }
+
+    /// The plan, without a callback.
+    pub(super) fn plan_unwatched(&self, threads: Option<usize>) -> Result<StressPlan> {
+        let mut progress = |_| ControlFlow::Continue(());
+        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
+        self.plan(threads, &mut progress)?.ok_or(stopped)
+    }
+
+    /// The plan; none where `progress` stops it. `progress` is asked, with 0, while the pressure is
+    /// reconstructed within cells; the rest is quick.
+    pub(super) fn plan(
+        &self,
+        threads: Option<usize>,
+        progress: &mut StressProgress,
+    ) -> Result<Option<StressPlan>> {
+        let Self { body, grid, .. } = *self;
+        let pressure = checked(grid, self.pressure)?;
+        check_memory(grid.shape(), self.memory())?;
+        let threads = Threads::new(threads)?;
+        let subcell = match self.form {
+            Form::Uniform => None,
+            Form::Solved => match SubcellStress::plan(body, grid, &pressure, &threads, progress) {
+                ControlFlow::Continue(subcell) => Some(subcell),
+                ControlFlow::Break(()) => return Ok(None),
+            },
+        };
+        let [lx, ly] = grid.size();
+        // One per cent more than the diagonal, for rounding.
+        let reach = 1.01 * lx.hypot(ly);
+        let kernels = threads.run(|| Kernels::new::<6, loads::Pressure>(body, grid, 1.0, reach));
+        let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
+        let offsets = offsets(grid.shape(), [&pressure, uniform]);
+        let transform = PaddedTransform::plan_even(grid.shape(), offsets, &threads);
+        let transformed =
+            |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
+        let uniform = transformed(uniform);
+        let solved = subcell.map(|subcell| Solved {
+            subcell,
+            given: transformed(&pressure),
+        });
+        Ok(Some(StressPlan {
+            body: body.clone(),
+            grid: *grid,
+            friction_sign: self.friction_sign,
+            half_width: half_width(grid, loaded_cells(grid.shape(), &[&pressure])),
+            kernels,
+            offsets,
+            quarter: transform.quarter_transform(),
+            transform,
+            uniform,
+            solved,
+            threads,
+        }))
+    }
+}
+
+impl StressPlan {
+    /// A plan for `body` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell. It works on
+    /// `threads` threads; none: all of the machine's.
+    ///
+    /// [`Solution::stress_plan`](crate::Solution::stress_plan) makes that of a solved contact.
+    ///
+    /// # Errors
+    /// A pressure of another shape than the grid's, or not finite; no threads; too little memory.
+    pub fn plan(
+        body: &HalfSpace,
+        grid: &Grid,
+        pressure: &ArrayRef2<f64>,
+        threads: Option<usize>,
+    ) -> Result<Self> {
+        Source::uniform(body, grid, pressure).plan_unwatched(threads)
+    }
+
+    /// The body.
+    pub fn body(&self) -> &HalfSpace {
+        &self.body
+    }
+}
+
+/// Bytes of `arrays` arrays of cells as transforms keep them. Transforms store whole blocks of
+/// columns, at lengths that are products of small primes: together a fifth more than the cells.
+pub(super) fn transforms_memory(grid: &Grid, arrays: u64) -> u64 {
+    let [nx, ny] = grid.shape().map(|n| n as u64);
+    (nx + 1) * (ny + 8) * 8 * arrays * 6 / 5
+}
+
+/// `pressure` in C order, if it is finite and of the grid's shape.
+fn checked(grid: &Grid, pressure: &ArrayRef2<f64>) -> Result<Vec<f64>> {
+    let found = [pressure.nrows(), pressure.ncols()];
+    if found != grid.shape() {
+        return Err(Error::Shape {
+            name: "pressure",
+            expected: grid.shape(),
+            found,
+        });
+    }
+    if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
+        return Err(Error::NonFinite {
+            name: "pressure",
+            index: [index.0, index.1],
+        });
+    }
+    Ok(pressure.iter().copied().collect())
+}
+
+/// First and last row, then first and last column, of the cells that any of `pressures` loads; none
+/// where all are zero.
+fn loaded_cells(shape: [usize; 2], pressures: &[&[f64]]) -> Option<[[usize; 2]; 2]> {
+    let mut ends = [[usize::MAX, 0]; 2];
+    for pressure in pressures {
+        for (k, _) in pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {
+            for (end, at) in ends.iter_mut().zip([k / shape[1], k % shape[1]]) {
+                *end = [end[0].min(at), end[1].max(at)];
+            }
+        }
+    }
+    (ends[0][0] <= ends[0][1]).then_some(ends)
+}
+
+/// How many offsets along x and y, 0 included, lie between a cell and one that any of `pressures` loads.
+fn offsets(shape: [usize; 2], pressures: [&[f64]; 2]) -> [usize; 2] {
+    let Some(ends) = loaded_cells(shape, &pressures) else {
+        return shape;
+    };
+    // From the first loaded cell to the last cell, from the first cell to the last loaded one.
+    [0, 1].map(|axis| {
+        let [first, last] = ends[axis];
+        (shape[axis] - first).max(last + 1)
+    })
+}

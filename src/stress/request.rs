@@ -1,0 +1,190 @@
+//! One evaluation at some depths: its arguments, checked before any work, and its result.
+
+use std::ops::ControlFlow;
+
+use ndarray::Array3;
+
+use super::field::Stress;
+use super::friction::friction;
+use super::options::{StressOptions, StressProgress};
+use super::plan::{Source, StressPlan};
+use super::plane::{PlaneEvaluator, components};
+use super::section::{Points, place};
+use crate::body::HalfSpace;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::parallel::check_memory;
+use crate::response::interior::Place;
+
+impl StressPlan {
+    /// Stress at `depths`.
+    ///
+    /// # Errors
+    /// Bad depths or options, or too little memory for the result.
+    pub fn stress(&self, depths: &[f64], options: &StressOptions) -> Result<Stress> {
+        let mut progress = |_| ControlFlow::Continue(());
+        self.stress_watched(depths, options, &mut progress)
+    }
+
+    /// [`StressPlan::stress`] with a callback: `progress` is told the fraction done. When it breaks, the
+    /// result holds the depths finished so far.
+    ///
+    /// # Errors
+    /// As [`StressPlan::stress`].
+    pub fn stress_watched(
+        &self,
+        depths: &[f64],
+        options: &StressOptions,
+        progress: &mut StressProgress,
+    ) -> Result<Stress> {
+        let (body, grid) = (&self.body, &self.grid);
+        let request = Request::checked(body, grid, self.friction_sign, depths, options)?;
+        check_memory(grid.shape(), request.memory())?;
+        Ok(request.evaluate(self, progress))
+    }
+}
+
+/// Stress at `depths` by a plan that is made for this call. Bad options are refused before planning.
+pub(super) fn stress_once(
+    source: &Source,
+    depths: &[f64],
+    options: &StressOptions,
+    progress: &mut StressProgress,
+) -> Result<Stress> {
+    let (body, grid) = (source.body, source.grid);
+    let request = Request::checked(body, grid, source.friction_sign, depths, options)?;
+    check_memory(grid.shape(), request.memory() + source.memory())?;
+    Ok(match source.plan(options.threads, progress)? {
+        Some(plan) => request.evaluate(&plan, progress),
+        // Stopped while planning: no depth is done.
+        None => request.result(zeros(request.components(), 0), 0),
+    })
+}
+
+/// Arguments of one evaluation, checked.
+struct Request<'a> {
+    body: &'a HalfSpace,
+    grid: &'a Grid,
+    depths: &'a [f64],
+    options: &'a StressOptions,
+    places: Vec<Place>,
+    points: Points,
+    /// Residual stress of each layer and of the substrate.
+    residual: Vec<f64>,
+    /// μ times the unit vector of the traction on the body.
+    friction: [f64; 2],
+}
+
+impl<'a> Request<'a> {
+    fn checked(
+        body: &'a HalfSpace,
+        grid: &'a Grid,
+        friction_sign: f64,
+        depths: &'a [f64],
+        options: &'a StressOptions,
+    ) -> Result<Self> {
+        let places = depths.iter().map(|&z| place(body, z, options.side));
+        Ok(Self {
+            body,
+            grid,
+            depths,
+            options,
+            places: places.collect::<Result<_>>()?,
+            points: Points::new(grid, options.section)?,
+            residual: options.residual_by_layer(body)?,
+            friction: friction(body, friction_sign, options)?,
+        })
+    }
+
+    fn components(&self) -> usize {
+        components(self.options.displacement)
+    }
+
+    /// Bytes that the evaluation and its result take.
+    fn memory(&self) -> u64 {
+        let result = 8 * self.places.len() * self.points.count() * self.components();
+        let slides = self.options.friction != 0.0;
+        result as u64 + PlaneEvaluator::memory(self.grid, slides, self.options.displacement)
+    }
+
+    fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> Stress {
+        let mut fields = zeros(self.components(), self.places.len() * self.points.count());
+        let done = self.fill(plan, &mut fields, progress);
+        self.result(fields, done)
+    }
+
+    /// Evaluates one place after another into `fields`; returns how many were finished.
+    fn fill(
+        &self,
+        plan: &StressPlan,
+        fields: &mut [Vec<f64>],
+        progress: &mut StressProgress,
+    ) -> usize {
+        let shape = self.grid.shape();
+        let count = self.points.count();
+        // Whole planes are evaluated in place, sections by way of a plane.
+        let mut planes = match self.points.are_all_cells() {
+            true => Vec::new(),
+            false => zeros(fields.len(), shape[0] * shape[1]),
+        };
+        let mut evaluator = PlaneEvaluator::new(plan, self.friction, self.options.displacement);
+        for (done, place) in self.places.iter().enumerate() {
+            let total = self.places.len() as f64;
+            let mut progress = |part: f64| progress((done as f64 + part) / total);
+            let mut here: Vec<&mut [f64]> = fields
+                .iter_mut()
+                .map(|field| &mut field[done * count..(done + 1) * count])
+                .collect();
+            let flow = if planes.is_empty() {
+                evaluator.evaluate(place, &mut here, &mut progress)
+            } else {
+                let mut outputs: Vec<_> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+                evaluator.evaluate(place, &mut outputs, &mut progress)
+            };
+            if flow.is_break() {
+                return done;
+            }
+            for (plane, here) in planes.iter().zip(&mut here) {
+                self.points.interpolate(plane, shape, here);
+            }
+            let residual = self.residual[place.layer];
+            if residual != 0.0 {
+                for in_plane in &mut here[..2] {
+                    in_plane.iter_mut().for_each(|s| *s += residual);
+                }
+            }
+        }
+        // All is done: a break has nothing left to stop.
+        let _ = progress(1.0);
+        self.places.len()
+    }
+
+    /// The result of the first `done` places.
+    fn result(&self, fields: Vec<Vec<f64>>, done: usize) -> Stress {
+        let [ox, oy] = self.points.shape;
+        let mut arrays = fields.into_iter().map(|mut values| {
+            values.truncate(done * self.points.count());
+            Array3::from_shape_vec((done, ox, oy), values).unwrap_or_default()
+        });
+        let mut next = || arrays.next().unwrap_or_default();
+        Stress {
+            z: self.depths[..done].to_vec().into(),
+            x: self.points.x.clone(),
+            y: self.points.y.clone(),
+            body: self.body.clone(),
+            side: self.options.side,
+            friction: self.friction,
+            components: std::array::from_fn(|_| next()),
+            displacement: self
+                .options
+                .displacement
+                .then(|| std::array::from_fn(|_| next())),
+        }
+    }
+}
+
+/// `fields` arrays of zeros. Each is allocated by itself: a copy would touch its memory here, on one
+/// thread.
+fn zeros(fields: usize, length: usize) -> Vec<Vec<f64>> {
+    (0..fields).map(|_| vec![0.0; length]).collect()
+}

@@ -1,0 +1,134 @@
+"""Whatever repeats the keywords and the shapes agrees with the compiled module."""
+
+import inspect
+from collections.abc import Callable
+from typing import Any, get_type_hints
+
+import numpy as np
+import pytest
+
+import nacre
+from nacre import _keywords, _schema, values
+
+STEEL = nacre.Elastic(210e9, 0.3)
+GRID = nacre.Grid((16, 16), (2e-4, 2e-4))
+SPHERE = nacre.Sphere(5e-3)
+SOLUTION = nacre.solve(SPHERE, STEEL, grid=GRID, load=10.0)
+SOLVE = (_keywords.Motion, _keywords.Plan, _keywords.Search)
+PLAN = SOLUTION.stress_plan()
+
+# What is no number and no word: types of it are in the stub.
+OBJECTS = {"grid", "initial", "progress", "check"}
+FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[type, ...], Callable[..., Any]]] = {
+    "solve": (nacre.solve, SOLVE, lambda **k: nacre.solve(SPHERE, STEEL, **k)),
+    "Contact": (nacre.Contact, (_keywords.Plan,), lambda **k: nacre.Contact(STEEL, GRID, **k)),
+    "Contact.solve": (
+        nacre.Contact.solve,
+        (_keywords.Motion, _keywords.Search),
+        lambda **k: nacre.Contact(STEEL, GRID).solve(SPHERE, **k),
+    ),
+    "Contact.solve_many": (
+        nacre.Contact.solve_many,
+        (_keywords.Search,),
+        lambda **k: nacre.Contact(STEEL, GRID).solve_many([], **k),
+    ),
+    "Convolution.of_bodies": (
+        nacre.Convolution.of_bodies,
+        (_keywords.Plan,),
+        lambda **k: nacre.Convolution.of_bodies(STEEL, GRID, **k),
+    ),
+    "stress": (
+        nacre.stress,
+        (_keywords.Stress,),
+        lambda **k: nacre.stress(STEEL, GRID, np.ones((16, 16)), 0.0, **k),
+    ),
+    "Solution.stress": (
+        nacre.Solution.stress,
+        (_keywords.SolutionStress,),
+        lambda **k: SOLUTION.stress(0.0, **k),
+    ),
+    "Solution.stress_summary": (
+        nacre.Solution.stress_summary,
+        (_keywords.SolutionSummary,),
+        lambda **k: SOLUTION.stress_summary(**k),
+    ),
+    "StressPlan.stress": (
+        nacre.StressPlan.stress,
+        (_keywords.Section,),
+        lambda **k: PLAN.stress(0.0, **k),
+    ),
+    "StressPlan.summary": (
+        nacre.StressPlan.summary,
+        (_keywords.Strengths,),
+        lambda **k: PLAN.summary(**k),
+    ),
+}
+
+
+def keywords(function: Callable[..., Any]) -> set[str]:
+    parameters = inspect.signature(function).parameters.values()
+    return {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_signature_types_and_meaning_have_the_same_keywords(name: str) -> None:
+    function, types, call = FUNCTIONS[name]
+    typed = {keyword for group in types for keyword in get_type_hints(group)}
+    assert keywords(function) - OBJECTS == typed - OBJECTS
+    with pytest.raises(TypeError, match=f"^keywords of {name} must be among ") as caught:
+        call(nonsense=1)
+    listed = str(caught.value).partition(" among ")[2].partition(", got ")[0]
+    assert set(listed.split(", ")) == keywords(function)
+
+
+def test_a_case_names_all_that_says_how_it_is_pressed() -> None:
+    with pytest.raises(TypeError, match="a case's keys must be among ") as caught:
+        nacre.Contact(STEEL, GRID).solve_many([{"nonsense": 1}])
+    listed = str(caught.value).partition(" among ")[2].partition(", got ")[0]
+    assert set(listed.split(", ")) == {"shape", *_keywords.Motion.__annotations__}
+
+
+def test_the_defaults_are_those_of_the_signature() -> None:
+    expected = nacre.solve(SPHERE, STEEL, load=10.0)
+    parameters = inspect.signature(nacre.solve).parameters.values()
+    spelt = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
+    again = nacre.solve(SPHERE, STEEL, **(spelt | {"load": 10.0}))
+    assert again.pressure.tobytes() == expected.pressure.tobytes()
+
+
+def test_case_files_know_the_keywords_of_a_solve() -> None:
+    assert set(_schema.Solve.model_fields) == keywords(nacre.solve) - OBJECTS
+
+
+def shapes() -> dict[str, type[nacre.Shape]]:
+    found = {name: getattr(nacre, name) for name in nacre.__all__}
+    return {
+        name: kind
+        for name, kind in found.items()
+        if isinstance(kind, type) and issubclass(kind, nacre.Shape) and kind is not nacre.Shape
+    }
+
+
+def test_files_and_case_files_know_every_shape() -> None:
+    assert len(shapes()) >= 6
+    assert set(shapes()) <= set(values.KINDS)
+    assert {kind.__name__ for kind in _schema.SHAPES.values()} == set(shapes())
+    assert set(_schema.SHAPES) | {"sum"} == {kind.strip("'") for kind in _schema.KINDS.split(", ")}
+
+
+@pytest.mark.parametrize("kind", sorted(values.KINDS))
+def test_arguments_of_a_constructor_are_attributes(kind: str) -> None:
+    for name in values.FIELDS[values.KINDS[kind]]:
+        assert isinstance(inspect.getattr_static(values.KINDS[kind], name), property) or hasattr(
+            values.KINDS[kind], name
+        )
+
+
+def test_the_public_names_are_those_of_the_stub() -> None:
+    assert set(nacre.__all__) == {*nacre._core.__all__, "load", "sweep"}
+    assert not [name for name in nacre._core.__all__ if name.startswith("_") and "__" not in name]
+
+
+def test_the_types_can_be_read() -> None:
+    for group in SOLVE:
+        assert get_type_hints(group)
