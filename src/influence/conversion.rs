@@ -93,9 +93,9 @@ pub(super) fn coefficients(
                 for (j, c) in row.iter_mut().enumerate() {
                     let (x, y) = (i as f64 * dx, j as f64 * dy);
                     let potential = |depth: f64| potential(&rules, half, [x, y], depth);
-                    *c += limits.short * potential(0.0);
+                    *c += limits.short / (2.0 * PI) * potential(0.0);
                     if image != 0.0 {
-                        *c += image * potential(image_depth);
+                        *c += image / (2.0 * PI) * potential(image_depth);
                     }
                 }
             });

@@ -106,7 +106,8 @@ impl CellInfluence {
 
     /// [`CellInfluence::at`] without the local compliance.
     pub(super) fn at_distance(&self, offset: [f64; 2]) -> f64 {
-        let love = || self.short * potential(self.cells.rules(), self.half, offset, 0.0);
+        let love =
+            || self.short * potential(self.cells.rules(), self.half, offset, 0.0) / (2.0 * PI);
         let Some(tables) = &self.tables else {
             return love();
         };

@@ -13,6 +13,8 @@
 //! They are Cerruti's solution for a point force (Johnson, Contact Mechanics (1985), §3.6,
 //! doi:10.1017/CBO9781139171731), integrated over the rectangle.
 
+use std::f64::consts::PI;
+
 use super::COMPONENTS;
 use super::rectangle::{Corner, corners};
 use crate::material::Elastic;
@@ -28,7 +30,7 @@ pub(super) fn components(
     let nu = material.poisson();
     let far = 1.0 - 2.0 * nu;
     let c = 0.5 / material.shear();
-    corners(half, at, z, |corner: &Corner| {
+    let sums = corners(half, at, z, |corner: &Corner| {
         let bend = (2.0 * nu + z / corner.rho) / (corner.rho + z);
         let yx = -corner.x * corner.ly - z * corner.ux;
         [
@@ -42,5 +44,6 @@ pub(super) fn components(
             c * (2.0 * nu * (z * corner.log - corner.rho) - z * corner.log),
             -c * (far * corner.potential_x() + z * corner.ly),
         ]
-    })
+    });
+    sums.map(|sum| sum / (2.0 * PI))
 }

@@ -11,6 +11,8 @@
 //! and those with x and y exchanged. Love, Phil. Trans. R. Soc. A 228 (1929) 377,
 //! doi:10.1098/rsta.1929.0009.
 
+use std::f64::consts::PI;
+
 use super::COMPONENTS;
 use super::rectangle::{Corner, corners};
 use crate::material::Elastic;
@@ -26,7 +28,7 @@ pub(super) fn components(
     let nu = material.poisson();
     let far = 1.0 - 2.0 * nu;
     let c = 0.5 / material.shear();
-    corners(half, at, z, |corner: &Corner| {
+    let sums = corners(half, at, z, |corner: &Corner| {
         let (fxx, fyy) = (corner.fxx(), corner.fyy());
         [
             corner.ux + 2.0 * nu * corner.uy - z * fxx,
@@ -39,5 +41,6 @@ pub(super) fn components(
             c * (far * corner.potential_y() - z * corner.lx),
             c * (2.0 * (1.0 - nu) * corner.f() + z * corner.t),
         ]
-    })
+    });
+    sums.map(|sum| sum / (2.0 * PI))
 }

@@ -11,8 +11,6 @@
 //! yz/ρ(x²+z²). F is the potential itself, ∬ 1/ρ. [`super::love`] and [`super::cerruti`] make stress
 //! and displacement of them.
 
-use std::f64::consts::PI;
-
 use super::quadrature::Rules;
 
 /// Functions of a corner.
@@ -84,7 +82,7 @@ fn product(x: f64, l: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x * l }
 }
 
-/// Sum over the corners, with their signs, of N functions over 2π, at (x, y) from the centre of a
+/// Sum over the corners, with their signs, of N functions, at (x, y) from the centre of a
 /// rectangle of half sides `half` and at depth z.
 pub(super) fn corners<const N: usize>(
     [a, b]: [f64; 2],
@@ -99,10 +97,10 @@ pub(super) fn corners<const N: usize>(
         [x - a, y - b],
     ]
     .map(|[x, y]| function(&Corner::new(x, y, z)));
-    std::array::from_fn(|k| (pp[k] - mp[k] - pm[k] + mm[k]) / (2.0 * PI))
+    std::array::from_fn(|k| pp[k] - mp[k] - pm[k] + mm[k])
 }
 
-/// The potential 1/2π ∬ 1/ρ of a rectangle of half sides `half`, at `at` from its centre and depth z,
+/// The potential ∬ 1/ρ of a rectangle of half sides `half`, at `at` from its centre and depth z,
 /// anywhere.
 ///
 /// Near the rectangle it is the sum of F over its corners (Love, Phil. Trans. R. Soc. A 228 (1929)
@@ -120,14 +118,13 @@ pub(crate) fn potential(rules: &Rules, half: [f64; 2], at: [f64; 2], z: f64) -> 
         let [sum] = corners([a, b], [x, y], z, |corner| [corner.f()]);
         return sum;
     };
-    let integral = match rules.at(distance / a) {
+    match rules.at(distance / a) {
         Some(along) => across.around(y, b, |y| {
             let s2 = y * y + z * z;
             along.around(x, a, |x| 1.0 / (x * x + s2).sqrt())
         }),
         None => across.around(y, b, |y| segment(x - a, x + a, y * y + z * z)),
-    };
-    integral / (2.0 * PI)
+    }
 }
 
 /// ∫ dx/√(x² + s²) = 2 atanh(ℓ/(r1 + r2)), which does not cancel.
@@ -187,7 +184,7 @@ mod tests {
                 if !far {
                     cells.corners(at, half, |weight, _, _| sum += weight);
                 }
-                let exact = 2.0 * PI * potential(cells.rules(), half, at, 0.0);
+                let exact = potential(cells.rules(), half, at, 0.0);
                 assert!((sum / exact - 1.0).abs() < 3e-12, "{half:?} {at:?}: {sum}");
             }
         }
@@ -199,7 +196,7 @@ mod tests {
         let at = [3e3, 4e3];
         let quadrupole = ((3.0 * 0.36 - 1.0) + 4.0 * (3.0 * 0.64 - 1.0)) / 24.0 / 25e6;
         let value = potential(&Rules::displacement(), [0.5, 1.0], at, 0.0);
-        let point = 2.0 / (2.0 * PI * 5e3);
+        let point = 2.0 / 5e3;
         assert!((value / point / (1.0 + quadrupole) - 1.0).abs() < 1e-14);
     }
 }
