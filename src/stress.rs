@@ -34,7 +34,6 @@ use crate::body::HalfSpace;
 use crate::error::Result;
 use crate::grid::Grid;
 
-mod depths;
 mod derived;
 mod field;
 mod friction;

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use ndarray::ArrayRef2;
 
-use super::depths::half_width;
 use super::options::StressProgress;
 use super::subcell::SubcellStress;
 use crate::body::HalfSpace;
@@ -42,7 +41,7 @@ pub struct StressPlan {
     pub(super) grid: Grid,
     /// Sign of the options' direction of friction; see [`Source`].
     pub(super) friction_sign: f64,
-    /// Half the width of the loaded cells \[m\]; see [`half_width`].
+    /// Half the width of the loaded cells along their shorter side \[m\].
     pub(super) half_width: f64,
     pub(super) kernels: Kernels,
     /// Number of offsets along x and y between a loaded cell and any other.
@@ -251,4 +250,17 @@ fn offsets(shape: [usize; 2], pressures: [&[f64]; 2]) -> [usize; 2] {
         let [first, last] = ends[axis];
         (shape[axis] - first).max(last + 1)
     })
+}
+
+/// Half the width of the `loaded` cells along their shorter side; of the whole grid if there are none.
+fn half_width(grid: &Grid, loaded: Option<[[usize; 2]; 2]>) -> f64 {
+    let width = |axis: usize| {
+        let cells = loaded.map_or(grid.shape()[axis], |ends| ends[axis][1] - ends[axis][0] + 1);
+        0.5 * cells as f64 * grid.spacing()[axis]
+    };
+    if grid.is_line() {
+        width(1)
+    } else {
+        width(0).min(width(1))
+    }
 }

@@ -19,7 +19,7 @@ fn steel() -> Result<Elastic> {
 }
 
 fn press(grid: Grid, shape: &dyn Surface, load: f64) -> Result<Solution> {
-    let contact = Contact::plan(&steel()?, grid, Setup::default())?;
+    let contact = Contact::plan(steel()?, grid, Setup::default())?;
     contact.solve(shape, &Motion::load(load), &Options::default())
 }
 
