@@ -63,7 +63,7 @@ impl Tensor {
     /// are equal: Golub & Van Loan, Matrix Computations, 4th ed. (2013), §8.5.
     pub(super) fn principal(&self) -> [f64; 3] {
         let mut a = self.matrix();
-        // What is off the diagonal falls quadratically: three sweeps are usual.
+        // Entries off the diagonal fall quadratically: three sweeps are usual.
         for _ in 0..8 {
             let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
             let on = a[0][0].abs() + a[1][1].abs() + a[2][2].abs();

@@ -184,10 +184,9 @@ impl SummaryRequest {
         let planned = in_layers + body.layers().len();
         let mut planes = Planes::new(plan, self.friction, &self.residual, planned, progress);
         let mut summary = StressSummary::default();
-        summary.finished = self
-            .fill(body, &regions, &mut planes, &mut summary)
-            .is_continue();
-        if summary.finished {
+        let flow = self.fill(body, &regions, &mut planes, &mut summary);
+        if flow.is_continue() {
+            summary.finished = true;
             planes.finish();
         }
         summary
@@ -261,7 +260,7 @@ fn layer(
     })
 }
 
-/// Summary of interface `number`, which is at `depth`; none if there is none.
+/// Summary of interface `number`, which is at `depth`; none if no layer ends there.
 fn interface(
     planes: &mut Planes,
     body: &HalfSpace,
