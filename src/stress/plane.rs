@@ -25,9 +25,6 @@ const TOGETHER: usize = 3;
 // Stresses and displacements come from different pressures: no three components may mix them.
 const _: () = assert!(STRESSES.is_multiple_of(TOGETHER));
 
-/// Multipliers of the wavenumbers' transforms, for each radial function of a load.
-type Multipliers = [Vec<(f64, f64)>];
-
 /// A plan under one friction, with the memory that all its planes use.
 #[derive(Debug)]
 pub(super) struct PlaneEvaluator<'a> {
@@ -187,7 +184,7 @@ impl<'a> PlaneEvaluator<'a> {
     fn cells<const N: usize, const C: usize, L: Load<N>>(
         &mut self,
         plan: &Plan,
-        multipliers: &Multipliers,
+        multipliers: &[Vec<(f64, f64)>],
         place: &Place,
         lateral: bool,
     ) {
