@@ -141,6 +141,7 @@ impl<'a> PlaneEvaluator<'a> {
                 pressure,
                 traction,
             } => {
+                // Made without rayon, so that a thread that waits for it cannot be asked to make it.
                 let traction = slides
                     .then(|| traction.get_or_init(|| plan.multipliers::<9, loads::Traction>()));
                 // Stresses alone need fewer radial functions.

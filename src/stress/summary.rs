@@ -126,9 +126,8 @@ pub(super) fn summary_once(
 }
 
 /// Arguments of one summary, checked.
-struct SummaryRequest {
-    /// Strengths of each layer and of the substrate.
-    strengths: Vec<LayerStrength>,
+struct SummaryRequest<'a> {
+    strengths: &'a Strengths,
     /// Residual stress of each layer and of the substrate.
     residual: Vec<f64>,
     /// μ times the unit vector of the traction on the body.
@@ -137,37 +136,40 @@ struct SummaryRequest {
     memory: u64,
 }
 
-/// Strengths of one layer, where they are known.
-struct LayerStrength {
-    yield_stress: Option<f64>,
-    strength: Option<f64>,
+impl Strengths {
+    /// Refuses a strength that is not finite and above 0.
+    fn check(&self) -> Result<()> {
+        let yields = self
+            .yield_stress
+            .iter()
+            .map(|value| ("yield_stress", value));
+        let strengths = self.strength.iter().map(|value| ("strength", value));
+        for (name, value) in yields.chain(strengths) {
+            value.map(|value| positive(name, value)).transpose()?;
+        }
+        Ok(())
+    }
+
+    /// Yield stress and tensile strength of one layer, where they are known.
+    fn of_layer(&self, layer: usize) -> [Option<f64>; 2] {
+        [&self.yield_stress, &self.strength].map(|values| values.get(layer).copied().flatten())
+    }
 }
 
-impl SummaryRequest {
+impl<'a> SummaryRequest<'a> {
     fn checked(
         body: &HalfSpace,
         grid: &Grid,
         friction_sign: f64,
-        strengths: &Strengths,
+        strengths: &'a Strengths,
         options: &StressOptions,
     ) -> Result<Self> {
-        let of_layer = |name, values: &[Option<f64>], layer: usize| {
-            let value = values.get(layer).copied().flatten();
-            value.map(|value| positive(name, value)).transpose()
-        };
-        let strength = |layer| {
-            Ok(LayerStrength {
-                yield_stress: of_layer("yield_stress", &strengths.yield_stress, layer)?,
-                strength: of_layer("strength", &strengths.strength, layer)?,
-            })
-        };
+        strengths.check()?;
         let [nx, ny] = grid.shape();
         // Six components, and the in-plane stress above an interface.
         let planes = 8 * 9 * (nx * ny) as u64;
         Ok(Self {
-            strengths: (0..=body.layers().len())
-                .map(strength)
-                .collect::<Result<_>>()?,
+            strengths,
             residual: options.residual_by_layer(body)?,
             friction: friction(body, friction_sign, options)?,
             memory: planes + PlaneEvaluator::memory(grid, options.friction != 0.0, false),
@@ -201,8 +203,8 @@ impl SummaryRequest {
         summary: &mut StressSummary,
     ) -> ControlFlow<()> {
         let mut top = 0.0;
-        for (region, strengths) in regions.iter().zip(&self.strengths) {
-            let layer = layer(planes, body, region, top, strengths)?;
+        for region in regions {
+            let layer = layer(planes, body, region, top, self.strengths)?;
             top = layer.depths[1];
             summary.layers.push(layer);
         }
@@ -221,7 +223,7 @@ fn layer(
     body: &HalfSpace,
     region: &[Place],
     top: f64,
-    strengths: &LayerStrength,
+    strengths: &Strengths,
 ) -> ControlFlow<(), LayerSummary> {
     let mut evaluated: Vec<(Place, Extremes)> = Vec::new();
     for place in region {
@@ -245,6 +247,7 @@ fn layer(
     });
     let layer = region[0].layer;
     let thickness = body.layers().get(layer).map(Layer::thickness);
+    let [yield_stress, strength] = strengths.of_layer(layer);
     let margin = |strength: Option<f64>, peak: Peak| {
         let strength = strength.filter(|_| peak.value > 0.0);
         strength.map(|strength| strength / peak.value)
@@ -252,8 +255,8 @@ fn layer(
     ControlFlow::Continue(LayerSummary {
         layer,
         depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
-        yield_margin: margin(strengths.yield_stress, von_mises),
-        strength_margin: margin(strengths.strength, tension),
+        yield_margin: margin(yield_stress, von_mises),
+        strength_margin: margin(strength, tension),
         von_mises,
         tension,
         shear,
