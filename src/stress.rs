@@ -34,7 +34,6 @@ use crate::body::HalfSpace;
 use crate::error::Result;
 use crate::grid::Grid;
 
-mod depths;
 mod derived;
 mod field;
 mod friction;
@@ -54,7 +53,7 @@ pub use options::{Section, Side, StressOptions, StressProgress};
 pub use plan::StressPlan;
 pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
 
-use plan::Source;
+use plan::{Form, Source};
 use request::stress_once;
 
 /// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell.
@@ -101,6 +100,12 @@ pub fn stress_watched(
     options: &StressOptions,
     progress: &mut StressProgress,
 ) -> Result<Stress> {
-    let source = Source::uniform(body, grid, pressure);
+    let source = Source {
+        body,
+        grid,
+        pressure,
+        form: Form::Uniform,
+        friction_sign: 1.0,
+    };
     stress_once(&source, depths, options, progress)
 }

@@ -12,5 +12,6 @@ mod stress {
     mod edge;
     mod invariants;
     mod patch;
+    mod plan;
     mod threads;
 }

@@ -21,7 +21,7 @@ def _named(kind: str, **fields: Any) -> dict[str, Any]:
 
 
 def _restore_report(state: tuple[Any, ...]) -> core.Report:
-    """Return a report."""
+    """Return a report; the fields that format 0 lacks must be filled in here."""
     (
         termination,
         (iterations, convolutions),

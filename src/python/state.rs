@@ -185,7 +185,7 @@ impl<'py> Fields<'py> {
 
     fn refuse(&self, name: &str, value: &Bound<'py, PyAny>) -> PyErr {
         PyValueError::new_err(format!(
-            "{}: the key {name:?} holds what is not its value: {}",
+            "{}: the value of the key {name:?} does not fit: {}",
             self.place,
             Repr(value)
         ))
@@ -204,7 +204,7 @@ impl<'py> Fields<'py> {
         let shape = array.shape().to_vec();
         array.into_dimensionality().map_err(|_| {
             PyValueError::new_err(format!(
-                "{}: the key {name:?} holds an array of the wrong number of dimensions: shape {shape:?}",
+                "{}: the array of the key {name:?} has the wrong number of dimensions: shape {shape:?}",
                 self.place
             ))
         })
@@ -253,7 +253,7 @@ impl<'py> Fields<'py> {
     /// Value that `read` reads from these fields.
     ///
     /// # Errors
-    /// Those of `read`, and a `ValueError` that names a key that it did not read.
+    /// Errors of `read`, and a `ValueError` that names a key that `read` left.
     pub(super) fn read<T>(&self, read: impl FnOnce(&Self) -> PyResult<T>) -> PyResult<T> {
         let value = read(self)?;
         match self.dict.keys().iter().next() {

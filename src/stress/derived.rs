@@ -37,17 +37,19 @@ impl Tensor {
         }
     }
 
+    fn matrix(&self) -> [[f64; 3]; 3] {
+        let [xz, yz] = [self.xz, self.yz];
+        [
+            [self.xx, self.xy, xz],
+            [self.xy, self.yy, yz],
+            [xz, yz, self.zz],
+        ]
+    }
+
     /// Von Mises' equivalent stress,
     /// √{½ [(σxx−σyy)² + (σyy−σzz)² + (σzz−σxx)²] + 3 (σxy² + σyz² + σxz²)}.
     pub(super) fn von_mises(&self) -> f64 {
-        let Self {
-            xx,
-            yy,
-            zz,
-            xy,
-            yz,
-            xz,
-        } = self;
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = self.matrix();
         let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
         (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
     }
@@ -60,16 +62,8 @@ impl Tensor {
     /// Principal stresses, the largest first, by Jacobi's rotations, which lose no digits where two
     /// are equal: Golub & Van Loan, Matrix Computations, 4th ed. (2013), §8.5.
     pub(super) fn principal(&self) -> [f64; 3] {
-        let Self {
-            xx,
-            yy,
-            zz,
-            xy,
-            yz,
-            xz,
-        } = *self;
-        let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        // What is off the diagonal falls quadratically: three sweeps are usual.
+        let mut a = self.matrix();
+        // Entries off the diagonal fall quadratically: three sweeps are usual.
         for _ in 0..8 {
             let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
             let on = a[0][0].abs() + a[1][1].abs() + a[2][2].abs();

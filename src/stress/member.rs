@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::field::Stress;
 use super::options::{StressOptions, StressProgress};
-use super::plan::{Source, StressPlan};
+use super::plan::{Form, Source, StressPlan};
 use super::request::stress_once;
 use super::summary::{Strengths, StressSummary, summary_once};
 use crate::body::HalfSpace;
@@ -123,17 +123,16 @@ impl Solution {
 
     /// The pressure on one of the bodies, with the sign of friction there.
     fn source(&self, member: Member) -> Result<Source<'_>> {
-        let friction_sign = match member {
-            Member::Body => 1.0,
-            Member::Counterbody => -1.0,
-        };
-        let body = self.member(member)?;
-        Ok(Source::solved(
-            body,
-            self.grid(),
-            &self.pressure,
-            friction_sign,
-        ))
+        Ok(Source {
+            body: self.member(member)?,
+            grid: self.grid(),
+            pressure: &self.pressure,
+            form: Form::Solved,
+            friction_sign: match member {
+                Member::Body => 1.0,
+                Member::Counterbody => -1.0,
+            },
+        })
     }
 }
 

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use ndarray::ArrayRef2;
 
-use super::depths::half_width;
 use super::options::StressProgress;
 use super::subcell::SubcellStress;
 use crate::body::HalfSpace;
@@ -17,11 +16,11 @@ use crate::parallel::{Threads, check_memory};
 
 /// Stress below a pressure, planned once and evaluated any number of times.
 ///
-/// A plan owns what is costly and does not depend on depths or options: the pressure within cells, the
-/// spectrum of the layered body and the transforms of the loads. What friction needs is planned at
-/// the first evaluation with friction. Results are the same to the bit as those of
+/// A plan owns all costly parts that do not depend on depths or options: the pressure within cells, the
+/// spectrum of the layered body and the transforms of the loads. Kernels of traction are planned at the
+/// first evaluation with friction. Results have the same bits as those of
 /// [`Solution::stress`](crate::Solution::stress) and [`stress`](crate::stress()), which plan for one
-/// call. A plan can be shared between threads.
+/// call. Threads can share a plan.
 ///
 /// ```
 /// use nacre::{Elastic, Member, Motion, Section, Sphere, StressOptions, solve};
@@ -42,7 +41,7 @@ pub struct StressPlan {
     pub(super) grid: Grid,
     /// Sign of the options' direction of friction; see [`Source`].
     pub(super) friction_sign: f64,
-    /// Half the width of the loaded cells \[m\]; see [`half_width`].
+    /// Half the width of the loaded cells along their shorter side \[m\].
     pub(super) half_width: f64,
     pub(super) kernels: Kernels,
     /// Number of offsets along x and y between a loaded cell and any other.
@@ -56,7 +55,7 @@ pub struct StressPlan {
     pub(super) threads: Threads,
 }
 
-/// What a solved contact's plan has beside the uniform pressure.
+/// Additional parts of a solved contact's plan.
 #[derive(Debug)]
 pub(super) struct Solved {
     pub(super) subcell: SubcellStress,
@@ -66,55 +65,24 @@ pub(super) struct Solved {
 
 /// Distribution of the pressure over a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
+pub(super) enum Form {
     /// Uniform over each cell.
     Uniform,
-    /// That of a solved contact, reconstructed within cells.
+    /// Reconstructed within cells, from the pressure of a solved contact.
     Solved,
 }
 
-/// What a plan is made from.
+/// The pressure that a plan is made for, and the body below it.
 pub(super) struct Source<'a> {
     pub(super) body: &'a HalfSpace,
     pub(super) grid: &'a Grid,
-    pressure: &'a ArrayRef2<f64>,
-    form: Form,
+    pub(super) pressure: &'a ArrayRef2<f64>,
+    pub(super) form: Form,
     /// 1, or −1 for a counterbody, on which friction acts the other way.
     pub(super) friction_sign: f64,
 }
 
-impl<'a> Source<'a> {
-    /// A pressure that is uniform over each cell.
-    pub(super) fn uniform(
-        body: &'a HalfSpace,
-        grid: &'a Grid,
-        pressure: &'a ArrayRef2<f64>,
-    ) -> Self {
-        Self {
-            body,
-            grid,
-            pressure,
-            form: Form::Uniform,
-            friction_sign: 1.0,
-        }
-    }
-
-    /// The pressure of a solved contact.
-    pub(super) fn solved(
-        body: &'a HalfSpace,
-        grid: &'a Grid,
-        pressure: &'a ArrayRef2<f64>,
-        friction_sign: f64,
-    ) -> Self {
-        Self {
-            body,
-            grid,
-            pressure,
-            form: Form::Solved,
-            friction_sign,
-        }
-    }
-
+impl Source<'_> {
     /// Bytes that planning takes.
     pub(super) fn memory(&self) -> u64 {
         // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
@@ -192,7 +160,14 @@ impl StressPlan {
         pressure: &ArrayRef2<f64>,
         threads: Option<usize>,
     ) -> Result<Self> {
-        Source::uniform(body, grid, pressure).plan_unwatched(threads)
+        let source = Source {
+            body,
+            grid,
+            pressure,
+            form: Form::Uniform,
+            friction_sign: 1.0,
+        };
+        source.plan_unwatched(threads)
     }
 
     /// The body.
@@ -251,4 +226,17 @@ fn offsets(shape: [usize; 2], pressures: [&[f64]; 2]) -> [usize; 2] {
         let [first, last] = ends[axis];
         (shape[axis] - first).max(last + 1)
     })
+}
+
+/// Half the width of the `loaded` cells along their shorter side; of the whole grid if there are none.
+fn half_width(grid: &Grid, loaded: Option<[[usize; 2]; 2]>) -> f64 {
+    let width = |axis: usize| {
+        let cells = loaded.map_or(grid.shape()[axis], |ends| ends[axis][1] - ends[axis][0] + 1);
+        0.5 * cells as f64 * grid.spacing()[axis]
+    };
+    if grid.is_line() {
+        width(1)
+    } else {
+        width(0).min(width(1))
+    }
 }

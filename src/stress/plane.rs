@@ -25,9 +25,6 @@ const TOGETHER: usize = 3;
 // Stresses and displacements come from different pressures: no three components may mix them.
 const _: () = assert!(STRESSES.is_multiple_of(TOGETHER));
 
-/// Multipliers of the wavenumbers' transforms, for each radial function of a load.
-type Multipliers = [Vec<(f64, f64)>];
-
 /// A plan under one friction, with the memory that all its planes use.
 #[derive(Debug)]
 pub(super) struct PlaneEvaluator<'a> {
@@ -144,6 +141,7 @@ impl<'a> PlaneEvaluator<'a> {
                 pressure,
                 traction,
             } => {
+                // Made without rayon, so that a thread that waits for it cannot be asked to make it.
                 let traction = slides
                     .then(|| traction.get_or_init(|| plan.multipliers::<9, loads::Traction>()));
                 // Stresses alone need fewer radial functions.
@@ -187,7 +185,7 @@ impl<'a> PlaneEvaluator<'a> {
     fn cells<const N: usize, const C: usize, L: Load<N>>(
         &mut self,
         plan: &Plan,
-        multipliers: &Multipliers,
+        multipliers: &[Vec<(f64, f64)>],
         place: &Place,
         lateral: bool,
     ) {

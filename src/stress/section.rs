@@ -59,7 +59,7 @@ pub(super) struct Points {
     pub(super) x: Array1<f64>,
     pub(super) y: Array1<f64>,
     pub(super) shape: [usize; 2],
-    /// Interpolation along x and along y; none along an axis of which all cells are returned.
+    /// Interpolation along x and along y; none along an axis whose cells are all returned.
     interpolation: [Option<Interpolation>; 2],
 }
 

@@ -2,8 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::depths::{refined_peak, regions};
-use super::derived::{Peak, Tensor};
+use super::derived::Peak;
 use super::friction::friction;
 use super::options::{Side, StressOptions, StressProgress};
 use super::plan::{Source, StressPlan};
@@ -14,6 +13,12 @@ use crate::error::{Result, positive};
 use crate::grid::Grid;
 use crate::parallel::check_memory;
 use crate::response::interior::Place;
+
+mod depths;
+mod extremes;
+
+use depths::{refined_peak, regions};
+use extremes::{Extremes, Planes, Tractions};
 
 /// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
 /// not known.
@@ -121,9 +126,8 @@ pub(super) fn summary_once(
 }
 
 /// Arguments of one summary, checked.
-struct SummaryRequest {
-    /// Strengths of each layer and of the substrate.
-    strengths: Vec<LayerStrength>,
+struct SummaryRequest<'a> {
+    strengths: &'a Strengths,
     /// Residual stress of each layer and of the substrate.
     residual: Vec<f64>,
     /// μ times the unit vector of the traction on the body.
@@ -132,37 +136,40 @@ struct SummaryRequest {
     memory: u64,
 }
 
-/// Strengths of one layer, where they are known.
-struct LayerStrength {
-    yield_stress: Option<f64>,
-    strength: Option<f64>,
+impl Strengths {
+    /// Refuses a strength that is not finite and above 0.
+    fn check(&self) -> Result<()> {
+        let yields = self
+            .yield_stress
+            .iter()
+            .map(|value| ("yield_stress", value));
+        let strengths = self.strength.iter().map(|value| ("strength", value));
+        for (name, value) in yields.chain(strengths) {
+            value.map(|value| positive(name, value)).transpose()?;
+        }
+        Ok(())
+    }
+
+    /// Yield stress and tensile strength of one layer, where they are known.
+    fn of_layer(&self, layer: usize) -> [Option<f64>; 2] {
+        [&self.yield_stress, &self.strength].map(|values| values.get(layer).copied().flatten())
+    }
 }
 
-impl SummaryRequest {
+impl<'a> SummaryRequest<'a> {
     fn checked(
         body: &HalfSpace,
         grid: &Grid,
         friction_sign: f64,
-        strengths: &Strengths,
+        strengths: &'a Strengths,
         options: &StressOptions,
     ) -> Result<Self> {
-        let of_layer = |name, values: &[Option<f64>], layer: usize| {
-            let value = values.get(layer).copied().flatten();
-            value.map(|value| positive(name, value)).transpose()
-        };
-        let strength = |layer| {
-            Ok(LayerStrength {
-                yield_stress: of_layer("yield_stress", &strengths.yield_stress, layer)?,
-                strength: of_layer("strength", &strengths.strength, layer)?,
-            })
-        };
+        strengths.check()?;
         let [nx, ny] = grid.shape();
         // Six components, and the in-plane stress above an interface.
         let planes = 8 * 9 * (nx * ny) as u64;
         Ok(Self {
-            strengths: (0..=body.layers().len())
-                .map(strength)
-                .collect::<Result<_>>()?,
+            strengths,
             residual: options.residual_by_layer(body)?,
             friction: friction(body, friction_sign, options)?,
             memory: planes + PlaneEvaluator::memory(grid, options.friction != 0.0, false),
@@ -170,247 +177,118 @@ impl SummaryRequest {
     }
 
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> StressSummary {
-        let regions = regions(&plan.body, plan.half_width);
+        let body = &plan.body;
+        let regions = regions(body, plan.half_width);
         let in_layers: usize = regions
             .iter()
             .map(|region| region.len() + 3 * REFINEMENTS)
             .sum();
-        let mut planes = Planes {
-            body: &plan.body,
-            grid: &plan.grid,
-            residual: &self.residual,
-            evaluator: PlaneEvaluator::new(plan, self.friction, false),
-            fields: std::array::from_fn(|_| vec![0.0; plan.grid.shape().iter().product()]),
-            progress,
-            done: 0,
-            planned: in_layers + plan.body.layers().len(),
-        };
+        let planned = in_layers + body.layers().len();
+        let mut planes = Planes::new(plan, self.friction, &self.residual, planned, progress);
         let mut summary = StressSummary::default();
-        let finished = planes.summarise(&regions, &self.strengths, &mut summary);
-        summary.finished = finished.is_continue();
-        if summary.finished {
-            // All is done: a break has nothing left to stop.
-            let _ = (planes.progress)(1.0);
+        let flow = self.fill(body, &regions, &mut planes, &mut summary);
+        if flow.is_continue() {
+            summary.finished = true;
+            planes.finish();
         }
         summary
     }
-}
 
-/// The plane of stress that was evaluated last, and what evaluates the next.
-struct Planes<'a, 'b> {
-    body: &'a HalfSpace,
-    grid: &'a Grid,
-    residual: &'a [f64],
-    evaluator: PlaneEvaluator<'a>,
-    /// The six components at the cells.
-    fields: [Vec<f64>; 6],
-    progress: &'a mut StressProgress<'b>,
-    /// Planes evaluated so far.
-    done: usize,
-    /// Planes that are evaluated at most, but for those below an interface.
-    planned: usize,
-}
-
-/// The extremes on one plane, or in one layer.
-#[derive(Debug, Clone, Copy)]
-struct Extremes {
-    von_mises: Peak,
-    tension: Peak,
-    shear: Peak,
-}
-
-impl Extremes {
-    /// Each of the extremes, to be refined by itself.
-    const EACH: [fn(&Self) -> Peak; 3] = [|e| e.von_mises, |e| e.tension, |e| e.shear];
-}
-
-/// The largest value found so far, and its cell.
-#[derive(Debug, Clone, Copy)]
-struct Largest {
-    value: f64,
-    cell: usize,
-}
-
-impl Largest {
-    /// Before any value.
-    const NONE: Self = Self {
-        value: f64::NEG_INFINITY,
-        cell: 0,
-    };
-
-    fn offer(&mut self, value: f64, cell: usize) {
-        if value > self.value {
-            *self = Self { value, cell };
-        }
-    }
-}
-
-impl Planes<'_, '_> {
-    /// Adds the summaries of all layers and interfaces to `summary`.
-    fn summarise(
-        &mut self,
+    /// Adds all layers and interfaces to `summary`.
+    fn fill(
+        &self,
+        body: &HalfSpace,
         regions: &[Vec<Place>],
-        strengths: &[LayerStrength],
+        planes: &mut Planes,
         summary: &mut StressSummary,
     ) -> ControlFlow<()> {
         let mut top = 0.0;
-        for (region, strengths) in regions.iter().zip(strengths) {
-            let layer = self.layer(region, top, strengths)?;
+        for region in regions {
+            let layer = layer(planes, body, region, top, self.strengths)?;
             top = layer.depths[1];
             summary.layers.push(layer);
         }
-        for (number, depth) in self.body.interfaces().into_iter().enumerate() {
-            let interface = self.interface(number, depth)?;
-            summary.interfaces.push(interface);
+        for (number, depth) in body.interfaces().into_iter().enumerate() {
+            summary
+                .interfaces
+                .extend(interface(planes, body, number, depth)?);
         }
         ControlFlow::Continue(())
     }
+}
 
-    /// Evaluates the stress at `place`.
-    fn evaluate(&mut self, place: &Place) -> ControlFlow<()> {
-        let (done, planned) = (self.done as f64, self.planned as f64);
-        let progress = &mut self.progress;
-        let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
-        let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
-        self.evaluator
-            .evaluate(place, &mut outputs, &mut progress)?;
-        let residual = self.residual[place.layer];
-        for field in &mut self.fields[..2] {
-            field.iter_mut().for_each(|s| *s += residual);
-        }
-        self.done += 1;
-        ControlFlow::Continue(())
+/// Summary of the layer whose top face is at depth `top`, from the places of `region`.
+fn layer(
+    planes: &mut Planes,
+    body: &HalfSpace,
+    region: &[Place],
+    top: f64,
+    strengths: &Strengths,
+) -> ControlFlow<(), LayerSummary> {
+    let mut evaluated: Vec<(Place, Extremes)> = Vec::new();
+    for place in region {
+        evaluated.push((*place, planes.extremes(place)?));
     }
-
-    fn tensor(&self, cell: usize) -> Tensor {
-        Tensor::new(self.fields.each_ref().map(|field| field[cell]))
-    }
-
-    fn peak(&self, largest: Largest, depth: f64) -> Peak {
-        let ny = self.grid.shape()[1];
-        let Largest { value, cell } = largest;
-        let (x, y) = (self.grid.x()[cell / ny], self.grid.y()[cell % ny]);
-        Peak {
-            value,
-            position: [x, y, depth],
+    for which in Extremes::EACH {
+        for _ in 0..REFINEMENTS {
+            let value = |(place, e): &(Place, Extremes)| (*place, which(e).value);
+            let values: Vec<_> = evaluated.iter().map(value).collect();
+            let Some(place) = refined_peak(&values) else {
+                break;
+            };
+            evaluated.push((place, planes.extremes(&place)?));
+            evaluated.sort_by(|a, b| a.0.depth.total_cmp(&b.0.depth));
         }
     }
+    let [von_mises, tension, shear] = Extremes::EACH.map(|which| {
+        let peaks = evaluated[1..].iter().map(|(_, extremes)| which(extremes));
+        let first = which(&evaluated[0].1);
+        peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
+    });
+    let layer = region[0].layer;
+    let thickness = body.layers().get(layer).map(Layer::thickness);
+    let [yield_stress, strength] = strengths.of_layer(layer);
+    let margin = |strength: Option<f64>, peak: Peak| {
+        let strength = strength.filter(|_| peak.value > 0.0);
+        strength.map(|strength| strength / peak.value)
+    };
+    ControlFlow::Continue(LayerSummary {
+        layer,
+        depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
+        yield_margin: margin(yield_stress, von_mises),
+        strength_margin: margin(strength, tension),
+        von_mises,
+        tension,
+        shear,
+    })
+}
 
-    /// Extremes at `place`.
-    fn extremes(&mut self, place: &Place) -> ControlFlow<(), Extremes> {
-        self.evaluate(place)?;
-        let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
-        for cell in 0..self.fields[0].len() {
-            let tensor = self.tensor(cell);
-            let mises = tensor.von_mises();
-            von_mises.offer(mises, cell);
-            // The largest principal stress is at most the mean plus 2/3 of von Mises' stress, and the
-            // largest shear stress at most 1/√3 of it: most cells need no principal stresses.
-            if tensor.mean() + 0.67 * mises > tension.value || 0.58 * mises > shear.value {
-                let [first, _, last] = tensor.principal();
-                tension.offer(first, cell);
-                shear.offer(0.5 * (first - last), cell);
-            }
-        }
-        ControlFlow::Continue(Extremes {
-            von_mises: self.peak(von_mises, place.depth),
-            tension: self.peak(tension, place.depth),
-            shear: self.peak(shear, place.depth),
-        })
-    }
-
-    /// Summary of the layer whose top face is at depth `top`, from the places of `region`.
-    fn layer(
-        &mut self,
-        region: &[Place],
-        top: f64,
-        strengths: &LayerStrength,
-    ) -> ControlFlow<(), LayerSummary> {
-        let mut evaluated: Vec<(Place, Extremes)> = Vec::new();
-        for place in region {
-            evaluated.push((*place, self.extremes(place)?));
-        }
-        for which in Extremes::EACH {
-            for _ in 0..REFINEMENTS {
-                let value = |(place, e): &(Place, Extremes)| (*place, which(e).value);
-                let values: Vec<_> = evaluated.iter().map(value).collect();
-                let Some(place) = refined_peak(&values) else {
-                    break;
-                };
-                evaluated.push((place, self.extremes(&place)?));
-                evaluated.sort_by(|a, b| a.0.depth.total_cmp(&b.0.depth));
-            }
-        }
-        let [von_mises, tension, shear] = Extremes::EACH.map(|which| {
-            let peaks = evaluated[1..].iter().map(|(_, extremes)| which(extremes));
-            let first = which(&evaluated[0].1);
-            peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
-        });
-        let layer = region[0].layer;
-        let thickness = self.body.layers().get(layer).map(Layer::thickness);
-        let margin = |strength: Option<f64>, peak: Peak| {
-            let strength = strength.filter(|_| peak.value > 0.0);
-            strength.map(|strength| strength / peak.value)
-        };
-        ControlFlow::Continue(LayerSummary {
-            layer,
-            depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
-            yield_margin: margin(strengths.yield_stress, von_mises),
-            strength_margin: margin(strengths.strength, tension),
-            von_mises,
-            tension,
-            shear,
-        })
-    }
-
-    /// Summary of interface `number`, which is at `depth`.
-    fn interface(&mut self, number: usize, depth: f64) -> ControlFlow<(), InterfaceSummary> {
-        let on = |side: Side| place(self.body, depth, side).ok();
-        let (above, below) = (on(Side::Above), on(Side::Below));
-        // Every interface has a layer above it.
-        let Some(above) = above else {
-            return ControlFlow::Break(());
-        };
-        self.evaluate(&above)?;
-        let [mut tension, mut compression, mut shear] = [Largest::NONE; 3];
-        for cell in 0..self.fields[0].len() {
-            let Tensor { zz, yz, xz, .. } = self.tensor(cell);
-            tension.offer(zz, cell);
-            compression.offer(-zz, cell);
-            shear.offer(xz.hypot(yz), cell);
-        }
-        compression.value = -compression.value;
-        let jump = match below {
-            Some(below) => Some(self.jump(&below)?),
-            // On a rigid base there is no stress below.
-            None => None,
-        };
-        ControlFlow::Continue(InterfaceSummary {
-            interface: number,
-            depth,
-            tension: self.peak(tension, depth),
-            compression: self.peak(compression, depth),
-            shear: self.peak(shear, depth),
-            jump,
-        })
-    }
-
-    /// Largest jump of the in-plane stress from the plane evaluated last to that at `below`.
-    fn jump(&mut self, below: &Place) -> ControlFlow<(), Peak> {
-        let [above_xx, above_yy, above_xy] = [0, 1, 3].map(|k| self.fields[k].clone());
-        self.evaluate(below)?;
-        let mut largest = Largest::NONE;
-        let above = above_xx.iter().zip(&above_yy).zip(&above_xy).enumerate();
-        for (cell, ((above_xx, above_yy), above_xy)) in above {
-            let below = self.tensor(cell);
-            let (xx, yy, xy) = (
-                below.xx - above_xx,
-                below.yy - above_yy,
-                below.xy - above_xy,
-            );
-            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-            largest.offer(mean.abs() + half.hypot(xy), cell);
-        }
-        ControlFlow::Continue(self.peak(largest, below.depth))
-    }
+/// Summary of interface `number`, which is at `depth`; none if no layer ends there.
+fn interface(
+    planes: &mut Planes,
+    body: &HalfSpace,
+    number: usize,
+    depth: f64,
+) -> ControlFlow<(), Option<InterfaceSummary>> {
+    let Ok(above) = place(body, depth, Side::Above) else {
+        return ControlFlow::Continue(None);
+    };
+    let Tractions {
+        tension,
+        compression,
+        shear,
+    } = planes.tractions(&above)?;
+    let jump = match place(body, depth, Side::Below) {
+        Ok(below) => Some(planes.jump(&below)?),
+        // On a rigid base there is no stress below.
+        Err(_) => None,
+    };
+    ControlFlow::Continue(Some(InterfaceSummary {
+        interface: number,
+        depth,
+        tension,
+        compression,
+        shear,
+        jump,
+    }))
 }

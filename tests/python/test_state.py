@@ -142,13 +142,13 @@ WRONG_INSIDE: dict[str, Callable[[dict[str, Any]], object]] = {
     r"Elastic: the key 'hue' is unknown": lambda s: s["report"]["body"]["HalfSpace"]["substrate"][
         "Elastic"
     ].update(hue=1),
-    r'the key "body" holds what is not its value': lambda s: s["report"].update(body={"Ball": {}}),
-    r'the key "grid" holds what is not its value': lambda s: s["report"].update(grid="rigid"),
+    r'the value of the key "body" does not fit': lambda s: s["report"].update(body={"Ball": {}}),
+    r'the value of the key "grid" does not fit': lambda s: s["report"].update(grid="rigid"),
     r'termination must be "converged", "iteration limit" or "stopped", got "bored"': lambda s: s[
         "report"
     ].update(termination="bored"),
-    r'"pressure" holds an array of the wrong number of dimensions: shape \[3\]': lambda s: s.update(
-        pressure=np.zeros(3)
+    r'the array of the key "pressure" has the wrong number of dimensions: shape \[3\]': lambda s: (
+        s.update(pressure=np.zeros(3))
     ),
     r"gap: expected shape \[24, 20\], got \[3, 3\]|gap: expected shape": lambda s: s.update(
         gap=np.zeros((3, 3))

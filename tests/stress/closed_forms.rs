@@ -1,6 +1,6 @@
-//! Stress in a bare half-space against closed forms: a uniformly loaded rectangle, Hertz contacts,
-//! sliding line contact, all of pressure that is uniform over cells; equilibrium and Hooke's law on a
-//! coated one.
+//! Stress in a bare half-space, under pressure that is uniform over cells, against closed forms: a
+//! uniformly loaded rectangle, Hertz contacts, sliding line contact. On a coated one, equilibrium
+//! and Hooke's law.
 
 use std::f64::consts::PI;
 
@@ -14,8 +14,9 @@ fn steel() -> Result<HalfSpace> {
     Ok(Elastic::new(1.0, NU)?.into())
 }
 
-/// xx, yy, zz, xy, yz, xz, ux, uy, uz of a unit force into the body: Boussinesq, after Johnson,
-/// Contact Mechanics (1985), eqs (3.18), (3.19); E = 1.
+/// Stresses xx, yy, zz, xy, yz, xz and displacements ux, uy, uz of a unit force into the body, for
+/// E = 1: Boussinesq, after Johnson, Contact Mechanics (1985), eqs (3.18), (3.19),
+/// doi:10.1017/CBO9781139171731.
 fn boussinesq(x: f64, y: f64, z: f64) -> [f64; 9] {
     let r2 = x * x + y * y;
     let root = (r2 + z * z).sqrt();
@@ -41,7 +42,8 @@ fn boussinesq(x: f64, y: f64, z: f64) -> [f64; 9] {
     .map(|v| v / (2.0 * PI))
 }
 
-/// The same of a unit force along x: Cerruti, ibid., eqs (3.75), (3.76).
+/// Stresses and displacements of a unit force along x, in the order of [`boussinesq`]: Cerruti,
+/// after Johnson, eqs (3.75), (3.76).
 fn cerruti(x: f64, y: f64, z: f64) -> [f64; 9] {
     let root = (x * x + y * y + z * z).sqrt();
     let lean = root + z;
@@ -65,7 +67,7 @@ fn cerruti(x: f64, y: f64, z: f64) -> [f64; 9] {
     .map(|v| v / (2.0 * PI))
 }
 
-/// Five points of Gauss on [−1, 1].
+/// Nodes and weights of Gauss' quadrature with five points on [−1, 1].
 const GAUSS: [(f64, f64); 5] = [
     (0.0, 0.568_888_888_888_888_9),
     (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
@@ -74,8 +76,8 @@ const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// ∬ f over the rectangle around (x, y) of half sides a, b: quartered until it is twice as far off
-/// as it is wide.
+/// Integral of f over the rectangle of half sides a, b around (x, y), which is quartered until its
+/// distance is twice its width.
 fn integral(
     f: &impl Fn(f64, f64) -> [f64; 9],
     [x, y]: [f64; 2],
@@ -111,8 +113,9 @@ fn integral(
 
 const NAMES: [&str; 9] = ["xx", "yy", "zz", "xy", "yz", "xz", "ux", "uy", "uz"];
 
-/// A rectangle of whole cells. The quadrature of the point solutions keeps some 1e-7 (five points,
-/// a panel half as wide as it is far); so does the one under test, or it uses closed forms.
+/// Stress of a rectangle of whole cells against the integral of point forces. The quadrature here
+/// keeps some 1e-7 (five points, a panel half as wide as its distance); the code under test uses
+/// closed forms or keeps as much.
 #[test]
 fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
     const QUADRATURE: f64 = 3e-7;
@@ -160,7 +163,7 @@ fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
     Ok(())
 }
 
-/// Means over the cells of √(1 − r²).
+/// Mean of √(1 − r²) over each cell.
 fn hertz_pressure(grid: &Grid) -> Array2<f64> {
     const CUT: usize = 12;
     let (x, y) = (grid.x(), grid.y());
@@ -212,9 +215,9 @@ fn hertz_errors(count: usize, depth: f64) -> Result<[f64; 3]> {
     Ok(worst)
 }
 
-/// The pressure is uniform over a cell. At its edge Hertz' rises as √s: what cells miss there is of
-/// order √dx at a depth in proportion to them. Inside, they are steps of dx p', which are seen at
-/// the depth of a tenth of a cell, and are gone below one.
+/// Hertz' pressure with uniform cells. At its edge it rises as √s: cells miss a stress of order √dx
+/// there, down to a depth of some cells. Inside, cells are steps of dx p', which are seen at a
+/// tenth of a cell deep and have gone one cell deep.
 #[test]
 fn hertz_point_contact_converges() -> Result<()> {
     let (coarse, fine) = (hertz_errors(32, 1.0)?, hertz_errors(128, 1.0)?);
@@ -236,7 +239,7 @@ fn hertz_point_contact_converges() -> Result<()> {
         "{coarse:?} {fine:?}"
     );
     assert!(fine[2] < 2e-5, "{fine:?}");
-    // Ten cells down nothing but the second order is left.
+    // Ten cells deep only the error of second order is left.
     let (coarse, fine) = (hertz_errors(32, 10.0)?, hertz_errors(128, 40.0)?);
     assert!(
         fine[0] < 5e-5 && fine[0] < coarse[0] / 10.0,
@@ -245,8 +248,8 @@ fn hertz_point_contact_converges() -> Result<()> {
     Ok(())
 }
 
-/// 0.31002 p0 at 0.4809 a for ν = 0.3, and 0.30028 p0 at 0.7862 b: Johnson, Contact Mechanics,
-/// §3.4 and §4.2(c).
+/// Largest shear stress: 0.31002 p0 at 0.4809 a for ν = 0.3 below a sphere, and 0.30028 p0 at
+/// 0.7862 b below a cylinder: Johnson, §3.4 and §4.2(c).
 #[test]
 fn largest_shear_below_hertz_contacts() -> Result<()> {
     // 201 cells: second order, 1e-4; depths are sampled every 1e-3.
@@ -279,8 +282,8 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     Ok(())
 }
 
-/// Sliding along y, the surface is drawn by 2 μ p0 at the trailing edge: Johnson, §7.2. Cells next
-/// to it miss √dx.
+/// Sliding along y, the surface is in tension 2 μ p0 at the trailing edge: Johnson, §7.2. The cells
+/// next to it miss an order of √dx.
 #[test]
 fn tension_at_the_trailing_edge_of_a_sliding_line_contact() -> Result<()> {
     let error = |n: usize| -> Result<f64> {
@@ -313,8 +316,8 @@ fn gradient(field: &Array3<f64>, axis: usize, d: f64, [k, i, j]: [usize; 3]) -> 
     (field[ends[1]] - field[ends[0]]) / (2.0 * d)
 }
 
-/// ∂σ_ij/∂x_j and Hooke's law from the displacement, on a coated body that slides, in the coating
-/// and in the substrate: both of second order.
+/// Equilibrium ∂σ_ij/∂x_j = 0, and Hooke's law from the displacement, on a sliding coated body, in
+/// the coating and in the substrate. Differences err in second order.
 #[test]
 fn equilibrium_and_hookes_law_hold() -> Result<()> {
     let (hard, soft) = (Elastic::new(4.0, 0.2)?, Elastic::new(1.0, 0.35)?);
@@ -369,7 +372,7 @@ fn equilibrium_and_hookes_law_hold() -> Result<()> {
         let ratio = coarse[k] / fine[k];
         assert!((3.5..4.6).contains(&ratio), "{coarse:?} {fine:?}");
     }
-    // Of p0 and p0/a.
+    // Largest violations of equilibrium, over p0/a, and of Hooke's law, over p0.
     assert!(fine[0] < 1e-2 && fine[1] < 1e-2, "{fine:?}");
     Ok(())
 }

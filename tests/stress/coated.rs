@@ -18,7 +18,7 @@ fn coated(ratio: f64, thickness: f64) -> Result<HalfSpace> {
     HalfSpace::new(Elastic::new(1.0, NU)?, [coating])
 }
 
-/// E* of the substrate.
+/// Plane strain modulus E* of the substrate.
 fn modulus() -> f64 {
     1.0 / (1.0 - NU * NU)
 }
@@ -40,7 +40,7 @@ fn on_axis(solution: &Solution, point: &Value, thickness: f64) -> Result<Stress>
     )
 }
 
-/// The largest of |field|, and where along `x` it is.
+/// Largest value of |field|, and its position along `x`.
 fn largest(field: &Array3<f64>, x: &Array1<f64>) -> (f64, f64) {
     let found = field.iter().zip(x).fold((0.0_f64, 0.0), |best, (v, x)| {
         if v.abs() > best.0 {
@@ -52,7 +52,7 @@ fn largest(field: &Array3<f64>, x: &Array1<f64>) -> (f64, f64) {
     (found.0, found.1.abs())
 }
 
-/// At `at`, by interpolation of fourth order.
+/// Value of a field at `at`, by interpolation of fourth order.
 fn at(field: &Array3<f64>, x: &Array1<f64>, at: f64) -> f64 {
     let values: Vec<f64> = field.iter().copied().collect();
     let position = (at - x[0]) / (x[1] - x[0]);
@@ -69,7 +69,8 @@ fn at(field: &Array3<f64>, x: &Array1<f64>, at: f64) -> f64 {
         .sum()
 }
 
-/// At `edge`, by the cubic through the four cells beyond it, where the field is smooth.
+/// Value of a field at `edge`, by the cubic through the four cells beyond it, where the field is
+/// smooth.
 fn outside(field: &Array3<f64>, x: &Array1<f64>, edge: f64) -> f64 {
     let first = x.iter().position(|x| *x > edge).unwrap_or(0);
     let places = x.iter().skip(first).take(4).copied().collect();
@@ -77,8 +78,8 @@ fn outside(field: &Array3<f64>, x: &Array1<f64>, edge: f64) -> f64 {
     at(&values, &places, edge)
 }
 
-/// Errors of one case of the sphere on a square of n cells: axis, interface shear and its place,
-/// surface tension beyond 1.05 a, and the cusp at a.
+/// Errors of one case of the sphere on a square of n cells: stress on the axis, interface shear and
+/// its place, surface tension beyond 1.05 a, and the cusp at a.
 fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
     let thickness = number(case, "h_over_aH");
     let a = number(case, "a_over_aH");
@@ -128,10 +129,10 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
     Ok(errors)
 }
 
-/// On 65 and 257 cells over 3.4 contact radii. Inside, errors are of second order in the cell. The
-/// tension has a cusp at the edge of the contact, and is wrong there by where the edge is taken to
-/// be: by some thousandths of a cell, or 1e-4 of the peak pressure. Beside a coating of four times
-/// the modulus that is half a per cent of the tension.
+/// A sphere on a coating, on 65 and 257 cells over 3.4 contact radii. Inside, errors are of second
+/// order in the cell. The tension has a cusp at the edge of the contact; it errs there by the place
+/// of the edge, some thousandths of a cell, or 1e-4 of the peak pressure. On a coating of four
+/// times the substrate's modulus that is half a per cent of the tension.
 #[test]
 fn sphere_on_a_coating() -> Result<()> {
     for case in cases("stress_sphere.json") {

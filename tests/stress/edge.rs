@@ -19,7 +19,7 @@ fn steel() -> Result<Elastic> {
 }
 
 fn press(grid: Grid, shape: &dyn Surface, load: f64) -> Result<Solution> {
-    let contact = Contact::plan(&steel()?, grid, Setup::default())?;
+    let contact = Contact::plan(steel()?, grid, Setup::default())?;
     contact.solve(shape, &Motion::load(load), &Options::default())
 }
 
@@ -32,7 +32,7 @@ fn sphere(count: usize) -> Result<(Solution, f64)> {
     Ok((press(grid, &shape, load)?, 1.5 * load / PI))
 }
 
-/// The same of half-width 1 in line contact.
+/// Hertz' line contact of half-width 1 on strips of 1/`count`, and its peak pressure.
 fn cylinder(count: usize) -> Result<(Solution, f64)> {
     let n = (count * 5 / 2) | 1;
     let grid = Grid::line(n, n as f64 / count as f64)?;
@@ -60,7 +60,7 @@ fn errors(field: &Stress, peak: f64, cell: f64, exact: impl Fn(f64, f64) -> [f64
     worst
 }
 
-/// Below a sphere, at a depth in cells.
+/// Largest errors below a sphere, at a depth in cells.
 fn sphere_errors(count: usize, depth: f64) -> Result<[f64; 2]> {
     let (solution, peak) = sphere(count)?;
     let cell = 1.0 / count as f64;
@@ -69,8 +69,8 @@ fn sphere_errors(count: usize, depth: f64) -> Result<[f64; 2]> {
     Ok(errors(&field, peak, cell, |x, y| huber(NU, x, y, z)))
 }
 
-/// xx, yy, zz, xy, yz, xz below a cylinder: McEwen (1949), after Johnson, Contact Mechanics,
-/// eqs (4.49).
+/// Stresses xx, yy, zz, xy, yz, xz below a cylinder: McEwen (1949), after Johnson, Contact
+/// Mechanics, eqs (4.49), doi:10.1017/CBO9781139171731.
 fn mcewen(y: f64, z: f64) -> [f64; 6] {
     let s = 1.0 - y * y + z * z;
     let root = (s * s + 4.0 * y * y * z * z).sqrt();
@@ -83,14 +83,14 @@ fn mcewen(y: f64, z: f64) -> [f64; 6] {
     [NU * (yy + zz), yy, zz, 0.0, yz, 0.0]
 }
 
-/// Cells do not see the staircase of the solver's contact: they keep what it is wrong by in the
-/// place of the edge, of which pressure has the root. Uniform over cells it misses 4e-3 one cell
-/// deep, and 2.4e-3 a tenth of a cell deep farther than three cells from the edge.
+/// Below Hertz' point contact, pressure within cells hides the staircase of the solver's contact.
+/// An error in the place of the edge remains, and the pressure errs by its root. Uniform cells miss
+/// 4e-3 one cell deep, and 2.4e-3 a tenth of a cell deep farther than three cells from the edge.
 ///
-/// Measured: 7.1e-4 one cell deep, less below; at 0.1 of a cell 1.2e-3, and 3.3e-4 farther off. Bars
-/// are 1.4 to 1.7 times that. The edge is missed by some thousandths of a cell, which pressure feels
-/// by the root of the cell: from 32 cells to 128 errors should halve at least. They fall to 0.34 and
-/// 0.46; the bar is a half and a fifth of it.
+/// Measured: 7.1e-4 one cell deep, less below; at 0.1 of a cell 1.2e-3, and 3.3e-4 farther off.
+/// Bars are 1.4 to 1.7 times that. The place of the edge errs by some thousandths of a cell: from
+/// 32 cells to 128 errors should halve at least, as the root of the cell. They fall to 0.34 and
+/// 0.46; the bar is 0.6.
 #[test]
 fn hertz_point_contact() -> Result<()> {
     const BAR: f64 = 1e-3;
@@ -110,9 +110,10 @@ fn hertz_point_contact() -> Result<()> {
     Ok(())
 }
 
-/// There is no staircase along a line: its edge is known better. Measured at 0.1, 1 and 3 cells:
-/// 5.0e-4, 4.0e-4 and 5.4e-5 everywhere, 1.1e-4, 2.3e-5 and 2.3e-5 farther from the edge; bars are 1.2
-/// to 1.8 times that. Errors go as the root of the cell (above): to 0.51 to 0.53, the bar as above.
+/// Below a line contact there is no staircase, and the edge is known better. Measured at 0.1, 1 and
+/// 3 cells: 5.0e-4, 4.0e-4 and 5.4e-5 everywhere, 1.1e-4, 2.3e-5 and 2.3e-5 farther from the edge;
+/// bars are 1.2 to 1.8 times that. Errors fall as the root of the cell, to 0.51 to 0.53 from 32
+/// cells to 128; the bar is 0.6.
 #[test]
 fn hertz_line_contact() -> Result<()> {
     let errors = |count: usize, depth: f64| -> Result<[f64; 2]> {
@@ -133,9 +134,9 @@ fn hertz_line_contact() -> Result<()> {
     Ok(())
 }
 
-/// Sliding along y, the surface is pressed by 2 μ p0 (y − √(y² − 1)) more at its leading side, and
-/// drawn by as much at the trailing one: Johnson, §7.2. An edge that is e cells off is drawn by
-/// 2 μ p0 √(2 e dx) less or more: 1e-2 where it is a hundredth of a cell. Measured: 7.2e-3.
+/// Sliding along y, σ_yy at the surface is −2 μ p0 (y − √(y² − 1)) from friction, compression at
+/// the leading side and tension at the trailing one: Johnson, §7.2. An edge that errs by e cells
+/// changes it by 2 μ p0 √(2 e dx): 1e-2 for a hundredth of a cell. Measured: 7.2e-3.
 #[test]
 fn surface_of_a_sliding_cylinder() -> Result<()> {
     const FRICTION: f64 = 0.4;
@@ -157,10 +158,10 @@ fn surface_of_a_sliding_cylinder() -> Result<()> {
     Ok(())
 }
 
-/// Behind a sliding sphere, (1 − 2ν)/3 + μ π (4 + ν)/8 of p0: Hamilton, Proc. Instn Mech. Engrs
-/// 197C (1983) 53. A cell's centre lies at the very edge. Measured: 7e-3 less, of which the place of
-/// the edge explains the order, as below the cylinder; the bar is 1.4 times that. The place is that
-/// of the cell at the edge, or of the one beside it.
+/// Behind a sliding sphere the tension is (1 − 2ν)/3 + μ π (4 + ν)/8 of p0: Hamilton, Proc. Instn
+/// Mech. Engrs 197C (1983) 53, doi:10.1243/PIME_PROC_1983_197_076_02. A cell's centre lies at the
+/// very edge. Measured: 7e-3 less, which the place of the edge explains, as below the cylinder; the
+/// bar is 1.4 times that. The tension is found in the cell at the edge, or in the one beside it.
 #[test]
 fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     const FRICTION: f64 = 0.5;
@@ -169,9 +170,9 @@ fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
         friction: FRICTION,
         ..StressOptions::default()
     };
-    let mut go_on = |_| std::ops::ControlFlow::Continue(());
-    let limits = nacre::stress::Strengths::default();
-    let summary = solution.stress_summary(Member::Body, &limits, &options, &mut go_on)?;
+    let mut progress = |_| std::ops::ControlFlow::Continue(());
+    let strengths = nacre::stress::Strengths::default();
+    let summary = solution.stress_summary(Member::Body, &strengths, &options, &mut progress)?;
     let tension = summary.layers[0].tension;
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;
     assert!((tension.value / peak / exact - 1.0).abs() < 1e-2);
@@ -180,10 +181,11 @@ fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     Ok(())
 }
 
-/// The traction at the surface is the solution's, and displacements are those of its cells.
+/// Tractions at the surface are those of the solution's pressure, and displacements those of its
+/// cells.
 #[test]
 fn surface_keeps_the_pressure_and_displacement_of_the_solution() -> Result<()> {
-    // Influence coefficients keep 1e-9, those of stress 1e-9 of the largest.
+    // Influence coefficients keep 1e-9, and those of stress 1e-9 of the largest.
     const COEFFICIENTS: f64 = 3e-9;
     let (solution, _) = sphere(32)?;
     let options = StressOptions {
@@ -247,8 +249,8 @@ impl Surface for Rough {
     }
 }
 
-/// Root of the mean square error over the peak pressure, against cells of a third, of stresses of
-/// uniform cells and of the solution.
+/// Root of the mean square error over the peak pressure, against cells a third as long: of stresses
+/// with uniform cells, and of the solution's.
 fn against_finer(coarse: Grid, shape: &dyn Surface, load: f64, depth: f64) -> Result<[f64; 2]> {
     let fine = Grid::new(coarse.shape().map(|n| 3 * n), coarse.size())?;
     let (coarse, fine) = (press(coarse, shape, load)?, press(fine, shape, load)?);
@@ -275,8 +277,8 @@ fn against_finer(coarse: Grid, shape: &dyn Surface, load: f64, depth: f64) -> Re
     Ok([error(&uniform), error(&solved)])
 }
 
-/// An elliptical contact of oblong cells, 36 and 17 to its half-widths. Measured: 0.26, 0.06, 0.15 and
-/// 0.34 of the errors of uniform cells; the bar is 1.2 times the largest.
+/// An elliptical contact of oblong cells, 36 and 17 to its half-widths. Measured: 0.26, 0.06, 0.15
+/// and 0.34 of the errors with uniform cells; the bar is 1.2 times the largest.
 #[test]
 fn smooth_contacts_gain() -> Result<()> {
     let grid = Grid::new([96, 64], [5.0, 2.6])?;
@@ -291,10 +293,10 @@ fn smooth_contacts_gain() -> Result<()> {
     Ok(())
 }
 
-/// What pressure within cells adds is the same of cells that are 12 times as long as wide and of
-/// 4 times: three of these make one of those, and along them nothing changes. The pressure at the
-/// edge is the root of its place, which either knows within a hundredth of a cell: √(2 · 0.01 · 0.04)
-/// of the peak, over a half-width of 0.7.
+/// Cells 12 times as long as wide and 4 times as long as wide give the same stress from pressure
+/// within cells: three short ones make a long one, and along them nothing changes. Either knows the
+/// edge within a hundredth of a cell, and pressure there errs by the root of that: √(2 · 0.01 ·
+/// 0.04) of the peak, over a half-width of 0.7.
 #[test]
 fn long_cells_are_evaluated() -> Result<()> {
     let coating = nacre::Layer::new(Elastic::new(3.0, NU)?, 0.4)?;
@@ -328,9 +330,9 @@ fn long_cells_are_evaluated() -> Result<()> {
     Ok(())
 }
 
-/// Where the edge is sharp, or the contact rough, edges stay as they were. Slopes inside end there,
-/// and with them their shares, each 1/24 of what pressure changes by from cell to cell: 1e-4 of the
-/// peak is their mean.
+/// Sharp and rough contacts keep uniform cells near their edges. Slopes of the interior end there,
+/// and with them their shares, each 1/24 of the change of pressure from cell to cell: 1e-4 of the
+/// peak on average.
 #[test]
 fn sharp_and_rough_contacts_do_not_lose() -> Result<()> {
     const SHARES: f64 = 1e-4;

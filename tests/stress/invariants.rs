@@ -1,5 +1,5 @@
-//! What stress fields must satisfy whatever the body: independence of cells, domain and artificial
-//! interfaces, surface conditions, continuity.
+//! Properties of every stress field: independence of cells, domain and artificial interfaces;
+//! surface conditions; continuity.
 
 use nacre::{
     Elastic, Grid, HalfSpace, Interface, Layer, Result, Side, Stress, StressOptions, Substrate,
@@ -11,7 +11,8 @@ fn layer(young: f64, poisson: f64, thickness: f64) -> Result<Layer> {
     Layer::new(Elastic::new(young, poisson)?, thickness)
 }
 
-/// Hard, soft, thin, many layers, incompressible, rigid base: lengths in cells of the grids here.
+/// Bodies with hard, soft, thin and many layers, incompressible layers, a rigid base: lengths in
+/// cells of the grids here.
 fn bodies() -> Result<Vec<(&'static str, HalfSpace)>> {
     let base = Elastic::new(1.0, 0.3)?;
     Ok(vec![
@@ -79,7 +80,7 @@ fn options(friction: f64) -> StressOptions {
     }
 }
 
-/// Depths, in cells, of which those in a body's interior count.
+/// Depths in cells; a body uses those that lie in its interior.
 fn depths(body: &HalfSpace) -> Vec<f64> {
     let end = match (body.substrate(), body.interfaces().last()) {
         (Substrate::Rigid, Some(end)) => *end,
@@ -101,7 +102,7 @@ fn all(field: &Stress) -> Vec<&Array3<f64>> {
 
 const NAMES: [&str; 9] = ["xx", "yy", "zz", "xy", "yz", "xz", "ux", "uy", "uz"];
 
-/// The largest difference of each component; displacements over the largest of them.
+/// Largest difference of each component; that of displacements over the largest displacement.
 fn differences(one: &Stress, other: &Stress) -> Vec<f64> {
     let largest = |field: &Array3<f64>| field.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let pairs = all(one).into_iter().zip(all(other)).enumerate();
@@ -134,10 +135,9 @@ fn picked(field: &Stress, shape: [usize; 2], first: [usize; 2], step: [usize; 2]
     picked
 }
 
-/// A cell that is cut into 3 × 5 carries the same load. Next to a cell a closed form is used, and
-/// a sum over its corners; farther off, quadrature over tables, and differences: each here meets
-/// the others. The rules of the quadrature are chosen for errors of 1e-9; the worst are 2e-9, below
-/// three thin layers, and 6e-9 of the displacement of one that slips.
+/// A cell that is cut into 3 × 5 carries the same load. Next to a cell a closed form and a sum over
+/// its corners are used; farther off, quadrature over tables, and differences. The quadrature is chosen
+/// for errors of 1e-9; the worst are 2e-9, below three thin layers, and 6e-9 where a layer slips.
 #[test]
 fn the_cut_into_cells_does_not_matter() -> Result<()> {
     const QUADRATURE: f64 = 1e-8;
@@ -158,7 +158,8 @@ fn the_cut_into_cells_does_not_matter() -> Result<()> {
     Ok(())
 }
 
-/// Far cells by differences of the values at centres: a strip of cells so long that most are far.
+/// Far cells are summed by differences of the kernel's values at centres: here in a strip of cells
+/// so long that most are far.
 #[test]
 fn the_cut_into_cells_does_not_matter_far_off() -> Result<()> {
     const DIFFERENCES: f64 = 2e-8;
@@ -179,7 +180,7 @@ fn the_cut_into_cells_does_not_matter_far_off() -> Result<()> {
     Ok(())
 }
 
-/// 1e-12 is rounding, over 360 cells.
+/// Rounding of a sum over 360 cells.
 const ROUNDING: f64 = 1e-12;
 
 #[test]
@@ -198,11 +199,11 @@ fn surface_tractions_are_those_that_are_given() -> Result<()> {
     Ok(())
 }
 
-/// Across bonded interfaces tractions and displacements, across slipping ones the normal ones of
-/// both; and there is no shear there, nor any displacement on a rigid base.
+/// Tractions and displacements are continuous across bonded interfaces, and their normal components
+/// across slipping ones, which bear no shear. On a rigid base displacements vanish.
 #[test]
 fn tractions_and_displacements_are_continuous() -> Result<()> {
-    // Displacements, over the largest: series of 1e-13 each.
+    // Displacements, over the largest: each is a series that keeps 1e-13.
     const SERIES: f64 = 1e-11;
     let grid = Grid::new([24, 15], [24.0, 9.0])?;
     let pressure = crate::support::random::uniform([24, 15], 3);
@@ -251,7 +252,7 @@ fn tractions_and_displacements_are_continuous() -> Result<()> {
     Ok(())
 }
 
-/// There are no periodic images.
+/// A larger domain changes nothing: there are no periodic images.
 #[test]
 fn a_larger_domain_changes_nothing() -> Result<()> {
     let (small, large) = (
@@ -292,8 +293,7 @@ fn layers_of_the_substrates_material_change_nothing() -> Result<()> {
     Ok(())
 }
 
-/// A layer that is split: deeper layers are reached through more of them. The response of either
-/// body keeps 1e-14, its transforms 1e-12 of the pressure.
+/// Splitting a layer changes nothing: responses keep 1e-14, their transforms 1e-12 of the pressure.
 #[test]
 fn splitting_a_layer_changes_nothing() -> Result<()> {
     const SERIES: f64 = 1e-10;
@@ -317,9 +317,8 @@ fn splitting_a_layer_changes_nothing() -> Result<()> {
     Ok(())
 }
 
-/// What is found on an endless strip is what the plane strain of line contact gives: a rectangle
-/// of half length 41 000, seen at its middle, misses the tails of kernels that fall off as 1/2πr²:
-/// width/(π · half length), and of a stretched layer as many times that as it is stiffer.
+/// A rectangle of half length 41000 is a line contact at its middle, but for the tails of kernels that
+/// fall off as 1/2πr²: width/(π · half length), times the ratio of stiffness on a stretched layer.
 #[test]
 fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
     const ENDS: f64 = 9.4e-5;
@@ -335,7 +334,7 @@ fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
         let other = picked(&other, [1, m], [n / 2, 0], [1, 1]);
         let stiffest = body.layers().iter().map(|layer| layer.material().young());
         let ends = ENDS * stiffest.fold(1.0, f64::max);
-        // Displacements differ by their datum.
+        // Displacements differ by a constant, their datum.
         for (error, component) in differences(&one, &other).into_iter().zip(&NAMES[..6]) {
             assert!(error < ends, "{name} {component}: {error:.1e}");
         }
@@ -343,7 +342,7 @@ fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
     Ok(())
 }
 
-/// x and y exchanged, and z kept.
+/// A field with x and y exchanged, and z kept.
 #[test]
 fn axes_can_be_exchanged() -> Result<()> {
     const EXCHANGED: [usize; 9] = [1, 0, 2, 3, 5, 4, 7, 6, 8];
@@ -366,14 +365,13 @@ fn axes_can_be_exchanged() -> Result<()> {
         let error = (all(&one)[k] - &back)
             .iter()
             .fold(0.0_f64, |m, v| m.max(v.abs()));
-        // Displacements are of the order of ten.
+        // Displacements are some ten in size.
         assert!(error < 20.0 * ROUNDING, "{}: {error:.1e}", NAMES[k]);
     }
     Ok(())
 }
 
-/// Where nothing presses there is nothing, and next to a single loaded cell there is no more than it
-/// carries.
+/// No pressure gives no stress, and beside a loaded cell the stress is no more than its pressure.
 #[test]
 fn nothing_and_one_cell_loaded() -> Result<()> {
     let planes = Grid::new([9, 6], [9.0, 6.0])?;

@@ -6,7 +6,8 @@ use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Side, Stress, StressOptions
 use ndarray::Array2;
 use serde_json::Value;
 
-/// The reference's traction acts alone: that of friction 1, less the pressure's.
+/// Components under traction alone, as in the reference: those at friction 1 less those of the
+/// pressure.
 fn field(case: &Value, friction: f64) -> Result<Stress> {
     let layers = list(case, "layers");
     let material = |layer: &Value| {
@@ -20,8 +21,8 @@ fn field(case: &Value, friction: f64) -> Result<Stress> {
         .map(|layer| Layer::new(material(layer)?, layer[0].as_f64().unwrap_or(f64::NAN)))
         .collect::<Result<Vec<_>>>()?;
     let body = HalfSpace::new(material(&layers[layers.len() - 1])?, coatings)?;
-    // The centres of the cells are at odd multiples of 1/40; the square's edges at ±0.5. Its points
-    // are cell centres of the grid that is moved by half a cell.
+    // Cell centres are at odd multiples of 1/40, and the square's edges at ±0.5. The reference's
+    // points are cell centres of the grid that is shifted by half a cell.
     let n = 96;
     let grid = Grid::new([n, n], [n as f64 / 20.0; 2])?;
     let (x, y) = (grid.x(), grid.y());
@@ -47,7 +48,7 @@ fn field(case: &Value, friction: f64) -> Result<Stress> {
     stress(&body, &grid, &pressure, &[number(case, "z")], &options)
 }
 
-/// At (x, y) on a corner of cells, by interpolation of sixth order along both directions.
+/// Value at (x, y), a corner of cells, by interpolation of sixth order along both directions.
 fn at(field: &Stress, k: usize, [x, y]: [f64; 2]) -> f64 {
     const WEIGHTS: [f64; 6] = [
         3.0 / 256.0,
@@ -79,8 +80,8 @@ fn at(field: &Stress, k: usize, [x, y]: [f64; 2]) -> f64 {
 
 const NAMES: [&str; 9] = ["sxx", "syy", "szz", "sxy", "syz", "sxz", "ux", "uy", "uz"];
 
-/// Of the pressure. The worst is 5e-7, of the interpolation of sixth order over cells of 1/20, half a
-/// side of the square below the surface.
+/// Largest error over the pressure. The worst is 5e-7, from the interpolation of sixth order over
+/// cells of 1/20, half a side of the square below the surface.
 const TOLERANCE: f64 = 1e-6;
 
 #[test]

@@ -1,4 +1,4 @@
-//! Stress is the same to the bits for any number of threads, and stops where it is told to.
+//! Stress has the same bits for any number of threads, and stops when it is told to.
 
 use std::ops::ControlFlow;
 
@@ -8,8 +8,8 @@ use nacre::{
     Solution, Stress, StressOptions, stress,
 };
 
-/// Of a coated body, on more than the 181² cells from which threads share the work; the edge is
-/// known, as the contact is smooth.
+/// A smooth contact of a coated body, on more than the 181² cells from which on threads share the
+/// work.
 fn solution() -> Result<Solution> {
     let coating = Layer::new(Elastic::new(4.0, 0.25)?, 0.2)?;
     let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coating])?;
@@ -34,8 +34,8 @@ fn bits(field: &Stress) -> Vec<u64> {
     fields.flatten().map(|value| value.to_bits()).collect()
 }
 
-/// At the surface and at a tenth of a cell what is within cells is felt, at the interface and in the
-/// substrate it is not.
+/// Pressure within cells is felt at the surface and at a tenth of a cell, not at the interface and
+/// in the substrate.
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() -> Result<()> {
     const DEPTHS: [f64; 4] = [0.0, 0.002, 0.2, 0.7];
@@ -53,16 +53,16 @@ fn bits_do_not_depend_on_the_number_of_threads() -> Result<()> {
     for threads in [2, 5] {
         let [uniform, solved] = both(threads)?;
         assert!(uniform == one[0], "{threads} threads");
-        assert!(solved == one[1], "of the solution, {threads} threads");
+        assert!(solved == one[1], "solution, {threads} threads");
     }
     Ok(())
 }
 
-/// While the edge is looked for, progress is asked too: its break leaves no depth.
+/// Planning asks progress too, and its break leaves no depth.
 #[test]
-fn looking_for_the_edge_stops_when_told() -> Result<()> {
+fn planning_for_one_call_stops_when_told() -> Result<()> {
     let solution = solution()?;
-    let (options, limits) = (options(2), Strengths::default());
+    let (options, strengths) = (options(2), Strengths::default());
     for last in 1..=3 {
         let mut calls = 0;
         let mut stop = |part: f64| {
@@ -84,7 +84,7 @@ fn looking_for_the_edge_stops_when_told() -> Result<()> {
                 _ => ControlFlow::Break(()),
             }
         };
-        let summary = solution.stress_summary(Member::Body, &limits, &options, &mut stop)?;
+        let summary = solution.stress_summary(Member::Body, &strengths, &options, &mut stop)?;
         assert!(!summary.finished && summary.layers.is_empty());
         assert_eq!(calls, last);
     }

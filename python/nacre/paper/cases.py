@@ -135,7 +135,7 @@ class Result:
     def profile(self, axis: Literal["x", "y"]) -> tuple[Array, Array]:
         """Return coordinates [m] and pressures [Pa] of the line of cells along `axis`.
 
-        Of the lines of cell centres it is that nearest to the origin.
+        The line is the one whose cell centres are nearest to the origin.
         """
         x, y, pressure = self.solution.x, self.solution.y, self.solution.pressure
         if axis == "x":

@@ -64,9 +64,9 @@ impl Cuts {
     /// Side of the smallest pieces, in cells.
     pub(super) const SMALLEST: f64 = 1.0 / 135.0;
 
-    /// Cuts of cells, or of strips along x if `line`. A cell's own cut is 5 × 5, of which the inner
-    /// 3 × 3 are cut by three in each direction, three times over towards the centre; its neighbours'
-    /// is 5 × 5, that of cells farther off 3 × 3.
+    /// Cuts of cells, or of strips along x if `line`. A cell's own cut is 5 × 5, and its inner 3 × 3
+    /// are cut by three in each direction, three times over towards the centre. The cut seen from the
+    /// cells next to it is 5 × 5, the one seen from farther off 3 × 3.
     pub(super) fn new(line: bool) -> Self {
         let mut own = Vec::new();
         grade(pieces(Piece::CELL, 5, line), 0.2, 3, line, &mut own);

@@ -78,7 +78,7 @@ fn fewest_values(terms: usize, line: bool) -> usize {
 }
 
 /// Whether there may be values enough around a cell for a polynomial of second degree. They are
-/// counted in a square, of which the fit uses a circle: counting is far cheaper than summing.
+/// counted in a square, and the fit uses a circle within it: counting is far cheaper than summing.
 pub(super) fn may_be_fitted(values: &[Option<f64>], shape: [usize; 2], cell: [usize; 2]) -> bool {
     let line = shape[0] == 1;
     let terms = if line { 3 } else { 6 };

@@ -1,7 +1,6 @@
 //! Depths at which a summary looks for the extremes of the stress.
 
 use crate::body::{HalfSpace, Substrate};
-use crate::grid::Grid;
 use crate::response::interior::Place;
 
 /// Depths below the top of a layer, in half-widths of the contact. Chosen by trial: dense where the
@@ -15,20 +14,6 @@ const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
 /// Depth, in a layer's thickness, below which its bottom face stands for the depths of [`DEPTHS`].
 const BOTTOM: f64 = 0.999;
-
-/// Half the width of the loaded cells along their shorter side; of the whole grid if nothing is loaded.
-/// `loaded` holds the first and last row, and the first and last column.
-pub(super) fn half_width(grid: &Grid, loaded: Option<[[usize; 2]; 2]>) -> f64 {
-    let width = |axis: usize| {
-        let cells = loaded.map_or(grid.shape()[axis], |ends| ends[axis][1] - ends[axis][0] + 1);
-        0.5 * cells as f64 * grid.spacing()[axis]
-    };
-    if grid.is_line() {
-        width(1)
-    } else {
-        width(0).min(width(1))
-    }
-}
 
 /// Places in each layer and in the substrate, from the surface down.
 pub(super) fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
