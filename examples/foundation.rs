@@ -42,7 +42,7 @@ impl Response for Winkler {
     }
 }
 
-/// The same springs, joined by a layer that resists shear over the length ℓ \[m\].
+/// Springs joined by a layer that resists shear over the length ℓ \[m\].
 #[derive(Debug)]
 struct Pasternak {
     length: f64,

@@ -172,7 +172,9 @@ fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
     };
     check([(
         solved(&punch.shifted(-4e-3, 0.0)?, &beside),
-        "moment must be one that a pressure on the cells that can touch can have",
+        "no pressure p >= 0 on the cells that can touch has this moment: moment (1.000000e0, 0.000000e0), \
+         cells in x [-0.0075, -0.0005], y [-0.0035000000000000005, 0.0035000000000000005]; a moment has the \
+         direction of the point where the force acts",
     )]);
     check([(
         solved(&punch.shifted(1.0, 0.0)?, &Motion::load(1.0)),
