@@ -19,8 +19,8 @@ use crate::fft::fourier_coefficients;
 /// Number of terms of the power series of a transform at small distances.
 const MOMENTS: usize = 8;
 
-/// Distance, in depths, below which the power series is used: its first term that is left out is
-/// 0.2^16 of the first one, times a binomial coefficient.
+/// Distance, in depths, below which the power series is used: the first term that is left out
+/// is 0.2^16 = 7e-12 of the first one, times a binomial coefficient.
 const POWER_SERIES_REACH: f64 = 0.2;
 
 /// N transforms at once.

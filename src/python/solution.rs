@@ -15,7 +15,7 @@ use super::arguments::{count, read_only};
 use super::background::{self, Caller};
 use super::bodies::PyHalfSpace;
 use super::errors::{ConvergenceError, NacreWarning};
-use super::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
+use super::state::{self, Reduced, from_dict_docs, to_dict_docs};
 use super::stress::keywords::{
     options, progress_docs, run_signature, section, section_docs, section_signature, strength_docs,
     strength_signature, strengths, threads_docs, traction_docs, traction_signature, watched,
@@ -26,6 +26,7 @@ use crate::contact::{Report, Solution, Termination};
 use crate::error::Error;
 use crate::stress::Member;
 
+mod named;
 mod report;
 
 pub(super) use report::PyReport;
@@ -662,31 +663,6 @@ impl PySolution {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         state::reduce(py, self)
-    }
-}
-
-impl State for PySolution {
-    const KIND: &'static str = "Solution";
-
-    fn write(&self, fields: &Fields) -> PyResult<()> {
-        let solution = &self.solution;
-        fields.set_array("pressure", &solution.pressure)?;
-        fields.set_array("gap", &solution.gap())?;
-        fields.set_array("displacement", &solution.displacement)?;
-        fields.set("approach", solution.approach)?;
-        fields.set("tilt", solution.tilt)?;
-        fields.set_fields("report", |report| self.report().write(report))
-    }
-
-    fn read(fields: &Fields) -> PyResult<Self> {
-        let arrays = [
-            fields.get_array("pressure")?,
-            fields.get_array("gap")?,
-            fields.get_array("displacement")?,
-        ];
-        let (approach, tilt) = (fields.get("approach")?, fields.get("tilt")?);
-        let report = fields.get_fields("report")?.read(PyReport::read)?;
-        Ok(Solution::from_fields(arrays, approach, tilt, report.0)?.into())
     }
 }
 

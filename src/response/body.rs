@@ -21,9 +21,9 @@ use crate::material::Elastic;
 /// - [`normal`](Self::normal): α û_z/p̂, accurate to rounding, since the coefficients are as accurate
 ///   as it is. The factor α keeps it finite for a body that is a half-space far down.
 /// - [`asymptotes`](Self::asymptotes): its limits. The exact method takes them in closed form and
-///   transforms what is left, which must vanish for long and for short waves, about as α^{±1/2} or faster; a
-///   response that does not is refused. The remainder is sampled evenly in ln α: no
-///   more than about one change per unit of ln α keeps 1e-9.
+///   transforms what is left, which must vanish for long and for short waves, about as α^{±1/2} or
+///   faster; a response that does not is refused. What is left is sampled evenly in ln α, at up to 320
+///   points per unit; where that does not resolve a resonance, `CellInfluence::error` says so.
 /// - [`lengths`](Self::lengths): between which wavelengths (over 2π) the response leaves one limit for the
 ///   other. They tell where to look, to a factor of ten or so.
 /// - [`local`](Self::local): a part of u/p that does not depend on α (Winkler's springs, asperities).

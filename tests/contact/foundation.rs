@@ -10,7 +10,7 @@
 //!
 //! and the pressure jumps at the edge. For an endless cylinder p = k(δ − y²/2R) + G/R, w ~ e^{−y/ℓ}
 //! outside, δ = a²/2R + aℓ/R, and W = 2a [kδ − k a²/6R + G/R]. Without G, p = k(δ − r²/2R) and
-//! W = πkRδ².
+//! W = πkRδ². Derived here; the foundations are described by Kerr, J. Appl. Mech. 31 (1964) 491.
 
 use std::f64::consts::PI;
 
