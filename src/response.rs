@@ -15,67 +15,17 @@
 
 use crate::body::{HalfSpace, Interface, Substrate};
 use crate::error::{Result, positive};
-use crate::material::Elastic;
 
 mod body;
+mod compliance;
 pub(crate) mod interior;
 mod layer;
 
 pub use body::{Body, Response};
 pub(crate) use body::{check, size};
+pub use compliance::Compliance;
 
 use layer::Slab;
-
-/// Surface compliance at one wavenumber: [`c11`](Self::c11), [`c12`](Self::c12),
-/// [`c22`](Self::c22), [`ct`](Self::ct), as in the module's formula.
-///
-/// In \[m/Pa\] when returned by [`surface_compliance`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compliance {
-    /// Normal displacement under pressure.
-    pub c11: f64,
-    /// Lateral displacement under pressure, and normal displacement under lateral traction.
-    pub c12: f64,
-    /// Lateral displacement under traction along the wave vector.
-    pub c22: f64,
-    /// Displacement under traction across the wave vector.
-    pub ct: f64,
-}
-
-impl Compliance {
-    /// Compliance of a rigid base.
-    const RIGID: Self = Self {
-        c11: 0.0,
-        c12: 0.0,
-        c22: 0.0,
-        ct: 0.0,
-    };
-
-    /// α times the compliance of a homogeneous half-space \[1/Pa\], the same at every α.
-    ///
-    /// ```text
-    /// α c11 = α c22 = (1 − ν)/G     α c12 = (1 − 2ν)/2G     α ct = 1/G
-    /// ```
-    pub fn homogeneous(material: Elastic) -> Self {
-        let (g, nu) = (material.shear(), material.poisson());
-        let c11 = (1.0 - nu) / g;
-        Self {
-            c11,
-            c12: (1.0 - 2.0 * nu) / (2.0 * g),
-            c22: c11,
-            ct: 1.0 / g,
-        }
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        Self {
-            c11: self.c11 * factor,
-            c12: self.c12 * factor,
-            c22: self.c22 * factor,
-            ct: self.ct * factor,
-        }
-    }
-}
 
 /// Normal displacement per pressure, û_z/p̂ \[m/Pa\], at `wavenumber` α > 0 \[1/m\].
 ///

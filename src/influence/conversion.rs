@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use super::Method;
+use super::method::{Method, memory};
 use crate::error::{Error, Result};
 use crate::fft::inverse_even;
 use crate::grid::Grid;
@@ -45,7 +45,7 @@ pub(super) fn coefficients(
     let half_spectrum = (mesh[1] / 2 + 1)
         .checked_mul(8 * shape[0])
         .ok_or_else(too_fine)?;
-    check_memory(shape, super::memory(grid) + half_spectrum as u64)?;
+    check_memory(shape, memory(grid) + half_spectrum as u64)?;
     let step = [
         2.0 * PI / (mesh[0] as f64 * dx),
         2.0 * PI / (mesh[1] as f64 * dy),

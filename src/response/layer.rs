@@ -1,6 +1,6 @@
 //! One layer as an element between its two faces: the step of the recursion, which is nacre's own.
 
-use super::Compliance;
+use super::compliance::Compliance;
 use crate::body::Interface;
 use crate::material::Elastic;
 
