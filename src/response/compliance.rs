@@ -5,7 +5,7 @@ use crate::material::Elastic;
 /// Surface compliance at one wavenumber: [`c11`](Self::c11), [`c12`](Self::c12),
 /// [`c22`](Self::c22), [`ct`](Self::ct), as in the formula of [`response`](crate::response).
 ///
-/// In \[m/Pa\] when returned by [`surface_compliance`].
+/// In \[m/Pa\] when returned by [`surface_compliance`](super::surface_compliance).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compliance {
     /// Normal displacement under pressure.

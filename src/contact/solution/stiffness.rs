@@ -27,7 +27,7 @@ impl Solution {
     /// dA Bᵀ K_CC⁻¹ B, where B = (1, x, y) on C. All zero where nothing touches.
     ///
     /// # Errors
-    /// Too little memory, or [`Error::NotConverged`].
+    /// Too little memory, or [`Error::NotConverged`](crate::Error::NotConverged).
     ///
     /// ```
     /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
@@ -47,7 +47,7 @@ impl Solution {
     /// `watch` breaks.
     ///
     /// # Errors
-    /// Too little memory, or [`Error::NotConverged`].
+    /// Too little memory, or [`Error::NotConverged`](crate::Error::NotConverged).
     pub fn stiffness_watched(
         &self,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
