@@ -69,7 +69,7 @@ def figures(solution: Solution) -> list[tuple[str, str]]:
 
 
 def _fallback(report: Report) -> str:
-    """Return the solver that ended the solve, where it is not the one that a cascade starts with."""
+    """Return the solver that ended the solve, where a cascade fell back to it."""
     return "" if report.solver in (None, "preconditioned") else f" by the {report.solver} solver"
 
 
