@@ -313,7 +313,8 @@ fn final_grid(solution: &Solution, extent: [Extent; 2]) -> Result<Grid> {
     let shape = std::array::from_fn(|axis| {
         let cells = (widths[axis] / finest).min((widths[axis] / (ASPECT_RATIO * finest)).max(LONG));
         let cell = widths[axis] / cells.max(ACROSS);
-        let count = ((frame[axis][1] - frame[axis][0]) / cell).ceil();
+        // Rounding must not add a cell where the frame is a whole number of them.
+        let count = ((frame[axis][1] - frame[axis][0]) / cell * (1.0 - 1e-9)).ceil();
         // Even, so that the middle of a symmetric contact lies between cells.
         2 * (0.5 * count).ceil() as usize
     });

@@ -71,7 +71,7 @@ pub(crate) struct Kernel<'a, const N: usize> {
     layered: FewPieces<N>,
     /// h_ν of the layered body far off.
     far: FewTerms<N>,
-    /// η_ν of the difference from a half-space, where there is one and cells are not small against the
+    /// η_ν of the difference from a half-space, where there is one and cells are not small compared with the
     /// depth.
     mean_difference: Option<FewPieces<N>>,
 }

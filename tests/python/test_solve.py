@@ -378,7 +378,7 @@ WARNINGS: dict[str, tuple[Callable[[], nacre.Solution], str]] = {
     "coarse": (lambda: CONTACT.solve(SPHERE, load=0.05), r"only \d cells wide along y"),
     "large contact": (
         lambda: nacre.solve(nacre.Sphere(1e-4), STEEL, load=50.0),
-        r"not small against the radius .* 0\.[2-9]",
+        r"not small compared with the radius .* 0\.[2-9]",
     ),
 }
 
