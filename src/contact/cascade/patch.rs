@@ -2,9 +2,9 @@
 
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
-use crate::parallel::each_row;
-
+use crate::contact::problem::constraint::NonNegative;
 use crate::grid::{Window, full_window};
+use crate::parallel::each_row;
 
 /// Cells around the contact that a window holds; chosen by trial.
 const MARGIN: usize = 6;
@@ -107,7 +107,7 @@ impl Patch {
 
     /// The smallest window around its contact.
     pub(crate) fn contact(&self) -> Option<Window> {
-        bounds(&self.window, |i, j| self.at(i, j) > 0.0)
+        bounds(&self.window, |i, j| NonNegative.is_free(self.at(i, j)))
     }
 
     /// This pressure in another window.
@@ -165,7 +165,7 @@ impl Patch {
             for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
                 let here = value(near, *j);
                 // Interpolation would widen the contact by half a cell on every side.
-                if here > 0.0 {
+                if NonNegative.is_free(here) {
                     *fine = wide * (a * here + b * value(near, *k))
                         + narrow * (a * value(next, *j) + b * value(next, *k));
                 }
