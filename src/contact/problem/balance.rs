@@ -7,7 +7,7 @@ use crate::parallel::{all, sum};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
-const BALANCED: f64 = 2e-13;
+const BALANCE_TOLERANCE: f64 = 2e-13;
 
 /// Newton steps after which the balance is given up: a bound against rounding, far above the usual number.
 const STEPS: usize = 100;
@@ -19,7 +19,9 @@ impl Freedoms {
     /// Whether a pressure of these `moments` is on target, within rounding.
     pub(crate) fn on_target(&self, moments: [f64; 3]) -> bool {
         let force = moments[0].abs().max(largest(self.target));
-        (0..3).all(|k| !self.loaded[k] || (moments[k] - self.target[k]).abs() <= BALANCED * force)
+        (0..3).all(|k| {
+            !self.loaded[k] || (moments[k] - self.target[k]).abs() <= BALANCE_TOLERANCE * force
+        })
     }
 
     /// The factor by which a pressure of this `force` carries the load; `None` where there is none, or it
