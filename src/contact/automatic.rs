@@ -20,13 +20,13 @@ use crate::surface::{Extent, Surface};
 const ACROSS: f64 = 64.0 * 1.07;
 
 /// Free width on either side of the contact, relative to the width of the contact; chosen by trial.
-const MARGIN: f64 = 0.25;
+const FRAME_MARGIN: f64 = 0.25;
 
 /// Cells of the coarse grid in each direction; chosen by trial.
 const COARSE_CELLS: usize = 48;
 
 /// Tolerance on the coarse grid; chosen by trial.
-const COARSE_TOLERANCE: f64 = 1e-4;
+const FRAME_TOLERANCE: f64 = 1e-4;
 
 /// Largest ratio of a cell's sides; chosen by trial.
 const ASPECT_RATIO: f64 = 16.0;
@@ -121,7 +121,7 @@ fn search(
     // Options that only the real grid can meet are checked here and left out.
     options.stop_criteria()?;
     let coarse = Options {
-        tolerance: COARSE_TOLERANCE,
+        tolerance: FRAME_TOLERANCE,
         initial: None,
         ..options.clone()
     };
@@ -308,7 +308,7 @@ fn final_grid(solution: &Solution, extent: [Extent; 2]) -> Result<Grid> {
     let widths = contact.map(|[low, high]| high - low);
     let finest = widths[0].min(widths[1]) / ACROSS;
     let frame: Frame = std::array::from_fn(|axis| {
-        let margin = MARGIN * widths[axis];
+        let margin = FRAME_MARGIN * widths[axis];
         let [low, high] = extent[axis].range();
         // A shape that ends needs no more than a cell beyond its end.
         let low = (contact[axis][0] - margin).max(low - 2.0 * finest);

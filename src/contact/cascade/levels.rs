@@ -266,7 +266,7 @@ impl Level<'_> {
             );
             *work += solver.work;
             done += outcome.iterations;
-            // Its workspace serves the next.
+            // The next solver reuses its workspace.
             drop(solver);
             let limited = outcome.termination == Termination::IterationLimit;
             if limited && done < criteria.max_iterations && active_set::is_small(&patch.values) {

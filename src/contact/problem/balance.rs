@@ -12,7 +12,8 @@ const BALANCE_TOLERANCE: f64 = 2e-13;
 /// Newton steps after which the balance is given up: a bound against rounding, far above the usual number.
 const STEPS: usize = 100;
 
-/// Part of a Newton step below which no part of it helps: its square root is far above rounding.
+/// Smallest fraction of a Newton step that is tried. Where no fraction helps, only rounding is left, or the cells
+/// cannot carry the moments; chosen by trial.
 const SHORTEST_STEP: f64 = 1e-9;
 
 impl Freedoms {
@@ -59,7 +60,6 @@ impl Freedoms {
             }
             let step = self.solve(&self.curvature(pressure, mu), mismatch);
             let mut length = 1.0;
-            // Where no step helps, only rounding is left, or these cells cannot carry the moments.
             descends = loop {
                 let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
                 let (trial_force, trial_mismatch) = self.mismatch(pressure, trial);
@@ -73,7 +73,9 @@ impl Freedoms {
                 }
             };
         }
-        let balanced = largest(mismatch) <= 1e3 * rounding(force);
+        // Multiple of the rounding of one sum that still counts as balanced; chosen by trial.
+        const ROUNDINGS: f64 = 1e3;
+        let balanced = largest(mismatch) <= ROUNDINGS * rounding(force);
         if balanced || descends {
             self.for_each(mu, |k, b| {
                 pressure[k] *= NonNegative.nearest(1.0 + b);
