@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use super::motion::Motion;
 use super::options::{Options, Setup};
 use super::plan::Plan;
+use super::problem::constraint::NonNegative;
 use super::solution::Solution;
 use super::solution::report::Progress;
 use super::solver::Termination;
@@ -18,17 +19,20 @@ use crate::surface::{Extent, Surface};
 /// contact on the coarse grid is up to 6 % too wide.
 const ACROSS: f64 = 64.0 * 1.07;
 
-/// Free width on either side of the contact, relative to the width of the contact.
-const MARGIN: f64 = 0.25;
+/// Free width on either side of the contact, relative to the width of the contact; chosen by trial.
+const FRAME_MARGIN: f64 = 0.25;
 
-/// Cells of the coarse grid in each direction.
-const COARSE: usize = 48;
+/// Cells of the coarse grid in each direction; chosen by trial.
+const COARSE_CELLS: usize = 48;
 
-/// Largest ratio of a cell's sides, as long as it leaves [`LONG`] cells along the contact; chosen by trial.
+/// Tolerance on the coarse grid; chosen by trial.
+const FRAME_TOLERANCE: f64 = 1e-4;
+
+/// Largest ratio of a cell's sides; chosen by trial.
 const ASPECT_RATIO: f64 = 16.0;
 
-/// Cells along a long contact beyond which its cells are no longer shortened.
-const LONG: f64 = 1024.0;
+/// Smallest number of cells along a contact whose cells are oblong; chosen by trial.
+const LONG_CONTACT: f64 = 1024.0;
 
 /// Enlargements of the coarse grid by a factor of up to 3: 3¹⁰ in all.
 const ENLARGEMENTS: usize = 10;
@@ -117,14 +121,14 @@ fn search(
     // Options that only the real grid can meet are checked here and left out.
     options.stop_criteria()?;
     let coarse = Options {
-        tolerance: 1e-4,
+        tolerance: FRAME_TOLERANCE,
         initial: None,
         ..options.clone()
     };
     let mut frame = first_frame(shape, body, setup, motion)?;
     let (mut enlargements, mut reductions) = (0, 0);
     loop {
-        let grid = grid_over(frame, [COARSE; 2])?;
+        let grid = grid_over(frame, [COARSE_CELLS; 2])?;
         let solution = solve_once(shape, body, grid, setup, motion, &coarse, progress)?;
         let Some(contact) = cells_in_contact(&solution) else {
             // Nothing touches there: any grid shows that.
@@ -144,7 +148,7 @@ fn search(
             // An edge that is touched moves out by the width, as far as the shape goes.
             let touched = [
                 first == 0 && low > range[0],
-                last == COARSE - 1 && high < range[1],
+                last == COARSE_CELLS - 1 && high < range[1],
             ];
             if touched[0] || touched[1] {
                 grown = true;
@@ -152,7 +156,7 @@ fn search(
                     if touched[0] { low - width } else { low },
                     if touched[1] { high + width } else { high },
                 ];
-            } else if last - first + 1 < COARSE / 4 {
+            } else if last - first + 1 < COARSE_CELLS / 4 {
                 shrunk = true;
                 let contact = [
                     low + first as f64 * spacing,
@@ -290,7 +294,8 @@ fn grid_over(frame: Frame, shape: [usize; 2]) -> Result<Grid> {
 /// First and last cell in contact along each axis.
 fn cells_in_contact(solution: &Solution) -> Option<[[usize; 2]; 2]> {
     let mut found: Option<[[usize; 2]; 2]> = None;
-    for ((i, j), _) in solution.pressure.indexed_iter().filter(|(_, p)| **p > 0.0) {
+    let cells = solution.pressure.indexed_iter();
+    for ((i, j), _) in cells.filter(|(_, p)| NonNegative.is_free(**p)) {
         let [x, y] = found.unwrap_or([[i; 2], [j; 2]]);
         found = Some([[x[0].min(i), x[1].max(i)], [y[0].min(j), y[1].max(j)]]);
     }
@@ -303,7 +308,7 @@ fn final_grid(solution: &Solution, extent: [Extent; 2]) -> Result<Grid> {
     let widths = contact.map(|[low, high]| high - low);
     let finest = widths[0].min(widths[1]) / ACROSS;
     let frame: Frame = std::array::from_fn(|axis| {
-        let margin = MARGIN * widths[axis];
+        let margin = FRAME_MARGIN * widths[axis];
         let [low, high] = extent[axis].range();
         // A shape that ends needs no more than a cell beyond its end.
         let low = (contact[axis][0] - margin).max(low - 2.0 * finest);
@@ -311,7 +316,8 @@ fn final_grid(solution: &Solution, extent: [Extent; 2]) -> Result<Grid> {
         [low, high]
     });
     let shape = std::array::from_fn(|axis| {
-        let cells = (widths[axis] / finest).min((widths[axis] / (ASPECT_RATIO * finest)).max(LONG));
+        let cells =
+            (widths[axis] / finest).min((widths[axis] / (ASPECT_RATIO * finest)).max(LONG_CONTACT));
         let cell = widths[axis] / cells.max(ACROSS);
         // Rounding must not add a cell where the frame is a whole number of them.
         let count = ((frame[axis][1] - frame[axis][0]) / cell * (1.0 - 1e-9)).ceil();

@@ -157,8 +157,8 @@ impl<'a> Cascade<'a> {
         }
     }
 
-    /// Solves on the finest grid; its pressure goes into `fields`. A solve that was stopped before stays
-    /// where it was.
+    /// Solves on the finest grid; its pressure goes into `fields`. Where the caller stopped a coarser grid,
+    /// nothing more is solved.
     pub(super) fn solve(
         &mut self,
         fields: &mut Fields,

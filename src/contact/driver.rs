@@ -188,3 +188,62 @@ fn solve_in_window(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use crate::contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solver, Termination};
+    use crate::error::Result;
+    use crate::grid::Grid;
+    use crate::material::Elastic;
+    use crate::surface::Paraboloid;
+
+    /// A break at any iteration, on the two coarser grids or on the finest, ends the solve at once. The pressure
+    /// of that moment carries the load, and the report is that of a stopped solve.
+    #[test]
+    fn a_break_stops_the_solve_on_any_grid() -> Result<()> {
+        let grid = Grid::new([128, 128], [4.0, 4.0])?;
+        let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
+        let (shape, motion) = (Paraboloid::new(1e3, 1e3)?, Motion::load(1e-3));
+        for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+            let options = Options {
+                algorithm,
+                ..Options::default()
+            };
+            let mut last = 1;
+            for stop in 1.. {
+                let (mut calls, mut work) = (0, 0.0);
+                let mut progress = |report: &Report| {
+                    calls += 1;
+                    work = report.convolutions;
+                    if calls == stop {
+                        ControlFlow::Break(())
+                    } else {
+                        ControlFlow::Continue(())
+                    }
+                };
+                let solution = contact.solve_watched(&shape, &motion, &options, &mut progress)?;
+                let report = &solution.report;
+                let expected = match algorithm {
+                    Algorithm::Cascade => Solver::Preconditioned,
+                    Algorithm::PolonskyKeer => Solver::PolonskyKeer,
+                };
+                assert_eq!(report.solver, Some(expected));
+                assert!(report.convolutions >= work, "{stop}");
+                assert!(report.balance.force < 1e-12, "{stop}");
+                if report.converged() {
+                    last = stop;
+                    break;
+                }
+                assert_eq!((report.termination, calls), (Termination::Stopped, stop));
+                let worst = report.residual.max(report.overlap);
+                assert!(worst > options.tolerance, "{stop}: {worst:e}");
+                assert_eq!(report.discretisation, None);
+            }
+            // Three grids, or one, with several iterations each.
+            assert!(last > 10, "{last}");
+        }
+        Ok(())
+    }
+}

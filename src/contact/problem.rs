@@ -203,15 +203,15 @@ impl Problem<'_> {
     /// Restores balance. Where the contact cannot carry the moments, as two cells cannot, all cells
     /// that can touch join it.
     pub(super) fn rebalance(&self, p: &mut [f64]) {
-        /// Pressure of the cells that join, relative to the mean one.
-        const LITTLE: f64 = 1e-3;
+        // Pressure of the cells that join, relative to the mean pressure of the grid; chosen by trial.
+        const JOINING_PRESSURE: f64 = 1e-3;
         if self.freedoms.balance(p) {
             return;
         }
-        let little = LITTLE * self.freedoms.typical_pressure(p.len());
+        let joining = JOINING_PRESSURE * self.freedoms.typical_pressure(p.len());
         for (p, h) in p.iter_mut().zip(self.gap) {
             if h.is_finite() {
-                *p += little;
+                *p += joining;
             }
         }
         self.freedoms.balance(p);

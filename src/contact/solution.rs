@@ -9,6 +9,7 @@ pub(super) mod warnings;
 
 use ndarray::{Array1, Array2};
 
+use super::problem::constraint::NonNegative;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use gap::Gap;
@@ -32,8 +33,8 @@ pub struct Solution {
 
 impl PartialEq for Solution {
     fn eq(&self, other: &Self) -> bool {
-        let motion = |solution: &Self| (solution.approach, solution.tilt);
-        motion(self) == motion(other)
+        let position = |solution: &Self| (solution.approach, solution.tilt);
+        position(self) == position(other)
             && self.report == other.report
             && self.pressure == other.pressure
             && self.displacement == other.displacement
@@ -120,7 +121,7 @@ impl Solution {
 
     /// Whether each cell is in contact, p > 0.
     pub fn in_contact(&self) -> Array2<bool> {
-        self.pressure.mapv(|p| p > 0.0)
+        self.pressure.mapv(|p| NonNegative.is_free(p))
     }
 
     /// Normal force Σ p dA \[N\].
@@ -147,7 +148,8 @@ impl Solution {
 
     /// Area of the cells in contact \[m²\].
     pub fn contact_area(&self) -> f64 {
-        self.pressure.iter().filter(|p| **p > 0.0).count() as f64 * self.grid().cell_area()
+        let cells = self.pressure.iter();
+        cells.filter(|p| NonNegative.is_free(**p)).count() as f64 * self.grid().cell_area()
     }
 
     /// Largest pressure of a cell \[Pa\].
@@ -228,8 +230,8 @@ impl Solution {
 
 /// Ends of the contact on one line of cells, in cells from the centre of the first.
 fn line_ends(pressure: ndarray::ArrayView1<f64>) -> Option<[f64; 2]> {
-    let first = pressure.iter().position(|&p| p > 0.0)?;
-    let last = pressure.iter().rposition(|&p| p > 0.0)?;
+    let first = pressure.iter().position(|&p| NonNegative.is_free(p))?;
+    let last = pressure.iter().rposition(|&p| NonNegative.is_free(p))?;
     let width = last - first + 1;
     let square = |k: usize| pressure[k] * pressure[k];
     Some([

@@ -21,7 +21,7 @@ pub enum Termination {
     Stopped,
 }
 
-/// Iteration that produced a solution.
+/// Iterative solver that produced a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Solver {

@@ -54,7 +54,7 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
     let [good] = rows.each([slice(&gaps)], [], |_, gaps, []| {
         sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE])
     });
-    // Numbers of cells are exact.
+    // Counts of cells are exact in f64.
     if good < gaps.len() as f64 {
         let bad = |h: &f64| h.is_nan() || *h <= lowest;
         let cell = slice(&gaps).iter().position(bad).unwrap_or(0);

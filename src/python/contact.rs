@@ -38,7 +38,7 @@ mod batch;
 /// ValueError
 ///     If an argument is out of range.
 /// MemoryError
-///     If the grid does not fit into memory: a plan and a solve take up to 160 bytes a cell.
+///     If the grid does not fit into memory: a plan and a solve take up to 170 bytes a cell.
 ///
 /// Examples
 /// --------

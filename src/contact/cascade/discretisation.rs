@@ -60,16 +60,17 @@ pub(crate) fn estimate(results: &[GridResult]) -> Option<Discretisation> {
 mod tests {
     use super::{GridResult, estimate};
 
-    /// Results of grids, from the coarsest on: of the peak as they are, of approach and load scaled.
+    /// Errors estimated from `values` on grids from the coarsest on. Peak, approach and load are made from the
+    /// values by shifts and factors; the factors are divided out again.
     fn error(values: &[f64]) -> Option<[f64; 3]> {
-        let figures: Vec<GridResult> = (values.iter())
+        let results: Vec<GridResult> = (values.iter())
             .map(|&value| GridResult {
                 peak_pressure: 5.0 + value,
                 approach: 1.0 - 0.1 * value,
                 load: 3.0 * value,
             })
             .collect();
-        estimate(&figures)
+        estimate(&results)
             .map(|found| [found.peak_pressure, 10.0 * found.approach, found.load / 3.0])
     }
 

@@ -22,11 +22,11 @@ use crate::surface::Surface;
 
 /// Cells of the coarsest grid along each direction, at least. A direction with fewer than twice as many is
 /// not halved; chosen by trial.
-const COARSEST: usize = 32;
+const COARSEST_CELLS: usize = 32;
 
 /// Directions of a grid that are halved for the next coarser one; none at the coarsest.
 pub(crate) fn halved(shape: [usize; 2]) -> [bool; 2] {
-    shape.map(|n| n >= 2 * COARSEST)
+    shape.map(|n| n >= 2 * COARSEST_CELLS)
 }
 
 /// The grid whose cells are twice as long in the directions of `halved`; it starts where `fine` does.
@@ -266,7 +266,7 @@ impl Level<'_> {
             );
             *work += solver.work;
             done += outcome.iterations;
-            // Its workspace serves the next.
+            // The next solver reuses its workspace.
             drop(solver);
             let limited = outcome.termination == Termination::IterationLimit;
             if limited && done < criteria.max_iterations && active_set::is_small(&patch.values) {

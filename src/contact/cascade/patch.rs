@@ -2,12 +2,12 @@
 
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
+use crate::contact::problem::constraint::NonNegative;
+use crate::grid::{Window, full_window};
 use crate::parallel::each_row;
 
-use crate::grid::{Window, full_window};
-
 /// Cells around the contact that a window holds; chosen by trial.
-const MARGIN: usize = 6;
+const WINDOW_MARGIN: usize = 6;
 
 /// Part of the grid above which a window saves less than its planning costs; chosen by trial.
 const LARGEST_PART: f64 = 0.6;
@@ -21,8 +21,9 @@ pub(crate) struct Patch {
 
 /// `cells` and a margin around them; the whole grid where a window would cover most of it.
 pub(crate) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
-    let window = [0, 1]
-        .map(|k| cells[k].start.saturating_sub(MARGIN)..(cells[k].end + MARGIN).min(shape[k]));
+    let window = [0, 1].map(|k| {
+        cells[k].start.saturating_sub(WINDOW_MARGIN)..(cells[k].end + WINDOW_MARGIN).min(shape[k])
+    });
     let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
     if part > LARGEST_PART {
         full_window(shape)
@@ -107,7 +108,7 @@ impl Patch {
 
     /// The smallest window around its contact.
     pub(crate) fn contact(&self) -> Option<Window> {
-        bounds(&self.window, |i, j| self.at(i, j) > 0.0)
+        bounds(&self.window, |i, j| NonNegative.is_free(self.at(i, j)))
     }
 
     /// This pressure in another window.
@@ -165,7 +166,7 @@ impl Patch {
             for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
                 let here = value(near, *j);
                 // Interpolation would widen the contact by half a cell on every side.
-                if here > 0.0 {
+                if NonNegative.is_free(here) {
                     *fine = wide * (a * here + b * value(near, *k))
                         + narrow * (a * value(next, *j) + b * value(next, *k));
                 }
@@ -179,7 +180,7 @@ impl Patch {
 mod tests {
     use ndarray::Array2;
 
-    use super::{MARGIN, Patch};
+    use super::{Patch, WINDOW_MARGIN};
 
     /// A linear field on the coarse grid of a fine one of `shape` is the same linear field on the fine grid, but
     /// for the outermost cells of a halved direction, which lie beyond all coarse centres.
@@ -224,7 +225,7 @@ mod tests {
     }
 
     /// One coarse cell becomes the cells within it alone, with 3/4 of its pressure for each halved direction, in a
-    /// window of [`MARGIN`] more cells on every side.
+    /// window of [`WINDOW_MARGIN`] more cells on every side.
     #[test]
     fn a_contact_is_not_widened() {
         for halved in [[true, true], [true, false], [false, true]] {
@@ -237,7 +238,9 @@ mod tests {
             assert_eq!(fine.contact(), Some(contact.clone()));
             assert_eq!(
                 fine.window,
-                contact.clone().map(|c| c.start - MARGIN..c.end + MARGIN)
+                contact
+                    .clone()
+                    .map(|c| c.start - WINDOW_MARGIN..c.end + WINDOW_MARGIN)
             );
             let expected = if halved == [true; 2] { 9.0_f64 } else { 12.0 };
             for i in contact[0].clone() {

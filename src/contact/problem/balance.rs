@@ -7,19 +7,22 @@ use crate::parallel::{all, sum};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
-const BALANCED: f64 = 2e-13;
+const BALANCE_TOLERANCE: f64 = 2e-13;
 
 /// Newton steps after which the balance is given up: a bound against rounding, far above the usual number.
 const STEPS: usize = 100;
 
-/// Part of a Newton step below which no part of it helps: its square root is far above rounding.
+/// Smallest fraction of a Newton step that is tried. Where no fraction helps, only rounding is left, or the cells
+/// cannot carry the moments; chosen by trial.
 const SHORTEST_STEP: f64 = 1e-9;
 
 impl Freedoms {
     /// Whether a pressure of these `moments` is on target, within rounding.
     pub(crate) fn on_target(&self, moments: [f64; 3]) -> bool {
         let force = moments[0].abs().max(largest(self.target));
-        (0..3).all(|k| !self.loaded[k] || (moments[k] - self.target[k]).abs() <= BALANCED * force)
+        (0..3).all(|k| {
+            !self.loaded[k] || (moments[k] - self.target[k]).abs() <= BALANCE_TOLERANCE * force
+        })
     }
 
     /// The factor by which a pressure of this `force` carries the load; `None` where there is none, or it
@@ -57,7 +60,6 @@ impl Freedoms {
             }
             let step = self.solve(&self.curvature(pressure, mu), mismatch);
             let mut length = 1.0;
-            // Where no step helps, only rounding is left, or these cells cannot carry the moments.
             descends = loop {
                 let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
                 let (trial_force, trial_mismatch) = self.mismatch(pressure, trial);
@@ -71,7 +73,9 @@ impl Freedoms {
                 }
             };
         }
-        let balanced = largest(mismatch) <= 1e3 * rounding(force);
+        // Multiple of the rounding of one sum that still counts as balanced; chosen by trial.
+        const ROUNDINGS: f64 = 1e3;
+        let balanced = largest(mismatch) <= ROUNDINGS * rounding(force);
         if balanced || descends {
             self.for_each(mu, |k, b| {
                 pressure[k] *= NonNegative.nearest(1.0 + b);

@@ -35,7 +35,7 @@ impl NonNegative {
         (p.simd_gt(ZERO) | overlap.simd_gt(ZERO)) & value
     }
 
-    /// The allowed pressures nearest to `p`, and 1 in cells where that is another one.
+    /// The allowed pressures nearest to `p`, and 1 in cells where `p` itself is not allowed, 0 in the others.
     pub(crate) fn clip(self, p: Lanes) -> (Lanes, Lanes) {
         (where_positive(p, p), where_positive(-p, ONE))
     }

@@ -186,9 +186,9 @@ impl Freedoms {
     /// makes all others 0.
     pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64]) {
         let mut sums = FitSums::ZERO;
-        for (x, cells) in self.rows() {
+        for (number, (x, cells)) in self.rows().enumerate() {
             let row = Row {
-                number: 0,
+                number,
                 x,
                 y: &self.columns[1],
             };

@@ -29,6 +29,7 @@ pub(crate) struct Freedoms {
     pub(crate) cell_area: f64,
 }
 
+/// Messages for a direction with more than one condition.
 const DIRECTIONS: [&str; 2] = [
     "along x at most one of eccentricity, moment and tilt can be a number",
     "along y at most one of eccentricity, moment and tilt can be a number",

@@ -11,7 +11,7 @@ const RIM: f64 = 4.0 * f64::EPSILON;
 
 /// Twice the area, in half sides of the grid, of a triangle whose corners count as lying on a line:
 /// rounding of products of scaled coordinates, 45 ε.
-const COLLINEAR: f64 = 1e-14;
+const COLLINEAR_AREA: f64 = 1e-14;
 
 /// The half-plane n · v > c, as (n_x, n_y, c).
 type HalfPlane = [f64; 3];
@@ -124,7 +124,7 @@ fn convex_hull(points: &[[f64; 2]]) -> Vec<HalfPlane> {
         let mut chain: Vec<[f64; 2]> = Vec::new();
         for point in points {
             while let [.., a, b] = chain[..] {
-                if turn(a, b, point) > COLLINEAR {
+                if turn(a, b, point) > COLLINEAR_AREA {
                     break;
                 }
                 chain.pop();

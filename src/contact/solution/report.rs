@@ -18,8 +18,8 @@ use crate::response::Body;
 pub struct Report {
     /// How the iteration ended.
     pub termination: Termination,
-    /// Iteration that produced the solution, also where the algorithm that was asked for fell back to
-    /// another. `None` where it is not known, as in solutions from files of format 0.
+    /// Solver that produced the solution, also where the algorithm that was asked for fell back to another.
+    /// `None` where it is not known: in the reports of a running solve, and in files of format 0.
     pub solver: Option<Solver>,
     /// Iterations done.
     pub iterations: usize,

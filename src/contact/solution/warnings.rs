@@ -5,6 +5,7 @@ use std::fmt;
 use ndarray::Array2;
 
 use crate::contact::cascade::patch::rows;
+use crate::contact::problem::constraint::NonNegative;
 use crate::grid::{Grid, Window};
 use crate::parallel::update_with_largest;
 use crate::surface::{Extent, Surface};
@@ -105,7 +106,7 @@ pub(crate) fn warnings(
             ([highest.fast_max(p)], [p], [])
         });
         highest[0][i] = top;
-        let reaches = |j: usize| row[j - window[1].start] > 0.0 && goes_on(i, j);
+        let reaches = |j: usize| NonNegative.is_free(row[j - window[1].start]) && goes_on(i, j);
         let mut ends = [0, ny - 1].into_iter().filter(|j| window[1].contains(j));
         at_edge |= if !grid.is_line() && (i == 0 || i == nx - 1) {
             window[1].clone().any(reaches)
@@ -120,7 +121,7 @@ pub(crate) fn warnings(
     let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
     for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
         let lines = coordinates.iter().zip(&highest[axis]);
-        for (at, _) in lines.filter(|(_, highest)| **highest > 0.0) {
+        for (at, _) in lines.filter(|(_, highest)| NonNegative.is_free(**highest)) {
             cells[axis] += 1;
             ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
         }

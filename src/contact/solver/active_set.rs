@@ -136,7 +136,7 @@ impl System<'_> {
     fn renew(&mut self, lambda: [f64; 3], g: &[f64]) {
         // Motion of a contact cell, relative to the largest, above which the contact hinders it: far more
         // than rounding leaves.
-        const HINDERED: f64 = 1e-6;
+        const HINDERED_MOTION: f64 = 1e-6;
         let change = [0, 1, 2].map(|k| lambda[k] - self.lambda[k]);
         let mut closing = vec![0.0; g.len()];
         self.problem
@@ -146,11 +146,11 @@ impl System<'_> {
         let free = self
             .contact
             .iter()
-            .all(|&k| closing[k].abs() <= HINDERED * largest);
+            .all(|&k| closing[k].abs() <= HINDERED_MOTION * largest);
         let touching = g
             .iter()
             .zip(&closing)
-            .filter(|(_, c)| **c > HINDERED * largest);
+            .filter(|(_, c)| **c > HINDERED_MOTION * largest);
         let further = touching
             .map(|(g, c)| (g / c).max(0.0))
             .fold(f64::INFINITY, f64::min);
@@ -172,7 +172,7 @@ impl System<'_> {
             let (aim, lambda) = self.solve()?;
             // Fraction of the way to the solution after which the pressure of each cell is 0.
             let ends = self.contact.iter().zip(&aim).map(|(&k, &aim)| match p[k] {
-                _ if aim > 0.0 => f64::INFINITY,
+                _ if NonNegative.is_free(aim) => f64::INFINITY,
                 p => p / (p - aim).max(f64::MIN_POSITIVE),
             });
             let ends: Vec<f64> = ends.collect();

@@ -101,7 +101,7 @@ pub(crate) fn solve(
             if inside {
                 *p = NonNegative.nearest(*p - step * direction[k]);
             }
-            if *p == 0.0 && g[k] < 0.0 && problem.gap[k].is_finite() {
+            if !NonNegative.is_free(*p) && g[k] < 0.0 && problem.gap[k].is_finite() {
                 joined |= !inside;
                 *p = -step * g[k];
             }

@@ -31,7 +31,9 @@ use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fit::FitSums;
 use crate::contact::problem::{Problem, Quality, QualitySums, depths};
 use crate::convolution::{Convolution, Workspace};
-use crate::parallel::{Lanes, Lease, ONE, Rows, ZERO, all, update, update_with_largest};
+use crate::parallel::{
+    Lanes, Lease, ONE, Rows, ZERO, all, update, update_with_largest, where_positive,
+};
 use arrays::Arrays;
 pub(crate) use arrays::Memory;
 
@@ -193,29 +195,26 @@ impl<'a> Preconditioned<'a> {
     /// Finds the multipliers, the quality of the pressure, and the residual on the contact. Cells without
     /// pressure leave the contact, and cells that overlap join it.
     fn assess(&mut self, p: &[f64]) -> Assessment {
-        // Where more than one cell in ten joins, the directions so far say little; chosen by trial.
-        const MANY: f64 = 10.0;
+        // Pressed cells per joining cell below which the directions so far say little; chosen by trial.
+        const PRESSED_PER_JOINING: f64 = 10.0;
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
         self.memory.keep_residual();
         let Arrays { u, r, response, .. } = self.memory.arrays(p.len());
-        let behind = match mem::replace(&mut self.displacement, Displacement::Current) {
-            Displacement::Fitted(sums) => Err(sums),
-            Displacement::Current => Ok(0.0),
-            Displacement::Behind(factor) => Ok(factor),
-        };
-        let fit = behind.map_or_else(
-            |sums| sums,
-            |factor| {
-                let (factor, inputs) = (all(factor), [p, response, problem.gap]);
-                self.rows.each(inputs, [&mut *u], |row, inputs, [u]| {
-                    freedoms.fit_row(row, inputs, [u], |[p, response, h, _], [u]| {
-                        // At a factor of 0 the response may hold anything.
-                        let u = u + NonNegative.where_free(factor, factor * response);
-                        ([u], [p, u + h, ZERO])
-                    })
+        let mut catch_up = |factor: f64| {
+            let (factor, inputs) = (all(factor), [p, response, problem.gap]);
+            self.rows.each(inputs, [&mut *u], |row, inputs, [u]| {
+                freedoms.fit_row(row, inputs, [u], |[p, response, h, _], [u]| {
+                    // At a factor of 0 the response may hold anything.
+                    let u = u + where_positive(factor, factor * response);
+                    ([u], [p, u + h, ZERO])
                 })
-            },
-        );
+            })
+        };
+        let fit = match mem::replace(&mut self.displacement, Displacement::Current) {
+            Displacement::Fitted(sums) => sums,
+            Displacement::Current => catch_up(0.0),
+            Displacement::Behind(factor) => catch_up(factor),
+        };
         let lambda = freedoms.fitted(fit);
         let inputs = [p, u, problem.gap];
         let (sums, [free, inside]) = self.rows.each(inputs, [r], |row, [p, u, h], [r]| {
@@ -241,7 +240,7 @@ impl<'a> Preconditioned<'a> {
             (sums, [free, inside])
         });
         let joined = inside - free;
-        if MANY * joined > free {
+        if PRESSED_PER_JOINING * joined > free {
             self.conjugacy.restart();
         }
         // A step gives no pressure to cells outside the contact: the difference is the cells that left.

@@ -5,7 +5,7 @@ use super::{Images, Preconditioned};
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fit::Products;
 use crate::convolution::Convolution;
-use crate::parallel::{ONE, all, dot, update};
+use crate::parallel::{ONE, Total, all, dot, update, where_positive};
 
 /// A preconditioned residual that is orthogonal to the loaded degrees of freedom: z − Σ `factors` images.
 struct Deflated {
@@ -93,7 +93,7 @@ impl Preconditioned<'_> {
             let [p, r, before, i0, i1, i2] = inputs;
             let inputs = [p, r, before, z, i0, i1, i2];
             block.each(inputs, [], |row, [p, r, before, z, images @ ..], []| {
-                let mut products: [Products; 4] = crate::parallel::Total::ZERO;
+                let mut products: [Products; 4] = Total::ZERO;
                 products[0] = freedoms.products(row, [p, r, before], z);
                 for (k, image) in images.into_iter().enumerate() {
                     if freedoms.loaded[k] {
@@ -151,7 +151,7 @@ impl Preconditioned<'_> {
                     update(inputs, [direction], |[p, r, z, a, b, c], [d]| {
                         let z = z - f0 * a - f1 * b - f2 * c;
                         // At a β of 0 the last direction may hold anything.
-                        let last = NonNegative.where_free(beta, beta * d);
+                        let last = where_positive(beta, beta * d);
                         let d = NonNegative.where_in_contact(p, r, z + last);
                         ([d], [r * d])
                     })

@@ -147,7 +147,7 @@ impl Preconditioned<'_> {
                 })
             },
         );
-        // The best length along the change.
+        // The best length along the change, and the part of the change that is taken back to reach it.
         let best = best_length(slope, curvature).unwrap_or(0.0);
         let back = if best < AS_PLANNED.start {
             1.0 - best
