@@ -2,7 +2,6 @@
 
 use ndarray::Array2;
 
-use super::solver::StopCriteria;
 use crate::error::{Error, Result};
 use crate::influence::Method;
 use crate::response::Body;
@@ -70,5 +69,22 @@ impl Options {
             tolerance: self.tolerance,
             max_iterations: self.max_iterations.unwrap_or(MAX_ITERATIONS),
         })
+    }
+}
+
+/// Conditions that end an iteration.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StopCriteria {
+    pub(super) tolerance: f64,
+    pub(super) max_iterations: usize,
+}
+
+impl StopCriteria {
+    /// The criteria that are left after so many iterations.
+    pub(super) fn after(self, iterations: usize) -> Self {
+        Self {
+            max_iterations: self.max_iterations - iterations,
+            ..self
+        }
     }
 }

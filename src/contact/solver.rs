@@ -8,6 +8,7 @@ pub(super) mod preconditioned;
 
 use std::ops::ControlFlow;
 
+pub(super) use super::options::StopCriteria;
 use super::problem::Quality;
 
 /// How an iteration ended.
@@ -59,20 +60,3 @@ impl Outcome {
 
 /// Callback that gets the number of an iteration, the work done and the quality, and breaks to stop.
 pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
-
-/// Conditions that end an iteration.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct StopCriteria {
-    pub(super) tolerance: f64,
-    pub(super) max_iterations: usize,
-}
-
-impl StopCriteria {
-    /// The criteria that are left after so many iterations.
-    pub(super) fn after(self, iterations: usize) -> Self {
-        Self {
-            max_iterations: self.max_iterations - iterations,
-            ..self
-        }
-    }
-}

@@ -126,8 +126,9 @@ pub(in crate::python) fn motion(keywords: &Keywords) -> PyResult<Motion> {
 
 /// Way in which a solution is found, from a uniform pressure.
 pub(in crate::python) fn options(keywords: &Keywords) -> PyResult<Options> {
+    let default = Options::default();
     Ok(Options {
-        tolerance: keywords.real("tolerance", 1e-8)?,
+        tolerance: keywords.real("tolerance", default.tolerance)?,
         max_iterations: keywords.count("max_iterations", 0)?,
         algorithm: keywords.word("cascade")?,
         initial: None,

@@ -11,12 +11,13 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::python::arguments::{Repr, array_repr, hash};
 use crate::python::grid::PyGrid;
-use crate::surface::{
-    Cylinder, Extent, FlatPunch, HeightMap, Paraboloid, Profile, Roller, Sphere, Surface,
-};
+use crate::surface::{self, Extent, Profile, Surface};
 
 /// A kind of shape with a Python class of the same name. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface {
+    /// Class of the objects.
+    type Class: PyClass<BaseType = PyShape>;
+
     /// Arguments of the constructor, by name and in their order.
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>>;
 }
@@ -27,7 +28,7 @@ macro_rules! kinds {
         /// Any shape that Python can name, as a value to compare, copy and print.
         #[derive(Debug, Clone, PartialEq)]
         pub(in crate::python) enum Shape {
-            $($kind($kind),)*
+            $($kind(surface::$kind),)*
             Sum(Box<[Shape; 2]>),
             Shifted(Box<Shape>, [f64; 2]),
         }
@@ -57,13 +58,20 @@ macro_rules! kinds {
             }
         }
 
-        $(impl From<$kind> for Shape {
-            fn from(shape: $kind) -> Self {
+        /// Adds `nacre.Shape` and the classes of all kinds to the module.
+        pub(in crate::python) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+            module.add_class::<PyShape>()?;
+            $(module.add_class::<<surface::$kind as Kind>::Class>()?;)*
+            Ok(())
+        }
+
+        $(impl From<surface::$kind> for Shape {
+            fn from(shape: surface::$kind) -> Self {
                 Self::$kind(shape)
             }
         }
 
-        impl<'a> From<&'a Shape> for &'a $kind {
+        impl<'a> From<&'a Shape> for &'a surface::$kind {
             fn from(shape: &'a Shape) -> Self {
                 match shape {
                     Shape::$kind(shape) => shape,
@@ -74,7 +82,14 @@ macro_rules! kinds {
     };
 }
 
-kinds![Sphere, Paraboloid, Cylinder, Roller, FlatPunch, HeightMap];
+kinds! {
+    Sphere,
+    Paraboloid,
+    Cylinder,
+    Roller,
+    FlatPunch,
+    HeightMap,
+}
 
 /// Object of `class` that holds `shape`.
 pub(super) fn object<C: PyClass<BaseType = PyShape>>(

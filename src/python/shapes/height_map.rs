@@ -38,6 +38,8 @@ use crate::surface::HeightMap;
 pub(super) struct PyHeightMap;
 
 impl Kind for HeightMap {
+    type Class = PyHeightMap;
+
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let ([dx, dy], [x, y]) = (self.spacing(), self.center());
         let arguments = PyDict::new(py);

@@ -6,14 +6,6 @@ use pyo3::types::PyDict;
 use super::base::{Kind, PyShape, held, numbers, object};
 use crate::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 
-/// Adds the classes to the module.
-pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<PySphere>()?;
-    module.add_class::<PyParaboloid>()?;
-    module.add_class::<PyCylinder>()?;
-    module.add_class::<PyFlatPunch>()
-}
-
 /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
 ///
 /// Parameters
@@ -34,6 +26,8 @@ pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 pub(super) struct PySphere;
 
 impl Kind for Sphere {
+    type Class = PySphere;
+
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         numbers(py, [("radius", self.radius())])
     }
@@ -73,6 +67,8 @@ impl PySphere {
 pub(super) struct PyParaboloid;
 
 impl Kind for Paraboloid {
+    type Class = PyParaboloid;
+
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let radii = [("radius_x", self.radius_x()), ("radius_y", self.radius_y())];
         numbers(py, radii)
@@ -121,6 +117,8 @@ impl PyParaboloid {
 pub(super) struct PyCylinder;
 
 impl Kind for Cylinder {
+    type Class = PyCylinder;
+
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         numbers(py, [("radius", self.radius())])
     }
@@ -160,6 +158,8 @@ impl PyCylinder {
 pub(super) struct PyFlatPunch;
 
 impl Kind for FlatPunch {
+    type Class = PyFlatPunch;
+
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         numbers(py, [("radius", self.radius())])
     }

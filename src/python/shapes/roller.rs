@@ -42,6 +42,8 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 pub(super) struct PyRoller;
 
 impl Kind for Roller {
+    type Class = PyRoller;
+
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (flat_length, crown_radius) = match self.profile() {
             Profile::Crowned(p) => (Some(p.flat_length()), Some(p.crown_radius())),
