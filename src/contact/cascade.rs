@@ -7,19 +7,18 @@
 
 pub(super) mod discretisation;
 pub(super) mod levels;
-pub(super) mod patch;
 
 use ndarray::Array2;
 
 use super::problem::Problem;
+use super::problem::fields::{Fields, slice};
 use super::problem::freedoms::Freedoms;
-use super::solution::fields::{Fields, slice};
+use super::problem::patch::{Patch, bounds, enclosing, widened};
 use super::solver::{Outcome, StopCriteria, Termination, Watch};
 use crate::grid::full_window;
 use crate::surface::Surface;
 use discretisation::GridResult;
 use levels::{Level, Levels, halved};
-use patch::{Patch, bounds, enclosing, widened};
 
 /// Tolerance on level 1, with which the finest grid is compared; chosen by trial.
 const COARSE_TOLERANCE: f64 = 1e-5;

@@ -10,9 +10,11 @@
 
 pub(super) mod balance;
 pub(super) mod constraint;
+pub(super) mod fields;
 pub(super) mod fit;
 pub(super) mod freedoms;
 pub(super) mod load_point;
+pub(super) mod patch;
 
 use crate::convolution::{Convolution, Workspace};
 use crate::grid::Window;

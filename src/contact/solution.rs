@@ -1,7 +1,6 @@
 //! The solution of a contact.
 
 pub(super) mod carried;
-pub(super) mod fields;
 pub(super) mod gap;
 pub(super) mod report;
 mod stiffness;

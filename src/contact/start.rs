@@ -5,7 +5,7 @@ use std::sync::{Arc, Weak};
 use ndarray::{Array2, ArrayRef2};
 
 use super::problem::Problem;
-use super::solution::fields::{array, slice};
+use super::problem::fields::{array, slice};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::parallel::{ONE, Rows, all, sum};

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::discretisation::GridResult;
-use super::patch::{self, Patch, block, copied, enclosing, widened};
 use crate::contact::problem::Problem;
 use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::problem::patch::{self, Patch, block, copied, enclosing, widened};
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
 use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
 use crate::contact::start::checked_gaps;

@@ -2,8 +2,8 @@
 
 use ndarray::Array2;
 
-use crate::contact::cascade::patch::rows;
 use crate::contact::motion::Motion;
+use crate::contact::problem::patch::rows;
 use crate::grid::{Grid, Window};
 use crate::parallel::update_with_largest;
 

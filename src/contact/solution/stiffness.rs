@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::contact::Solution;
-use crate::contact::cascade::patch::{block, bounds};
 use crate::contact::options::Setup;
 use crate::contact::plan::total_coefficients;
 use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::patch::{block, bounds};
 use crate::contact::solver::linear_cg;
 use crate::convolution::{Convolution, Workspace};
 use crate::error::Result;

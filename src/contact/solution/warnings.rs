@@ -4,8 +4,8 @@ use std::fmt;
 
 use ndarray::Array2;
 
-use crate::contact::cascade::patch::rows;
 use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::patch::rows;
 use crate::grid::{Grid, Window};
 use crate::parallel::update_with_largest;
 use crate::surface::{Extent, Surface};

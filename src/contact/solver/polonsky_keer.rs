@@ -11,7 +11,7 @@ use super::conjugacy::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Termination, Watch};
 use crate::contact::problem::Problem;
 use crate::contact::problem::constraint::NonNegative;
-use crate::contact::solution::fields::{Fields, slice_mut};
+use crate::contact::problem::fields::{Fields, slice_mut};
 use crate::grid::full_window;
 
 /// Solves from the balanced pressure in `fields`, which becomes the solution.

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use crate::contact::cascade::patch::Patch;
+use crate::contact::problem::patch::Patch;
 use crate::contact::problem::{Multipliers, Problem, Quality};
 use crate::grid::Window;
 use crate::parallel::Rows;
