@@ -65,7 +65,7 @@ use crate::material::Elastic;
 /// let ball = Paraboloid::new(10.0, 10.0)?;
 /// let solution = contact.solve(&ball, &Motion::approach(0.1), &Options::default())?;
 /// // Below the middle p = k δ + 2G/R.
-/// assert!((solution.peak_pressure() / 0.3 - 1.0).abs() < 0.01);
+/// assert!((solution.central_pressure() / 0.3 - 1.0).abs() < 0.01);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 pub trait Response: fmt::Debug + Send + Sync {
