@@ -1,9 +1,8 @@
 //! Force and moments brought to their targets: a method of nacre's own.
 
-use super::constraint::NonNegative;
 use super::fit::{add_gram, add_moments};
 use super::freedoms::Freedoms;
-use crate::parallel::{all, sum};
+use crate::parallel::{all, sum, where_positive};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
@@ -78,7 +77,7 @@ impl Freedoms {
         let balanced = largest(mismatch) <= ROUNDINGS * rounding(force);
         if balanced || descends {
             self.for_each(mu, |k, b| {
-                pressure[k] *= NonNegative.nearest(1.0 + b);
+                pressure[k] *= (1.0 + b).max(0.0);
             });
         }
         balanced
@@ -91,7 +90,7 @@ impl Freedoms {
             let along = 1.0 + mu[0] + mu[1] * x;
             let row = sum([&p[row], &self.columns[1]], |[p, y]| {
                 let factor = all(along) + all(mu[2]) * y;
-                let p = NonNegative.where_free(factor, p * factor);
+                let p = where_positive(factor, p * factor);
                 [p, p * y]
             });
             add_moments(&mut sums, x, row);
@@ -112,7 +111,7 @@ impl Freedoms {
         for (x, row) in self.rows() {
             let along = 1.0 + mu[0] + mu[1] * x;
             let row = sum([&p[row], &self.columns[1]], |[p, y]| {
-                let p = NonNegative.where_free(all(along) + all(mu[2]) * y, p);
+                let p = where_positive(all(along) + all(mu[2]) * y, p);
                 [p, p * y, p * y * y]
             });
             add_gram(&mut gram, x, row);
