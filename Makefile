@@ -21,7 +21,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test check bench peers develop stubs docs
+.PHONY: help demo test check bench peers develop stubs docs publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -62,10 +62,16 @@ peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--qu
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)
 	$(BIN)/maturin develop --release
-	$(BIN)/python -m pip install --quiet 'nacre[all]'  # the extras of the nacre just installed
+	$(BIN)/python -m pip install --quiet 'nacre-contact[all]'  # the extras of the nacre just installed
 
 stubs: $(WHEEL) $(DEV) ## compare the type stubs with the compiled module
 	$(BIN)/python -m mypy.stubtest nacre._core
+
+# Nothing is uploaded: cargo and twine say whether the crate, the wheel and the source distribution would be accepted.
+publishable: $(WHEEL) $(DEV) ## dry run of both publications: the crate and the distribution
+	cargo publish --dry-run --target-dir $(TARGET)/publish
+	$(BIN)/maturin sdist --out $(TARGET)/wheels
+	$(BIN)/twine check --strict $(TARGET)/wheels/*.whl $(TARGET)/wheels/*.tar.gz
 
 # The pictures of the gallery are computed; a warning is an error. The Rust documentation goes to rust/.
 docs: $(WHEEL) $(DOCS) ## build the documentation as a site: docs/_build/html/index.html

@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent / "extensions"))  # drawings
 
 project = "nacre"
 author = copyright = "The nacre developers"
-version = release = version_of("nacre")
+version = release = version_of("nacre-contact")
 
 extensions = [
     "myst_parser",

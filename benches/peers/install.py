@@ -26,7 +26,7 @@ def prepare(folder: Path, wheels: Path) -> Path:
     python = folder / "bin" / "python"
     if not python.exists():
         venv.create(folder, with_pip=True)
-    found = sorted(wheels.glob("nacre-*.whl"), key=lambda wheel: wheel.stat().st_mtime)
+    found = sorted(wheels.glob("nacre_contact-*.whl"), key=lambda wheel: wheel.stat().st_mtime)
     if not found:
         raise SystemExit(f"peers: no wheel of nacre in {wheels}; make peers builds it")
     wanted = ["scipy", "matplotlib", str(found[-1])]

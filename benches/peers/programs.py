@@ -183,7 +183,7 @@ PROGRAMS: dict[str, type[Program]] = {
     "ContactMechanics": ContactMechanics,
 }
 PACKAGES = {
-    "nacre": "nacre",
+    "nacre": "nacre-contact",
     "ASPHER": "aspher",
     "Tamaas": "tamaas",
     "ContactMechanics": "ContactMechanics",

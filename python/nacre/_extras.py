@@ -13,5 +13,5 @@ def extra(name: str) -> Iterator[None]:
         yield
     except ModuleNotFoundError as missing:
         library = (missing.name or "a library").partition(".")[0]
-        message = f"this needs {library}: pip install 'nacre[{name}]'"
+        message = f"this needs {library}: pip install 'nacre-contact[{name}]'"
         raise ModuleNotFoundError(message, name=missing.name) from missing

@@ -1,6 +1,6 @@
 """The command ``nacre``.
 
-The command needs the extra ``nacre[cli]``. Its exit code is 0 if everything converged, 1 if
+The command needs the extra ``nacre-contact[cli]``. Its exit code is 0 if everything converged, 1 if
 something failed, 2 for bad input and 130 after Ctrl-C.
 """
 
@@ -37,7 +37,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         from nacre._commands import app
         from nacre.case import CaseError
     except ModuleNotFoundError as missing:
-        return _fail(f"the command line needs {missing.name}: pip install 'nacre[cli]'", 2)
+        return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 
     import nacre
 

@@ -124,7 +124,7 @@ def save(
 
 
 def load(path: AnyPath) -> core.Solution:
-    """Solution from a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre[files]``.
+    """Solution from a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre-contact[files]``.
 
     Parameters
     ----------

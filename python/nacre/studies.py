@@ -42,7 +42,7 @@ def sweep(
     progress: bool | None = None,
     retry: bool = False,
 ) -> xarray.Dataset:
-    """Study that solves every combination of parameters; needs ``nacre[files]``.
+    """Study that solves every combination of parameters; needs ``nacre-contact[files]``.
 
     A case that fails is recorded, and does not stop the others. With a `store`, a study that was
     killed continues when the same call is made again.

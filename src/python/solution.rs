@@ -435,7 +435,7 @@ impl PySolution {
         PyReport(self.solution.report.clone())
     }
 
-    /// Draws map, sections and key figures; needs ``nacre[plot]``.
+    /// Draws map, sections and key figures; needs ``nacre-contact[plot]``.
     ///
     /// Parameters
     /// ----------
@@ -467,7 +467,7 @@ impl PySolution {
         call(slf, "nacre.plot", "overview", (axes,))
     }
 
-    /// Draws the pressure as a relief; needs ``nacre[plot]``, or ``nacre[view]`` to turn it by hand.
+    /// Draws the pressure as a relief; needs ``nacre-contact[plot]``, or ``nacre-contact[view]`` to turn it by hand.
     ///
     /// Parameters
     /// ----------
@@ -503,7 +503,7 @@ impl PySolution {
         }
     }
 
-    /// Draws a quantity along x or y; needs ``nacre[plot]``.
+    /// Draws a quantity along x or y; needs ``nacre-contact[plot]``.
     ///
     /// Parameters
     /// ----------
@@ -542,7 +542,7 @@ impl PySolution {
         call(slf, "nacre.plot", "section", (along, at, quantity, axes))
     }
 
-    /// Dataset of the fields, with coordinates, units and the whole problem; needs ``nacre[files]``.
+    /// Dataset of the fields, with coordinates, units and the whole problem; needs ``nacre-contact[files]``.
     ///
     /// Returns
     /// -------
@@ -559,7 +559,7 @@ impl PySolution {
         call(slf, "nacre.files", "to_xarray", ())
     }
 
-    /// Writes a file, whole or not at all; needs ``nacre[files]``.
+    /// Writes a file, whole or not at all; needs ``nacre-contact[files]``.
     ///
     /// Parameters
     /// ----------

@@ -78,7 +78,7 @@ def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
-    assert f"nacre[{extra}]" in done.stderr
+    assert f"nacre-contact[{extra}]" in done.stderr
 
 
 def test_missing_matplotlib_is_named_before_solving(tmp_path: Path) -> None:
@@ -88,7 +88,7 @@ def test_missing_matplotlib_is_named_before_solving(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert "nacre[plot]" in done.stderr
+    assert "nacre-contact[plot]" in done.stderr
     assert "Traceback" not in done.stderr
     assert list(tmp_path.iterdir()) == []
 

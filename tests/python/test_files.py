@@ -331,6 +331,6 @@ def test_a_missing_extra_is_named(missing: str, extra: str, call: str, tmp_path:
     command = [sys.executable, str(script)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert done.stderr.splitlines()[-1] == (
-        f"ModuleNotFoundError: this needs {missing}: pip install 'nacre[{extra}]'"
+        f"ModuleNotFoundError: this needs {missing}: pip install 'nacre-contact[{extra}]'"
     )
     assert [path.name for path in tmp_path.iterdir()] == ["script.py"]

@@ -42,4 +42,4 @@ def test_printing_a_solution_needs_nothing_else() -> None:
 
 
 def test_the_version_is_that_of_the_package() -> None:
-    assert nacre.__version__ == version("nacre")
+    assert nacre.__version__ == version("nacre-contact")

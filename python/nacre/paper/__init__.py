@@ -80,7 +80,7 @@ def run(
     try:
         from nacre.paper import figures
     except ModuleNotFoundError as missing:
-        message = f"figures need {missing.name}: pip install 'nacre[plot]'"
+        message = f"figures need {missing.name}: pip install 'nacre-contact[plot]'"
         raise ModuleNotFoundError(message, name=missing.name) from missing
 
     out = Path(out)

@@ -80,7 +80,7 @@ impl PyHeightMap {
 
     /// Reads a measured surface from a file.
     ///
-    /// Files of instruments are read by SurfaceTopography, with ``nacre[surfaces]``. Missing points are
+    /// Files of instruments are read by SurfaceTopography, with ``nacre-contact[surfaces]``. Missing points are
     /// filled smoothly from their surroundings; a `nacre.NacreWarning` tells how many there were.
     ///
     /// Parameters
