@@ -5,7 +5,7 @@
 //! ```
 //!
 //! [`Method::Exact`] evaluates it without aliasing. The other methods sample the frequency
-//! response and transform it back, as the paper does: they cost an inverse FFT of χ² times as many
+//! response and transform it back, as Spinu et al. do: they cost an inverse FFT of χ² times as many
 //! points, and carry the errors that their descriptions state.
 
 use ndarray::{Array2, Zip};

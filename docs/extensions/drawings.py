@@ -11,7 +11,7 @@ from nacre.paper.figures import Drawing
 
 
 def scraper(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
-    """Show each figure of the paper that a block of an example has drawn."""
+    """Show each figure of Spinu et al. that a block of an example has drawn."""
     shown = variables.setdefault("drawings_shown", set())
     paths = []
     for name, value in variables["example_globals"].items():

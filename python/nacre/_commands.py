@@ -59,7 +59,7 @@ def paper(
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Coarse grids, for a first look.")] = False,
 ) -> None:
-    """Solve the contacts of the paper and draw its figures.
+    """Solve the contacts of Spinu et al. and draw their figures.
 
     A coated sphere and a coated roller of finite length, for five ratios of moduli each: a table
     here, six figures (PNG) and all numbers (CSV) under OUT.
@@ -132,9 +132,9 @@ def _print_results(console: Console, results: list[Result]) -> None:
 
 
 def _print_claims(console: Console, results: list[Result]) -> None:
-    """Print the cases in which the paper's closing claim holds."""
+    """Print the cases in which the closing claim of Spinu et al. holds."""
     console.print(
-        "\n[bold]The closing claim of the paper[/bold]\n"
+        "\n[bold]The closing claim of Spinu et al.[/bold]\n"
         "A compliant coating (E₁ < E₂) brings a smaller riser and a larger contact area than "
         "E₁ = E₂. Changes of riser and area:"
     )

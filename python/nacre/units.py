@@ -26,6 +26,20 @@ UNITS = {
     "interface_tension": "Pa",
 }
 """Units of a solution's quantities, and of the stresses that studies keep."""
+PARAMETERS = {
+    "load": "N",
+    "approach": "m",
+    "eccentricity": "m",
+    "moment": "N m",
+    "tilt": "rad",
+    "young": "Pa",
+    "thickness": "m",
+    "radius": "m",
+    "crown_radius": "m",
+    "flat_length": "m",
+    "depth": "m",
+}
+"""Units of a study's parameters, by the name of the argument."""
 
 
 @dataclass(frozen=True)

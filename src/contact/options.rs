@@ -24,7 +24,7 @@ pub enum Algorithm {
     /// Preconditioned conjugate gradients on nested grids, in a window around the contact.
     #[default]
     Cascade,
-    /// The constrained conjugate gradients of Polonsky & Keer, which the paper uses, as a reference.
+    /// The constrained conjugate gradients of Polonsky & Keer, which Spinu et al. use, as a reference.
     PolonskyKeer,
 }
 

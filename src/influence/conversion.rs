@@ -1,4 +1,4 @@
-//! The paper's conversion (Spinu et al.): sample the response, transform it back, keep the middle.
+//! The conversion of Spinu et al.: sample the response, transform it back, keep the middle.
 //!
 //! 1. A mesh of step Δ, N points and refinement χ is chosen: 2χN points in each direction, of
 //!    which the spectral step is 2π/(2χNΔ). (The paper prints 2π/(NΔ).)

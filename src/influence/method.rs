@@ -22,7 +22,7 @@ pub enum Method {
     /// Love's closed form for the surface material, and the sampled rest of the response times the
     /// transform of the cell. 6e-4 and 4e-2; goes wrong on long thin domains, where the rest, which
     /// falls off like the substrate's 1/r, meets its periodic images (by 3 % at the loaded cell of
-    /// the paper's roller).
+    /// the roller of Spinu et al.).
     Difference {
         /// Refinement χ of the spectral mesh.
         refinement: usize,

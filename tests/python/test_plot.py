@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy.typing as npt
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 import nacre
@@ -345,3 +347,65 @@ def test_bad_stress_pictures(coated: nacre.Solution, ball: nacre.Solution) -> No
         plot.interface_map(coated, quantity="xx")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"^a solution must have layers for a map of an interface"):
         plot.interface_map(ball)
+
+
+def test_settings_of_the_user_stay(ball: nacre.Solution) -> None:
+    # A backend that is loaded by the first figure may switch the interactive mode on.
+    before = dict(mpl.rcParams)
+    with plot.style.styled():
+        mpl.rcParams["interactive"] = not before["interactive"]
+    assert mpl.rcParams["interactive"] is not before["interactive"]
+    mpl.rcParams["interactive"] = before["interactive"]
+    assert dict(mpl.rcParams) == before
+
+
+def test_an_outline_is_thinner_than_what_it_surrounds(ball: nacre.Solution) -> None:
+    def width(axes: Axes) -> float:
+        (outline,) = (c for c in axes.collections if isinstance(c, ContourSet))
+        return float(outline.get_linewidths()[0])
+
+    assert width(plot.pressure_map(ball)) == plot.style.THICKEST
+    # Ridges 10 µm wide on a map of 1 mm.
+    x = np.linspace(-5e-4, 5e-4, 256)
+    ridges = np.broadcast_to(2e-6 * np.cos(2 * np.pi * x / 6e-5)[:, np.newaxis], (256, 256))
+    surface = nacre.HeightMap(np.ascontiguousarray(ridges), spacing=(1e-3 / 256, 1e-3 / 256))
+    rough = nacre.solve(surface, STEEL, load=5.0, check=False)
+    axes = plot.pressure_map(rough)
+    patch = 72 * axes.get_window_extent().width / axes.figure.dpi * 16 / 256  # a whole ridge [pt]
+    assert 0 < width(axes) < patch / 6
+
+
+def test_curves_of_one_picture_differ(tilted: nacre.Solution) -> None:
+    axes = tilted.plot_section("y")
+    axes.axhline(0.1)  # a line of the user's own does not count
+    tilted.plot_section("y", at=2e-3, axes=axes)
+    first, _, second = axes.lines
+    assert [first.get_color(), second.get_color()] == list(plot.style.COLOURS[:2])
+    curve = design.tilt_curve(ROLLER, STEEL, [0.0, 1e-4], load=1e3, grid=LONG, tolerance=1e-4)
+    axes = plot.curve(curve, "moment")
+    plot.curve(curve, "moment", axes)
+    assert axes.get_xlabel() == "tilt [µrad]"
+    assert curve_of(axes)[0].tolist() == [0.0, 100.0]
+    first, second = axes.lines
+    assert first.get_color() != second.get_color()
+
+
+def test_axes_of_a_user_s_own_sweep_have_units() -> None:
+    study = nacre.sweep(
+        {"shape": nacre.Sphere(5e-3), "body": STEEL, "tolerance": 1e-4},
+        {"load": [1.0, 10.0, 100.0, 1e3, 1e4]},
+        outputs=["peak_pressure"],
+        progress=False,
+    )
+    axes = plot.curve(study, "peak_pressure")
+    assert (axes.get_xlabel(), axes.get_xscale()) == ("load [N]", "log")
+    drawn(axes.figure)
+    labels = [label for label in axes.get_xticklabels() if label.get_text()]
+    boxes = [label.get_window_extent() for label in labels]
+    assert len(boxes) >= 3
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
+
+
+def test_titles_say_what_is_drawn(coated: nacre.Solution) -> None:
+    title = plot.stress_section(coated, rows=6).get_title(loc="left")
+    assert "the cross marks the largest value" in title

@@ -34,6 +34,6 @@ for (name, body), colour in zip(bodies.items(), ("#0072B2", "#D55E00"), strict=T
     tangent = upright.stiffness()
     slope = tangent[1, 1] - tangent[0, 1] ** 2 / tangent[0, 0]
     print(f"{name:18} {slope / 1e3:.1f} N m per mrad")
-    axes.plot(tilts, slope * tilts, color="0.6", linewidth=0.8, zorder=0)
+    axes.plot(1e3 * tilts, slope * tilts, color="0.6", linewidth=0.8, zorder=0)
 axes.set_ylim(0, 6)
 axes.legend(frameon=False)

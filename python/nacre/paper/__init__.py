@@ -1,4 +1,4 @@
-"""The cases and figures of the paper: a coated sphere and a coated roller of finite length.
+"""The cases and figures of Spinu et al.: a coated sphere and a coated roller of finite length.
 
 ``nacre paper`` runs this. From Python, ``nacre.paper.run("out")`` solves every case and writes
 table and figures; ``nacre.paper.solve()`` only solves.
@@ -53,7 +53,7 @@ def run(
     quick: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> list[Result]:
-    """Solve every case of the paper and write table, figures and their numbers.
+    """Solve every case of Spinu et al. and write table, figures and their numbers.
 
     Parameters
     ----------

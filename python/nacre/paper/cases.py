@@ -1,4 +1,4 @@
-"""The contacts of the paper, a coated sphere and a coated roller of finite length, solved."""
+"""The contacts of Spinu et al., a coated sphere and a coated roller of finite length, solved."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def solve(
     quick: bool = False,
     progress: Callable[[int, int], object] | None = None,
 ) -> list[Result]:
-    """Solve every case of the paper.
+    """Solve every case of Spinu et al.
 
     Parameters
     ----------

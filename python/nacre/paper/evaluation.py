@@ -1,4 +1,4 @@
-"""Evaluation of the solved contacts: the table, the paper's claim, the sphere and its reference."""
+"""Evaluation of the solved contacts: the table, the claim of Spinu et al., the sphere and its reference."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ NO_BREAK_SPACE = "\u00a0"
 
 @dataclass(frozen=True)
 class Claim:
-    """Whether a coating brings what the paper claims: a smaller riser and a larger contact area.
+    """Whether a coating brings what Spinu et al. claim: a smaller riser and a larger contact area.
 
     `riser` and `area` are relative changes against E1 = E2.
     """

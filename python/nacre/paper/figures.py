@@ -1,4 +1,4 @@
-"""The six figures of the paper, drawn with Matplotlib at the width of a page."""
+"""The six figures of Spinu et al., drawn with Matplotlib at the width of a page."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from nacre.paper.cases import (
     of_series,
 )
 from nacre.paper.evaluation import references, sphere_profile, thickness_note
-from nacre.plot.style import STYLE, WIDTH
+from nacre.plot.style import styled, WIDTH
 
 # Colours of the palette of Okabe and Ito: soft coatings cold, stiff ones warm.
 COLOURS = ("#0072B2", "#56B4E9", "#000000", "#E69F00", "#D55E00")
@@ -72,11 +72,11 @@ def figure(number: int, results: Iterable[Result]) -> Drawing:
     Raises
     ------
     ValueError
-        If the paper has no figure of that number.
+        If Spinu et al. have no figure of that number.
     """
     if number not in FIGURES:
         raise ValueError(f"number must be one of {', '.join(map(str, FIGURES))}, got {number!r}")
-    with mpl.rc_context(STYLE):
+    with styled():
         return FIGURES[number](list(results))
 
 

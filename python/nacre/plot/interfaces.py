@@ -11,11 +11,10 @@ import numpy.typing as npt
 from nacre._core import Solution, Stress
 from nacre._extras import extra
 from nacre.plot.stress import around, body_of, colourbar
-from nacre.plot.style import COLOURMAP, SIGNED, STYLE, lengths, new_axes
+from nacre.plot.style import COLOURMAP, SIGNED, lengths, new_axes, outline, styled
 from nacre.units import Scale, written
 
 with extra("plot"):
-    import matplotlib as mpl
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
@@ -88,7 +87,7 @@ def interface_map(
     scale = Scale.of(np.abs(values).max(), "Pa")
     largest = scale.factor * np.abs(values).max() or 1.0
     signed = quantity == "normal"
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(0.7, 0.5)
         corners = [
             length.factor * np.linspace(*side, cells + 1)
@@ -104,10 +103,6 @@ def interface_map(
         )
         axes.grid(visible=False)
         colourbar(axes, mesh, f"{quantity} traction [{scale.unit}]")
-        if solution.contact_area > 0:
-            inside = solution.in_contact.astype(float).T
-            x, y = across.factor * solution.x, up.factor * solution.y
-            axes.contour(x, y, inside, levels=[0.5], colors="black", linewidths=0.7)
         if not signed and np.any(values):
             _arrows(axes, field, (across.factor, up.factor), window)
         axes.set(
@@ -116,6 +111,7 @@ def interface_map(
             xlim=across.factor * window[0],
             ylim=up.factor * window[1],
         )
+        outline(axes, solution, (across.factor, up.factor))
         if same:
             axes.set_aspect("equal")
         said = "the contact outlined" if same else "x and y to different scales"

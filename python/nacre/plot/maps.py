@@ -11,11 +11,10 @@ from nacre._core import Solution
 from nacre._display import figures
 from nacre._extras import extra
 from nacre.plot.sections import section
-from nacre.plot.style import COLOURMAP, STYLE, WIDTH, lengths, new_axes
+from nacre.plot.style import COLOURMAP, WIDTH, lengths, new_axes, outline, styled
 from nacre.units import Scale
 
 with extra("plot"):
-    import matplotlib as mpl
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
 
@@ -42,7 +41,7 @@ def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) 
         If there is no part of that name.
     """
     line = solution.report.grid.is_line
-    with mpl.rc_context(STYLE):
+    with styled():
         if axes is None:
             layout: list[Any] = [["y", "figures"]] if line else [["map", "figures"], ["x", "y"]]
             size = (WIDTH, (0.42 if line else 0.78) * WIDTH)
@@ -99,7 +98,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         window = np.clip(contact + margin * [-1, 1], window[:, :1], window[:, 1:])
     scales, same = lengths(window)
     scale = Scale.of(solution.peak_pressure, "Pa")
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(0.7, 0.5)
         corners = [
             factor * np.linspace(low, high, cells + 1)
@@ -115,23 +114,23 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
         axes.grid(visible=False)
         colourbar: Any = axes.figure.colorbar(mesh, ax=axes, label=f"pressure [{scale.unit}]")
         colourbar.outline.set_linewidth(0.6)
-        x, y = scales[0].factor * solution.x, scales[1].factor * solution.y
-        if 0 < solution.contact_area:
-            inside = solution.in_contact.astype(float)
-            axes.contour(x, y, inside.T, levels=[0.5], colors="black", linewidths=0.7)
-            at = [
-                length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
-            ]
-            for colour, width in (("black", 2.6), ("white", 1.2)):
-                style: dict[str, Any] = {"marker": "+", "markersize": 8, "markeredgewidth": width}
-                axes.plot(*at, color=colour, linestyle="none", **style)
         axes.set(
             xlabel=f"x [{scales[0].unit}]",
             ylabel=f"y [{scales[1].unit}]",
             xlim=scales[0].factor * window[0],
             ylim=scales[1].factor * window[1],
         )
-        title = "+ resultant force" if solution.contact_area > 0 else "nothing touches"
+        outline(axes, solution, [length.factor for length in scales])
+        if 0 < solution.contact_area:
+            at = [
+                length.factor * e for length, e in zip(scales, solution.eccentricity, strict=True)
+            ]
+            for colour, width in (("black", 2.6), ("white", 1.2)):
+                style: dict[str, Any] = {"marker": "+", "markersize": 8, "markeredgewidth": width}
+                axes.plot(*at, color=colour, linestyle="none", **style)
+        title = "nothing touches"
+        if solution.contact_area > 0:
+            title = "contact outlined; the cross marks the resultant force"
         if same:
             axes.set_aspect("equal")
         else:

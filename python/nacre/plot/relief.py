@@ -9,11 +9,10 @@ import numpy.typing as npt
 
 from nacre._core import Solution
 from nacre._extras import extra
-from nacre.plot.style import COLOURMAP, STYLE, WIDTH
+from nacre.plot.style import COLOURMAP, WIDTH, styled
 from nacre.units import Scale
 
 with extra("plot"):
-    import matplotlib as mpl
     import matplotlib.pyplot as plt
 
 MOST = 120
@@ -43,7 +42,7 @@ def relief(solution: Solution, axes: Any = None) -> Any:
     x, y, pressure = _contact(solution)
     lengths = [Scale.of(np.abs(side).max(), "m") for side in (x, y)]
     scale = Scale.of(solution.peak_pressure, "Pa")
-    with mpl.rc_context(STYLE):
+    with styled():
         if axes is None:
             figure = plt.figure(figsize=(WIDTH, 0.6 * WIDTH))
             axes = figure.add_axes((0.0, 0.0, 0.94, 1.05), projection="3d")

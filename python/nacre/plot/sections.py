@@ -10,11 +10,10 @@ import numpy.typing as npt
 
 from nacre._core import Solution
 from nacre._extras import extra
-from nacre.plot.style import STYLE, look, new_axes
+from nacre.plot.style import look, new_axes, next_look, styled
 from nacre.units import UNITS, Scale, written
 
 with extra("plot"):
-    import matplotlib as mpl
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
@@ -59,12 +58,12 @@ def section(
         If there is no such direction or quantity, or the place is off the grid.
     """
     position, values, place = cut(solution, along, at, quantity)
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(1.0, 0.5)
         window = _window(solution, along, quantity)
         length = Scale.of(np.abs(window).max(), "m")
         scale = Scale.of(_shown(position, values, window).max(initial=0.0), UNITS[quantity])
-        axes.plot(length.factor * position, scale.factor * values, **(look(0) | style))
+        axes.plot(length.factor * position, scale.factor * values, **(next_look(axes) | style))
         _finish(axes, along, window, length, scale, quantity)
         if quantity != "line_load":
             other = "y" if along == "x" else "x"
@@ -118,7 +117,7 @@ def compare(
     window = np.array([windows[:, 0].min(), windows[:, 1].max()])
     largest = max(_shown(x, v, window).max(initial=0.0) for x, v, _ in cuts.values())
     length, scale = Scale.of(np.abs(window).max(), "m"), Scale.of(largest, UNITS[quantity])
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(1.0, 0.55)
         for number, (name, (position, values, _)) in enumerate(cuts.items()):
             label = f"{name} (peak {written(solutions[name].peak_pressure, 'Pa', 3)})"

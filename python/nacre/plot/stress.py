@@ -11,11 +11,10 @@ import numpy.typing as npt
 
 from nacre._core import HalfSpace, Solution, Stress
 from nacre._extras import extra
-from nacre.plot.style import COLOURMAP, SIGNED, STYLE, lengths, look, new_axes
+from nacre.plot.style import COLOURMAP, SIGNED, lengths, look, new_axes, styled
 from nacre.units import Scale, written
 
 with extra("plot"):
-    import matplotlib as mpl
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
@@ -107,7 +106,7 @@ def stress_section(
     scale = Scale.of(np.abs(values).max(initial=0.0), "Pa")
     signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
     largest = scale.factor * np.abs(values).max(initial=0.0) or 1.0
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(0.75, 0.45)
         mesh = axes.pcolormesh(
             across.factor * sides,
@@ -132,7 +131,8 @@ def stress_section(
         axes.set_xlim(across.factor * low, across.factor * high)
         axes.set_ylim(down.factor * bottom, 0.0)
         other = "y" if along == "x" else "x"
-        title = f"at {other} = {written(at, 'm', 3)};  + {written(float(values.max()), 'Pa', 3)}"
+        title = f"at {other} = {written(at, 'm', 3)}; the cross marks the largest value, "
+        title += written(float(values.max()), "Pa", 3)
         if same:
             axes.set_aspect("equal")
         else:
@@ -205,7 +205,7 @@ def stress_depth(
     drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
     length = Scale.of(bottom, "m")
     scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(1.0, 0.5)
         for number, (quantity, values) in enumerate(zip(quantities, drawn, strict=True)):
             curve = (length.factor * z[order], scale.factor * values)

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from nacre._extras import extra
-from nacre.plot.style import COLOURMAP, STYLE, look, new_axes
-from nacre.units import UNITS, Scale
+from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
+from nacre.units import PARAMETERS, UNITS, Scale
 
 with extra("plot"):
-    import matplotlib as mpl
     from matplotlib.axes import Axes
     from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -44,7 +43,7 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
     field = _quantity(study, quantity, 2)
     x, y = (study[str(name)] for name in field.dims)
     scale = _scale(field, quantity)
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(0.7, 0.5)
         sides = [_side(axes, "x", x), _side(axes, "y", y)]
         values = scale.factor * field.values.T
@@ -85,10 +84,10 @@ def curve(
     """
     field = _quantity(study, quantity, 1)
     scale = _scale(field, quantity)
-    with mpl.rc_context(STYLE):
+    with styled():
         axes = axes or new_axes(0.6, 0.42)
         x = _side(axes, "x", study[str(field.dims[0])])
-        axes.plot(x, scale.factor * field.values, **(look(0) | {"marker": "o", "ms": 3} | style))
+        axes.plot(x, scale.factor * field.values, **(next_look(axes) | {"marker": "o", "ms": 3} | style))
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
     return axes
 
@@ -118,13 +117,16 @@ def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:
     steps = np.diff(numbers)
     wide = numbers.min() > 0 and numbers.max() >= 8 * numbers.min() and steps[-1] > 3 * steps[0]
     typical = np.sqrt(numbers.min() * numbers.max()) if wide else np.abs(numbers).max()
-    scale = Scale.of(float(typical), values.attrs.get("units", ""))
-    name = values.attrs.get("long_name", str(values.name).rpartition(".")[2].replace("_", " "))
+    parameter = str(values.name).rpartition(".")[2]
+    scale = Scale.of(float(typical), values.attrs.get("units", PARAMETERS.get(parameter, "")))
+    name = values.attrs.get("long_name", parameter.replace("_", " "))
     label = f"{name} [{scale.unit}]" if scale.unit else name
     axes.set(**{f"{side}label": label, f"{side}scale": "log" if wide else "linear"})
     axis = getattr(axes, f"{side}axis")
     if wide:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        # Labels at 1, 2 and 5 would collide over more than two decades.
+        short = numbers.max() <= 100 * numbers.min()
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if short else (1,)))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(NullFormatter())
     elif not scale.unit:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +13,12 @@ from nacre._extras import extra
 from nacre.units import Scale
 
 with extra("plot"):
+    import matplotlib as mpl
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
+
+if TYPE_CHECKING:
+    from nacre._core import Solution
 
 WIDTH = 18 / 2.54
 """Width of a page between its margins [inch]."""
@@ -45,8 +50,27 @@ DASHES = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (6, 1.5, 1, 1.5)), (0, (1, 0.7)))
 COLOURMAP = "viridis"
 SIGNED = "RdBu_r"
 """Colours of a quantity that may be tension or compression."""
+CURVE = "nacre-curve"
+"""Group that marks the curves that nacre drew."""
+THICKEST = 0.7
+"""Largest width of an outline [points]."""
 LONGEST = 6.0
 """Side ratio up to which a picture is true to scale."""
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw in the style of nacre.
+
+    Only these settings are put back afterwards. Matplotlib's ``rc_context`` puts back all of them, also
+    the interactive mode, which a notebook's backend switches on when the first figure loads it.
+    """
+    before = {name: mpl.rcParams[name] for name in STYLE}
+    mpl.rcParams.update(STYLE)
+    try:
+        yield
+    finally:
+        mpl.rcParams.update(before)
 
 
 def new_axes(width: float, height: float) -> Axes:
@@ -60,6 +84,11 @@ def look(number: int) -> dict[str, Any]:
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
 
 
+def next_look(axes: Axes) -> dict[str, Any]:
+    """Return colour and dashes for one more curve of nacre in these axes."""
+    return look(sum(line.get_gid() == CURVE for line in axes.lines)) | {"gid": CURVE}
+
+
 def lengths(window: Sequence[npt.ArrayLike] | npt.NDArray[np.float64]) -> tuple[list[Scale], bool]:
     """Return the scales of both sides of a picture, and whether they are the same."""
     sides = np.asarray(window, dtype=np.float64)
@@ -67,3 +96,36 @@ def lengths(window: Sequence[npt.ArrayLike] | npt.NDArray[np.float64]) -> tuple[
     scales = [Scale.of(float(np.abs(side).max()), "m") for side in sides]
     same = bool(widths.max() <= LONGEST * widths.min())
     return ([min(scales, key=lambda scale: scale.factor)] * 2 if same else scales), same
+
+
+def outline(axes: Axes, solution: Solution, factors: Sequence[float]) -> None:
+    """Draw the outline of the contact; a patch gets a line of a sixth of its mean width at most."""
+    inside = solution.in_contact
+    if not inside.any():
+        return
+    # Cells of contact per run of such cells, along each side, in points of the picture.
+    width = min(
+        inside.sum() / (np.diff(inside.astype(np.int8), axis=axis, prepend=0) == 1).sum() * points
+        for axis, points in enumerate(_points_per_cell(axes, solution, factors))
+    )
+    axes.contour(
+        factors[0] * solution.x,
+        factors[1] * solution.y,
+        inside.T.astype(float),
+        levels=[0.5],
+        colors="black",
+        linewidths=min(THICKEST, float(width) / 6),
+    )
+
+
+def _points_per_cell(axes: Axes, solution: Solution, factors: Sequence[float]) -> list[float]:
+    """Return the sides of a cell in the picture [points], once its limits are set."""
+    box = axes.get_window_extent()
+    spacing = solution.report.grid.spacing
+    shown = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim())]
+    return [
+        72 / axes.figure.dpi * pixels * factor * side / width
+        for pixels, factor, side, width in zip(
+            (box.width, box.height), factors, spacing, shown, strict=True
+        )
+    ]

@@ -1,4 +1,4 @@
-//! The constrained conjugate gradient method of Polonsky and Keer, which the paper uses.
+//! The constrained conjugate gradient method of Polonsky and Keer, which Spinu et al. use.
 //!
 //! Polonsky & Keer, Wear 231 (1999) 206, doi:10.1016/S0043-1648(99)00113-1. Departures:
 //!

@@ -47,15 +47,24 @@ macro_rules! motion_docs {
     () => {
         "\
 load : float, optional
-    Force W [N], above 0.
+    Force W that presses the bodies together [N], above 0; a force per length [N/m] on a
+    `Grid.line`. Either `load` or `approach` is given.
 approach : float, optional
-    Approach of the origin [m], from the datum h = 0.
+    Distance by which the shape moves towards the body at x = y = 0 [m], from the position in
+    which the plane h = 0 of the shape lies on the surface of the body. Below 0 the bodies are
+    apart.
 eccentricity : tuple of float or None, optional
-    Point where the load acts, ``(e_x, e_y)`` [m].
+    Point ``(e_x, e_y)`` at which the load acts [m]. Along a direction with a number the shape is
+    free to tilt, and the tilt that balances the moment is found; along a direction with None
+    it is not, and the tilt is 0 or what `tilt` says. It needs `load`, and the point must
+    lie inside the region that can touch.
 moment : tuple of float or None, optional
-    First moments of the pressure about the origin [N m].
+    First moments of the pressure about x = y = 0, ``(∬ p x dA, ∬ p y dA)`` [N m]: load times
+    eccentricity, for contacts under a given approach too. None has the meaning that it has in
+    `eccentricity`.
 tilt : tuple of float or None, optional
-    Slopes ``(s_x, s_y)``."
+    Slopes ``(s_x, s_y)`` by which the shape is turned [rad]: at positive x, a positive s_x brings
+    it nearer to the body. None stands for 0 along a direction without eccentricity or moment."
     };
 }
 
@@ -71,12 +80,13 @@ macro_rules! search_docs {
     () => {
         "\
 tolerance : float, optional
-    Largest residual and overlap of a converged solution.
+    Largest `Report.residual` and `Report.overlap` of a converged solution, both relative, above 0
+    and below 1.
 max_iterations : int, optional
     Iterations of one solve before it gives up; 10 000 by default.
 algorithm : {\"cascade\", \"polonsky-keer\"}, optional
     Preconditioned conjugate gradients on nested grids, in a window around the contact; or the
-    paper's solver (doi:10.1016/S0043-1648(99)00113-1), as a reference."
+    method of Polonsky and Keer (doi:10.1016/S0043-1648(99)00113-1), as a reference."
     };
 }
 
@@ -92,7 +102,8 @@ macro_rules! single_docs {
     () => {
         "\
 initial : Solution or array_like, optional
-    Pressure to start from ``(nx, ny)`` [Pa].
+    Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution near the one that is
+    sought, such as the previous one of a series. The result does not depend on it.
 progress : callable, optional
     Function that is called with a `Report` at each iteration; returning False stops, and gives
     the unfinished solution.

@@ -1,0 +1,40 @@
+"""Pictures in a notebook, run by a kernel of its own as Jupyter runs it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+FIRST = """\
+import nacre
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+axes = solution.plot()
+"""
+CELLS = (
+    FIRST,
+    "axes = solution.plot_section('x')",
+    "axes = solution.plot_3d()",
+    "from nacre import plot; axes = plot.stress_section(solution, rows=8)",
+)
+
+
+def images(outputs: list[dict[str, Any]]) -> int:
+    return sum("image/png" in output.get("data", {}) for output in outputs)
+
+
+def test_every_cell_of_a_notebook_shows_its_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("MPLBACKEND", raising=False)
+    v4 = nbformat.v4
+    notebook = v4.new_notebook(cells=[v4.new_code_cell(cell) for cell in CELLS])  # type: ignore[no-untyped-call]
+    client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
+    done = client.execute()
+    shown = [images(cell["outputs"]) for cell in done.cells]
+    assert shown == [1] * len(CELLS), json.dumps(done.cells[-1]["outputs"])[:500]
