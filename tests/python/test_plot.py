@@ -365,11 +365,11 @@ def test_an_outline_is_thinner_than_what_it_surrounds(ball: nacre.Solution) -> N
         return float(outline.get_linewidths()[0])
 
     assert width(plot.pressure_map(ball)) == plot.style.THICKEST
-    # Ridges 10 µm wide on a map of 1 mm.
+    # A ball with ridges, 60 µm from one to the next, on a map of 1 mm.
     x = np.linspace(-5e-4, 5e-4, 256)
     ridges = np.broadcast_to(2e-6 * np.cos(2 * np.pi * x / 6e-5)[:, np.newaxis], (256, 256))
     surface = nacre.HeightMap(np.ascontiguousarray(ridges), spacing=(1e-3 / 256, 1e-3 / 256))
-    rough = nacre.solve(surface, STEEL, load=5.0, check=False)
+    rough = nacre.solve(nacre.Sphere(5e-2) + surface, STEEL, load=100.0)
     axes = plot.pressure_map(rough)
     patch = 72 * axes.get_window_extent().width / axes.figure.dpi * 16 / 256  # a whole ridge [pt]
     assert 0 < width(axes) < patch / 6

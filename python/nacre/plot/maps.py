@@ -130,7 +130,7 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
                 axes.plot(*at, color=colour, linestyle="none", **style)
         title = "nothing touches"
         if solution.contact_area > 0:
-            title = "contact outlined; the cross marks the resultant force"
+            title = "the cross marks the resultant force"
         if same:
             axes.set_aspect("equal")
         else:

@@ -87,7 +87,9 @@ def curve(
     with styled():
         axes = axes or new_axes(0.6, 0.42)
         x = _side(axes, "x", study[str(field.dims[0])])
-        axes.plot(x, scale.factor * field.values, **(next_look(axes) | {"marker": "o", "ms": 3} | style))
+        axes.plot(
+            x, scale.factor * field.values, **(next_look(axes) | {"marker": "o", "ms": 3} | style)
+        )
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
     return axes
 
