@@ -362,7 +362,7 @@ def test_settings_of_the_user_stay(ball: nacre.Solution) -> None:
 def test_an_outline_is_thinner_than_what_it_surrounds(ball: nacre.Solution) -> None:
     def width(axes: Axes) -> float:
         (outline,) = (c for c in axes.collections if isinstance(c, ContourSet))
-        return float(outline.get_linewidths()[0])
+        return float(np.ravel(outline.get_linewidth())[0])
 
     assert width(plot.pressure_map(ball)) == plot.style.THICKEST
     # A ball with ridges, 60 µm from one to the next, on a map of 1 mm.

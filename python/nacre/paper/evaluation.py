@@ -1,4 +1,4 @@
-"""Evaluation of the solved contacts: the table, the claim of Spinu et al., the sphere and its reference."""
+"""Evaluation of the solved contacts: table, claim of Spinu et al., sphere and its reference."""
 
 from __future__ import annotations
 

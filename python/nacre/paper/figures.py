@@ -28,7 +28,7 @@ from nacre.paper.cases import (
     of_series,
 )
 from nacre.paper.evaluation import references, sphere_profile, thickness_note
-from nacre.plot.style import styled, WIDTH
+from nacre.plot.style import WIDTH, styled
 
 # Colours of the palette of Okabe and Ito: soft coatings cold, stiff ones warm.
 COLOURS = ("#0072B2", "#56B4E9", "#000000", "#E69F00", "#D55E00")

@@ -62,8 +62,8 @@ LONGEST = 6.0
 def styled() -> Iterator[None]:
     """Draw in the style of nacre.
 
-    Only these settings are put back afterwards. Matplotlib's ``rc_context`` puts back all of them, also
-    the interactive mode, which a notebook's backend switches on when the first figure loads it.
+    Only these settings are put back afterwards. Matplotlib's ``rc_context`` puts back all of them,
+    also the interactive mode, which a notebook's backend switches on when a figure first loads it.
     """
     before = {name: mpl.rcParams[name] for name in STYLE}
     mpl.rcParams.update(STYLE)
