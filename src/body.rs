@@ -1,6 +1,6 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
-use crate::error::{Result, positive};
+use crate::error::{Error, Result, positive};
 use crate::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
@@ -14,11 +14,19 @@ pub enum Interface {
 }
 
 /// One layer of uniform thickness, and the interface **below** it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// ```
+/// use nacre::{Elastic, Layer};
+/// let coating = Layer::new(Elastic::new(420e9, 0.3)?, 2e-6)?.with_name("DLC")?;
+/// assert_eq!(coating.name(), Some("DLC"));
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
     material: Elastic,
     thickness: f64,
     interface: Interface,
+    name: Option<String>,
 }
 
 impl Layer {
@@ -32,12 +40,34 @@ impl Layer {
             material,
             thickness,
             interface: Interface::Bonded,
+            name: None,
         })
     }
 
     /// This layer with `interface` below it.
     pub fn with_interface(self, interface: Interface) -> Self {
         Self { interface, ..self }
+    }
+
+    /// This layer with a name, which results and messages show.
+    ///
+    /// # Errors
+    /// For an empty text, one of several lines, a number (by which layers are counted) and "substrate".
+    pub fn with_name(self, name: impl Into<String>) -> Result<Self> {
+        let name = name.into();
+        // An empty text has digits only, too.
+        let counted = name.trim().bytes().all(|byte| byte.is_ascii_digit());
+        if counted || name == "substrate" || name.contains(char::is_control) {
+            return Err(Error::Choice {
+                name: "name",
+                requirement: "a text on one line, other than a number and \"substrate\"",
+                value: name,
+            });
+        }
+        Ok(Self {
+            name: Some(name),
+            ..self
+        })
     }
 
     /// Material of the layer.
@@ -53,6 +83,11 @@ impl Layer {
     /// Interface below the layer.
     pub fn interface(&self) -> Interface {
         self.interface
+    }
+
+    /// Name of the layer, if it has one.
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
     }
 }
 
@@ -100,7 +135,7 @@ impl HalfSpace {
         let substrate = substrate.into();
         let layers: Vec<Layer> = layers.into_iter().collect();
         if layers.is_empty() && substrate == Substrate::Rigid {
-            return Err(crate::Error::Inconsistent(
+            return Err(Error::Inconsistent(
                 "layers must hold at least one layer where the substrate is rigid",
             ));
         }

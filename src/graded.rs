@@ -56,7 +56,7 @@ pub fn graded_layers(
         let layers = (0..count)
             .map(|k| Layer::new(material((k as f64 + 0.5) * each)?, each))
             .collect::<Result<Vec<_>>>()?;
-        let body = HalfSpace::new(substrate, layers.iter().copied())?;
+        let body = HalfSpace::new(substrate, layers.iter().cloned())?;
         let response = WAVENUMBERS
             .iter()
             .map(|x| frequency_response(&body, x / thickness));

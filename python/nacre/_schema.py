@@ -51,11 +51,12 @@ class Material(Table):
 
 
 class Layer(Table):
-    """A layer and the interface below it."""
+    """A layer, the interface below it, and the name that results show."""
 
     material: str | Material
     thickness: FiniteFloat
     interface: Literal["bonded", "frictionless"] = "bonded"
+    name: str | None = None
 
 
 class Body(Table):
@@ -335,7 +336,7 @@ class CaseTable(Table):
         for number, layer in enumerate(body.layers):
             with _at(f"{name}.layers.{number}"):
                 material = self._material(layer.material)
-                layers.append(nacre.Layer(material, layer.thickness, layer.interface))
+                layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
         with _at(name):
             return nacre.HalfSpace(substrate, layers)
 

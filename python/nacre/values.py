@@ -37,6 +37,9 @@ FIELDS: dict[type, tuple[str, ...]] = {
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
 KINDS = {kind.__name__: kind for kind in FIELDS}
+LATER = {"name"}
+"""Arguments that format 1 had not at first. Where they are None they are left out: older data are
+still read, and older studies found again."""
 RESULTS = (
     core.Report
     | core.Solution
@@ -90,8 +93,9 @@ def encode(value: Any, *, digest: bool = False) -> Any:
         if isinstance(value, RESULTS):
             return of(value.to_dict())
         if type(value) in FIELDS:
-            fields = {name: of(getattr(value, name)) for name in FIELDS[type(value)]}
-            return {type(value).__name__: fields}
+            fields = {name: getattr(value, name) for name in FIELDS[type(value)]}
+            kept = {k: of(v) for k, v in fields.items() if not (v is None and k in LATER)}
+            return {type(value).__name__: kept}
         if isinstance(value, core.Shape):
             make, arguments = reduced(value)
             if make is operator.add:
@@ -150,7 +154,7 @@ def _made(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
     if not isinstance(content, dict):
         raise ValueError(f"{name} must be a dict of named fields, got {content!r}")
     for key in expected:
-        if key not in content:
+        if key not in content and key not in LATER:
             raise ValueError(f"{name}: the key {key!r} is missing")
     for key in content:
         if key not in expected:

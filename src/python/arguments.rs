@@ -4,10 +4,98 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use ndarray::{Array2, ArrayD, Ix2};
 use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{PyComplex, PyDict, PyFloat, PyTuple, PyType};
 
 pub(super) mod keywords;
+
+/// A real number from Python, for arguments. An integer beyond the largest f64 becomes infinite, so that
+/// whoever takes the number refuses it by name.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Real(pub(super) f64);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Real {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        if object.cast_exact::<PyFloat>().is_err() && is_complex(&object)? {
+            return Err(no_real_number(&object));
+        }
+        match object.extract::<f64>() {
+            Ok(number) => Ok(Self(number)),
+            Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
+                let negative = object.lt(0)?;
+                Ok(Self(if negative {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                }))
+            }
+            Err(_) => Err(no_real_number(&object)),
+        }
+    }
+}
+
+fn no_real_number(object: &Bound<'_, PyAny>) -> PyErr {
+    PyTypeError::new_err(format!("expected a real number, got {}", Repr(object)))
+}
+
+/// Whether `object` is a complex number of Python or NumPy, which the latter would make real.
+fn is_complex(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let Some(dtype) = object.getattr_opt("dtype")? else {
+        return Ok(object.cast::<PyComplex>().is_ok());
+    };
+    match dtype.getattr_opt("kind")? {
+        Some(kind) => kind.eq("c"),
+        None => Ok(false),
+    }
+}
+
+/// Two real numbers from any sequence of Python, for arguments.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pair(pub(super) [f64; 2]);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Pair {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match object.extract::<[Real; 2]>() {
+            Ok([first, second]) => Ok(Self([first.0, second.0])),
+            Err(error) if error.is_instance_of::<PyValueError>(object.py()) => Err(error),
+            Err(_) => Err(PyTypeError::new_err(format!(
+                "expected a pair of numbers, got {}",
+                Repr(&object)
+            ))),
+        }
+    }
+}
+
+/// Items of any iterable of Python, each of the class `T`, which `kind` names in the error.
+pub(super) fn items<'py, T: FromPyObjectOwned<'py>>(
+    name: &str,
+    kind: &str,
+    object: &Bound<'py, PyAny>,
+) -> PyResult<Vec<T>> {
+    let listed = object.try_iter().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "{name} must be a sequence of {kind}, got {}",
+            Repr(object)
+        ))
+    })?;
+    listed
+        .map(|item| {
+            let item = item?;
+            item.extract().map_err(|_| {
+                PyTypeError::new_err(format!(
+                    "{name} must be a sequence of {kind}, got {} in it",
+                    Repr(&item)
+                ))
+            })
+        })
+        .collect()
+}
 
 /// Array of f64 with the numbers of `object`, which may have any real dtype, order and stride.
 ///
@@ -51,7 +139,7 @@ pub(super) fn read_only<'py, D: ndarray::Dimension, T: numpy::Element>(
     array: ndarray::Array<T, D>,
 ) -> PyResult<Bound<'py, PyArray<T, D>>> {
     let array = PyArray::from_owned_array(py, array);
-    let flags = pyo3::types::PyDict::new(py);
+    let flags = PyDict::new(py);
     flags.set_item("write", false)?;
     array.call_method("setflags", (), Some(&flags))?;
     Ok(array)
@@ -84,22 +172,36 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
     let Some(value) = value else {
         return Ok([None; 2]);
     };
-    value.extract().map_err(|_| {
+    let pair: [Option<Real>; 2] = value.extract().map_err(|_| {
         PyTypeError::new_err(format!(
             "{name} must be a pair of numbers or None, got {}",
             Repr(value)
         ))
-    })
+    })?;
+    Ok(pair.map(|number| number.map(|number| number.0)))
 }
 
 /// Real number, or `None` where `value` is.
 pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
-    let extract = |value: &Bound<'_, PyAny>| {
-        value.extract::<f64>().map_err(|_| {
-            PyTypeError::new_err(format!("{name} must be a real number, got {}", Repr(value)))
-        })
+    let extract = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
+        Ok(number) => Ok(number.0),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "{name} must be a real number, got {}",
+            Repr(value)
+        ))),
     };
     value.map(extract).transpose()
+}
+
+/// Callable and arguments with which a pickle of any protocol makes an object of `class` again.
+pub(super) fn remade<'py>(
+    class: Bound<'py, PyType>,
+    arguments: impl IntoPyObject<'py>,
+    keywords: Bound<'py, PyDict>,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    let py = class.py();
+    let make = py.import("copyreg")?.getattr("__newobj_ex__")?;
+    Ok((make, (class, arguments, keywords).into_pyobject(py)?))
 }
 
 /// Hash of a value from its `repr`, which equal values share.

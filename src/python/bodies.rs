@@ -2,9 +2,9 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyTuple, PyType};
 
-use super::arguments::{Repr, hash};
+use super::arguments::{Real, Repr, hash, items};
 use super::words::Word;
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::material::Elastic;
@@ -36,8 +36,8 @@ pub(super) struct PyElastic(pub(super) Elastic);
 #[pymethods]
 impl PyElastic {
     #[new]
-    fn new(young: f64, poisson: f64) -> PyResult<Self> {
-        Ok(Self(Elastic::new(young, poisson)?))
+    fn new(young: Real, poisson: Real) -> PyResult<Self> {
+        Ok(Self(Elastic::new(young.0, poisson.0)?))
     }
 
     /// Young's modulus [Pa].
@@ -72,8 +72,9 @@ impl PyElastic {
         hash(&self.__repr__())
     }
 
-    fn __getnewargs__(&self) -> (f64, f64) {
-        (self.0.young(), self.0.poisson())
+    /// Callable and arguments that make the material again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (f64, f64)) {
+        (py.get_type::<Self>(), (self.0.young(), self.0.poisson()))
     }
 }
 
@@ -112,17 +113,21 @@ impl PyRigid {
 /// interface : {"bonded", "frictionless"}, optional
 ///     Interface below the layer. At a bonded one displacement and traction are continuous; a
 ///     frictionless one slips freely and never opens.
+/// name : str, optional
+///     Name of the layer, which results show: any text on one line but a number and "substrate".
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If the thickness is not finite and above 0, or there is no such interface.
+///     If the thickness is not finite and above 0, there is no such interface, or the name is empty,
+///     a number or "substrate".
 ///
 /// Examples
 /// --------
 /// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
-/// >>> nacre.Layer(dlc, thickness=2e-6).interface
-/// 'bonded'
+/// >>> coating = nacre.Layer(dlc, thickness=2e-6, name="DLC")
+/// >>> coating.name, coating.interface
+/// ('DLC', 'bonded')
 #[pyclass(name = "Layer", module = "nacre", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyLayer(pub(super) Layer);
@@ -130,12 +135,19 @@ pub(super) struct PyLayer(pub(super) Layer);
 #[pymethods]
 impl PyLayer {
     #[new]
-    #[pyo3(signature = (material, thickness, interface="bonded"))]
-    fn new(material: PyElastic, thickness: f64, interface: &str) -> PyResult<Self> {
+    #[pyo3(signature = (material, thickness, interface="bonded", name=None))]
+    fn new(
+        material: PyElastic,
+        thickness: Real,
+        interface: &str,
+        name: Option<&str>,
+    ) -> PyResult<Self> {
         let interface = Interface::from_word(interface)?;
-        Ok(Self(
-            Layer::new(material.0, thickness)?.with_interface(interface),
-        ))
+        let layer = Layer::new(material.0, thickness.0)?.with_interface(interface);
+        Ok(Self(match name {
+            Some(name) => layer.with_name(name)?,
+            None => layer,
+        }))
     }
 
     /// Material of the layer.
@@ -156,12 +168,20 @@ impl PyLayer {
         self.0.interface().word()
     }
 
+    /// Name of the layer; None where it has none.
+    #[getter]
+    fn name(&self) -> Option<&str> {
+        self.0.name()
+    }
+
     fn __repr__(&self) -> String {
+        let name = self.0.name().map(|name| format!(", name={}", quoted(name)));
         format!(
-            "Layer({}, thickness={:?}, interface='{}')",
+            "Layer({}, thickness={:?}, interface='{}'{})",
             elastic_repr(&self.0.material()),
             self.0.thickness(),
-            self.interface()
+            self.interface(),
+            name.unwrap_or_default()
         )
     }
 
@@ -169,10 +189,36 @@ impl PyLayer {
         hash(&self.__repr__())
     }
 
-    fn __getnewargs__(&self) -> (PyElastic, f64, &'static str) {
-        (self.material(), self.0.thickness(), self.interface())
+    /// Callable and arguments that make the layer again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, LayerArguments<'_>) {
+        let arguments = (
+            self.material(),
+            self.0.thickness(),
+            self.interface(),
+            self.0.name(),
+        );
+        (py.get_type::<Self>(), arguments)
     }
 }
+
+/// Literal of Python for a text without control characters.
+fn quoted(text: &str) -> String {
+    let quote = match text.contains('\'') && !text.contains('"') {
+        true => '"',
+        false => '\'',
+    };
+    let mut literal = String::from(quote);
+    for character in text.chars() {
+        if character == quote || character == '\\' {
+            literal.push('\\');
+        }
+        literal.push(character);
+    }
+    literal.push(quote);
+    literal
+}
+
+type LayerArguments<'a> = (PyElastic, f64, &'static str, Option<&'a str>);
 
 /// A half-space: a substrate, and layers from the surface down.
 ///
@@ -212,9 +258,14 @@ impl PyHalfSpace {
 impl PyHalfSpace {
     #[new]
     #[pyo3(signature = (substrate, layers=None))]
-    fn new(substrate: &Bound<'_, PyAny>, layers: Option<Vec<PyLayer>>) -> PyResult<Self> {
-        let layers = layers.unwrap_or_default().into_iter().map(|layer| layer.0);
-        Ok(Self(HalfSpace::new(self::substrate(substrate)?, layers)?))
+    fn new(substrate: &Bound<'_, PyAny>, layers: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let substrate = self::substrate(substrate)?;
+        let layers: Vec<PyLayer> = match layers {
+            Some(layers) => items("layers", "Layer", layers)?,
+            None => Vec::new(),
+        };
+        let layers = layers.into_iter().map(|layer| layer.0);
+        Ok(Self(HalfSpace::new(substrate, layers)?))
     }
 
     /// Material below the layers: an `Elastic`, or `nacre.RIGID`.
@@ -229,7 +280,7 @@ impl PyHalfSpace {
     /// Layers from the surface down.
     #[getter]
     fn layers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.0.layers().iter().map(|layer| PyLayer(*layer)))
+        PyTuple::new(py, self.0.layers().iter().cloned().map(PyLayer))
     }
 
     /// Depths of the interfaces [m], from the surface down.
@@ -243,12 +294,8 @@ impl PyHalfSpace {
             Substrate::Elastic(material) => elastic_repr(&material),
             Substrate::Rigid => "RIGID".into(),
         };
-        let layers: Vec<_> = self
-            .0
-            .layers()
-            .iter()
-            .map(|l| PyLayer(*l).__repr__())
-            .collect();
+        let layers = self.0.layers().iter().cloned().map(PyLayer);
+        let layers: Vec<_> = layers.map(|layer| layer.__repr__()).collect();
         format!("HalfSpace({substrate}, layers=[{}])", layers.join(", "))
     }
 
@@ -256,13 +303,14 @@ impl PyHalfSpace {
         hash(&self.__repr__())
     }
 
-    fn __getnewargs__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        Ok((self.substrate(py)?, self.layers(py)?))
+    /// Callable and arguments that make the half-space again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let arguments = (self.substrate(py)?, self.layers(py)?);
+        Ok((py.get_type::<Self>(), arguments))
     }
 }
+
+type Reduced<'py> = (Bound<'py, PyType>, (Bound<'py, PyAny>, Bound<'py, PyTuple>));
 
 /// Substrate from an argument.
 pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {

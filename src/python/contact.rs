@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use super::arguments::keywords::{
     self, Keywords, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
     search_signature, single_docs, single_signature,
 };
+use super::arguments::remade;
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
@@ -60,9 +61,6 @@ fn setup(counterbody: Option<&Bound<'_, PyAny>>, keywords: &Keywords) -> PyResul
         threads,
     })
 }
-
-/// Positional arguments of the constructor.
-type Arguments = (PyHalfSpace, PyGrid, Option<PyHalfSpace>);
 
 #[pymethods]
 impl PyContact {
@@ -253,14 +251,19 @@ impl PyContact {
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Arguments, Bound<'py, PyDict>)> {
+    /// Callable and arguments that make the plan again.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let setup = self.contact.setup();
         let (method, refinement) = method_words(setup.method);
         let keywords = PyDict::new(py);
         keywords.set_item("method", method)?;
         keywords.set_item("refinement", refinement)?;
         keywords.set_item("threads", setup.threads)?;
-        Ok(((self.body(), self.grid(), self.counterbody()), keywords))
+        let arguments = (self.body(), self.grid(), self.counterbody());
+        remade(py.get_type::<Self>(), arguments, keywords)
     }
 }
 

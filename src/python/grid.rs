@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arguments::{count, hash, read_only};
+use super::arguments::{Pair, Real, count, hash, read_only};
 use crate::grid::Grid;
 
 /// A uniform grid of rectangular cells, with constant pressure over each.
@@ -36,10 +36,10 @@ pub(super) struct PyGrid(pub(super) Grid);
 #[pymethods]
 impl PyGrid {
     #[new]
-    #[pyo3(signature = (shape, size, center=[0.0, 0.0]), text_signature = "(shape, size, center=(0.0, 0.0))")]
-    fn new(shape: [Bound<'_, PyAny>; 2], size: [f64; 2], center: [f64; 2]) -> PyResult<Self> {
+    #[pyo3(signature = (shape, size, center=Pair([0.0; 2])), text_signature = "(shape, size, center=(0.0, 0.0))")]
+    fn new(shape: [Bound<'_, PyAny>; 2], size: Pair, center: Pair) -> PyResult<Self> {
         let shape = [count("shape", 2, &shape[0])?, count("shape", 2, &shape[1])?];
-        Ok(Self(Grid::new(shape, size)?.centered_at(center)?))
+        Ok(Self(Grid::new(shape, size.0)?.centered_at(center.0)?))
     }
 
     /// Grid of a line contact: strips side by side along y, endless along x, in plane strain.
@@ -72,10 +72,10 @@ impl PyGrid {
     /// >>> nacre.Grid.line(cells=256, width=1e-3).shape
     /// (1, 256)
     #[staticmethod]
-    #[pyo3(signature = (cells, width, center=0.0))]
-    fn line(cells: &Bound<'_, PyAny>, width: f64, center: f64) -> PyResult<Self> {
+    #[pyo3(signature = (cells, width, center=Real(0.0)), text_signature = "(cells, width, center=0.0)")]
+    fn line(cells: &Bound<'_, PyAny>, width: Real, center: Real) -> PyResult<Self> {
         Ok(Self(
-            Grid::line(count("cells", 2, cells)?, width)?.centered_at([0.0, center])?,
+            Grid::line(count("cells", 2, cells)?, width.0)?.centered_at([0.0, center.0])?,
         ))
     }
 

@@ -64,6 +64,13 @@ fn materials_and_bodies() -> Result<()> {
             "thickness must be finite and above 0, got NaN",
         ),
     ]);
+    let named = |name: &str| Layer::new(steel()?, 1.0)?.with_name(name);
+    let must = "name must be a text on one line, other than a number and \"substrate\", got";
+    for name in ["", " ", "0", "12", "substrate", "two\nlines"] {
+        assert_eq!(message(named(name)), format!("{must} {name:?}"));
+    }
+    assert_eq!(named("DLC")?.name(), Some("DLC"));
+    assert_ne!(named("DLC")?, Layer::new(steel()?, 1.0)?);
     check([(
         HalfSpace::new(Substrate::Rigid, []),
         "layers must hold at least one layer where the substrate is rigid",

@@ -137,6 +137,13 @@ def test_a_solve_that_does_not_converge_is_exit_code_1(
     assert not out.exists()
 
 
+def test_a_layer_has_the_name_of_the_case_file(tmp_path: Path) -> None:
+    text = TEXT.replace("thickness = 40e-6", 'thickness = 40e-6, name = "DLC"')
+    assert text != TEXT
+    body = Case.read(written(tmp_path, text)).arguments()["body"]
+    assert [layer.name for layer in body.layers] == ["DLC"]
+
+
 STRESSED = (
     TEXT.replace("[sweep]", '[stress]\nfriction = 0.2\n\n[sweep]\nstore = "b.nc"', 1)
     .replace('\nstore = "study.nc"', "")

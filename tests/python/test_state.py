@@ -180,6 +180,15 @@ def test_a_part_that_is_wrong_is_a_value_error(message: str) -> None:
         values.decode(PARTS[message])
 
 
+def test_the_name_of_a_layer_is_kept_and_may_be_missing() -> None:
+    named = nacre.Layer(STEEL, 1e-6, name="DLC")
+    plain = nacre.Layer(STEEL, 1e-6)
+    assert values.decode(values.encode(named)) == named
+    # As data that were written before layers had names.
+    assert "name" not in values.encode(plain)["Layer"]
+    assert values.decode(values.encode(plain)) == plain
+
+
 def test_a_newer_file_is_refused_by_the_version_that_wrote_it(tmp_path: Path) -> None:
     path = SOLUTION.save(tmp_path / "a.nc")
     dataset = xarray.load_dataset(path, engine="h5netcdf")

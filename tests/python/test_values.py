@@ -28,6 +28,8 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "elastic": STEEL,
     "layer": nacre.Layer(DLC, thickness=1e-5 / 3),
     "frictionless layer": nacre.Layer(DLC, thickness=1e-5 / 3, interface="frictionless"),
+    "named layer": nacre.Layer(DLC, thickness=1e-5 / 3, name="DLC"),
+    "layer of an odd name": nacre.Layer(DLC, thickness=1e-5 / 3, name='it\'s 2\\3 "µm"'),
     "rigid": nacre.RIGID,
     "half-space": nacre.HalfSpace(STEEL),
     "coated": COATED,

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
-use super::{Repr, count, number, pair, real_matrix};
+use super::{Real, Repr, count, number, pair, real_matrix};
 use crate::contact::{Motion, Options};
 use crate::influence::Method;
 use crate::python::words::{REFINEMENT, Word, method};
@@ -220,7 +220,7 @@ impl<'py> Keywords<'py> {
 
     /// Real number.
     pub(in crate::python) fn real(&self, name: &str, default: f64) -> PyResult<f64> {
-        self.typed(name, "a real number", default)
+        Ok(self.typed(name, "a real number", Real(default))?.0)
     }
 
     /// Real number that may be missing.

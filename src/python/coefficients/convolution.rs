@@ -5,14 +5,14 @@ use std::sync::Arc;
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::body::HalfSpace;
 use crate::convolution::Convolution;
 use crate::influence::coefficients_on;
 use crate::parallel::Threads;
 use crate::python::arguments::keywords::{self, Keywords, plan_docs, plan_signature};
-use crate::python::arguments::{count, read_only, real_matrix};
+use crate::python::arguments::{count, read_only, real_matrix, remade};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
 use crate::python::grid::PyGrid;
@@ -233,13 +233,13 @@ impl PyConvolution {
         )
     }
 
-    #[expect(clippy::type_complexity, reason = "arguments of the constructor")]
-    fn __getnewargs_ex__<'py>(
+    /// Callable and arguments that make the convolution again.
+    fn __reduce__<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<((Bound<'py, PyArray2<f64>>,), Bound<'py, PyDict>)> {
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let keywords = PyDict::new(py);
         keywords.set_item("threads", self.threads)?;
-        Ok(((self.coefficients(py)?,), keywords))
+        remade(py.get_type::<Self>(), (self.coefficients(py)?,), keywords)
     }
 }
