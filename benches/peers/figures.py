@@ -13,11 +13,11 @@ from peers.problems import TOLERANCE
 
 @dataclass(frozen=True)
 class Figure:
-    """One quantity: name, limit (`bar`), goal (`stretch`) and measured value."""
+    """One quantity: name, limit, goal and measured value."""
 
     what: str
-    bar: float
-    stretch: float | None
+    limit: float
+    goal: float | None
     measured: float | None
     unit: str = ""
     least: bool = False
@@ -30,12 +30,12 @@ class Figure:
         """Whether the measured value keeps the limit, in words."""
         if self.measured is None:
             return "not measured"
-        if self.error is not None and abs(self.measured - self.bar) <= self.error * self.measured:
+        if self.error is not None and abs(self.measured - self.limit) <= self.error * self.measured:
             return "undecided: the limit is within the error"
         sign = -1 if self.least else 1
-        if self.stretch is not None and sign * self.measured <= sign * self.stretch:
+        if self.goal is not None and sign * self.measured <= sign * self.goal:
             return "met, also the goal"
-        return "met" if sign * self.measured <= sign * self.bar else "missed"
+        return "met" if sign * self.measured <= sign * self.limit else "missed"
 
 
 def ratio(ours: Row | None, theirs: Row | None, field: str = "seconds") -> float | None:
@@ -67,38 +67,38 @@ def all_figures(bench: Bench) -> list[Figure]:
 def convolution(bench: Bench) -> Iterator[Figure]:
     """Return the times of one convolution relative to SciPy's."""
     for cells in (1024, 2048):
-        for threads, bar, stretch in ((1, 0.9, 0.7), (2, 0.75, 0.6)):
+        for threads, limit, goal in ((1, 0.9, 0.7), (2, 0.75, 0.6)):
             ours = bench.find("convolution", cells, "nacre", threads)
             theirs = bench.find("convolution", cells, "SciPy", threads)
-            what = f"one convolution, {cells}², over SciPy's; threads: {threads}"
-            yield Figure(what, bar, stretch, ratio(ours, theirs))
+            what = f"one convolution, {cells}², relative to SciPy's; threads: {threads}"
+            yield Figure(what, limit, goal, ratio(ours, theirs))
 
 
 def against(
-    bench: Bench, problem: str, bars: Iterable[tuple[str, float, float | None]]
+    bench: Bench, problem: str, limits: Iterable[tuple[str, float, float | None]]
 ) -> Iterator[Figure]:
     """Return times relative to those of other programs, at 1024² on one thread.
 
     Where a program misses the tolerance, the ratio is not measured.
     """
     ours = bench.find(problem, 1024, "nacre", 1)
-    for program, bar, stretch in bars:
+    for program, limit, goal in limits:
         theirs = bench.find(problem, 1024, program, 1)
-        what = f"{problem} 1024², 1 thread: time over {program}"
+        what = f"{problem} 1024², 1 thread: time relative to {program}"
         same = all(row and row.residual and row.residual <= TOLERANCE for row in (ours, theirs))
-        yield Figure(what, bar, stretch, ratio(ours, theirs) if same else None)
+        yield Figure(what, limit, goal, ratio(ours, theirs) if same else None)
 
 
 def hertz(bench: Bench) -> Iterator[Figure]:
     """Return the quantities of the sphere."""
     one = bench.find("hertz", 1024, "nacre", 1)
     yield Figure("hertz 1024², 1 thread: work in convolutions", 12, 8, value(one, "work"))
-    bars = (
+    limits = (
         ("ASPHER", 1 / 5, 1 / 8),
         ("Tamaas", 1 / 50, 1 / 80),
         ("ContactMechanics", 1 / 90, 1 / 140),
     )
-    yield from against(bench, "hertz", bars)
+    yield from against(bench, "hertz", limits)
     fine = value(bench.find("hertz", 2048, "nacre", 1), "iterations")
     coarse = value(bench.find("hertz", 256, "nacre", 1), "iterations")
     more = None if fine is None or coarse is None else fine - coarse
@@ -109,10 +109,10 @@ def hertz(bench: Bench) -> Iterator[Figure]:
     extra = value(large, "bytes_per_cell")
     yield Figure("hertz 4096² solves: extra memory", 200, 120, extra, "bytes a cell")
     settings: tuple[tuple[Setting, float], ...] = (("idle", 0.6), ("busy", 1.1))
-    for setting, bar in settings:
+    for setting, limit in settings:
         one, two = (bench.find("hertz", 1024, "nacre", threads, setting) for threads in (1, 2))
-        what = f"hertz 1024²: two threads over one, machine {setting}"
-        yield Figure(what, bar, None, ratio(two, one), error=error(two, one))
+        what = f"hertz 1024²: two threads relative to one, machine {setting}"
+        yield Figure(what, limit, None, ratio(two, one), error=error(two, one))
 
 
 def rough(bench: Bench) -> Iterator[Figure]:
@@ -127,12 +127,12 @@ def others(bench: Bench) -> Iterator[Figure]:
     what = "roller of Spinu et al., 1024×128, E1/E2 = 4, e/L = 0.3: work in convolutions"
     yield Figure(what, 30, 20, work)
     bare, coated = (bench.find(name, 1024, "nacre", 1, "idle") for name in ("hertz", "coated"))
-    what = "coated over bare, 1024², 1 thread, with planning"
+    what = "coated relative to bare, 1024², 1 thread, with planning"
     more = ratio(coated, bare, "together")
     yield Figure(what, 1.4, 1.2, more, error=error(coated, bare, "error_together"))
     cores = os.cpu_count() or 1
     alone, many = (bench.find("batch", 128, "nacre", threads, "idle") for threads in (1, cores))
     gain = ratio(alone, many)
-    what = "1000 coated spheres at 128²: speed over cores × one alone"
+    what = "1000 coated spheres at 128²: speed relative to cores × one alone"
     measured = None if gain is None else gain / cores
     yield Figure(what, 0.9, None, measured, least=True, error=error(alone, many))

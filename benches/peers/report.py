@@ -56,7 +56,7 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         *table(
             ("quantity", "measured", "limit", "goal", ""),
             [
-                (f.what, measured(f), number(f.bar, f), number(f.stretch, f), f.met)
+                (f.what, measured(f), number(f.limit, f), number(f.goal, f), f.met)
                 for f in all_figures(bench)
             ],
         ),
@@ -150,7 +150,7 @@ def number(found: float | None, figure: Figure) -> str:
     if found is None:
         return "–"
     text = f"{found:.3g}"
-    if "time over" in figure.what and 0 < found < 1:
+    if "time relative" in figure.what and 0 < found < 1:
         text = f"1/{1 / found:.3g}"
     return f"{text} {figure.unit}".strip()
 

@@ -104,7 +104,7 @@ def main() -> None:
     report.write(bench, *files)
     print()
     for figure in all_figures(bench):
-        shown = report.measured(figure), report.number(figure.bar, figure)
+        shown = report.measured(figure), report.number(figure.limit, figure)
         print(f"{figure.what:60}  measured {shown[0]:>10}  limit {shown[1]:>10}  {figure.met}")
     print(f"written: {', '.join(str(file) for file in files)}")
 

@@ -121,21 +121,21 @@ def test_figures_are_ratios_with_a_verdict() -> None:
     found = {figure.what: figure for figure in all_figures(bench)}
     work = found["hertz 1024², 1 thread: work in convolutions"]
     assert (work.measured, work.met) == (12.5, "missed")
-    tamaas = found["hertz 1024², 1 thread: time over Tamaas"]
+    tamaas = found["hertz 1024², 1 thread: time relative to Tamaas"]
     assert (report.number(tamaas.measured, tamaas), tamaas.met) == ("1/90", "met, also the goal")
-    assert found["hertz 1024², 1 thread: time over ASPHER"].met == "missed"
-    coated = found["coated over bare, 1024², 1 thread, with planning"]
+    assert found["hertz 1024², 1 thread: time relative to ASPHER"].met == "missed"
+    coated = found["coated relative to bare, 1024², 1 thread, with planning"]
     assert coated.measured == pytest.approx(1.1)
     assert coated.met == "met, also the goal"
     assert coated.error == pytest.approx(0.13)  # of 5 and 12 %
     assert report.measured(coated) == "1.1 ± 0.1"
-    idle = found["hertz 1024²: two threads over one, machine idle"]
+    idle = found["hertz 1024²: two threads relative to one, machine idle"]
     assert (idle.measured, idle.error, idle.met) == pytest.approx((0.5, 0.05, "met"))
-    assert found["hertz 1024²: two threads over one, machine busy"].met == "not measured"
-    batch = found["1000 coated spheres at 128²: speed over cores × one alone"]
+    assert found["hertz 1024²: two threads relative to one, machine busy"].met == "not measured"
+    batch = found["1000 coated spheres at 128²: speed relative to cores × one alone"]
     assert batch.measured == pytest.approx(2 / (os.cpu_count() or 1))
     # It missed the tolerance.
-    assert found["hertz 1024², 1 thread: time over ContactMechanics"].met == "not measured"
+    assert found["hertz 1024², 1 thread: time relative to ContactMechanics"].met == "not measured"
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_figures_are_ratios_with_a_verdict() -> None:
 def test_a_figure_nearer_to_its_bar_than_its_error_decides_nothing(
     measured: float, error: float | None, met: str
 ) -> None:
-    assert Figure("two threads over one", 0.6, None, measured, error=error).met == met
+    assert Figure("two threads relative to one", 0.6, None, measured, error=error).met == met
 
 
 def test_a_run_goes_on_where_a_program_is_missing_and_writes_what_it_has(tmp_path: Path) -> None:
