@@ -12,8 +12,9 @@ import typer
 
 import nacre
 from nacre._commands import app
+from nacre._outputs import ERROR
 from nacre.case import Case, CaseError
-from nacre.files import FIGURES
+from nacre.files import FIGURES, PICTURES
 
 CaseFile = Annotated[
     Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
@@ -48,7 +49,7 @@ def solve(
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     for path in save or []:
-        _save(solution, path)
+        solution.save(path)
     if as_json:
         extremes = {} if stress is None else {"stress": stress.to_dict()}
         print(json.dumps(_plain(_figures(solution) | extremes), indent=2))
@@ -70,8 +71,8 @@ def sweep(
     study = described.study()
     if store is not None:
         study["store"] = store
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # failures are printed below
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", nacre.NacreWarning)
         try:
             dataset = nacre.sweep(described, retry=retry, **study)
         except (TypeError, ValueError) as error:
@@ -82,6 +83,9 @@ def sweep(
     else:
         _print_study(dataset)
         where = f"; all in {study['store']}" if "store" in study else ""
+        for text in (str(warning.message) for warning in said):
+            if " cases failed" not in text:  # the last line says that
+                print(text)
         print(f"{dataset.error.size} cases, {failed} failed{where}")
     if failed:
         raise typer.Exit(1)
@@ -107,32 +111,31 @@ def _plain(data: Any) -> Any:
 
 
 def _check_ending(path: Path) -> None:
-    endings = {".nc", ".vtr", ".csv", ".png", ".pdf", ".svg"}
+    endings = {".nc", ".vtr", ".csv", *PICTURES}
     if path.suffix not in endings:
         message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
         raise typer.BadParameter(message, param_hint="'--save'")
 
 
-def _save(solution: nacre.Solution, path: Path) -> None:
-    if path.suffix in (".nc", ".vtr", ".csv"):
-        solution.save(path)
-        return
-    from nacre.files import replacing
-
-    figure: Any = next(iter(solution.plot().values())).figure
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=300)
+def _cell(value: Any, error: float) -> str:
+    """Return a value of a study, with its estimated error."""
+    if not isinstance(value, float | int):
+        return str(value)
+    share = 100 * abs(error / value) if value else 0.0
+    if not 0 < share < np.inf:
+        return f"{value:.5g}"
+    return f"{value:.5g} ± {share:.1g} %" if share < 9.5 else f"{value:.5g} ± {share:.0f} %"
 
 
 def _print_study(dataset: Any) -> None:
     """Print parameters and numbers of the first cases, and the cases that failed."""
     frame = dataset[[*(n for n in dataset.data_vars if dataset[n].dims == dataset.error.dims)]]
     rows = frame.to_dataframe().reset_index()
-    names = [name for name in rows.columns if name not in ("error", "warnings")]
-    lines = [[str(name) for name in names]]
+    names = [str(name) for name in rows.columns if name not in ("error", "warnings")]
+    names = [name for name in names if not name.endswith(ERROR)]
+    lines = [names]
     for _, row in rows.head(ROWS).iterrows():
-        values = (row[name] for name in names)
-        lines.append([f"{v:.5g}" if isinstance(v, float | int) else str(v) for v in values])
+        lines.append([_cell(row[name], row.get(name + ERROR, 0.0)) for name in names])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     for line in lines:
         print("  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)))

@@ -1,13 +1,16 @@
 """Finished cases of a study, one line of JSON each, on the disk before the next one begins.
 
-A line names the format and the version that wrote it; a line without them is of format 0.
+A line names the format and the version that wrote it; a line without them is of format 0. Its last
+entry is a checksum of the others, which lines of older versions lack.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
@@ -21,8 +24,9 @@ Record = dict[str, Any]
 class Journal:
     """Records by key, kept in a file that only grows; without a path they are in memory only.
 
-    A record is on the disk when `add` returns. A line that a kill cut short is dropped when the
-    file is opened again. One process writes at a time; a second one is refused.
+    A record is on the disk when `add` returns; one that the disk has no room for leaves the file as
+    it was. A line that a kill cut short is dropped when the file is opened again. One process writes
+    at a time; a second one is refused.
     """
 
     def __init__(self, path: Path | None) -> None:
@@ -32,7 +36,7 @@ class Journal:
 
     def __enter__(self) -> Self:
         if self.path is not None:
-            self._file = self.path.open("a+b")
+            self._file = self.path.open("a+b", buffering=0)
             try:
                 _lock(self._file)
                 self._read(self._file)
@@ -52,13 +56,23 @@ class Journal:
 
     def add(self, record: Record) -> None:
         """Keep a record by its ``key``; it replaces an earlier one with the same key."""
-        self.records[record["key"]] = record
         if self._file is not None:
             head = {"format": FORMAT, "nacre": __version__}
-            line = json.dumps(head | record, ensure_ascii=False) + "\n"
-            self._file.write(line.encode())
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            line = _text(head | record)
+            self._write(self._file, _text(head | record | {"checksum": _checksum(line)}) + "\n")
+        self.records[record["key"]] = record
+
+    def _write(self, file: IO[bytes], line: str) -> None:
+        end = os.fstat(file.fileno()).st_size
+        rest = line.encode()
+        try:
+            while rest:
+                rest = rest[file.write(rest) :]
+            os.fsync(file.fileno())
+        except BaseException:
+            with suppress(OSError):
+                file.truncate(end)
+            raise
 
     def _read(self, file: IO[bytes]) -> None:
         file.seek(0)
@@ -66,13 +80,11 @@ class Journal:
         whole = 0
         for number, line in enumerate(lines):
             try:
-                record = json.loads(line)
-                written, version = record.pop("format", 0), record.pop("nacre", None)
-                self.records[record["key"]] = record
-            except (ValueError, KeyError, TypeError, AttributeError) as error:
-                if number + 1 < len(lines):
+                record, written, version = _record(line)
+            except (ValueError, RecursionError) as error:
+                if number + 1 < len(lines) or not line.startswith(b"{"):
                     message = f"{str(self.path)!r} is no journal of a study: line {number + 1}"
-                    raise ValueError(message) from error
+                    raise ValueError(f"{message}: {error}") from error
                 break
             if written > FORMAT:
                 raise ValueError(
@@ -80,10 +92,55 @@ class Journal:
                     f"{__version__} reads formats up to {FORMAT}: install a newer version"
                 )
             if not line.endswith(b"\n"):
-                del self.records[record["key"]]  # its end may be missing
-                break
+                break  # its end may be missing
+            self.records[record["key"]] = record
             whole += len(line)
         file.truncate(whole)
+
+
+def _text(entries: Record) -> str:
+    # Names of files may hold surrogates, which no encoding has.
+    return json.dumps(entries, ensure_ascii=False).encode("utf-8", "replace").decode()
+
+
+def _checksum(line: str) -> str:
+    return hashlib.sha256(line.encode()).hexdigest()[:16]
+
+
+def _record(line: bytes) -> tuple[Record, int, Any]:
+    """Return the record of a line, its format and its version; a line of none is a `ValueError`."""
+    record = json.loads(line)
+    if not isinstance(record, dict):
+        raise ValueError("it must hold an object of JSON")
+    written, version = record.get("format", 0), record.get("nacre")
+    if type(written) is not int:
+        raise ValueError(f"format must be an integer, got {written!r}")
+    if written > FORMAT:
+        return record, written, version
+    checksum = record.pop("checksum", None)
+    if checksum is not None and checksum != _checksum(_text(record)):
+        raise ValueError("it was changed after nacre wrote it")
+    record.pop("format", None)
+    record.pop("nacre", None)
+    texts, values = record.get("warnings", []), record.get("values", {})
+    if not (
+        isinstance(record.get("key"), str)
+        and isinstance(values, dict)
+        and all(_is_numbers(value) for value in values.values())
+        and isinstance(record.get("error", ""), str)
+        and isinstance(texts, list)
+        and all(isinstance(text, str) for text in texts)
+        and ("values" in record or "error" in record)
+    ):
+        raise ValueError("it must hold a key, and values or an error")
+    return record, written, version
+
+
+def _is_numbers(value: Any) -> bool:
+    """Return whether a value is a number, or a list of such values."""
+    if isinstance(value, list):
+        return all(_is_numbers(item) for item in value)
+    return isinstance(value, int | float)
 
 
 def _lock(file: IO[bytes]) -> None:

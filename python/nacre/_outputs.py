@@ -35,6 +35,11 @@ STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
 }
 """Outputs from `Solution.stress_summary`: each is the largest of these values, or NaN."""
 
+ESTIMATED = ("peak_pressure", "approach", "load")
+"""Outputs whose errors due to the size of the cells are estimated."""
+ERROR = "_discretisation"
+"""Ending of the name under which such an error stands beside its output."""
+
 
 def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
     """Return outputs by name, checked."""
@@ -44,12 +49,15 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    known = {name for name in dir(core.Solution) if not name.startswith("_")} | set(STRESSES)
+    known = {name for name in dir(core.Solution) if not name.startswith("_")}
+    # A method returns numbers only when it is called, and a report holds more than numbers.
+    known = {name for name in known - {"report"} if not callable(getattr(core.Solution, name))}
+    known |= set(STRESSES)
     for name, output in items:
         if not (callable(output) or output in known):
             raise ValueError(
-                f"outputs must be attributes of Solution, {', '.join(STRESSES)}, or functions, "
-                f"got {output!r}"
+                f"outputs must be attributes of Solution that hold numbers, {', '.join(STRESSES)}, "
+                f"or functions, got {output!r}"
             )
         if name in ("error", "warnings"):
             raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
@@ -60,10 +68,22 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
     return found
 
 
+def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str]:
+    """Return the names of the errors of outputs, each with the quantity that has this error."""
+    return {
+        name + ERROR: output
+        for name, output in outputs.items()
+        if isinstance(output, str) and output in ESTIMATED and name + ERROR not in taken
+    }
+
+
 def evaluated(
     solution: core.Solution, outputs: Mapping[str, Output], stress: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return the outputs of a solution as plain numbers; the stresses are summed up once."""
+    """Return the outputs of a solution as plain numbers; the stresses are summed up once.
+
+    The errors of outputs are among them; they are NaN where there is no estimate.
+    """
     summary = None
     found: dict[str, Any] = {}
     for name, output in outputs.items():
@@ -75,4 +95,8 @@ def evaluated(
         else:
             value = getattr(solution, output)
         found[name] = np.asarray(value, dtype=np.float64).tolist()
+    estimates = solution.report.discretisation or {}
+    for name, quantity in errors(outputs, outputs).items():
+        estimate = estimates.get(quantity)
+        found[name] = np.nan if estimate is None else float(estimate)
     return found

@@ -1,7 +1,7 @@
 """Studies that a designer of coatings and bearings asks for, on top of `nacre.sweep`.
 
 Each function returns an `xarray.Dataset`, which `nacre.plot` draws. It passes on the other
-arguments of a solve, and `store`, `executor` and `progress` of `nacre.sweep`.
+arguments of a solve, and `store`, `version`, `executor`, `retry` and `progress` of `nacre.sweep`.
 """
 
 from __future__ import annotations
@@ -210,7 +210,8 @@ def normal_stiffness(solution: core.Solution) -> float:
 def _parted(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the options of `nacre.solve`, and the options of `nacre.sweep`."""
     bar = options.get("progress")
-    study = {name: options[name] for name in ("store", "executor", "retry") if name in options}
+    kept = ("store", "version", "executor", "retry")
+    study = {name: options[name] for name in kept if name in options}
     asked = {name: value for name, value in options.items() if name not in (*study, "progress")}
     unknown = set(asked) - ARGUMENTS
     if unknown:

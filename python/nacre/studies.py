@@ -14,14 +14,13 @@ from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 import nacre._core as core
+from nacre._dataset import assembled, counted, laid_out
 from nacre._extras import extra
-from nacre._identity import key_of
+from nacre._identity import identified, key_of
 from nacre._journal import Journal, Record
-from nacre._outputs import AXES, OUTPUTS, STRESSES, Output, evaluated, named
-from nacre.units import UNITS
+from nacre._outputs import OUTPUTS, STRESSES, Output, evaluated, named
+from nacre._progress import shown
 
 if TYPE_CHECKING:
     import xarray
@@ -38,6 +37,7 @@ def sweep(
     outputs: Sequence[Output] | Mapping[str, Output] | None = None,
     stress: Mapping[str, Any] | None = None,
     store: str | os.PathLike[str] | None = None,
+    version: str | int | None = None,
     executor: Executor | None = None,
     progress: bool | None = None,
     retry: bool = False,
@@ -70,12 +70,20 @@ def sweep(
         ``direction``, ``residual``.
     store : path, optional
         File, ``.nc``, for the finished Dataset. Finished cases are kept beside it at once, in a
-        ``.journal``.
+        ``.journal``. A case is solved again if an output function has changed, or a global, a
+        default, a closure, a bound object, a function or a class that it uses. Where these cannot
+        be compared with an earlier run (open files, locks, code made from text), a
+        `nacre.NacreWarning` says so, and all cases are solved again unless there is a `version`.
+        Content of files, the time and random numbers are never compared.
+    version : str or int, optional
+        Version of the output functions; cases are solved again if it is another. With a version,
+        what cannot be compared counts as unchanged.
     executor : concurrent.futures.Executor, optional
         Executor of the solves; a thread for each core by default. Each solve has one thread, unless
         the case has `threads`.
     progress : bool, optional
-        Whether to show a bar; by default where there is a terminal or a notebook.
+        Whether to show the progress on standard error: a bar in a terminal or a notebook, elsewhere
+        a line each minute at most. By default, there is no line in the first minute.
     retry : bool, optional
         Whether to try cases again that failed in an earlier run.
 
@@ -83,7 +91,15 @@ def sweep(
     -------
     xarray.Dataset
         Outputs over the parameters. Where a case failed they are NaN, and ``error`` holds the
-        reason. The executor does not change a bit.
+        reason; ``warnings`` holds the warnings of each solve. Beside peak pressure, approach and
+        load stand their errors due to the size of the cells, such as
+        ``peak_pressure_discretisation``: the estimates of `Report.discretisation`, NaN where there
+        is none. The executor does not change a bit.
+
+    Warns
+    -----
+    NacreWarning
+        If cases failed or have warnings: a line with their numbers by kind.
 
     Raises
     ------
@@ -119,88 +135,55 @@ def sweep(
     asked = {**(stress or {})} if stresses else {}
     if unknown := set(asked) - {"body", "friction", "direction", "residual"}:
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
-    coordinates, points = _points(parameters)
+    if not isinstance(version, str | int | None):
+        raise TypeError(f"version must be a text or an integer, got {version!r}")
+    coordinates, points = laid_out(parameters)
+    identity = identified(wanted, asked, version)
+    again = bool(identity.unknown) and version is None
+    if again and path is not None:
+        message = (
+            f"outputs use what cannot be compared with an earlier run: "
+            f"{', '.join(identity.unknown)}; all cases are solved again. Give version=..., and "
+            f"change it whenever the outputs change"
+        )
+        warnings.warn(message, core.NacreWarning, stacklevel=2)
     journal = Journal(path.with_suffix(".journal") if path else None)
-    with journal, _quiet(), _bar(progress, len(points)) as advance:
-        keys, tasks = [], {}
+    with journal, _quiet():
+        keys: list[str] = []
+        tasks: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
+        failures: dict[str, Record] = {}
         for point in points:
             arguments, failure = _describe(case, point)
-            key = key_of(arguments if failure is None else {"failed": point}, wanted, asked)
+            key = key_of(arguments if failure is None else {"failed": point}, identity)
             keys.append(key)
             known = journal.records.get(key)
-            if known is not None and not (retry and "error" in known):
-                advance()
-            elif failure is not None:
-                journal.add({"key": key, "parameters": _said(point), "error": failure})
-                advance()
-            elif key in tasks:
-                advance()
+            if known is not None and not (again or (retry and "error" in known)):
+                continue
+            if failure is not None:
+                failures[key] = {"key": key, "parameters": _said(point), "error": failure}
             else:
                 tasks[key] = arguments, _said(point)
+        for record in failures.values():
+            journal.add(record)
 
         def keep(key: str, result: Record) -> None:
             journal.add({"key": key, "parameters": tasks[key][1], **result})
 
         arguments_of = {key: arguments for key, (arguments, _) in tasks.items()}
-        for _ in _run(arguments_of, wanted, asked, executor, keep):
-            advance()
-        dataset = _assemble(coordinates, [journal.records[key] for key in keys], wanted)
+        found = len(set(keys)) - len(tasks) - len(failures)
+        with shown(progress, found + len(tasks), found) as advance:
+            for _ in _run(arguments_of, wanted, asked, executor, keep):
+                advance()
+        records = [journal.records[key] for key in keys]
+        dataset = assembled(coordinates, records, wanted)
         if path is not None:
             from nacre.files import replacing, write_dataset
 
             with replacing(path) as temporary:
                 write_dataset(dataset, temporary)
-    failed = int((dataset.error != "").sum())
-    if failed:
-        message = f"{failed} of {len(points)} cases failed: see error in the Dataset"
-        warnings.warn(message, core.NacreWarning, stacklevel=2)
+    for line in counted(records):
+        warnings.warn(line, core.NacreWarning, stacklevel=2)
     return dataset
-
-
-def _points(parameters: Mapping[str, Any]) -> tuple[xarray.Dataset, list[dict[str, Any]]]:
-    """Return the coordinates of a study, and the parameters of each of its cases in order."""
-    import xarray
-
-    coordinates: dict[str, Any] = {}
-    values: dict[str, list[Any]] = {}
-    places: list[xarray.DataArray] = []
-    for name, given in parameters.items():
-        if isinstance(given, xarray.DataArray):
-            values[name] = [item.item() for item in given.values.ravel()]
-            dims, shape = given.dims, given.shape
-            coordinates |= {str(key): coord for key, coord in given.coords.items()}
-            coordinates[name] = (dims, given.values)
-        else:
-            if isinstance(given, str) or not isinstance(given, Iterable):
-                raise TypeError(f"{name} must be a sequence of values, got {given!r}")
-            labels: list[Any]
-            if isinstance(given, Mapping):
-                labels, values[name] = [str(label) for label in given], list(given.values())
-            else:
-                values[name] = [v.item() if isinstance(v, np.generic) else v for v in given]
-                labels = values[name]
-                kinds = {type(v) for v in labels}
-                if not (kinds <= {int, float} or kinds in ({bool}, {str})):
-                    labels = [str(v) if isinstance(v, str) else repr(v) for v in labels]
-            dims, shape = (name,), (len(labels),)
-            coordinates[name] = ((name,), np.array(labels))
-        if not values[name]:
-            raise ValueError(f"{name} must have at least one value, got none")
-        places.append(xarray.DataArray(np.arange(len(values[name])).reshape(shape), dims=dims))
-    grids = xarray.broadcast(*places)
-    ranks = [grid.values.ravel() for grid in grids]
-    count = ranks[0].size if ranks else 1
-    points = [
-        {name: values[name][rank[k]] for name, rank in zip(values, ranks, strict=True)}
-        for k in range(count)
-    ]
-    frame = (
-        grids[0].copy(data=np.arange(count).reshape(grids[0].shape))
-        if grids
-        else xarray.DataArray(0)
-    )
-    dataset = frame.to_dataset(name="case").assign_coords(coordinates)
-    return dataset, points
 
 
 def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
@@ -208,7 +191,7 @@ def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | 
     try:
         arguments = dict({**case, **point} if isinstance(case, Mapping) else case(**point))
     except (ValueError, ArithmeticError) as error:
-        return {}, f"{type(error).__name__}: {error}"
+        return {}, _reason(error)
     unknown = set(arguments) - ARGUMENTS
     if unknown:
         raise TypeError(f"case must give arguments of nacre.solve, got {sorted(unknown)}")
@@ -295,44 +278,16 @@ def _solve(
     try:
         solution = core.solve(**arguments)
         values = evaluated(solution, outputs, {"threads": arguments["threads"], **stress})
-        return {"values": values, "warnings": solution.report.warnings}
+        kinds = [warning["kind"] for warning in solution.report.to_dict()["warnings"]]
+        return {"values": values, "warnings": solution.report.warnings, "kinds": kinds}
     except Exception as error:  # whatever it is, the other cases go on
-        return {"error": f"{type(error).__name__}: {error}"}
+        return {"error": _reason(error)}
 
 
-def _assemble(
-    coordinates: xarray.Dataset, records: Sequence[Record], outputs: Mapping[str, Output]
-) -> xarray.Dataset:
-    """Return the Dataset of all cases."""
-    dims, shape = coordinates["case"].dims, coordinates["case"].shape
-    dataset = coordinates.drop_vars("case")
-    for name, output in outputs.items():
-        arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
-        found = [a.shape for a in arrays if a is not None]
-        rank = max((len(s) for s in found), default=0)
-        inner = tuple(max(s[k] if k < len(s) else 1 for s in found) for k in range(rank))
-        # Arrays that are shorter than others end in NaN, like cases that failed.
-        data = np.full((len(records), *inner), np.nan)
-        for row, array in enumerate(arrays):
-            if array is not None:
-                place: tuple[Any, ...] = (row, *(slice(0, n) for n in array.shape))
-                data[place] = array
-        extra_dims = ("axis",) if output in AXES else tuple(f"{name}_{k}" for k in range(rank))
-        if output in AXES:
-            dataset = dataset.assign_coords(axis=["x", "y"])
-            if rank == 0:  # every case failed
-                data = np.full((len(records), 2), np.nan)
-                inner = (2,)
-        dataset[name] = ((*dims, *extra_dims), data.reshape(*shape, *inner))
-        if isinstance(output, str) and output in UNITS:
-            dataset[name].attrs["units"] = UNITS[output]
-    for name, texts in {
-        "error": [r.get("error", "") for r in records],
-        "warnings": ["\n".join(r.get("warnings", [])) for r in records],
-    }.items():
-        dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
-    dataset.attrs = {"title": "study of coated contacts", "source": f"nacre {core.__version__}"}
-    return dataset
+def _reason(error: Exception) -> str:
+    """Return an error as a text that every file can hold."""
+    text = f"{type(error).__name__}: {error}".replace("\0", "\\0")
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 @contextmanager
@@ -341,33 +296,3 @@ def _quiet() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=core.NacreWarning)
         yield
-
-
-@contextmanager
-def _bar(wanted: bool | None, total: int) -> Iterator[Callable[[], None]]:
-    """Yield a function that advances a progress bar by one case."""
-    if wanted is False:
-        yield lambda: None
-        return
-    with extra("files"):
-        from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TextColumn,
-            TimeElapsedColumn,
-            TimeRemainingColumn,
-        )
-    console = Console(stderr=True)
-    off = wanted is None and not (console.is_terminal or console.is_jupyter)
-    parts = (
-        TextColumn("solving"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*parts, console=console, disable=off) as bar:
-        task = bar.add_task("", total=total)
-        yield lambda: bar.advance(task)

@@ -110,6 +110,7 @@ def case(load: float) -> dict[str, Any]:
     return {"shape": nacre.Sphere(5e-3), "body": COATED, "grid": GRID, "load": load}
 
 
+@pytest.mark.filterwarnings("ignore:.* cases have warnings")
 def test_a_study_goes_on_from_its_journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     journal = tmp_path / "study.journal"
     shutil.copy(FOLDER / "study.journal", journal)
@@ -126,4 +127,7 @@ def test_a_study_goes_on_from_its_journal(tmp_path: Path, monkeypatch: pytest.Mo
         study = nacre.sweep(case, {"load": [5.0, 10.0, -1.0]}, store=store, progress=False)
     assert journal.read_bytes() == before
     expected = xarray.load_dataset(FOLDER / "study.nc", engine="h5netcdf")
-    xarray.testing.assert_identical(study.drop_attrs(), expected.drop_attrs())
+    # The estimated errors are newer than the journal.
+    new = ["approach_discretisation", "peak_pressure_discretisation"]
+    assert all(np.isnan(study[name]).all() for name in new)
+    xarray.testing.assert_identical(study.drop_attrs().drop_vars(new), expected.drop_attrs())

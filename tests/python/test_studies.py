@@ -24,8 +24,9 @@ import pytest
 import xarray
 
 import nacre
-from nacre import design
-from nacre._identity import code_of
+from nacre import _progress, design
+from nacre._identity import code_of, identified
+from nacre._journal import Journal
 from nacre._outputs import Output
 
 STEEL = nacre.Elastic(210e9, 0.3)
@@ -188,6 +189,7 @@ def test_parameters_that_share_a_dimension_vary_together() -> None:
     assert float(one.peak_pressure) == nacre.solve(**ball(THICKNESS[1], 2e11, 10)).peak_pressure
 
 
+@pytest.mark.filterwarnings("ignore:.* cases have warnings")  # few cells under the small sphere
 def test_shapes_and_pairs_are_parameters_with_labels() -> None:
     shapes = {"small": nacre.Sphere(1e-3), "large": nacre.Sphere(5e-3)}
     tilts = [(None, None), (1e-4, None)]
@@ -241,9 +243,36 @@ def test_a_failure_is_recorded_and_stops_nothing(tmp_path: Path) -> None:
     assert study.tilt.sizes["axis"] == 2
 
 
-def test_warnings_of_a_case_are_in_the_dataset() -> None:
-    study = nacre.sweep(ball, {"thickness": [1e-5], "young": [1e11], "load": [5.0, 3e2]})
-    assert ["edge of the grid" in text for text in study.warnings.values.ravel()] == [False, True]
+def test_warnings_of_the_cases_are_in_the_dataset_and_counted_by_kind(tmp_path: Path) -> None:
+    parameters = {"thickness": [1e-5], "young": [1e11], "load": [5.0, 1e-3, 3e2, 4e2]}
+    store = tmp_path / "study.nc"
+    counted = r"^3 of 4 cases have warnings: grid edge \(2\), coarse \(1\); see warnings in the"
+    with pytest.warns(nacre.NacreWarning, match=counted):
+        study = nacre.sweep(ball, parameters, store=store)
+    found = ["edge of the grid" in text for text in study.warnings.values.ravel()]
+    assert found == [False, False, True, True]
+    with pytest.warns(nacre.NacreWarning, match=counted):  # from the journal
+        nacre.sweep(ball, parameters, store=store)
+
+
+def test_estimated_errors_stand_beside_their_quantities() -> None:
+    grid = nacre.Grid((64, 64), (2e-4, 2e-4))
+    case = {"shape": nacre.Sphere(5e-3), "body": STEEL, "grid": grid}
+    study = nacre.sweep(case, {"load": [5.0, 10.0]}, outputs={"peak": "peak_pressure"})
+    assert study.peak_discretisation.attrs["units"] == "Pa"
+    for load in (5.0, 10.0):
+        estimates = nacre.solve(**case, load=load).report.discretisation
+        assert estimates is not None
+        one = study.peak_discretisation.sel(load=load).item()
+        assert one == estimates["peak_pressure"] > 0
+    # Without a coarser grid there is no estimate, and a user's own output of that name stays.
+    few = nacre.sweep(
+        {**case, "grid": GRID, "algorithm": "polonsky-keer"},
+        {"load": [5.0]},
+        outputs={"approach": "approach", "load_discretisation": "load"},
+    )
+    assert np.isnan(few.approach_discretisation.item())
+    assert few.load_discretisation.item() == pytest.approx(5.0)
 
 
 def count_solves(monkeypatch: pytest.MonkeyPatch) -> list[None]:
@@ -290,23 +319,208 @@ def test_a_changed_output_function_is_another_question(
     assert len(solves) == 2
 
 
-def test_a_function_is_its_code_and_what_it_uses() -> None:
-    def made(source: str) -> Any:
-        names: dict[str, Any] = {"__name__": "user", "np": np}
-        exec(source, names)
-        return code_of(names["f"])
+FACTOR = [2.0]
 
-    first = made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
-    assert first == made("LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT")
+
+class Scaled:
+    """An object of the user's, whose method is an output."""
+
+    offset = 0.0
+
+    def __init__(self, factor: float) -> None:
+        self.factor = {"load": factor}
+
+    def total(self, solution: nacre.Solution) -> float:
+        return solution.load * self.factor["load"] + self.offset
+
+
+def test_a_global_or_a_bound_object_that_changes_is_another_question(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solves = count_solves(monkeypatch)
+    case = {"thickness": [1e-5], "young": [1e11]}
+
+    def scaled(solution: nacre.Solution) -> float:
+        return sum(solution.load * factor for factor in FACTOR)  # a function inside uses it
+
+    scale = Scaled(2.0)
+    nested: dict[str, Any] = {"scale": [scale]}
+    outputs: dict[str, Output] = {
+        "scaled": scaled,
+        "bound": scale.total,
+        "inside": lambda solution: nested["scale"][0].total(solution),
+    }
+
+    def found() -> list[float]:
+        study = nacre.sweep(ball, case, outputs=outputs, store=tmp_path / "study.nc")
+        return [round(study[name].item() / 10.0, 6) for name in outputs]
+
+    assert found() == found() == [2.0, 2.0, 2.0]
+    assert len(solves) == 1
+    monkeypatch.setitem(scaled.__globals__, "FACTOR", [3.0])
+    assert found() == [3.0, 2.0, 2.0]
+    scale.factor["load"] = 4.0
+    assert found() == [3.0, 4.0, 4.0]
+    monkeypatch.setattr(Scaled, "offset", 10.0)
+    assert found() == found() == [3.0, 5.0, 5.0]
+    monkeypatch.setattr(Scaled, "total", lambda self, solution: 10.0)
+    assert found() == [3.0, 5.0, 1.0]  # the bound method keeps the function that it was made of
+    assert len(solves) == 5
+
+
+def test_what_cannot_be_compared_is_solved_again_or_has_a_version(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solves = count_solves(monkeypatch)
+    factors = (factor for factor in (1.0, 2.0, 3.0, 4.0))  # a generator: nothing can look into it
+
+    def scaled(solution: nacre.Solution) -> float:
+        return solution.load * next(factors)
+
+    def found(version: str | None = None) -> float:
+        case = {"thickness": [1e-5], "young": [1e11]}
+        store = tmp_path / "study.nc"
+        study = nacre.sweep(ball, case, outputs=[scaled], store=store, version=version)
+        return float(round(study.scaled.item() / 10.0, 6))
+
+    message = r"cannot be compared with an earlier run: scaled\.factors \(a generator\); all cases"
+    for expected in (1.0, 2.0):
+        with pytest.warns(nacre.NacreWarning, match=message):
+            assert found() == expected
+    assert found("first") == found("first") == 3.0
+    assert found("second") == 4.0
+    assert len(solves) == 4
+    with pytest.raises(TypeError, match="version must be a text or an integer, got 1.5"):
+        nacre.sweep(ball, PARAMETERS, version=1.5)  # type: ignore[arg-type]
+
+
+def made(source: str) -> Any:
+    names: dict[str, Any] = {"__name__": "user", "np": np}
+    exec(compile(source, "user", "exec", dont_inherit=True), names)
+    return names["f"]
+
+
+def test_a_function_is_its_code_and_what_it_uses() -> None:
+    source = "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT"
+    first = code_of(made(source))
+    assert first == code_of(made(source))
     for other in (
         "LIMIT = 2.0\ndef g(s): return s.load\ndef f(s): return g(s) > LIMIT",
         "LIMIT = 1.0\ndef g(s): return s.approach\ndef f(s): return g(s) > LIMIT",
         "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return g(s) < LIMIT",
         "LIMIT = 1.0\ndef g(s): return s.load\ndef f(s): return np.sum(g(s) > LIMIT)",
     ):
-        assert made(other) != first
+        assert code_of(made(other)) != first
     recursive = "def f(s): return f(s) if s else 0"
-    assert made(recursive) == made(recursive)
+    assert code_of(made(recursive)) == code_of(made(recursive))
+
+
+CHANGES = {
+    "list": ("K = [1]\ndef f(s): return K", "[1]", "[2]"),
+    "dictionary": ("K = {'a': {1: 2}}\ndef f(s): return K", "2}", "3}"),
+    "set": ("K = {'a', 'b'}\ndef f(s): return s in K", "'b'", "'c'"),
+    "array of objects": ("K = np.array([1, 'a'], object)\ndef f(s): return K", "'a'", "'b'"),
+    "type of a number": ("K = 1\ndef f(s): return K", "1", "1.0"),
+    "lambda": ("K = [lambda s: s + 1]\ndef f(s): return K[0](s)", "+ 1", "+ 2"),
+    "function inside": ("K = 1\ndef f(s):\n def g(): return K\n return g()", "K = 1", "K = 2"),
+    "default": ("def f(s, k=[1]): return k", "[1]", "[2]"),
+    "attribute": ("def f(s): return f.k\nf.k = 1", "k = 1", "k = 2"),
+    "class": ("class A:\n def m(self): return 1\ndef f(s): return A().m()", "1", "2"),
+    "base": ("class B: k = 1\nclass A(B): pass\na = A()\ndef f(s): return a.k", "1", "2"),
+    "property": ("class A:\n @property\n def m(self): return 1\ndef f(s): return A().m", "1", "2"),
+    "slots": ("class A: __slots__ = 'k'\na = A()\na.k = 1\ndef f(s): return a.k", "k = 1", "k = 2"),
+    "partial": (
+        "from functools import partial\ndef g(s, k): return k\nf = partial(g, k=1)",
+        "k=1",
+        "k=2",
+    ),
+    "cache": (
+        "from functools import cache\n@cache\ndef g(s): return 1\ndef f(s): return g(s)",
+        "return 1",
+        "return 2",
+    ),
+    "dataclass": (
+        "from dataclasses import dataclass\n@dataclass\nclass A: k: int = 1\ndef f(s): return A().k",
+        "= 1",
+        "= 2",
+    ),
+    "exception": ("def f(s):\n try: return s\n except ValueError: return 0", "Value", "Type"),
+    "many arguments": ("def f(s, *k): return k", "*k", "k=()"),
+}
+
+
+@pytest.mark.parametrize("kind", CHANGES)
+def test_every_change_of_what_a_function_uses_is_seen(kind: str) -> None:
+    source, old, new = CHANGES[kind]
+    assert source.count(old) == 1
+    assert code_of(made(source)) == code_of(made(source))
+    assert code_of(made(source)) != code_of(made(source.replace(old, new)))
+
+
+UNKNOWN = {
+    "a generator": "K = (k for k in [1])\ndef f(s): return next(K)",
+    "a lock": "import threading\nK = threading.Lock()\ndef f(s): return K",
+    "calls eval": "def f(s): return eval('K')",
+    "calls open": "def f(s): return open('a.txt').read()",
+    "cannot be imported": "def f(s):\n import no_such_module\n return no_such_module.k",
+    "nested too deeply": "K = []\nfor _ in range(100000): K = [K]\ndef f(s): return K",
+}
+
+
+@pytest.mark.parametrize("reason", UNKNOWN)
+def test_what_a_function_hides_is_known_to_be_unknown(reason: str) -> None:
+    (unknown,) = identified({"f": made(UNKNOWN[reason])}, {}).unknown
+    assert unknown.startswith("f")
+    assert unknown.endswith(f"({reason})")
+
+
+def test_modules_of_the_user_count_and_the_key_is_the_same_in_every_process(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "script.py").write_text(
+        "import helpers\nfrom nacre._identity import identified\n"
+        "def f(s):\n"
+        "    from helpers import k\n"
+        "    return helpers.g(s) if s in {'a', 'b', 'c', 'd'} else k\n"
+        "print(identified({'f': f}, {}))\n"
+    )
+
+    def key(helpers: str, seed: str) -> str:
+        (tmp_path / "helpers.py").write_text(helpers)
+        environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "script.py"]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
+        )
+        return done.stdout
+
+    source = "import os\nk = 1\ndef g(s): return {'x': 1, 'y': 2}, os.sep"
+    first = key(source, "1")
+    assert "unknown=[]" in first
+    assert first == key(source, "2") == key(source + "\nunused = 3", "3")
+    assert first != key(source.replace("'y': 2", "'y': 3"), "1")
+    assert first != key(source.replace("k = 1", "k = 2"), "1")
+
+
+def test_a_log_gets_a_line_now_and_then(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = tmp_path / "study.nc"
+    nacre.sweep(ball, {"thickness": [5e-6], "young": YOUNG}, store=store)
+    assert capsys.readouterr().err == ""  # nothing in the first minute
+    nacre.sweep(ball, PARAMETERS, store=store, progress=True)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "nacre.sweep: 2 of 6 cases (2 of 6 found in the store)"
+    assert lines[-1].startswith("nacre.sweep: 6 of 6 cases (2 of 6 found in the store), 0:00:0")
+    assert len(lines) == 2
+    monkeypatch.setattr(_progress, "EVERY", 0.0)
+    nacre.sweep(ball, PARAMETERS, outputs=["load"])
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 7  # one for each case, and the last
+    assert lines[2].startswith("nacre.sweep: 3 of 6 cases, 0:00:0")
+    assert " left" in lines[2]
+    nacre.sweep(ball, PARAMETERS, progress=False)
+    assert capsys.readouterr().err == ""
 
 
 def test_failed_cases_are_tried_again_when_asked(
@@ -343,6 +557,60 @@ def test_a_line_cut_short_is_dropped_and_a_damaged_one_is_refused(
     journal.write_bytes(b"{" + whole)
     with pytest.raises(ValueError, match="is no journal of a study: line 1"):
         nacre.sweep(ball, PARAMETERS, store=store)
+    journal.write_bytes(b"A text that is no journal")
+    with pytest.raises(ValueError, match="is no journal of a study: line 1"):
+        nacre.sweep(ball, PARAMETERS, store=store)
+    assert journal.read_bytes() == b"A text that is no journal"
+
+
+def test_a_journal_with_a_flipped_bit_is_refused_or_solved_again(tmp_path: Path) -> None:
+    journal = tmp_path / "study.journal"
+    records = [
+        {"key": str(k), "parameters": {"load": 1.5}, "values": {"load": [1.5 * k, np.nan]}}
+        for k in range(2)
+    ]
+    with Journal(journal) as kept:
+        for record in records:
+            kept.add(record)
+    whole = journal.read_bytes()
+    refused = 0
+    for bit in range(8 * len(whole)):
+        flipped = bytearray(whole)
+        flipped[bit // 8] ^= 1 << bit % 8
+        journal.write_bytes(flipped)
+        try:
+            with Journal(journal) as kept:
+                found = kept.records
+        except ValueError as error:
+            assert "study.journal" in str(error)
+            refused += 1
+            continue
+        for key, record in found.items():
+            # A checksum whose own name is damaged is an entry that nothing reads.
+            expected = records[int(key)]
+            assert repr({name: record[name] for name in expected}) == repr(expected)
+    assert refused > 4 * len(whole) / 2 * 0.9  # half of the lines are not the last one
+
+
+def test_a_journal_on_a_full_disk_stays_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal = tmp_path / "study.journal"
+    with Journal(journal) as kept:
+        kept.add({"key": "a", "values": {"load": 1.0}})
+        before = journal.read_bytes()
+
+        def fail(*_: object) -> None:
+            raise OSError("no space left on device")
+
+        with monkeypatch.context() as patch, pytest.raises(OSError, match="no space"):
+            patch.setattr("os.fsync", fail)
+            kept.add({"key": "b", "values": {"load": 2.0}})
+        assert journal.read_bytes() == before
+        assert list(kept.records) == ["a"]
+        kept.add({"key": "c", "values": {"load": 3.0}})
+    with Journal(journal) as kept:
+        assert list(kept.records) == ["a", "c"]
 
 
 KILLED = """

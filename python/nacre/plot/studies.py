@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from nacre._extras import extra
+from nacre._outputs import ERROR
 from nacre.plot.style import COLOURMAP, new_axes, next_look, styled
 from nacre.units import PARAMETERS, UNITS, Scale
 
@@ -26,7 +28,8 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
     study
         A Dataset over two parameters; values of either that grow by factors get a logarithmic axis.
     quantity
-        What to draw.
+        What to draw. Its largest estimated error due to the size of the cells is in the label,
+        where the study has it.
     axes
         Axes to draw into; a new figure by default.
 
@@ -51,7 +54,12 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
         lines = axes.contour(*sides, values, levels=8, colors="white", linewidths=0.6)
         axes.clabel(lines, fontsize=7, fmt="%.4g")
         name = quantity.replace("_", " ")
-        axes.figure.colorbar(filled, ax=axes, label=f"{name} [{scale.unit}]")
+        errors = _errors(study, quantity)
+        label = f"{name} [{scale.unit}]"
+        if errors is not None:
+            share = np.nanmax(errors / np.abs(field.values))
+            label += f", ± {100 * share:.2g} % at most"
+        axes.figure.colorbar(filled, ax=axes, label=label)
         axes.grid(visible=False)
     return axes
 
@@ -60,6 +68,8 @@ def curve(
     study: xarray.Dataset, quantity: str = "approach", axes: Axes | None = None, **style: Any
 ) -> Axes:
     """Draw a quantity over the only parameter of a study: `load_curve`, `tilt_curve`.
+
+    Error bars show the estimated error due to the size of the cells, where the study has it.
 
     Parameters
     ----------
@@ -87,9 +97,13 @@ def curve(
     with styled():
         axes = axes or new_axes(0.6, 0.42)
         x = _side(axes, "x", study[str(field.dims[0])])
-        axes.plot(
-            x, scale.factor * field.values, **(next_look(axes) | {"marker": "o", "ms": 3} | style)
-        )
+        line = next_look(axes) | {"marker": "o", "ms": 3} | style
+        errors = _errors(study, quantity)
+        if errors is None:
+            axes.plot(x, scale.factor * field.values, **line)
+        else:
+            bars = scale.factor * errors
+            axes.errorbar(x, scale.factor * field.values, bars, capsize=2, **line)
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
     return axes
 
@@ -106,6 +120,14 @@ def _quantity(study: xarray.Dataset, quantity: str, parameters: int) -> xarray.D
             f"quantity must be over {parameters} parameters here, {quantity} is over {field.dims}"
         )
     return field
+
+
+def _errors(study: xarray.Dataset, quantity: str) -> npt.NDArray[np.float64] | None:
+    """Return the estimated errors of a quantity, or None where there is not one."""
+    if quantity + ERROR not in study:
+        return None
+    errors: npt.NDArray[np.float64] = np.abs(study[quantity + ERROR].values)
+    return errors if np.isfinite(errors).any() else None
 
 
 def _scale(field: xarray.DataArray, quantity: str) -> Scale:

@@ -1,0 +1,90 @@
+"""Progress of a study: a bar where there is a terminal or a notebook, lines in a log elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+
+from nacre._extras import extra
+
+EVERY = 60.0
+"""Shortest time between two lines in a log [s]: a night has a few hundred of them."""
+
+
+@contextmanager
+def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], None]]:
+    """Yield a function that advances the progress by one case; `found` cases need no solve."""
+    if wanted is False:
+        yield lambda: None
+        return
+    with extra("files"):
+        from rich.console import Console
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+    console = Console(stderr=True)
+    if not (console.is_terminal or console.is_jupyter):
+        lines = _Lines(total, found, at_once=bool(wanted))
+        yield lines.advance
+        lines.end()
+        return
+    parts = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*parts, console=console) as bar:
+        task = bar.add_task(f"solving{_found(found, total)}", total=total, completed=found)
+        yield lambda: bar.advance(task)
+
+
+def _found(found: int, total: int) -> str:
+    return f" ({found} of {total} found in the store)" if found else ""
+
+
+class _Lines:
+    """Lines on standard error, at most one in `EVERY` seconds."""
+
+    def __init__(self, total: int, found: int, *, at_once: bool) -> None:
+        self.total, self.found, self.done = total, found, found
+        self.start = self.last = time.monotonic()
+        self.written = at_once
+        if at_once:
+            self.write()
+
+    def advance(self) -> None:
+        self.done += 1
+        if time.monotonic() - self.last >= EVERY:
+            self.written = True
+            self.write()
+
+    def end(self) -> None:
+        """Write the last line, where there were others."""
+        if self.written:
+            self.write()
+
+    def write(self) -> None:
+        self.last = time.monotonic()
+        seconds = self.last - self.start
+        text = f"nacre.sweep: {self.done} of {self.total} cases"
+        text += _found(self.found, self.total)
+        solved = self.done - self.found
+        if solved:
+            text += f", {_time(seconds)} so far"
+            if left := self.total - self.done:
+                text += f", about {_time(seconds * left / solved)} left"
+        print(text, file=sys.stderr, flush=True)
+
+
+def _time(seconds: float) -> str:
+    return str(timedelta(seconds=round(seconds)))
