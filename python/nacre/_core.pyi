@@ -1,7 +1,7 @@
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, Unpack, final, overload
+from typing import Any, ClassVar, Final, Literal, Protocol, Self, TypeAlias, Unpack, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -55,6 +55,15 @@ _Pair: TypeAlias = tuple[float, float]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
 _Peak: TypeAlias = tuple[float, tuple[float, float, float]]
+
+class _Topography(Protocol):
+    @property
+    def dim(self) -> int: ...
+    @property
+    def unit(self) -> str | None: ...
+    @property
+    def physical_sizes(self) -> tuple[float, ...] | None: ...
+    def heights(self) -> npt.NDArray[Any]: ...
 
 class _SingleSolve(_keywords.Motion, _keywords.Search, total=False):
     initial: Solution | _Matrix | None
@@ -247,12 +256,13 @@ class HeightMap(Shape):
     ) -> Self: ...
     @staticmethod
     def read(
-        path: str | os.PathLike[str],
+        path: str | os.PathLike[str] | _Topography,
         *,
         spacing: float | _Pair | None = None,
         unit: str | None = None,
         detrend: Literal["none", "mean", "plane", "quadratic"] = "plane",
         channel: str | int | None = None,
+        transpose: bool = False,
     ) -> HeightMap: ...
     @property
     def heights(self) -> _Field: ...
@@ -394,6 +404,7 @@ class Solution:
         path: str | os.PathLike[str],
         *,
         depths: float | _Vector | None = None,
+        whole: bool = False,
         **options: Any,
     ) -> Path: ...
     def _repr_html_(self) -> str: ...

@@ -118,7 +118,6 @@ def counted(records: Sequence[Record]) -> list[str]:
             if record.get("warnings")
         )
         said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
-        lines.append(
-            f"{len(texts)} of {len(records)} cases have warnings: {said}; see warnings in the Dataset"
-        )
+        total = f"{len(texts)} of {len(records)} cases have warnings"
+        lines.append(f"{total}: {said}; see warnings in the Dataset")
     return lines

@@ -254,8 +254,9 @@ class _Walk:
             if not _is_library(home):
                 self.unknown.append(f"{place} (a {kind.__qualname__})")
             return ["named", home, reduced, _version(home)]
-        make, arguments, state, items, pairs, *_ = (*reduced, None, None, None)
-        parts = [self.of(one, place) for one in (make, arguments, state)]
+        whole: list[Any] = [*reduced, None, None, None]  # the last three may be left out
+        parts = [self.of(one, place) for one in whole[:3]]
+        items, pairs = whole[3:5]
         parts.append([self.of(one, place) for one in items or ()])
         return ["object", *parts, self._pairs(pairs or (), place)]
 

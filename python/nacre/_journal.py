@@ -24,9 +24,9 @@ Record = dict[str, Any]
 class Journal:
     """Records by key, kept in a file that only grows; without a path they are in memory only.
 
-    A record is on the disk when `add` returns; one that the disk has no room for leaves the file as
-    it was. A line that a kill cut short is dropped when the file is opened again. One process writes
-    at a time; a second one is refused.
+    A record is on the disk when `add` returns; one that the disk has no room for leaves the file
+    as it was. A line that a kill cut short is dropped when the file is opened again. One process
+    writes at a time; a second one is refused.
     """
 
     def __init__(self, path: Path | None) -> None:

@@ -165,6 +165,7 @@ class HeightMap(Shape):
     spacing: FiniteFloat | Pair | None = None
     unit: str | None = None
     detrend: Literal["none", "mean", "plane", "quadratic"] = "plane"
+    transpose: bool = False
 
     def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
         """Return the shape without its shift."""

@@ -1,29 +1,40 @@
-"""Solutions in files: NetCDF to come back to, VTK for ParaView, CSV for spreadsheets."""
+"""Solutions in files: NetCDF to come back to, VTK for ParaView, CSV for spreadsheets, pictures."""
 
 from __future__ import annotations
 
-import csv
+import hashlib
+import io
 import json
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
+from nacre._tables import FIELDS, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS
-from nacre.values import decode, encode
+from nacre.values import FORMAT, decode, encode
 
 if TYPE_CHECKING:
     import xarray
 
 AnyPath = str | os.PathLike[str]
+Array = npt.NDArray[np.float64]
+
+
+class Variable(NamedTuple):
+    """A variable of a file."""
+
+    dimensions: tuple[str, ...]
+    values: npt.NDArray[Any]
+
 
 FIGURES = (
     "load",
@@ -45,10 +56,13 @@ NAMES = {
     "displacement": "normal displacement of both bodies together",
     "line_load": "force per length along x",
 }
-FIELDS = ("pressure", "gap", "displacement")
-"""Fields of the state that files hold as variables."""
 STATE = "nacre_solution"
 """Attribute that holds the rest of the state, as JSON."""
+CHECKSUM = "nacre_checksum"
+"""Attribute that holds the SHA-256 of all that `load` reads; files of older versions lack it."""
+PICTURES = (".png", ".pdf", ".svg")
+ROUNDING = 1e-9
+"""Share of a side by which a coordinate in a file may differ from that of its cell's centre."""
 
 
 def to_xarray(solution: core.Solution) -> xarray.Dataset:
@@ -90,6 +104,8 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
         "warnings": "\n".join(report.warnings),
         STATE: json.dumps(_state(solution)),
     }
+    arrays = {name: getattr(solution, name) for name in FIELDS}
+    dataset.attrs[CHECKSUM] = _checksum(dataset.attrs[STATE], arrays)
     for name in FIGURES:
         if dataset.attrs[name].size == 1:
             dataset.attrs[name] = float(dataset.attrs[name][0])
@@ -100,6 +116,7 @@ def save(
     solution: core.Solution,
     path: AnyPath,
     depths: npt.ArrayLike | None = None,
+    whole: bool = False,
     options: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write a file, whole or not at all; its ending chooses the kind."""
@@ -107,24 +124,28 @@ def save(
     writers: dict[str, Callable[[core.Solution, Path], None]] = {
         ".nc": _write_netcdf,
         ".vtr": write_surface,
-        ".csv": _write_csv,
+        ".csv": write_cells if whole else write_sections,
+        **dict.fromkeys(PICTURES, _write_picture),
     }
-    if path.suffix not in writers:
+    ending = path.suffix
+    if ending not in writers:
         raise ValueError(f"path must end in {', '.join(writers)}, got {str(path)!r}")
     if depths is None and options:
         raise TypeError(f"{', '.join(sorted(options))}: without depths there are no such options")
-    if depths is not None and path.suffix != ".vtr":
+    if depths is not None and ending != ".vtr":
         raise ValueError(f"path must end in .vtr where depths are given, got {str(path)!r}")
+    if whole and ending != ".csv":
+        raise ValueError(f"path must end in .csv where whole is given, got {str(path)!r}")
     with replacing(path) as temporary:
         if depths is None:
-            writers[path.suffix](solution, temporary)
+            writers[ending](solution, temporary)
         else:
             write_stress(solution, temporary, depths, options or {})
     return path
 
 
 def load(path: AnyPath) -> core.Solution:
-    """Solution from a NetCDF file that `Solution.save` wrote, bit for bit; needs ``nacre-contact[files]``.
+    """Solution from a file that `Solution.save` wrote, bit for bit; needs ``nacre-contact[files]``.
 
     Parameters
     ----------
@@ -139,7 +160,8 @@ def load(path: AnyPath) -> core.Solution:
     Raises
     ------
     ValueError
-        If the file holds no solution of nacre's, or a newer version wrote it.
+        If the file holds no solution of nacre's, was changed or damaged after it was saved, or was
+        written by a newer version.
     OSError
         If the file cannot be read.
 
@@ -153,24 +175,16 @@ def load(path: AnyPath) -> core.Solution:
     True
     """
     with extra("files"):
-        import h5netcdf  # noqa: F401
-        import xarray
+        import h5py  # noqa: F401
 
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"{str(path)!r} is not a file")
+    content = path.read_bytes()
     try:
-        with xarray.open_dataset(path, engine="h5netcdf") as dataset:
-            state = json.loads(dataset.attrs[STATE])
-            fields = {name: dataset[name].to_numpy() for name in FIELDS}
-    except (KeyError, OSError, ValueError) as error:
-        raise ValueError(f"{str(path)!r} must be a solution that nacre saved") from error
-    try:
-        if "format" not in state:
-            return _load_format0(state, fields)
-        return core.Solution.from_dict(state | fields)
+        return _solution(*_read(content))
     except ValueError as error:
-        raise ValueError(f"{str(path)!r}: {error}") from error
+        raise ValueError(f"{str(path)!r} must be a solution that nacre saved: {error}") from error
 
 
 @contextmanager
@@ -196,7 +210,8 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
         for name, variable in dataset.variables.items()
         if variable.dtype.kind == "f" and variable.ndim > 0
     }
-    dataset.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+    # HDF5 writes to memory: on a full disk it would crash when the process ends.
+    path.write_bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
 def _state(solution: core.Solution) -> dict[str, Any]:
@@ -204,33 +219,102 @@ def _state(solution: core.Solution) -> dict[str, Any]:
     return {name: value for name, value in solution.to_dict().items() if name not in FIELDS}
 
 
-def _load_format0(state: dict[str, Any], fields: Mapping[str, Any]) -> core.Solution:
+def _checksum(state: str, fields: Mapping[str, Array]) -> str:
+    digest = hashlib.sha256(state.encode())
+    for name in FIELDS:
+        digest.update(np.ascontiguousarray(fields[name], dtype="<f8").tobytes())
+    return digest.hexdigest()
+
+
+def _read(content: bytes) -> tuple[Any, dict[str, Variable]]:
+    """Return the attributes of a file from its content, and its variables."""
+    import h5py
+
+    try:
+        # The content is in memory, so that HDF5 keeps no damaged file open.
+        with h5py.File(io.BytesIO(content), "r") as file:
+            attributes = {name: file.attrs.get(name) for name in (STATE, CHECKSUM)}
+            variables = {
+                name: Variable(
+                    tuple(d[0].name.rpartition("/")[2] if len(d) else "" for d in file[name].dims),
+                    np.asarray(file[name][()]),
+                )
+                for name in (*FIELDS, "x", "y")
+                if name in file
+            }
+    except Exception as error:  # whatever HDF5 says of a damaged file
+        raise ValueError("it is no NetCDF file, or a damaged one") from error
+    return attributes, variables
+
+
+def _solution(attributes: Mapping[str, Any], variables: Mapping[str, Variable]) -> core.Solution:
+    text = attributes[STATE]
+    if not isinstance(text, str):
+        raise ValueError(f"the attribute {STATE} must be a text, got {text!r:.60}")
+    fields = {name: _field(name, variables) for name in FIELDS}
+    try:
+        state = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"the attribute {STATE} must hold JSON: {error}") from error
+    if not isinstance(state, dict):
+        raise ValueError(f"the attribute {STATE} must hold named fields, got {text!r:.60}")
+    written, found = state.get("format", 0), attributes[CHECKSUM]
+    is_newer = isinstance(written, int) and written > FORMAT  # `from_dict` says so
+    if found is not None and not is_newer and found != _checksum(text, fields):
+        raise ValueError("its content is not what was saved: it was changed or damaged")
+    if "format" in state:
+        solution = core.Solution.from_dict(state | fields)
+    else:
+        solution = _load_format0(state, fields)
+    for name, size in zip("xy", solution.report.grid.size, strict=True):
+        expected = getattr(solution, name)
+        # A file may have been reordered, or may have lost its coordinates.
+        side = variables[name].values if name in variables else expected
+        if (
+            side.dtype.kind != "f"
+            or side.shape != expected.shape
+            or not np.allclose(side, expected, 0.0, ROUNDING * size)
+        ):
+            raise ValueError(f"{name} must be the centres of the cells, in order")
+    return solution
+
+
+def _field(name: str, variables: Mapping[str, Variable]) -> Array:
+    """Return a field over x and y, whatever the order of its dimensions in the file."""
+    if name not in variables:
+        raise ValueError(f"the variable {name} is missing")
+    dimensions, values = variables[name]
+    if set(dimensions) != {"x", "y"} or len(dimensions) != 2:
+        got = ", ".join(dimensions) or "none"
+        raise ValueError(f"{name} must have the dimensions x, y, got {got}")
+    if values.dtype.kind != "f":
+        raise ValueError(f"{name} must hold real numbers, got {values.dtype}")
+    return values if dimensions == ("x", "y") else values.T
+
+
+def _load_format0(state: dict[str, Any], fields: Mapping[str, Array]) -> core.Solution:
     """Return the solution of a file that was written before states had names."""
     from nacre import _format0
 
-    report = _format0._restore_report(decode(state["report"]))
-    motion = state["approach"], state["tilt"]
-    return _format0._restore_solution(tuple(fields.values()), motion, report)
+    try:
+        report = _format0._restore_report(decode(state["report"]))
+        motion = state["approach"], state["tilt"]
+        arrays = fields["pressure"], fields["gap"], fields["displacement"]
+        return _format0._restore_solution(arrays, motion, report)
+    except Exception as error:  # values of any kind in any place
+        raise ValueError(f"the attribute {STATE} does not hold a solution: {error}") from error
 
 
 def _write_netcdf(solution: core.Solution, path: Path) -> None:
     write_dataset(to_xarray(solution), path)
 
 
-def _write_csv(solution: core.Solution, path: Path) -> None:
-    """Write the sections along x and along y through the largest pressure."""
-    i, j = (
-        int(np.argmin(np.abs(side - place)))
-        for side, place in zip((solution.x, solution.y), solution.peak_position, strict=True)
-    )
-    names = FIELDS
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["along", "x [m]", "y [m]", *(f"{n} [{UNITS[n]}]" for n in names)])
-        for along, rows in (
-            ("x", [(k, j) for k in range(solution.x.size)]),
-            ("y", [(i, k) for k in range(solution.y.size)]),
-        ):
-            for k, m in rows:
-                values = (getattr(solution, name)[k, m].item() for name in names)
-                writer.writerow([along, solution.x[k].item(), solution.y[m].item(), *values])
+def _write_picture(solution: core.Solution, path: Path) -> None:
+    """Write the picture that `Solution.plot` draws."""
+    axes: Any = next(iter(solution.plot().values()))
+    try:
+        axes.figure.savefig(path, dpi=300)
+    finally:
+        from matplotlib import pyplot
+
+        pyplot.close(axes.figure)

@@ -1,9 +1,8 @@
-"""Measured surfaces from files."""
+"""Measured surfaces from files, and from SurfaceTopography."""
 
 from __future__ import annotations
 
 import os
-import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -12,198 +11,104 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre import _core as core
-from nacre._extras import extra
+from nacre._heights import LEAST_MEASURED, METRES, Heights, named
+from nacre._instruments import instrument, of_topography
 
 Array = npt.NDArray[np.float64]
 
-METRES = {
-    "m": 1.0,
-    "mm": 1e-3,
-    "µm": 1e-6,
-    "um": 1e-6,
-    "nm": 1e-9,
-    "pm": 1e-12,
-    "Å": 1e-10,
-    "A": 1e-10,
-    "cm": 1e-2,
-}
 TRENDS = ("none", "mean", "plane", "quadratic")
-LEAST_MEASURED = 0.5
-"""Least share of points that must be measured; below it most of the surface would be a guess."""
+TALLEST = 10.0
+"""Largest ratio of height to side of a map; surfaces have less than 1, and a wrong unit 1e3."""
 
 
 def read(
-    path: str | os.PathLike[str],
+    path: Any,
     *,
     spacing: float | tuple[float, float] | None = None,
     unit: str | None = None,
     detrend: str = "plane",
     channel: str | int | None = None,
+    transpose: bool = False,
 ) -> core.HeightMap:
     """Read a measured surface; see `HeightMap.read`."""
-    path = Path(path)
     if detrend not in TRENDS:
         raise ValueError(f"detrend must be one of {', '.join(TRENDS)}, got {detrend!r}")
     if unit is not None and unit not in METRES:
         raise ValueError(f"unit must be one of {', '.join(METRES)}, got {unit!r}")
+    if channel is not None and (isinstance(channel, bool) or not isinstance(channel, str | int)):
+        raise TypeError(f"channel must be a name or a number, got {channel!r}")
+    name, found, is_metric = _found(path, channel)
+    heights, sides = found.heights, found.spacing
+    if transpose:
+        heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
+    factor = _metres(name, found, unit, is_metric)
+    heights = heights * factor
+    if spacing is None:
+        if sides is None:
+            raise ValueError(f"spacing must be given: {name} does not have it")
+        spacing = sides[0] * factor, sides[1] * factor
+    if unit is None and found.unit is None:
+        _check_size(name, heights, spacing)
+    heights = _filled(name, heights)
+    return core.HeightMap(np.ascontiguousarray(_without_trend(heights, detrend)), spacing)
+
+
+def _found(path: Any, channel: str | int | None) -> tuple[str, Heights, bool]:
+    """Return a name for messages, the heights, and whether they are in metres without a unit."""
+    if not isinstance(path, str | os.PathLike):
+        if not hasattr(path, "heights"):
+            raise TypeError(f"path must be a path or a topography, got {path!r}")
+        if channel is not None:
+            raise ValueError(f"channel must be left out: a topography has none, got {channel!r}")
+        return "the topography", of_topography(path), False
+    path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"{str(path)!r} is not a file")
-    plain = {".npy": _npy, ".csv": _csv, ".xyz": _xyz}
-    if path.suffix.lower() in plain:
-        if channel is not None:
-            raise ValueError(f"channel must be left out: {path.suffix} has none, got {channel!r}")
-        heights, found, unit_found = plain[path.suffix.lower()](path)
-        metres = METRES[unit or unit_found or "m"]
-        heights = heights * metres
-        sides = None if found is None else (found[0] * metres, found[1] * metres)
-    else:
-        heights, sides = _measured(path, unit, channel)
-    if spacing is None:
-        spacing = sides
-    if spacing is None:
-        raise ValueError(f"spacing must be given: {str(path)!r} does not have it")
-    heights = _filled(path, heights)
-    return core.HeightMap(_without_trend(heights, detrend), spacing)
+    reader = named(path)
+    if reader is None:
+        return repr(str(path)), instrument(path, channel), False
+    if channel is not None:
+        raise ValueError(f"channel must be left out: {path.suffix} has none, got {channel!r}")
+    return repr(str(path)), reader(path), path.suffix.lower() != ".xyz"
 
 
-def _npy(path: Path) -> tuple[Array, None, None]:
-    return _matrix(path, np.load(path, allow_pickle=False)), None, None
-
-
-def _csv(path: Path) -> tuple[Array, tuple[float, float] | None, str | None]:
-    """Return heights, one line for each x; ``# unit: um`` and ``# spacing: dx dy`` may precede."""
-    said = _said(path)
-    heights = _matrix(path, _table(path))
-    spacing = None
-    if "spacing" in said:
-        numbers = [float(number) for number in said["spacing"].replace(",", " ").split()]
-        spacing = (numbers[0], numbers[-1])
-    return heights, spacing, _unit(path, said)
-
-
-def _xyz(path: Path) -> tuple[Array, tuple[float, float], str | None]:
-    """Return heights and spacing of points x, y, z on a grid, in any order; some may be missing."""
-    points = _table(path)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"{str(path)!r} must have three columns x, y, z, got shape {points.shape}")
-    places, steps = [], []
-    for axis in (0, 1):
-        values = np.unique(points[:, axis])
-        # Coordinates that differ only by rounding are the same.
-        reach = np.ptp(values) or 1.0
-        values = values[np.insert(np.diff(values) > 1e-6 * reach, 0, True)]
-        if values.size < 2:
-            raise ValueError(f"{str(path)!r} must have points at two places along each of x and y")
-        step = float(np.median(np.diff(values)))
-        place = (points[:, axis] - values[0]) / step
-        if np.abs(place - place.round()).max() > 0.05:
-            raise ValueError(f"{str(path)!r} must have its points on a regular grid")
-        places.append(place.round().astype(int))
-        steps.append(float(np.ptp(values)) / int(places[-1].max()))
-    cells = [int(place.max()) + 1 for place in places]
-    if cells[0] * cells[1] * LEAST_MEASURED > len(points):
+def _metres(name: str, found: Heights, unit: str | None, is_metric: bool) -> float:
+    """Return the length of the unit [m]."""
+    said = unit or found.unit
+    if said is None and not is_metric:
+        sizes = f"its heights span {_span(found.heights):.4g}"
+        if found.spacing is not None:
+            nx, ny = found.heights.shape
+            dx, dy = found.spacing
+            sizes += f" and its sides {(nx - 1) * dx:.4g} x {(ny - 1) * dy:.4g}"
+        raise ValueError(f"unit must be given: {name} names none; {sizes}")
+    if said is not None and said not in METRES:
         raise ValueError(
-            f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}"
+            f"unit must be given: {name} has {said!r}, which is none of {', '.join(METRES)}"
         )
-    heights = np.full(cells, np.nan)
-    heights[places[0], places[1]] = points[:, 2]
-    return heights, (steps[0], steps[1]), _unit(path, _said(path))
+    return METRES[said or "m"]
 
 
-def _measured(
-    path: Path, unit: str | None, channel: str | int | None
-) -> tuple[Array, tuple[float, float]]:
-    """Return heights and spacing of an instrument's file, in metres, by SurfaceTopography."""
-    with extra("surfaces"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
-        import SurfaceTopography
-
+def _check_size(name: str, heights: Array, spacing: float | tuple[float, float]) -> None:
+    """Refuse heights that nothing says to be metres, and that are far larger than the map."""
     try:
-        with SurfaceTopography.open_topography(str(path)) as reader:
-            index = None
-            if isinstance(channel, str):
-                names = [c.name for c in reader.channels]
-                if channel not in names:
-                    raise ValueError(f"channel must be one of {', '.join(names)}, got {channel!r}")
-                index = names.index(channel)
-            elif channel is not None:
-                index = int(channel)
-            surface = reader.topography(channel_index=index)
-    except (OSError, ValueError):
-        raise
-    except Exception as error:  # readers raise anything for a damaged file
-        raise ValueError(f"{str(path)!r} cannot be read: {error}") from error
-    found = unit or surface.unit
-    if found not in METRES:
-        raise ValueError(f"unit must be given: {str(path)!r} has {surface.unit!r}")
-    if surface.dim != 2:
-        raise ValueError(f"{str(path)!r} must hold a surface, got a line")
-    heights = np.ma.filled(np.ma.masked_invalid(surface.heights()).astype(np.float64), np.nan)
-    sides = [
-        size / cells for size, cells in zip(surface.physical_sizes, heights.shape, strict=True)
-    ]
-    metres = METRES[found]
-    return heights * metres, (sides[0] * metres, sides[1] * metres)
-
-
-def _said(path: Path) -> dict[str, str]:
-    """Return names and values of the comment lines ``# name: value``."""
-    said: dict[str, str] = {}
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for line in file:
-            if not line.startswith("#"):
-                break
-            name, colon, value = line[1:].partition(":")
-            if colon:
-                said[name.strip().lower()] = value.strip()
-    return said
-
-
-def _unit(path: Path, said: dict[str, str]) -> str | None:
-    unit = said.get("unit", "").replace("μ", "µ") or None
-    if unit is not None and unit not in METRES:
+        dx, dy = (float(d) for d in np.broadcast_to(np.asarray(spacing, dtype=np.float64), 2))
+    except (TypeError, ValueError):
+        return  # HeightMap refuses it
+    lx, ly, span = heights.shape[0] * dx, heights.shape[1] * dy, _span(heights)
+    if 0 < TALLEST * max(lx, ly) < span:
         raise ValueError(
-            f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit!r}"
+            f"unit must be given: {name} names none, and in metres its heights would span "
+            f"{span:.4g} m on a map of {lx:.4g} m x {ly:.4g} m"
         )
-    return unit
 
 
-def _table(path: Path) -> Array:
-    """Return the numbers of a text file; empty fields and words are missing points."""
-    rows: list[list[float]] = []
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for number, line in enumerate(file, start=1):
-            text = line.strip()
-            if not text or text.startswith("#"):
-                continue
-            comma = next((mark for mark in (",", ";", "\t") if mark in text), None)
-            fields = [f.strip() for f in text.split(comma)] if comma else re.split(r"\s+", text)
-            rows.append([_number(field) for field in fields])
-            if len(rows[-1]) != len(rows[0]):
-                message = f"{len(rows[0])} numbers in each line, line {number} has {len(rows[-1])}"
-                raise ValueError(f"{str(path)!r} must have {message}")
-    if not rows:
-        raise ValueError(f"{str(path)!r} must hold numbers, got none")
-    return np.array(rows)
+def _span(heights: Array) -> float:
+    measured = heights[np.isfinite(heights)]
+    return float(np.ptp(measured)) if measured.size else 0.0
 
 
-def _number(field: str) -> float:
-    try:
-        return float(field)
-    except ValueError:
-        return float("nan")
-
-
-def _matrix(path: Path, heights: npt.NDArray[Any]) -> Array:
-    if heights.ndim != 2 or heights.dtype.kind not in "biuf":
-        raise ValueError(
-            f"{str(path)!r} must hold a real matrix of heights, got {heights.dtype} of shape "
-            f"{heights.shape}"
-        )
-    return heights.astype(np.float64)
-
-
-def _filled(path: Path, heights: Array) -> Array:
+def _filled(name: str, heights: Array) -> Array:
     """Return heights whose missing points are filled harmonically, without new peaks or pits."""
     missing = ~np.isfinite(heights)
     count = int(missing.sum())
@@ -212,8 +117,7 @@ def _filled(path: Path, heights: Array) -> Array:
     measured = heights.size - count
     if measured < LEAST_MEASURED * heights.size:
         raise ValueError(
-            f"{str(path)!r} must have at least half its points measured, got {measured} of "
-            f"{heights.size}"
+            f"{name} must have at least half its points measured, got {measured} of {heights.size}"
         )
     warnings.warn(
         f"{count} of {heights.size} heights are missing and were filled smoothly from around them",

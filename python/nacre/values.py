@@ -117,8 +117,15 @@ def decode(data: Any) -> Any:
 
     Raises `ValueError` where a key is missing or unknown, or holds a value that does not fit.
     """
+    try:
+        return _decoded(data)
+    except RecursionError as error:
+        raise ValueError("the data must not be nested this deeply") from error
+
+
+def _decoded(data: Any) -> Any:
     if isinstance(data, list):
-        return tuple(decode(item) for item in data)
+        return tuple(_decoded(item) for item in data)
     if data == "rigid":
         return core.RIGID
     if not isinstance(data, dict):
@@ -132,14 +139,17 @@ def decode(data: Any) -> Any:
             return first + second
         if name == "shifted":
             shape, x, y = _listed(name, content, 3)
-            return shape.shifted(x, y)
+            try:
+                return shape.shifted(x, y)
+            except (TypeError, OverflowError) as error:
+                raise ValueError(f"{name}: {error}") from error
         if name == "Grid.line":
             return _made(name, core.Grid.line, ("cells", "width", "center"), content)
         if name == "Grid":
             return _made(name, core.Grid, ("shape", "size", "center"), content)
         if name in KINDS:
             return _made(name, KINDS[name], FIELDS[KINDS[name]], content)
-    return {key: decode(item) for key, item in data.items()}
+    return {key: _decoded(item) for key, item in data.items()}
 
 
 def _result(data: dict[str, Any]) -> Any:
@@ -160,15 +170,15 @@ def _made(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
         if key not in expected:
             raise ValueError(f"{name}: the key {key!r} is unknown")
     try:
-        return make(**decode(content))
-    except TypeError as error:
+        return make(**_decoded(content))
+    except (TypeError, OverflowError) as error:
         raise ValueError(f"{name}: {error}") from error
 
 
 def _listed(name: str, content: Any, length: int) -> Any:
     if not isinstance(content, list) or len(content) != length:
         raise ValueError(f"{name} must be a list of {length} items, got {content!r}")
-    first, *others = decode(content)
+    first, *others = _decoded(content)
     shapes = [first, *others] if name == "sum" else [first]
     if not all(isinstance(shape, core.Shape) for shape in shapes):
         raise ValueError(f"{name} must hold shapes, got {content!r}")

@@ -9,7 +9,7 @@ pub(super) mod warnings;
 use ndarray::{Array1, Array2};
 
 use super::problem::constraint::NonNegative;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, finite};
 use crate::grid::Grid;
 use gap::Gap;
 use report::Report;
@@ -45,7 +45,8 @@ impl Solution {
     /// A solution from the parts that a file has: pressure, gap and displacement, approach and tilt.
     ///
     /// # Errors
-    /// A field whose shape is not that of the report's grid.
+    /// A field whose shape is not that of the report's grid, a pressure that is negative or not finite, a
+    /// displacement, approach or tilt that is not finite, and a gap that is −∞ or not a number.
     ///
     /// ```
     /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup, Solution};
@@ -74,6 +75,30 @@ impl Solution {
                     found,
                 });
             }
+        }
+        for (name, field) in [("pressure", &pressure), ("displacement", &displacement)] {
+            if let Some((index, _)) = field.indexed_iter().find(|(_, v)| !v.is_finite()) {
+                return Err(Error::NonFinite {
+                    name,
+                    index: index.into(),
+                });
+            }
+        }
+        for (name, requirement, field, smallest) in [
+            ("pressure", "at least 0", &pressure, 0.0),
+            ("gap", "a number or +inf", &gap, f64::MIN),
+        ] {
+            if let Some(&value) = field.iter().find(|&&v| v.is_nan() || v < smallest) {
+                return Err(Error::Parameter {
+                    name,
+                    requirement,
+                    value,
+                });
+            }
+        }
+        finite("approach", approach)?;
+        for slope in tilt {
+            finite("tilt", slope)?;
         }
         Ok(Self {
             pressure,

@@ -566,12 +566,16 @@ impl PySolution {
     /// path : str or os.PathLike
     ///     File to write. Its ending chooses the content: ``.nc`` is everything, as NetCDF, for
     ///     `nacre.load` and xarray; ``.vtr`` is the fields, for ParaView; ``.csv`` is the sections
-    ///     along x and y through the largest pressure.
+    ///     along x and y through the largest pressure; ``.png``, ``.pdf`` and ``.svg`` are the picture
+    ///     that `plot` draws, which needs ``nacre[plot]``.
     /// depths : float or array_like, optional
     ///     Depths below the surface [m], each above the last. The ``.vtr`` then holds pressure and
     ///     gap, the stresses ``stress_xx`` … ``stress_xz``, ``von_mises``, ``max_shear`` and
     ///     ``tension`` (the largest principal stress) at points below the cell centres. A depth on an
     ///     interface occurs twice, above and below it.
+    /// whole : bool, optional
+    ///     Whether the ``.csv`` holds every cell, in place of the two sections, after a block of
+    ///     comments ``# name: value`` with the key figures.
     /// options : optional
     ///     Keywords of `stress`, with depths only: ``body``, ``friction``, ``direction``, ``residual``,
     ///     ``threads``, and ``displacement``, which adds a vector of that name.
@@ -585,7 +589,7 @@ impl PySolution {
     /// ------
     /// ValueError
     ///     If the ending is another, the depths do not increase, depths are given for another file than
-    ///     ``.vtr``, or `stress` would raise.
+    ///     ``.vtr`` or `whole` for another than ``.csv``, or `stress` would raise.
     /// TypeError
     ///     If there is no such option.
     /// OSError
@@ -599,14 +603,15 @@ impl PySolution {
     /// >>> with tempfile.TemporaryDirectory() as folder:
     /// ...     nacre.load(solution.save(f"{folder}/ball.nc")) == solution
     /// True
-    #[pyo3(signature = (path, *, depths=None, **options))]
+    #[pyo3(signature = (path, *, depths=None, whole=false, **options))]
     fn save<'py>(
         slf: &Bound<'py, Self>,
         path: &Bound<'py, PyAny>,
         depths: Option<&Bound<'py, PyAny>>,
+        whole: bool,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.files", "save", (path, depths, options))
+        call(slf, "nacre.files", "save", (path, depths, whole, options))
     }
 
     fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

@@ -45,11 +45,11 @@ impl HeightMap {
             });
         }
         let shape = [heights.nrows(), heights.ncols()];
-        if shape.iter().any(|&n| n < 2) {
-            return Err(Error::Shape {
-                name: "heights",
-                expected: [2, 2],
-                found: shape,
+        if let Some(&few) = shape.iter().find(|&&n| n < 2) {
+            return Err(Error::Parameter {
+                name: "number of heights along x and along y",
+                requirement: "at least 2",
+                value: few as f64,
             });
         }
         for d in spacing {

@@ -205,6 +205,7 @@ def test_on_a_rigid_base_the_vtk_file_ends_above_it(tmp_path: Path) -> None:
         ("a.vtr", {"depths": [0.0], "friction": -1.0}, ValueError, "friction must be at least 0"),
         ("a.vtr", {"depths": [0.0], "x": 0.0}, TypeError, "options must be among body, .* got x"),
         ("a.vtr", {"friction": 0.1}, TypeError, "friction: without depths there are no such"),
+        ("a.vtr", {"whole": True}, ValueError, r"must end in \.csv where whole is given, got"),
     ],
 )
 def test_wrong_depths_leave_no_file(
@@ -233,16 +234,49 @@ def test_csv_holds_the_sections_through_the_peak(
     assert {float(row["y [m]"]) for row in rows if row["along"] == "x"} == {solution.y[j]}
 
 
+@pytest.mark.parametrize("kind", ["both coated, tilted", "infinite gaps", "line"])
+def test_csv_may_hold_every_cell_after_a_block_of_comments(
+    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved[kind]
+    lines = solution.save(tmp_path / "a.csv", whole=True).read_text(encoding="utf-8").splitlines()
+    said = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+    unit = "N/m" if kind == "line" else "N"
+    assert float(said[f"load [{unit}]"]) == solution.load
+    assert float(said["peak pressure [Pa]"]) == solution.peak_pressure
+    nx, ny = solution.pressure.shape
+    assert said["cells"] == f"{nx} x {ny}, y varies fastest"
+    rows = list(csv.DictReader(lines[len(said) :]))
+    for name, unit in (("pressure", "Pa"), ("gap", "m"), ("displacement", "m")):
+        read = np.array([float(row[f"{name} [{unit}]"]) for row in rows]).reshape(nx, ny)
+        np.testing.assert_array_equal(read, getattr(solution, name))
+    assert [float(row["x [m]"]) for row in rows[::ny]] == solution.x.tolist()
+    assert [float(row["y [m]"]) for row in rows[:ny]] == solution.y.tolist()
+
+
+@pytest.mark.parametrize("ending", [".png", ".pdf", ".svg"])
+def test_a_picture_is_saved_and_closed(
+    ending: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    from matplotlib import pyplot
+
+    before = pyplot.get_fignums()
+    content = solved["both coated, tilted"].save(tmp_path / f"a{ending}").read_bytes()
+    assert content.startswith({".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}[ending])
+    assert pyplot.get_fignums() == before
+
+
 @pytest.mark.parametrize("name", ["a.txt", "a", "a.vtu"])
 def test_another_ending_is_refused(
     name: str, solved: dict[str, nacre.Solution], tmp_path: Path
 ) -> None:
-    with pytest.raises(ValueError, match=r"path must end in \.nc, \.vtr, \.csv, got"):
+    endings = r"\.nc, \.vtr, \.csv, \.png, \.pdf, \.svg"
+    with pytest.raises(ValueError, match=f"path must end in {endings}, got"):
         solved["line"].save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("ending", [".nc", ".vtr", ".csv"])
+@pytest.mark.parametrize("ending", [".nc", ".vtr", ".csv", ".png"])
 def test_a_failed_write_keeps_the_old_file_and_leaves_no_other(
     ending: str,
     solved: dict[str, nacre.Solution],
@@ -260,6 +294,172 @@ def test_a_failed_write_keeps_the_old_file_and_leaves_no_other(
         solved["line"].save(path)
     assert path.read_text() == "old"
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+FULL = """
+import os, resource, signal, sys
+import nacre
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+solution = nacre.solve(
+    nacre.Sphere(5e-3),
+    nacre.Elastic(210e9, 0.3),
+    load=5.0,
+    grid=nacre.Grid((96, 96), (4e-4, 4e-4)),
+)
+import h5netcdf, matplotlib.pyplot, pyevtk, xarray
+resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))  # as little room as on a full disk
+for name, options in {
+    "a.nc": {},
+    "a.vtr": {},
+    "b.vtr": {"depths": [0.0, 1e-5]},
+    "a.csv": {"whole": True},
+    "a.png": {},
+}.items():
+    try:
+        solution.save(name, **options)
+    except OSError as error:
+        print(name, error.errno)
+report = solution.report
+case = {"shape": nacre.Sphere(5e-3), "body": report.body, "grid": report.grid}
+try:
+    nacre.sweep(case, {"load": [5.0]}, outputs=["pressure"], store="study.nc", progress=False)
+except OSError as error:
+    print("study", error.errno)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of a file")
+def test_a_full_disk_is_an_error_and_the_process_goes_on(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", FULL]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    names = [line.split()[0] for line in done.stdout.splitlines()]
+    assert names == ["a.nc", "a.vtr", "b.vtr", "a.csv", "a.png", "study"]
+    assert [path.name for path in tmp_path.iterdir()] == ["study.journal"]
+    assert (tmp_path / "study.journal").read_bytes() == b""
+
+
+def rewritten(path: Path, **changes: Any) -> Path:
+    """Write the dataset of a file to another one, with variables or attributes changed."""
+    dataset = xarray.load_dataset(path, engine="h5netcdf")
+    for name, value in changes.items():
+        if name in dataset.variables:
+            dataset[name] = dataset[name].copy(data=value)
+        elif value is None:
+            del dataset.attrs[name]
+        else:
+            dataset.attrs[name] = value
+    dataset.to_netcdf(path.with_name("changed.nc"), engine="h5netcdf")
+    return path.with_name("changed.nc")
+
+
+def test_dimensions_have_names_and_no_order(
+    solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved["both coated, tilted"]
+    path = solution.save(tmp_path / "a.nc")
+    dataset = xarray.load_dataset(path, engine="h5netcdf")
+    dataset.transpose("y", "x").to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+    assert nacre.load(tmp_path / "b.nc") == solution
+    dataset.rename(x="length").to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
+    with pytest.raises(ValueError, match=r"c\.nc.*pressure must have the dimensions x, y, got len"):
+        nacre.load(tmp_path / "c.nc")
+    reversed_x = rewritten(path, nacre_checksum=None)
+    xarray.load_dataset(reversed_x, engine="h5netcdf").isel(x=slice(None, None, -1)).to_netcdf(
+        tmp_path / "d.nc", engine="h5netcdf"
+    )
+    with pytest.raises(ValueError, match=r"d\.nc.*x must be the centres of the cells, in order"):
+        nacre.load(tmp_path / "d.nc")
+
+
+def test_a_file_without_a_checksum_is_loaded_to_the_bit(
+    solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    for solution in solved.values():
+        path = rewritten(solution.save(tmp_path / "a.nc"), nacre_checksum=None)
+        assert nacre.load(path) == solution
+
+
+def damaged(name: str, value: object) -> dict[str, Any]:
+    """Return a change of one entry of the report in the state."""
+    return {"report": {name: value}}
+
+
+CHANGED: dict[str, dict[str, Any]] = {
+    "pressure is not finite at": {"pressure": np.nan},
+    "pressure must be at least 0, got -1": {"pressure": -1.0},
+    "displacement is not finite at": {"displacement": np.inf},
+    r"gap must be a number or \+inf, got -inf": {"gap": -np.inf},
+    "x must be the centres of the cells": {"x": 0.0},
+    "nacre_solution must be a text, got .*3": {"nacre_solution": 3},
+    "nacre_solution must be a text, got None": {"nacre_solution": None},
+    "nacre_solution must hold named fields, got 'null'": {"nacre_solution": "null"},
+    r"nacre_solution must hold named fields, got '\[\]'": {"nacre_solution": "[]"},
+    "nacre_solution must hold JSON": {"nacre_solution": "[" * 100_000 + "]" * 100_000},
+    "nacre_solution must hold JSON: Expecting": {"nacre_solution": "{"},
+    "nacre_solution does not hold a solution: 'report'": {"nacre_solution": "{}"},
+    "nacre_solution does not hold a solution: ": {"nacre_solution": '{"report": 3}'},
+    "approach must be finite, got NaN": {"state": {"approach": np.nan}},
+    'value of the key "residual" does not fit: NaN': {"state": damaged("residual", np.nan)},
+    'value of the key "seconds" does not fit: -1': {"state": damaged("seconds", -1.0)},
+    'value of the key "iterations" does not fit: -1': {"state": damaged("iterations", -1)},
+    'value of the key "balance" does not fit: inf': {
+        "state": damaged("balance", {"force": np.inf, "moment": [0.0, 0.0]})
+    },
+    'value of the key "tolerance" does not fit': {"state": damaged("tolerance", 10**400)},
+    'value of the key "body" does not fit': {"state": damaged("body", [])},
+    "Elastic: int too large to convert to float": {
+        "state": damaged("counterbody", {"Elastic": {"young": 10**400, "poisson": 0.3}})
+    },
+}
+
+
+@pytest.mark.parametrize("message", CHANGED)
+def test_a_damaged_file_is_refused_by_its_name(
+    message: str, solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved["both coated, tilted"]
+    path = solution.save(tmp_path / "a.nc")
+    changes = dict(CHANGED[message])
+    for name, value in changes.items():
+        if isinstance(value, float):
+            field = np.array(getattr(solution, name))
+            field.flat[3] = value
+            changes[name] = field
+    if "state" in changes:
+        state = json.loads(solution.to_xarray().attrs["nacre_solution"])
+        for key, value in changes.pop("state").items():
+            state[key] = state[key] | value if isinstance(value, dict) else value
+        changes["nacre_solution"] = json.dumps(state)
+    with pytest.raises(ValueError, match=f"changed.nc' must be a solution .*{message}"):
+        nacre.load(rewritten(path, **changes, nacre_checksum=None))
+    if changes != {"nacre_solution": None} and set(changes) != {"x"}:
+        with pytest.raises(ValueError, match=r"changed\.nc"):
+            nacre.load(rewritten(path, **changes))
+
+
+def test_a_flipped_bit_is_refused_or_changes_nothing(
+    solved: dict[str, nacre.Solution], tmp_path: Path
+) -> None:
+    solution = solved["infinite gaps"]
+    whole = solution.save(tmp_path / "a.nc").read_bytes()
+    refused = same = 0
+    places = range(0, len(whole), 47)
+    for place in places:
+        flipped = bytearray(whole)
+        flipped[place] ^= 1 << place % 8
+        (tmp_path / "b.nc").write_bytes(flipped)
+        try:
+            loaded = nacre.load(tmp_path / "b.nc")
+        except ValueError as error:
+            refused += "b.nc" in str(error)
+        else:
+            same += loaded == solution
+    assert refused + same == len(places)
+    # Most of the file is fields and attributes; the rest is room that HDF5 reserves, and key
+    # figures for other programs.
+    assert refused > 0.4 * len(places)
 
 
 def test_what_is_no_solution_is_refused(tmp_path: Path) -> None:
@@ -311,7 +511,7 @@ def test_what_is_no_value_is_refused() -> None:
         ("xarray", "files", "s.to_xarray()"),
         ("h5netcdf", "files", "s.save('a.nc')"),
         ("pyevtk", "files", "s.save('a.vtr')"),
-        ("xarray", "files", "nacre.load('a.nc')"),
+        ("h5py", "files", "nacre.load('a.nc')"),
         ("xarray", "files", "nacre.sweep({}, {})"),
         ("matplotlib", "plot", "s.plot()"),
         ("pyvista", "view", "s.plot_3d(interactive=True)"),

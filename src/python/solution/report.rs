@@ -1,5 +1,6 @@
 //! `nacre.Report`.
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -74,7 +75,7 @@ impl State for PyReport {
         let solver: Option<String> = fields.get("solver")?;
         let word: String = fields.get("method")?;
         let counterbody: Option<PyHalfSpace> = fields.get_part("counterbody")?;
-        Ok(Self(Report {
+        checked(Report {
             termination: Word::from_word(&termination)?,
             solver: solver.as_deref().map(Word::from_word).transpose()?,
             iterations: fields.get("iterations")?,
@@ -116,7 +117,42 @@ impl State for PyReport {
             })?,
             tolerance: fields.get("tolerance")?,
             seconds: fields.get("seconds")?,
-        }))
+        })
+        .map(Self)
+    }
+}
+
+/// `report`, if all its numbers are ones that a solve can have.
+fn checked(report: Report) -> PyResult<Report> {
+    let motion = &report.motion;
+    let pairs = [motion.eccentricity, motion.moment, motion.tilt].concat();
+    let asked = [motion.load, motion.approach].into_iter().chain(pairs);
+    let balance = [report.balance.force]
+        .into_iter()
+        .chain(report.balance.moment);
+    let estimates = report
+        .discretisation
+        .iter()
+        .flat_map(|errors| [errors.peak_pressure, errors.approach, errors.load]);
+    let sizes = [
+        ("residual", report.residual),
+        ("overlap", report.overlap),
+        ("convolutions", report.convolutions),
+        ("tolerance", report.tolerance),
+        ("seconds", report.seconds),
+    ];
+    let numbers = asked
+        .flatten()
+        .map(|number| ("motion", number))
+        .chain(balance.map(|number| ("balance", number)))
+        .chain(estimates.map(|number| ("discretisation", number)));
+    let sizes = sizes.map(|(name, value)| (name, value, value >= 0.0));
+    let numbers = numbers.map(|(name, value)| (name, value, value.is_finite()));
+    match sizes.into_iter().chain(numbers).find(|(.., fits)| !fits) {
+        None => Ok(report),
+        Some((name, value, _)) => Err(PyValueError::new_err(format!(
+            "report: the value of the key {name:?} does not fit: {value}"
+        ))),
     }
 }
 

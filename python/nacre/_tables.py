@@ -1,0 +1,63 @@
+"""CSV files of solutions, for spreadsheets: two sections, or every cell."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import nacre._core as core
+from nacre.units import UNITS
+
+if TYPE_CHECKING:
+    from _csv import Writer
+
+FIELDS = ("pressure", "gap", "displacement")
+"""Fields of a solution's state."""
+COLUMNS = ("x [m]", "y [m]", *(f"{name} [{UNITS[name]}]" for name in FIELDS))
+
+
+def write_sections(solution: core.Solution, path: Path) -> None:
+    """Write the sections along x and along y through the largest pressure."""
+    i, j = (
+        int(np.argmin(np.abs(side - place)))
+        for side, place in zip((solution.x, solution.y), solution.peak_position, strict=True)
+    )
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["along", *COLUMNS])
+        _write(writer, solution, ((k, j) for k in range(solution.x.size)), "x")
+        _write(writer, solution, ((i, k) for k in range(solution.y.size)), "y")
+
+
+def write_cells(solution: core.Solution, path: Path) -> None:
+    """Write every cell, after a block of comments with the key figures."""
+    report, grid = solution.report, solution.report.grid
+    head = {
+        "source": f"nacre {core.__version__}",
+        "cells": "{} x {}, y varies fastest".format(*grid.shape),
+        "spacing [m]": "{} {}".format(*grid.spacing),
+        "load [N/m]" if grid.is_line else "load [N]": solution.load,
+        "approach [m]": solution.approach,
+        "tilt": "{} {}".format(*solution.tilt),
+        "peak pressure [Pa]": solution.peak_pressure,
+        "termination": report.termination,
+        **{f"warning {k}": text for k, text in enumerate(report.warnings, start=1)},
+    }
+    nx, ny = grid.shape
+    with path.open("w", newline="", encoding="utf-8") as file:
+        file.writelines(f"# {name}: {value}\n" for name, value in head.items())
+        writer = csv.writer(file)
+        writer.writerow(COLUMNS)
+        _write(writer, solution, ((i, j) for i in range(nx) for j in range(ny)))
+
+
+def _write(
+    writer: Writer, solution: core.Solution, cells: Iterable[tuple[int, int]], *first: str
+) -> None:
+    x, y = solution.x.tolist(), solution.y.tolist()
+    fields = [getattr(solution, name).tolist() for name in FIELDS]
+    writer.writerows([*first, x[i], y[j], *(f[i][j] for f in fields)] for i, j in cells)
