@@ -50,7 +50,10 @@ def read(
     if unit is None and found.unit is None:
         _check_size(name, heights, spacing)
     heights = _filled(name, heights)
-    return core.HeightMap(np.ascontiguousarray(_without_trend(heights, detrend)), spacing)
+    try:
+        return core.HeightMap(_without_trend(heights, detrend), spacing)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from error
 
 
 def _found(path: Any, channel: str | int | None) -> tuple[str, Heights, bool]:

@@ -115,6 +115,40 @@ def test_a_study_in_a_case_file_is_that_of_sweep(
     assert (tmp_path / "study.journal").read_bytes() == journal  # nothing was solved again
 
 
+def test_a_printed_study_has_estimated_errors_and_counts_warnings(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        TEXT.partition("[shape]")[0]
+        + """
+[shape]
+kind = "sphere"
+radius = 5e-3
+
+[body]
+substrate = "steel"
+
+[grid]
+shape = [64, 64]
+size = [2e-4, 2e-4]
+
+[sweep]
+outputs = ["peak_pressure"]
+parameters."solve.load" = [5.0, 1e3]
+[solve]
+load = 1.0
+"""
+    )
+    assert nacre_command("sweep", written(tmp_path, text)) == 0
+    printed = capsys.readouterr().out
+    grid = nacre.Grid((64, 64), (2e-4, 2e-4))
+    expected = nacre.solve(nacre.Sphere(5e-3), STEEL, grid=grid, load=5.0)
+    assert expected.report.discretisation is not None
+    share = 100 * abs(expected.report.discretisation["peak_pressure"] / expected.peak_pressure)
+    assert f"{expected.peak_pressure:.5g} ± {share:.1g} %" in printed
+    assert "1 of 2 cases have warnings: grid edge (1); see warnings in the Dataset\n" in printed
+
+
 def test_failed_cases_of_a_study_are_exit_code_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

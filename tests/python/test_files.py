@@ -409,7 +409,7 @@ CHANGED: dict[str, dict[str, Any]] = {
     },
     'value of the key "tolerance" does not fit': {"state": damaged("tolerance", 10**400)},
     'value of the key "body" does not fit': {"state": damaged("body", [])},
-    "Elastic: int too large to convert to float": {
+    "young must be finite and above 0": {
         "state": damaged("counterbody", {"Elastic": {"young": 10**400, "poisson": 0.3}})
     },
 }

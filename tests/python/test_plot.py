@@ -232,6 +232,17 @@ def test_studies_are_drawn_with_their_units() -> None:
     x, y = curve_of(axes)
     np.testing.assert_array_equal(x, curve["load"])
     np.testing.assert_allclose(y, 1e-6 * curve.stiffness, rtol=1e-12)
+    # The estimated errors are bars of a curve, and stand in the label of a chart.
+    axes = plot.curve(curve, "approach")
+    (container,) = axes.containers
+    drawn(axes.figure)
+    heights = [0.5 * np.ptp(bar[:, 1]) for bar in container[2][0].get_segments()]
+    errors = abs(curve.approach_discretisation.values)
+    np.testing.assert_allclose(heights, 1e6 * errors, rtol=1e-6)
+    assert (errors > 0).all()
+    share = 100 * (abs(chart.peak_pressure_discretisation) / chart.peak_pressure).max().item()
+    label = plot.chart(chart).figure.axes[1].get_ylabel()
+    assert label == f"peak pressure [GPa], ± {share:.2g} % at most"
     with pytest.raises(ValueError, match="quantity must be over 2 parameters"):
         plot.chart(curve, "approach")
     with pytest.raises(ValueError, match=r"quantity must be one of .*, got 'force'"):

@@ -103,7 +103,7 @@ def curve(
             axes.plot(x, scale.factor * field.values, **line)
         else:
             bars = scale.factor * errors
-            axes.errorbar(x, scale.factor * field.values, bars, capsize=2, **line)
+            axes.errorbar(x, scale.factor * field.values, bars, capsize=0, **line)
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
     return axes
 
