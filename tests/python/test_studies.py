@@ -505,6 +505,8 @@ def test_modules_of_the_user_count_and_the_key_is_the_same_in_every_process(
 def test_a_log_gets_a_line_now_and_then(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    for name in ("FORCE_COLOR", "TTY_COMPATIBLE"):
+        monkeypatch.delenv(name, raising=False)  # Rich would take any stream for a terminal
     store = tmp_path / "study.nc"
     nacre.sweep(ball, {"thickness": [5e-6], "young": YOUNG}, store=store)
     assert capsys.readouterr().err == ""  # nothing in the first minute
