@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -149,25 +150,17 @@ def _table(path: Path, lines: Sequence[tuple[int, str]]) -> Array:
     first = 0
     commas, points = False, False
     for number, text in lines:
-        fields = [f.strip(" \t\"'") for f in text.split(mark)]
+        row = _row(path, number, text, mark, heading=not rows)
+        if row is None:
+            continue
         if mark != ",":
-            commas = commas or "," in text
-            points = points or "." in text
+            commas, points = commas or "," in text, points or "." in text
             if commas and points:
                 raise ValueError(
                     f"{str(path)!r} must have decimal commas or decimal points, line {number} "
                     f"brings both"
                 )
-            fields = [field.replace(",", ".") for field in fields]
-        if not rows and not any(map(_is_value, fields)):
-            commas, points = False, False  # a heading
-            continue
-        row = [_number(field) for field in fields]
-        if None in row:
-            raise ValueError(
-                f"{str(path)!r} must hold numbers, line {number} has {fields[row.index(None)]!r}"
-            )
-        rows.append([n for n in row if n is not None])
+        rows.append(row)
         if len(rows) == 1:
             first = number
         if len(row) != len(rows[0]):
@@ -181,6 +174,25 @@ def _table(path: Path, lines: Sequence[tuple[int, str]]) -> Array:
         text.endswith(mark) for number, text in lines if number >= first
     )
     return table[:, :-1] if ends and table.shape[1] > 1 else table
+
+
+def _row(path: Path, number: int, text: str, mark: str | None, heading: bool) -> list[float] | None:
+    """Return the numbers of a line; None where the line may be a heading, and is one."""
+    if "_" not in text:
+        with suppress(ValueError):
+            return [float(field) for field in text.split(mark)]  # the usual line
+    fields = [field.strip(" \t\"'") for field in text.split(mark)]
+    if mark != ",":
+        fields = [field.replace(",", ".") for field in fields]
+    if heading and not any(map(_is_value, fields)):
+        return None
+    row = []
+    for field in fields:
+        value = _number(field)
+        if value is None:
+            raise ValueError(f"{str(path)!r} must hold numbers, line {number} has {field!r}")
+        row.append(value)
+    return row
 
 
 def _separator(texts: Sequence[str]) -> str | None:

@@ -182,6 +182,7 @@ TEXTS = {
     "points": "1.5,2.5\n3.5,-4.5\n",
     "comma after a heading": "left,right\n1.5,2.5\n3.5,-4.5\n",
     "heading of two lines": "Height map;\nx1;x2\n1,5;2,5\n3,5;-4,5\n",
+    "heading with a point and a comma": "Version 1.2, raw; map\n1,5;2,5\n3,5;-4,5\n",
     "semicolons": "1,5;2,5\n3,5;-4,5\n",
     "tabs": "1,5\t2,5\n3,5\t-4,5\n",
     "blanks": "1,5 2,5\n3,5  -4,5\n",
