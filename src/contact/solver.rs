@@ -13,7 +13,10 @@ use super::problem::Quality;
 
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Termination {
+    /// It has not ended: the report is one of a running solve.
+    Running,
     /// The tolerance was met.
     Converged,
     /// The tolerance was not met within the iterations allowed.

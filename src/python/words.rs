@@ -64,10 +64,16 @@ impl Word for Algorithm {
 
 impl Word for Termination {
     const ARGUMENT: &'static str = "termination";
-    const VALUES: &'static [Self] = &[Self::Converged, Self::IterationLimit, Self::Stopped];
+    const VALUES: &'static [Self] = &[
+        Self::Running,
+        Self::Converged,
+        Self::IterationLimit,
+        Self::Stopped,
+    ];
 
     fn word(self) -> &'static str {
         match self {
+            Self::Running => "running",
             Self::Converged => "converged",
             Self::IterationLimit => "iteration limit",
             Self::Stopped => "stopped",

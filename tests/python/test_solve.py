@@ -254,6 +254,13 @@ def test_an_unfinished_solution_is_carried_by_its_error() -> None:
     assert unfinished.load == pytest.approx(LOAD, rel=BALANCE)
 
 
+def test_a_report_says_that_the_solve_is_running() -> None:
+    said: list[str] = []
+    CONTACT.solve(SPHERE, load=LOAD, progress=lambda report: said.append(report.termination))
+    assert said
+    assert set(said) == {"running"}
+
+
 def test_an_unfinished_solution_is_returned_unchecked() -> None:
     unfinished = CONTACT.solve(SPHERE, load=LOAD, max_iterations=2, check=False)
     assert unfinished.report.termination == "iteration limit"

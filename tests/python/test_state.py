@@ -144,7 +144,7 @@ WRONG_INSIDE: dict[str, Callable[[dict[str, Any]], object]] = {
     ].update(hue=1),
     r'the value of the key "body" does not fit': lambda s: s["report"].update(body={"Ball": {}}),
     r'the value of the key "grid" does not fit': lambda s: s["report"].update(grid="rigid"),
-    r'termination must be "converged", "iteration limit" or "stopped", got "bored"': lambda s: s[
+    r'"running", "converged", "iteration limit" or "stopped", got "bored"': lambda s: s[
         "report"
     ].update(termination="bored"),
     r'the array of the key "pressure" has the wrong number of dimensions: shape \[3\]': lambda s: (

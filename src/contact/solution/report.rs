@@ -62,7 +62,7 @@ impl Report {
     /// A report with nothing iterated yet.
     pub(in crate::contact) fn planned(plan: &Plan, motion: &Motion, tolerance: f64) -> Self {
         Self {
-            termination: Termination::IterationLimit,
+            termination: Termination::Running,
             solver: None,
             iterations: 0,
             convolutions: 0.0,

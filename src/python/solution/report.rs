@@ -164,7 +164,7 @@ impl PyReport {
         self.0.converged()
     }
 
-    /// End of the iteration: "converged", "iteration limit" or "stopped".
+    /// End of the iteration: "converged", "iteration limit" or "stopped"; "running" before it.
     #[getter]
     fn termination(&self) -> &'static str {
         self.0.termination.word()
