@@ -16,10 +16,37 @@ Examples
 3.86
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from nacre import _core
 from nacre._core import *  # noqa: F403  the public names, which _core.pyi lists
 from nacre.files import load
 from nacre.studies import sweep
+from nacre.units import display_units
 
-__all__ = ["load", "sweep"]
+if TYPE_CHECKING:
+    from nacre import case as case
+    from nacre import design as design
+    from nacre import paper as paper
+    from nacre import plot as plot
+
+__all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
+
+LAZY = ("case", "design", "paper", "plot")
+"""Modules that are imported when they are first used, as `nacre.plot`."""
+
+
+def _imported(name: str) -> Any:
+    if name in LAZY:
+        return import_module(f"nacre.{name}")
+    raise AttributeError(f"module 'nacre' has no attribute {name!r}")
+
+
+if not TYPE_CHECKING:  # a type checker would take any name
+    __getattr__ = _imported
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *LAZY})

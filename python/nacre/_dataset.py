@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._journal import Record
 from nacre._outputs import AXES, ERROR, Output, errors
-from nacre.units import UNITS
+from nacre.units import UNITS, symbol, system
 
 if TYPE_CHECKING:
     import xarray
@@ -88,18 +88,22 @@ def assembled(
                 inner = (2,)
         dataset[name] = ((*dims, *extra_dims), data.reshape(*shape, *inner))
         if isinstance(output, str) and output in UNITS:
-            dataset[name].attrs["units"] = UNITS[output]
+            dataset[name].attrs["units"] = symbol(UNITS[output])
     for name, quantity in errors(outputs, {*outputs, *map(str, dataset.coords)}).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
-        dataset[name].attrs = {"units": UNITS[quantity], "long_name": words}
+        dataset[name].attrs = {"units": symbol(UNITS[quantity]), "long_name": words}
     for name, texts in {
         "error": [r.get("error", "") for r in records],
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],
     }.items():
         dataset[name] = (dims, np.array(texts, dtype=np.str_).reshape(shape))
-    dataset.attrs = {"title": "study of coated contacts", "source": f"nacre {core.__version__}"}
+    dataset.attrs = {
+        "title": "study of coated contacts",
+        "source": f"nacre {core.__version__}",
+        "unit_system": system().name,
+    }
     return dataset
 
 

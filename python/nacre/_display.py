@@ -1,4 +1,4 @@
-"""Printed form of a solution: a short table; in a notebook with a small map of the pressure."""
+"""Printed forms of results: a line, a table; in a notebook with a small map of the pressure."""
 
 from __future__ import annotations
 
@@ -12,8 +12,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Elastic, HalfSpace, Report, Rigid, Solution, StressSummary
-from nacre.units import written
+from nacre._core import (
+    Elastic,
+    HalfSpace,
+    InterfaceStress,
+    LayerStress,
+    Report,
+    Rigid,
+    Solution,
+    StressSummary,
+)
+from nacre.units import rounded, written
 
 Peak = tuple[float, tuple[float, float, float]]
 
@@ -23,6 +32,7 @@ NOISE = 1e-9
 """Share of its largest possible value below which a position or a moment is printed as 0."""
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
+UNFINISHED = "stopped before all depths were done"
 
 # Matplotlib's viridis at nine places.
 VIRIDIS = (
@@ -54,7 +64,7 @@ def figures(solution: Solution) -> list[tuple[str, str]]:
         ("moment", _pair(solution.moment, moment, [solution.load * arm for arm in arms])),
         ("approach", _estimated(solution, "approach", "m")),
         ("tilt", f"({solution.tilt[0]:.4g}, {solution.tilt[1]:.4g})"),
-        ("freedoms", freedoms(report.motion)),
+        ("motion", motion(report.motion)),
         ("peak pressure", _estimated(solution, "peak_pressure", "Pa")),
         ("at", _pair(solution.peak_position, "m", arms)),
         ("contact", sides[1] if line else f"{sides[0]} × {sides[1]}"),
@@ -73,8 +83,8 @@ def _fallback(report: Report) -> str:
     return "" if report.solver in (None, "preconditioned") else f" by the {report.solver} solver"
 
 
-def freedoms(motion: Mapping[str, Any]) -> str:
-    """Return which of the three freedoms are loaded, given and locked, in words."""
+def motion(motion: Mapping[str, Any]) -> str:
+    """Return which degrees of freedom are loaded, given and locked, in words."""
     said = []
     for axis, name in enumerate("xy"):
         asked = [
@@ -88,6 +98,37 @@ def freedoms(motion: Mapping[str, Any]) -> str:
     return f"{control}; tilt {', '.join(said)}"
 
 
+def line(solution: Solution) -> str:
+    """Return the line that ``repr(solution)`` shows."""
+    report = solution.report
+    nx, ny = report.grid.shape
+    counterbody = "rigid" if report.counterbody is None else repr(report.counterbody)
+    force = "N/m" if report.grid.is_line else "N"
+    return (
+        f"<nacre.Solution on {nx} x {ny} cells, counterbody {counterbody}: "
+        f"load {written(solution.load, force, 6)}, "
+        f"peak pressure {written(solution.peak_pressure, 'Pa', 6)}, "
+        f"approach {written(solution.approach, 'm', 6)}, "
+        f"tilt ({solution.tilt[0]:.3e}, {solution.tilt[1]:.3e}), "
+        f"{'converged' if report.converged else 'not converged'}>"
+    )
+
+
+def layer_line(layer: LayerStress) -> str:
+    """Return the line that the ``repr`` of the extremes of a layer shows."""
+    mises, tension = (written(value, "Pa") for value, _ in (layer.von_mises, layer.tension))
+    return f"<nacre.LayerStress of {_layer(layer)}: von Mises {mises}, tension {tension}>"
+
+
+def interface_line(face: InterfaceStress) -> str:
+    """Return the line that the ``repr`` of the extremes at an interface shows."""
+    shear, tension = (written(value, "Pa") for value, _ in (face.shear, face.tension))
+    return (
+        f"<nacre.InterfaceStress of interfaces[{face.interface}] at {written(face.depth, 'm')}: "
+        f"shear {shear}, tension {tension}>"
+    )
+
+
 def text(solution: Solution) -> str:
     """Return the table that ``print(solution)`` shows."""
     rows = figures(solution)
@@ -99,45 +140,60 @@ def text(solution: Solution) -> str:
 
 def stresses(summary: StressSummary) -> str:
     """Return the table that ``print(solution.stress_summary())`` shows."""
-    rows = [["", "largest", "value", "z", "x, y", "margin"]]
+    rows = _peaks(summary)
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    return "\n".join(lines if summary.finished else [*lines, UNFINISHED])
 
-    def add(name: str, peak: Peak | None, margin: float | None = None) -> None:
+
+def stresses_markup(summary: StressSummary) -> str:
+    """Return the table of a stress summary, for a notebook."""
+    heading, *rows = _peaks(summary)
+    lines = [_cells("th", heading), *(_cells("td", row) for row in rows)]
+    table = f"<table>{''.join(lines)}</table>"
+    return table if summary.finished else f"{table}<p>{UNFINISHED}</p>"
+
+
+def _peaks(summary: StressSummary) -> list[list[str]]:
+    """Return the rows of the table of a stress summary, the heading first."""
+    rows = [["", "largest", "value", "z", "x, y", "safety factor"]]
+
+    def add(name: str, peak: Peak | None, factor: float | None = None) -> None:
         if peak is None:
             return
         value, (x, y, z) = peak
         place = f"{written(x, 'm', 3)}, {written(y, 'm', 3)}"
-        number = "" if margin is None else f"{margin:.3g}"
+        number = "" if factor is None else rounded(factor, 3)
         rows.append(["", name, written(value, "Pa"), written(z, "m"), place, number])
 
     for layer in summary.layers:
         start, (top, bottom) = len(rows), layer.depths
-        add("von Mises", layer.von_mises, layer.yield_margin)
-        add("tension", layer.tension, layer.strength_margin)
+        add("von Mises", layer.von_mises, layer.yield_safety_factor)
+        add("tension", layer.tension, layer.strength_safety_factor)
         add("shear", layer.max_shear)
         ends = f"{written(top, 'm')} to {written(bottom, 'm')}"
-        rows[start][0] = f"layer {layer.layer}, {ends}" if bottom < np.inf else "substrate"
+        rows[start][0] = f"{_layer(layer)}, {ends}" if bottom < np.inf else "substrate"
     for face in summary.interfaces:
         start = len(rows)
         add("tension", face.tension)
         add("compression", face.compression)
         add("shear", face.shear)
         add("in-plane jump", face.jump)
-        rows[start][0] = f"interface {face.interface} at {written(face.depth, 'm')}"
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
-    return "\n".join(lines if summary.finished else [*lines, "stopped before all depths were done"])
+        rows[start][0] = f"interfaces[{face.interface}] at {written(face.depth, 'm')}"
+    return rows
+
+
+def _layer(layer: LayerStress) -> str:
+    """Return the name of a layer in a summary."""
+    return f"layers[{layer.layer}]" if layer.depths[1] < np.inf else "the substrate"
 
 
 def markup(solution: Solution) -> str:
     """Return the table and the small map, for a notebook."""
-    cell = "style='text-align:left; padding:1px 12px 1px 0'"
-    rows = "".join(
-        f"<tr><td {cell}>{html.escape(name)}</td><td {cell}>{html.escape(value)}</td></tr>"
-        for name, value in figures(solution)
-    )
+    rows = "".join(_cells("td", row) for row in figures(solution))
     notes = "".join(f"<p>warning: {html.escape(text)}</p>" for text in solution.report.warnings)
     picture = base64.b64encode(thumbnail(solution.pressure)).decode()
     image = (
@@ -148,6 +204,12 @@ def markup(solution: Solution) -> str:
         f"<div style='display:flex; gap:16px; align-items:flex-start'><table>{rows}</table>"
         f"{image}</div>{notes}"
     )
+
+
+def _cells(tag: str, row: Sequence[str]) -> str:
+    """Return a row of a table of HTML."""
+    cell = f"<{tag} style='text-align:left; padding:1px 12px 1px 0'>"
+    return f"<tr>{''.join(f'{cell}{html.escape(text)}</{tag}>' for text in row)}</tr>"
 
 
 def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes:
@@ -187,11 +249,11 @@ def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
 
 
 def _estimated(solution: Solution, name: str, unit: str) -> str:
-    """Return a figure, with the discretisation error where it is estimated."""
+    """Return a number, with the discretisation error where it is estimated."""
     value = getattr(solution, name)
     error = (solution.report.discretisation or {}).get(name, 0.0)
     return written(value, unit) + (
-        f" ± {100 * abs(error / value):.1g} %" if error and value else ""
+        f" ± {rounded(100 * abs(error / value), 1)} %" if error and value else ""
     )
 
 
@@ -205,8 +267,8 @@ def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
     if body is None:
         return [(name, "rigid")]
     layers = [
-        (f"  layer {number}", f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}")
-        for number, layer in enumerate(body.layers, start=1)
+        (f"  layers[{number}]", f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}")
+        for number, layer in enumerate(body.layers)
     ]
     if len(layers) > LAYER_ROWS:
         depth = written(body.interfaces[-1], "m", 3)

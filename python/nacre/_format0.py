@@ -115,15 +115,15 @@ def _peak(state: tuple[float, Any] | None) -> dict[str, Any] | None:
 
 
 def _layer(state: tuple[Any, ...]) -> dict[str, Any]:
-    layer, depths, (von_mises, tension, shear), (yield_margin, strength_margin) = state
+    layer, depths, (von_mises, tension, shear), factors = state
     return {
         "layer": layer,
         "depths": depths,
         "von_mises": _peak(von_mises),
         "tension": _peak(tension),
         "max_shear": _peak(shear),
-        "yield_margin": yield_margin,
-        "strength_margin": strength_margin,
+        "yield_safety_factor": factors[0],
+        "strength_safety_factor": factors[1],
     }
 
 

@@ -10,14 +10,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import nacre._core as core
-from nacre.units import UNITS
+from nacre.units import UNITS, symbol
 
 if TYPE_CHECKING:
     from _csv import Writer
 
 FIELDS = ("pressure", "gap", "displacement")
 """Fields of a solution's state."""
-COLUMNS = ("x [m]", "y [m]", *(f"{name} [{UNITS[name]}]" for name in FIELDS))
+
+
+def columns() -> list[str]:
+    """Return the headings of x, y and the fields, with the units that are set."""
+    units = {"x": "m", "y": "m", **{name: UNITS[name] for name in FIELDS}}
+    return [f"{name} [{symbol(unit)}]" for name, unit in units.items()]
 
 
 def write_sections(solution: core.Solution, path: Path) -> None:
@@ -28,7 +33,7 @@ def write_sections(solution: core.Solution, path: Path) -> None:
     )
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(["along", *COLUMNS])
+        writer.writerow(["along", *columns()])
         _write(writer, solution, ((k, j) for k in range(solution.x.size)), "x")
         _write(writer, solution, ((i, k) for k in range(solution.y.size)), "y")
 
@@ -39,11 +44,11 @@ def write_cells(solution: core.Solution, path: Path) -> None:
     head = {
         "source": f"nacre {core.__version__}",
         "cells": "{} x {}, y varies fastest".format(*grid.shape),
-        "spacing [m]": "{} {}".format(*grid.spacing),
-        "load [N/m]" if grid.is_line else "load [N]": solution.load,
-        "approach [m]": solution.approach,
+        f"spacing [{symbol('m')}]": "{} {}".format(*grid.spacing),
+        f"load [{symbol('N/m' if grid.is_line else 'N')}]": solution.load,
+        f"approach [{symbol('m')}]": solution.approach,
         "tilt": "{} {}".format(*solution.tilt),
-        "peak pressure [Pa]": solution.peak_pressure,
+        f"peak pressure [{symbol('Pa')}]": solution.peak_pressure,
         "termination": report.termination,
         **{f"warning {k}": text for k, text in enumerate(report.warnings, start=1)},
     }
@@ -51,7 +56,7 @@ def write_cells(solution: core.Solution, path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         file.writelines(f"# {name}: {value}\n" for name, value in head.items())
         writer = csv.writer(file)
-        writer.writerow(COLUMNS)
+        writer.writerow(columns())
         _write(writer, solution, ((i, j) for i in range(nx) for j in range(ny)))
 
 

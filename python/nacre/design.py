@@ -16,6 +16,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._outputs import Output
 from nacre.studies import ARGUMENTS, sweep
+from nacre.units import symbol
 
 if TYPE_CHECKING:
     import xarray
@@ -91,9 +92,12 @@ def coating_chart(
     }
     dataset = sweep(case, {"thickness": thickness, "young": young}, outputs=outputs, **study)
     for name in ("coating_tension", "interface_shear"):
-        dataset[name].attrs["units"] = "Pa"
-    dataset["thickness"].attrs["units"] = "m"
-    dataset["young"].attrs = {"units": "Pa", "long_name": "Young's modulus of the coating"}
+        dataset[name].attrs["units"] = symbol("Pa")
+    dataset["thickness"].attrs["units"] = symbol("m")
+    dataset["young"].attrs = {
+        "units": symbol("Pa"),
+        "long_name": "Young's modulus of the coating",
+    }
     return dataset
 
 
@@ -138,8 +142,8 @@ def load_curve(
     }
     case = {"shape": shape, "body": body, **asked}
     dataset = sweep(case, {"load": load}, outputs=outputs, **study)
-    dataset["load"].attrs["units"] = "N"
-    dataset["stiffness"].attrs["units"] = "N/m"
+    dataset["load"].attrs["units"] = symbol("N")
+    dataset["stiffness"].attrs["units"] = symbol("N/m")
     return dataset
 
 

@@ -19,7 +19,7 @@ import nacre._core as core
 from nacre._extras import extra
 from nacre._tables import FIELDS, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
-from nacre.units import UNITS
+from nacre.units import UNITS, symbol, system
 from nacre.values import FORMAT, decode, encode
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ FIGURES = (
     "contact_area",
     "contact_extent",
 )
-"""Key figures that files carry as attributes, in SI units."""
+"""Key figures that files carry as attributes, in the units of the computation."""
 
 NAMES = {
     "pressure": "pressure",
@@ -81,12 +81,13 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
         coords={"x": solution.x, "y": solution.y},
     )
     for name, words in NAMES.items():
-        dataset[name].attrs = {"units": UNITS[name], "long_name": words}
+        dataset[name].attrs = {"units": symbol(UNITS[name]), "long_name": words}
     for name in ("x", "y"):
-        dataset[name].attrs = {"units": "m", "long_name": f"{name} of the cell centre"}
+        dataset[name].attrs = {"units": symbol("m"), "long_name": f"{name} of the cell centre"}
     dataset.attrs = {
         "title": "contact of coated bodies",
         "source": f"nacre {core.__version__}",
+        "unit_system": system().name,
         **{name: np.ravel(getattr(solution, name)) for name in FIGURES},
         **{
             name: json.dumps(encode(getattr(report, name)))

@@ -13,7 +13,6 @@ use pyo3::types::{PyDict, PyTuple};
 use super::arguments::keywords::Keywords;
 use super::arguments::{count, read_only};
 use super::background::{self, Caller};
-use super::bodies::PyHalfSpace;
 use super::errors::{ConvergenceError, NacreWarning};
 use super::state::{self, Reduced, from_dict_docs, to_dict_docs};
 use super::stress::keywords::{
@@ -319,7 +318,7 @@ impl PySolution {
     }
 
     #[doc = concat!("stress_summary($self, *, body='body', ", strength_signature!(), ", ", traction_signature!(), ", ", run_signature!(), ")\n--\n")]
-    /// Extremes of the stress in each layer and at each interface, and margins.
+    /// Extremes of the stress in each layer and at each interface, and safety factors.
     ///
     /// Stress is evaluated on the faces of the layers and at some 18 depths inside each, spread over its
     /// thickness and over the width of the contact. Peaks inside are then refined by parabolas through
@@ -356,7 +355,7 @@ impl PySolution {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
     /// >>> summary = solution.stress_summary(yield_stress={"substrate": 1.8e9})
-    /// >>> bool(summary.layers[0].yield_margin > 1.0)
+    /// >>> bool(summary.layers[0].yield_safety_factor > 1.0)
     /// True
     #[pyo3(signature = (**keywords), text_signature = None)]
     fn stress_summary<'py>(
@@ -626,25 +625,8 @@ impl PySolution {
         self.solution == other.solution
     }
 
-    fn __repr__(&self) -> String {
-        let s = &self.solution;
-        let [nx, ny] = s.grid().shape();
-        let counterbody = s.report.counterbody.as_ref().map(PyHalfSpace::of);
-        let counterbody = counterbody.map_or_else(|| "rigid".into(), |body| body.__repr__());
-        format!(
-            "<nacre.Solution on {nx} x {ny} cells, counterbody {counterbody}: load {:.6e} N, peak pressure {:.6e} Pa, \
-             approach {:.6e} m, tilt ({:.3e}, {:.3e}), {}>",
-            s.load(),
-            s.peak_pressure(),
-            s.approach,
-            s.tilt[0],
-            s.tilt[1],
-            if s.report.converged() {
-                "converged"
-            } else {
-                "not converged"
-            }
-        )
+    fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        call(slf, "nacre._display", "line", ())
     }
 
     #[doc = to_dict_docs!()]

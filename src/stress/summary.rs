@@ -43,10 +43,11 @@ pub struct LayerSummary {
     pub tension: Peak,
     /// Largest shear stress on any plane.
     pub shear: Peak,
-    /// Yield stress over the largest von Mises stress.
-    pub yield_margin: Option<f64>,
-    /// Tensile strength over the largest tension; none where there is no tension.
-    pub strength_margin: Option<f64>,
+    /// Safety factor against yield: the yield stress divided by the largest von Mises stress.
+    pub yield_safety_factor: Option<f64>,
+    /// Safety factor against fracture: the tensile strength divided by the largest tension; none where
+    /// there is no tension.
+    pub strength_safety_factor: Option<f64>,
 }
 
 /// The extremes at one interface.
@@ -248,15 +249,15 @@ fn layer(
     let layer = region[0].layer;
     let thickness = body.layers().get(layer).map(Layer::thickness);
     let [yield_stress, strength] = strengths.of_layer(layer);
-    let margin = |strength: Option<f64>, peak: Peak| {
+    let factor = |strength: Option<f64>, peak: Peak| {
         let strength = strength.filter(|_| peak.value > 0.0);
         strength.map(|strength| strength / peak.value)
     };
     ControlFlow::Continue(LayerSummary {
         layer,
         depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
-        yield_margin: margin(yield_stress, von_mises),
-        strength_margin: margin(strength, tension),
+        yield_safety_factor: factor(yield_stress, von_mises),
+        strength_safety_factor: factor(strength, tension),
         von_mises,
         tension,
         shear,

@@ -1,4 +1,4 @@
-"""A solution prints what it is: forces, bodies, freedoms, and a small map in a notebook."""
+"""A solution prints forces, bodies and motion, in the units that are set; a notebook a map too."""
 
 from __future__ import annotations
 
@@ -6,12 +6,16 @@ import base64
 import re
 import struct
 import zlib
+from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import nacre
+from nacre import design
 from nacre._display import thumbnail
+from nacre.units import Scale, rounded, size_of, written
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.2)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-6)])
@@ -22,15 +26,15 @@ def table(solution: nacre.Solution) -> dict[str, str]:
     return {pair[0]: pair[1] for pair in pairs if len(pair) == 2}
 
 
-def test_the_table_names_bodies_modulus_freedoms_and_resultant() -> None:
+def test_the_table_names_bodies_modulus_motion_and_resultant() -> None:
     shape = nacre.Sphere(5e-3)
     solution = nacre.solve(shape, COATED, STEEL, load=10.0, eccentricity=(1e-6, None))
     rows = table(solution)
     assert rows["load"] == "10 N"
     assert rows["acts at"] == "(1 µm, 0 m)"
-    assert rows["freedoms"] == "load; tilt x free, y locked"
+    assert rows["motion"] == "load; tilt x free, y locked"
     assert rows["body"] == "E 210 GPa, ν 0.3"
-    assert rows["layer 1"] == "2 µm, E 420 GPa, ν 0.2"
+    assert rows["layers[0]"] == "2 µm, E 420 GPa, ν 0.2"
     assert rows["counterbody"] == "E 210 GPa, ν 0.3"
     # 1/E* is the sum of both compliances (1 - ν²)/E.
     assert rows["E* (substrates)"] == f"{210 / 0.91 / 2:.4g} GPa"
@@ -44,7 +48,7 @@ def test_a_rigid_counterbody_and_what_is_given_are_said() -> None:
     rows = table(solution)
     assert rows["counterbody"] == "rigid"
     assert rows["E*"] == f"{210 / 0.91:.4g} GPa"
-    assert rows["freedoms"] == "approach; tilt x given, y locked"
+    assert rows["motion"] == "approach; tilt x given, y locked"
     assert rows["acts at"] == "nothing touches"
 
 
@@ -107,3 +111,122 @@ def test_an_estimate_of_the_error_stands_with_the_figure() -> None:
     # What is prescribed has no error.
     solution = nacre.solve(nacre.Sphere(5e-3), STEEL, approach=6e-7)
     assert table(solution)["approach"] == "600 nm"
+
+
+def test_a_large_estimate_is_printed_without_an_exponent() -> None:
+    assert rounded(17.3, 1) == "20"
+    assert rounded(0.0123, 1) == "0.01"
+    assert written(3.53291e-8, "m²") == "35330 µm²"
+    grid = nacre.Grid((24, 24), (4e-4, 4e-4))
+    solution = nacre.solve(nacre.FlatPunch(1e-4), STEEL, grid=grid, load=10.0)
+    assert "e+" not in str(solution)
+
+
+def test_a_summary_is_a_table_in_a_notebook() -> None:
+    solution = nacre.solve(nacre.Sphere(5e-3), COATED, load=10.0)
+    summary = solution.stress_summary(yield_stress={0: 1e9})
+    html = summary._repr_html_()
+    assert html.count("<table>") == html.count("</table>") == 1
+    assert html.count("<tr>") == len(str(summary).splitlines())
+    assert "safety factor" in html
+    assert "layers[0], 0 m to 2 µm" in html
+    for value, _ in (summary.layers[0].von_mises, summary.interfaces[0].shear):
+        assert f">{written(value, 'Pa')}</td>" in html
+
+
+def test_results_are_lines_with_prefixes() -> None:
+    solution = nacre.solve(nacre.Sphere(5e-3), COATED, load=10.0)
+    summary = solution.stress_summary()
+    assert f"peak pressure {solution.peak_pressure / 1e9:.6g} GPa" in repr(solution)
+    value = written(summary.layers[0].von_mises[0], "Pa")
+    assert repr(summary.layers[0]).startswith(
+        f"<nacre.LayerStress of layers[0]: von Mises {value}, tension "
+    )
+    assert repr(summary.interfaces[0]).startswith(
+        "<nacre.InterfaceStress of interfaces[0] at 2 µm: shear "
+    )
+
+
+# Units.
+
+BALL = nacre.solve(nacre.Sphere(5.0), nacre.Elastic(210e3, 0.3), load=10.0)  # N, mm, MPa
+
+
+def test_units_that_are_set_are_printed() -> None:
+    si = nacre.solve(nacre.Sphere(5e-3), STEEL, load=10.0)
+    with nacre.display_units("N-mm-MPa"):
+        rows = table(BALL)
+        assert rows["peak pressure"].startswith(f"{BALL.peak_pressure:.4g} MPa ±")
+        assert rows["body"] == "E 210 GPa, ν 0.3"
+        # What is too small for mm has another prefix.
+        assert rows["approach"].split(" ±")[0] == table(BALL)["approach"].split(" ±")[0]
+        assert rows["approach"].startswith(f"{si.approach * 1e9:.4g} nm")
+        assert rows["contact"].split(" ×")[0].endswith(" mm")
+        assert rows["moment"] == "(0 N mm, 0 N mm)"
+        assert " MPa" in repr(BALL)
+        assert " MPa" in str(BALL.stress_summary())
+    # The library's numbers are the same.
+    assert float(table(si)["peak pressure"].split()[0]) == pytest.approx(
+        BALL.peak_pressure / 1e3, rel=1e-3
+    )
+
+
+def test_units_are_restored_and_hold_until_the_next_call() -> None:
+    nacre.display_units("N-mm-MPa")
+    try:
+        assert written(1000.0, "Pa") == "1000 MPa"
+        with nacre.display_units("mN-µm-GPa"):
+            assert written(5.0, "m") == "5 µm"
+            assert written(2.0, "Pa") == "2 GPa"
+        with suppress(ZeroDivisionError), nacre.display_units("lbf-in-psi"):
+            assert written(4e5, "Pa") == "400000 psi"
+            assert written(2e-5, "m") == "2e-05 in"
+            _ = 1 / 0
+        assert written(1000.0, "Pa") == "1000 MPa"
+        nacre.display_units("SI")
+        assert written(1000.0, "Pa") == "1 kPa"
+    finally:
+        nacre.display_units("SI")
+
+
+@pytest.mark.parametrize("name", ["N-mm-Pa", "mm-N-MPa", "N-mm", "N-mm-bar", "", "SI-SI-SI"])
+def test_units_that_are_not_consistent_are_refused(name: str) -> None:
+    with pytest.raises(ValueError, match=r"^units must be .*got "):
+        nacre.display_units(name)
+    with pytest.raises(ValueError, match=r"^units must be .*got None"):
+        nacre.display_units(None)  # type: ignore[arg-type]
+    assert written(1000.0, "Pa") == "1 kPa"
+
+
+def test_units_of_a_dataset_are_its_own() -> None:
+    assert Scale.given(2000.0, "MPa") == Scale(1e-3, "GPa")
+    assert Scale.given(2.0, "mm²").unit == "mm²"
+    assert Scale.given(0.002, "rad") == Scale(1e3, "mrad")
+    assert Scale.given(2e3, "parsec") == Scale(1.0, "parsec")
+    with nacre.display_units("N-mm-MPa"):
+        assert Scale.given(2e9, "Pa") == Scale(1e-6, "MPa")
+        assert Scale.given(0.5, "mm") == Scale(1.0, "mm")
+        assert Scale.given(3.0, "N/mm") == Scale(1.0, "N/mm")
+    assert size_of("kN mm") == ("N m", 1.0)
+    assert size_of("1/m") is None
+
+
+def test_units_that_are_set_are_in_tables_and_files(tmp_path: Path) -> None:
+    ball, steel = nacre.Sphere(5.0), nacre.Elastic(210e3, 0.3)
+    case = {"shape": ball, "body": steel}
+    study = nacre.sweep(case, {"load": [1.0, 2.0]}, store=tmp_path / "a.nc", progress=False)
+    with nacre.display_units("N-mm-MPa"):
+        # The journal knows the cases: units are no part of what they are.
+        before = (tmp_path / "a.journal").read_bytes()
+        again = nacre.sweep(case, {"load": [1.0, 2.0]}, store=tmp_path / "a.nc", progress=False)
+        assert (tmp_path / "a.journal").read_bytes() == before
+        assert BALL.to_xarray().pressure.attrs["units"] == "MPa"
+        BALL.save(tmp_path / "a.csv")
+        BALL.save(tmp_path / "ball.nc")
+        assert design.load_curve(ball, steel, [1.0, 2.0]).stiffness.attrs["units"] == "N/mm"
+    assert again.peak_pressure.attrs["units"] == "MPa"
+    assert study.peak_pressure.attrs["units"] == "Pa"
+    assert again.peak_pressure.values.tobytes() == study.peak_pressure.values.tobytes()
+    heading = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert heading == "along,x [mm],y [mm],pressure [MPa],gap [mm],displacement [mm]"
+    assert nacre.load(tmp_path / "ball.nc") == BALL

@@ -4,6 +4,8 @@ import subprocess
 import sys
 from importlib.metadata import version
 
+import pytest
+
 import nacre
 
 SCRIPT = """
@@ -34,6 +36,16 @@ def test_nothing_but_numpy_is_imported() -> None:
 def test_the_parts_that_plot_and_talk_wait_until_they_are_used() -> None:
     later = {"paper", "cli", "plot", "case", "design", "surfaces"}
     assert {f"nacre.{name}" for name in later} & set(imported()) == set()
+
+
+def test_modules_are_attributes_that_are_imported_when_they_are_used() -> None:
+    script = SCRIPT.replace("nacre.solve", "nacre.design.coating_chart; nacre.solve")
+    assert "nacre.design" in imported(script)
+    script = "import nacre; print(nacre.plot.curve.__module__, nacre.case.Case.__module__)"
+    assert imported(script) == ["nacre.plot.studies", "nacre.case"]
+    assert {"case", "design", "paper", "plot", "solve"} <= set(dir(nacre))
+    with pytest.raises(AttributeError, match="module 'nacre' has no attribute 'plots'"):
+        _ = nacre.plots  # type: ignore[attr-defined]
 
 
 def test_printing_a_solution_needs_nothing_else() -> None:

@@ -420,3 +420,21 @@ def test_axes_of_a_user_s_own_sweep_have_units() -> None:
 def test_titles_say_what_is_drawn(coated: nacre.Solution) -> None:
     title = plot.stress_section(coated, rows=6).get_title(loc="left")
     assert "the cross marks the largest value" in title
+
+
+def test_axes_carry_the_units_that_are_set() -> None:
+    steel = nacre.Elastic(210e3, 0.3)  # MPa
+    body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e3, 0.3), 0.02)])
+    solution = nacre.solve(nacre.Sphere(5.0), body, load=100.0)
+    si = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
+    study = design.load_curve(nacre.Sphere(5e-3), si, load=[10.0, 20.0])
+    with nacre.display_units("N-mm-MPa"):
+        axes = plot.section(solution, "x")
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "pressure [MPa]")
+        assert curve_of(axes)[1].max() == solution.peak_pressure
+        assert plot.stress_depth(solution, points=4).get_ylabel() == "stress [MPa]"
+        # A Dataset has units of its own, whatever is set.
+        axes = plot.curve(study, "peak_pressure")
+        assert axes.get_ylabel() == "peak pressure [MPa]"
+        np.testing.assert_allclose(curve_of(axes)[1], study.peak_pressure / 1e6, rtol=1e-12)
+    assert plot.curve(study, "peak_pressure").get_ylabel() == "peak pressure [GPa]"

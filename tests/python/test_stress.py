@@ -148,10 +148,10 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     assert value == pytest.approx(fine.von_mises.max(), rel=1e-3)
     assert z == pytest.approx(fine.peak("von_mises")[1][2], abs=3e-6)
     assert substrate.max_shear[0] == pytest.approx(fine.max_shear.max(), rel=1e-3)
-    assert substrate.yield_margin == 2e9 / value
-    assert coating.yield_margin is None
-    assert coating.strength_margin == pytest.approx(1e9 / coating.tension[0])
-    assert substrate.strength_margin is None
+    assert substrate.yield_safety_factor == 2e9 / value
+    assert coating.yield_safety_factor is None
+    assert coating.strength_safety_factor == pytest.approx(1e9 / coating.tension[0])
+    assert substrate.strength_safety_factor is None
     above = solution.stress(20e-6, side="above", friction=0.2, residual={0: -1e9})
     below = solution.stress(20e-6, friction=0.2)
     assert interface.depth == 20e-6
@@ -165,9 +165,9 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     lines = str(summary).splitlines()
     assert max(map(len, lines)) <= 100
     assert [line.split("  ")[0] for line in lines if not line.startswith(" ")] == [
-        "layer 0, 0 m to 20 µm",
+        "layers[0], 0 m to 20 µm",
         "substrate",
-        "interface 0 at 20 µm",
+        "interfaces[0] at 20 µm",
     ]
     (row,) = (line for line in lines if line.startswith("substrate"))
     assert written(value, "Pa") in row

@@ -32,11 +32,11 @@ axes = plot.interface_map(solution)
 axes = plot.stress_section(solution, "tension", friction=0.25)
 
 # %%
-# And what a designer asks for, with margins against limits that are given; ``print(summary)`` shows
-# the whole table, with the place of each peak.
+# The summary has the peaks, and safety factors against limits that are given; ``print(summary)``
+# shows the whole table, with the place of each peak.
 summary = solution.stress_summary(friction=0.25, yield_stress={0: 8e9, "substrate": 2.2e9})
 for layer in summary.layers:
     mises, tension = layer.von_mises[0] / 1e9, layer.tension[0] / 1e9
-    print(f"layer {layer.layer}: von Mises {mises:.2f} GPa, tension {tension:.2f} GPa", end=", ")
-    print(f"margin {layer.yield_margin:.2f}")
+    print(f"layers[{layer.layer}]: von Mises {mises:.2f} GPa, tension {tension:.2f} GPa", end=", ")
+    print(f"safety factor {layer.yield_safety_factor:.2f}")
 print(f"interface: shear {summary.interfaces[0].shear[0] / 1e9:.2f} GPa")

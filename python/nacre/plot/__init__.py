@@ -1,7 +1,8 @@
 """Pictures of solutions and studies, with Matplotlib, and an interactive view with PyVista.
 
 Every function draws into axes that are passed in, or into a new figure, and returns the axes. Axes
-carry SI units with a prefix. `nacre.Solution` has most of them as methods.
+carry units with a prefix, SI or those of `nacre.display_units`. `nacre.Solution` has most of the
+functions as methods.
 """
 
 from nacre.plot.interfaces import interface_map

@@ -131,8 +131,14 @@ def _errors(study: xarray.Dataset, quantity: str) -> npt.NDArray[np.float64] | N
 
 
 def _scale(field: xarray.DataArray, quantity: str) -> Scale:
-    unit = field.attrs.get("units", UNITS.get(quantity, ""))
-    return Scale.of(float(np.nanmax(np.abs(field.values), initial=0.0)), unit)
+    largest = float(np.nanmax(np.abs(field.values), initial=0.0))
+    return _scale_of(field, largest, UNITS.get(quantity, ""))
+
+
+def _scale_of(array: xarray.DataArray, largest: float, unit: str) -> Scale:
+    """Return the scale of an array: from its own units, or else from the SI unit that is given."""
+    own = array.attrs.get("units")
+    return Scale.of(largest, unit) if own is None else Scale.given(largest, str(own))
 
 
 def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:
@@ -142,7 +148,7 @@ def _side(axes: Axes, side: Literal["x", "y"], values: xarray.DataArray) -> Any:
     wide = numbers.min() > 0 and numbers.max() >= 8 * numbers.min() and steps[-1] > 3 * steps[0]
     typical = np.sqrt(numbers.min() * numbers.max()) if wide else np.abs(numbers).max()
     parameter = str(values.name).rpartition(".")[2]
-    scale = Scale.of(float(typical), values.attrs.get("units", PARAMETERS.get(parameter, "")))
+    scale = _scale_of(values, float(typical), PARAMETERS.get(parameter, ""))
     name = values.attrs.get("long_name", parameter.replace("_", " "))
     label = f"{name} [{scale.unit}]" if scale.unit else name
     axes.set(**{f"{side}label": label, f"{side}scale": "log" if wide else "linear"})

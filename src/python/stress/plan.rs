@@ -133,7 +133,7 @@ impl PyStressPlan {
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> plan = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid).stress_plan()
-    /// >>> bool(plan.summary(yield_stress={"substrate": 1.8e9}).layers[0].yield_margin > 1.0)
+    /// >>> bool(plan.summary(yield_stress={"substrate": 1.8e9}).layers[0].yield_safety_factor > 1.0)
     /// True
     #[pyo3(signature = (**keywords), text_signature = None)]
     fn summary<'py>(

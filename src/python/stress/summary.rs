@@ -1,5 +1,6 @@
 //! `nacre.StressSummary`, `nacre.LayerStress`, `nacre.InterfaceStress`.
 
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -13,9 +14,15 @@ fn peak(peak: &Peak) -> PyPeak {
     (peak.value, peak.position.into())
 }
 
+/// Printed form of a result, in the units that are set.
+fn displayed<'py>(result: &Bound<'py, impl PyClass>, form: &str) -> PyResult<Bound<'py, PyAny>> {
+    let display = result.py().import("nacre._display")?;
+    display.getattr(form)?.call1((result,))
+}
+
 /// Extremes of the stress in each layer and at each interface.
 ///
-/// Printing it shows a table. Each value comes with its point ``(x, y, z)``, which is a cell centre.
+/// Printing it shows a table, and so does a notebook. Each value comes with its point ``(x, y, z)``, which is a cell centre.
 ///
 /// Examples
 /// --------
@@ -25,7 +32,7 @@ fn peak(peak: &Peak) -> PyPeak {
 /// >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0, grid=grid)
 /// >>> summary = solution.stress_summary(yield_stress={"substrate": 2e9})
 /// >>> coating, substrate = summary.layers
-/// >>> bool(coating.tension[0] > 0.0 and substrate.yield_margin > 1.0)
+/// >>> bool(coating.tension[0] > 0.0 and substrate.yield_safety_factor > 1.0)
 /// True
 #[pyclass(name = "StressSummary", module = "nacre", frozen, eq)]
 #[derive(Clone, PartialEq)]
@@ -53,8 +60,11 @@ impl PyStressSummary {
     }
 
     fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let display = slf.py().import("nacre._display")?;
-        display.getattr("stresses")?.call1((slf,))
+        displayed(slf, "stresses")
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        displayed(slf, "stresses_markup")
     }
 
     #[doc = to_dict_docs!()]
@@ -102,7 +112,7 @@ impl PyStressSummary {
 /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
 /// >>> (substrate,) = solution.stress_summary().layers
 /// >>> value, (x, y, z) = substrate.von_mises
-/// >>> round(value / solution.peak_pressure, 1), substrate.yield_margin
+/// >>> round(value / solution.peak_pressure, 1), substrate.yield_safety_factor
 /// (0.6, None)
 #[pyclass(name = "LayerStress", module = "nacre", frozen, eq)]
 #[derive(Clone, PartialEq)]
@@ -140,16 +150,16 @@ impl PyLayerStress {
         peak(&self.0.shear)
     }
 
-    /// Yield stress over the largest von Mises stress; None where no yield stress was given.
+    /// Yield stress divided by the largest von Mises stress; None where no yield stress was given.
     #[getter]
-    fn yield_margin(&self) -> Option<f64> {
-        self.0.yield_margin
+    fn yield_safety_factor(&self) -> Option<f64> {
+        self.0.yield_safety_factor
     }
 
-    /// Strength over the largest tension; None where no strength was given, or there is no tension.
+    /// Strength divided by the largest tension; None without a strength, or without tension.
     #[getter]
-    fn strength_margin(&self) -> Option<f64> {
-        self.0.strength_margin
+    fn strength_safety_factor(&self) -> Option<f64> {
+        self.0.strength_safety_factor
     }
 
     #[doc = to_dict_docs!()]
@@ -179,11 +189,8 @@ impl PyLayerStress {
         state::reduce(py, self)
     }
 
-    fn __repr__(&self) -> String {
-        format!(
-            "<nacre.LayerStress of layer {}: von Mises {:.4e} Pa, tension {:.4e} Pa>",
-            self.0.layer, self.0.von_mises.value, self.0.tension.value
-        )
+    fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        displayed(slf, "layer_line")
     }
 }
 
@@ -269,11 +276,8 @@ impl PyInterfaceStress {
         state::reduce(py, self)
     }
 
-    fn __repr__(&self) -> String {
-        format!(
-            "<nacre.InterfaceStress at depth {:.4e} m: shear {:.4e} Pa, tension {:.4e} Pa>",
-            self.0.depth, self.0.shear.value, self.0.tension.value
-        )
+    fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        displayed(slf, "interface_line")
     }
 }
 
@@ -323,8 +327,8 @@ impl State for PyLayerStress {
         write_peak(fields, "von_mises", &layer.von_mises)?;
         write_peak(fields, "tension", &layer.tension)?;
         write_peak(fields, "max_shear", &layer.shear)?;
-        fields.set("yield_margin", layer.yield_margin)?;
-        fields.set("strength_margin", layer.strength_margin)
+        fields.set("yield_safety_factor", layer.yield_safety_factor)?;
+        fields.set("strength_safety_factor", layer.strength_safety_factor)
     }
 
     fn read(fields: &Fields) -> PyResult<Self> {
@@ -334,8 +338,8 @@ impl State for PyLayerStress {
             von_mises: read_peak(&fields.get_fields("von_mises")?)?,
             tension: read_peak(&fields.get_fields("tension")?)?,
             shear: read_peak(&fields.get_fields("max_shear")?)?,
-            yield_margin: fields.get("yield_margin")?,
-            strength_margin: fields.get("strength_margin")?,
+            yield_safety_factor: fields.get("yield_safety_factor")?,
+            strength_safety_factor: fields.get("strength_safety_factor")?,
         }))
     }
 }
