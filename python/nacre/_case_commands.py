@@ -1,4 +1,4 @@
-"""``nacre solve`` and ``nacre sweep``: contacts and studies in case files."""
+"""``nacre solve``, ``nacre sweep`` and ``nacre schema``: contacts and studies in case files."""
 
 from __future__ import annotations
 
@@ -11,15 +11,21 @@ import numpy as np
 import typer
 
 import nacre
+from nacre import _reference
 from nacre._commands import app
 from nacre._outputs import ERROR
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES, PICTURES
+from nacre.units import system
 
 CaseFile = Annotated[
     Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, in SI units.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, in the units of the case.")]
+Units = Annotated[
+    str | None,
+    typer.Option(help="Units of the numbers in the case, N-mm-MPa; in place of its key units."),
+]
 ROWS = 30
 """Largest number of cases of a study that are printed."""
 
@@ -31,28 +37,47 @@ def solve(
         list[Path] | None,
         typer.Option(help="File to write: .nc, .vtr, .csv, or a picture. May be repeated."),
     ] = None,
+    units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Solve the contact that a case file describes."""
-    described = Case.read(case)
+    described = _read(case, units)
     arguments, asked = described.arguments(), described.stress()
     for path in save or []:
         _check_ending(path)
+    with nacre.display_units(described.units):
+        _solve(case, arguments, asked, save or [], as_json)
+
+
+def _read(case: Path, units: str | None) -> Case:
+    """Return the case of a file, in other units if these are given."""
+    described = Case.read(case)
+    return described if units is None else described.in_units(units)
+
+
+def _solve(
+    case: Path,
+    arguments: dict[str, Any],
+    asked: dict[str, Any] | None,
+    save: list[Path],
+    as_json: bool,
+) -> None:
+    """Solve, save and print in the units that are set."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
             solution = nacre.solve(**arguments)
-        except ValueError as error:
+        except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: solve: {error}") from error
     try:
         stress = None if asked is None else solution.stress_summary(**asked)
-    except ValueError as error:
+    except (ArithmeticError, TypeError, ValueError) as error:
         raise CaseError(f"{case}: stress: {error}") from error
-    for path in save or []:
+    for path in save:
         solution.save(path)
     if as_json:
         extremes = {} if stress is None else {"stress": stress.to_dict()}
-        print(json.dumps(_plain(_figures(solution) | extremes), indent=2))
+        print(json.dumps(_plain(_numbers(solution) | extremes), indent=2))
     else:
         print(solution if stress is None else f"{solution}\n\n{stress}")
 
@@ -64,18 +89,19 @@ def sweep(
         Path | None, typer.Option(help="NetCDF file, in place of the one in the case.")
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
+    units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Solve the study that a case file describes, or the rest of it after a kill."""
-    described = Case.read(case)
+    described = _read(case, units)
     study = described.study()
     if store is not None:
         study["store"] = store
-    with warnings.catch_warnings(record=True) as said:
+    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:
             dataset = nacre.sweep(described, retry=retry, **study)
-        except (TypeError, ValueError) as error:
+        except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: sweep: {error}") from error
     failed = int((dataset.error != "").sum())
     if as_json:
@@ -91,12 +117,21 @@ def sweep(
         raise typer.Exit(1)
 
 
-def _figures(solution: nacre.Solution) -> dict[str, Any]:
-    """Return the key figures and the named state of the report, with its warnings in words."""
+@app.command()
+def schema(
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON schema.")] = False,
+) -> None:
+    """Print the reference of case files: all tables and keys."""
+    print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
+
+
+def _numbers(solution: nacre.Solution) -> dict[str, Any]:
+    """Return the main numbers and the named state of the report, with its warnings in words."""
     state = solution.report.to_dict()
+    state["units"] = system().name
     state.pop("kind")
-    figures = {name: getattr(solution, name) for name in FIGURES}
-    return state | figures | {"warnings": solution.report.warnings}
+    numbers = {name: getattr(solution, name) for name in FIGURES}
+    return state | numbers | {"warnings": solution.report.warnings}
 
 
 def _plain(data: Any) -> Any:
@@ -133,7 +168,8 @@ def _print_study(dataset: Any) -> None:
     rows = frame.to_dataframe().reset_index()
     names = [str(name) for name in rows.columns if name not in ("error", "warnings")]
     names = [name for name in names if not name.endswith(ERROR)]
-    lines = [names]
+    units = {name: dataset[name].attrs.get("units") for name in names}
+    lines = [[f"{name} [{units[name]}]" if units[name] else name for name in names]]
     for _, row in rows.head(ROWS).iterrows():
         lines.append([_cell(row[name], row.get(name + ERROR, 0.0)) for name in names])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]

@@ -40,6 +40,22 @@ WIDTH = 80
 FRACTIONS = {0.25: "1/4", 0.5: "1/2", 1.0: "1", 2.0: "2", 4.0: "4"}
 
 
+def _version(asked: bool) -> None:
+    if asked:
+        print(f"nacre {nacre.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Elastic contact of coated bodies."""
+
+
 @app.command()
 def info() -> None:
     """Print versions and the number of threads."""

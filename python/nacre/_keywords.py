@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, TypedDict
 
-Freedoms = tuple[float | None, float | None]
+Along = tuple[float | None, float | None]
 """Values along x and y; None where one is not given."""
 Direction = tuple[float, float]
 Side = Literal["below", "above"]
@@ -30,9 +30,9 @@ class Motion(TypedDict, total=False):
 
     load: float | None
     approach: float | None
-    eccentricity: Freedoms | None
-    moment: Freedoms | None
-    tilt: Freedoms | None
+    eccentricity: Along | None
+    moment: Along | None
+    tilt: Along | None
 
 
 class Search(TypedDict, total=False):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -22,6 +23,13 @@ OUTPUTS = (
 )
 AXES = {"tilt", "eccentricity", "moment", "peak_position"}
 """Outputs with a value along x and one along y."""
+
+NUMBERS = sorted(
+    name
+    for name, value in vars(core.Solution).items()
+    if isinstance(value, types.GetSetDescriptorType) and name != "report"
+)
+"""Attributes of a solution: numbers and arrays of them."""
 
 STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
@@ -49,15 +57,11 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
-    known = {name for name in dir(core.Solution) if not name.startswith("_")}
-    # A method returns numbers only when it is called, and a report holds more than numbers.
-    known = {name for name in known - {"report"} if not callable(getattr(core.Solution, name))}
-    known |= set(STRESSES)
     for name, output in items:
-        if not (callable(output) or output in known):
+        if not (callable(output) or output in NUMBERS or output in STRESSES):
             raise ValueError(
-                f"outputs must be attributes of Solution that hold numbers, {', '.join(STRESSES)}, "
-                f"or functions, got {output!r}"
+                f"outputs must be attributes of Solution that hold numbers ({', '.join(NUMBERS)}), "
+                f"stresses ({', '.join(STRESSES)}), or functions, got {output!r}"
             )
         if name in ("error", "warnings"):
             raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")

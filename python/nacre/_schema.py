@@ -1,13 +1,8 @@
-"""The schema of case files: one class for each table.
-
-The tables of shapes whose arguments are all numbers, and the keywords of a solve, are made from the
-signatures in `nacre._core` and from `nacre._keywords`.
-"""
+"""The schema of case files: one class for each table, with the words of its reference."""
 
 from __future__ import annotations
 
 import inspect
-import re
 import types
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,71 +10,84 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_type_hints
 
 import numpy as np
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    FiniteFloat,
-    PositiveInt,
-    create_model,
-    model_validator,
-)
+from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
 from nacre import _keywords
+from nacre._outputs import OUTPUTS
+from nacre._shape_tables import AnyShape
+from nacre._case_tables import Count, Counts, Number, Pair, Table, Text, Words, described
+from nacre.units import System
 
-Pair = Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
-
-
-class Table(BaseModel):
-    """A table with the named keys and no others."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+CONSTANTS = described(nacre.Elastic)
+LAYER = described(nacre.Layer)
+GRID = described(nacre.Grid)
+LINE = described(nacre.Grid.line)
+SOLVE = described(nacre.solve)
+STRESS = described(nacre.Solution.stress_summary)
 
 
 class Material(Table):
-    """Constants and strengths of an elastic material."""
+    """An elastic material, with limits that stresses are compared with."""
 
-    young: FiniteFloat
-    poisson: FiniteFloat
-    yield_stress: FiniteFloat | None = None
-    strength: FiniteFloat | None = None
+    young: Number = Field(description=CONSTANTS["young"])
+    poisson: Number = Field(description=CONSTANTS["poisson"])
+    yield_stress: Number | None = Field(
+        None, description="Yield stress [Pa], for safety factors of the von Mises stress."
+    )
+    strength: Number | None = Field(
+        None, description="Tensile strength [Pa], for safety factors of the tension."
+    )
 
     def make(self) -> nacre.Elastic:
         """Return the elastic constants."""
         return nacre.Elastic(self.young, self.poisson)
 
 
+AnyMaterial = Annotated[
+    str | Material, Words("the name of a material, or a table with young and poisson")
+]
+
+
 class Layer(Table):
     """A layer, the interface below it, and the name that results show."""
 
-    material: str | Material
-    thickness: FiniteFloat
-    interface: Literal["bonded", "frictionless"] = "bonded"
-    name: str | None = None
+    material: AnyMaterial = Field(description=LAYER["material"])
+    thickness: Number = Field(description=LAYER["thickness"])
+    interface: Literal["bonded", "frictionless"] = Field("bonded", description=LAYER["interface"])
+    name: Text | None = Field(None, description=LAYER["name"])
 
 
 class Body(Table):
-    """A half-space: its substrate, by name or "rigid", and layers from the surface down."""
+    """A half-space: a substrate, and layers from the surface down."""
 
-    substrate: str | Material
-    layers: list[Layer] = []
+    substrate: AnyMaterial = Field(
+        description='Material below the layers; "rigid" is a rigid base.'
+    )
+    layers: Annotated[list[Layer], Words("a list of tables")] = Field(
+        [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
+    )
 
 
 class Grid(Table):
-    """Cells of a grid, or the strips of a line contact."""
+    """Cells of an area, by shape and size; or strips of a line contact, by cells and width."""
 
-    shape: Annotated[list[PositiveInt], Field(min_length=2, max_length=2)] | None = None
-    size: Pair | None = None
-    center: Pair | FiniteFloat | None = None
-    cells: PositiveInt | None = None
-    width: FiniteFloat | None = None
+    shape: Counts | None = Field(None, description=GRID["shape"])
+    size: Pair | None = Field(None, description=GRID["size"])
+    center: Pair | Number | None = Field(
+        None, description="Centre [m]: a pair for an area, a number for a line. By default 0."
+    )
+    cells: Count | None = Field(None, description=LINE["cells"])
+    width: Number | None = Field(None, description=LINE["width"])
 
     @model_validator(mode="after")
     def _one_kind(self) -> Grid:
         area, line = (self.shape, self.size), (self.cells, self.width)
         if (None in area or line != (None, None)) and (None in line or area != (None, None)):
-            raise ValueError("either shape and size or, for a line contact, cells and width")
+            raise ValueError("must have shape and size or, for a line contact, cells and width")
+        if self.center is not None and isinstance(self.center, list) != (self.cells is None):
+            asked = "a pair of numbers" if self.cells is None else "a number for a line contact"
+            raise ValueError(f"center must be {asked}, got {self.center!r}")
         return self
 
     def make(self) -> nacre.Grid:
@@ -90,148 +98,37 @@ class Grid(Table):
         return nacre.Grid(self.shape, self.size, **center)  # type: ignore[arg-type]
 
 
-class Profile(Table):
-    """An axial profile of a roller: the name of the function that makes it, and its arguments."""
-
-    kind: Literal["logarithmic", "lundberg", "johns_gohar", "iso16281", "sampled"]
-    amplitude: FiniteFloat | None = None
-    length: FiniteFloat | None = None
-    flat_length: FiniteFloat | None = None
-    end_factor: FiniteFloat | None = None
-    load: FiniteFloat | None = None
-    contact_modulus: FiniteFloat | None = None
-    radius: FiniteFloat | None = None
-    diameter: FiniteFloat | None = None
-    x: list[FiniteFloat] | None = None
-    drop: list[FiniteFloat] | None = None
-
-    def make(self) -> nacre.LogarithmicProfile | nacre.SampledProfile:
-        """Return the profile."""
-        given = self.model_dump(exclude={"kind"}, exclude_none=True)
-        makers: dict[str, Any] = {
-            "logarithmic": nacre.LogarithmicProfile,
-            "sampled": nacre.SampledProfile,
-        }
-        maker = makers.get(self.kind) or getattr(nacre.LogarithmicProfile, self.kind)
-        return _made(maker, given)  # type: ignore[no-any-return]
-
-
-class Shape(Table):
-    """Keys that every shape may have: a shift."""
-
-    shift: Pair | None = None
-
-    def make(self, folder: Path) -> nacre.Shape:
-        """Return the shape."""
-        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
-        shape = self.unmoved(given, folder)
-        return shape if self.shift is None else shape.shifted(*self.shift)
-
-    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape without its shift."""
-        kind: str = self.kind  # type: ignore[attr-defined]
-        return _made(SHAPES[kind], given)  # type: ignore[no-any-return]
-
-
-SHAPES: dict[str, type[nacre.Shape]] = {
-    re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower(): made
-    for made in vars(nacre._core).values()
-    if isinstance(made, type) and issubclass(made, nacre.Shape) and made is not nacre.Shape
-}
-"""Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
-
-
-class Roller(Shape):
-    """A roller with a crown or another profile."""
-
-    kind: Literal["roller"]
-    radius: FiniteFloat
-    flat_length: FiniteFloat | None = None
-    crown_radius: FiniteFloat | None = None
-    length: FiniteFloat | None = None
-    profile: Profile | None = None
-
-    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape without its shift."""
-        profile = {} if self.profile is None else {"profile": self.profile.make()}
-        return nacre.Roller(**(given | profile))
-
-
-class HeightMap(Shape):
-    """A measured surface in a file, with the arguments of `HeightMap.read`."""
-
-    kind: Literal["height_map"]
-    path: str
-    spacing: FiniteFloat | Pair | None = None
-    unit: str | None = None
-    detrend: Literal["none", "mean", "plane", "quadratic"] = "plane"
-    transpose: bool = False
-
-    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape without its shift."""
-        return nacre.HeightMap.read(folder / given.pop("path"), **given)
-
-
-class Sum(Shape):
-    """A sum of shapes."""
-
-    kind: Literal["sum"]
-    parts: Annotated[list[AnyShape], Field(min_length=1)]
-
-    def unmoved(self, given: dict[str, Any], folder: Path) -> nacre.Shape:
-        """Return the shape without its shift."""
-        first, *others = (part.make(folder) for part in self.parts)
-        for other in others:
-            first = first + other
-        return first
-
-
-def _numbers(kind: str, made: type[nacre.Shape]) -> type[Shape]:
-    """Return the table of a shape whose arguments are all numbers."""
-    parameters = inspect.signature(made).parameters.values()
-    fields: dict[str, Any] = {
-        one.name: (FiniteFloat, ...) if one.default is one.empty else (FiniteFloat | None, None)
-        for one in parameters
-    }
-    fields["kind"] = (Literal[kind], ...)
-    return create_model(made.__name__, __base__=Shape, **fields)
-
-
-OWN_TABLES: dict[str, type[Shape]] = {"roller": Roller, "height_map": HeightMap, "sum": Sum}
-TABLES = {kind: _numbers(kind, made) for kind, made in SHAPES.items() if kind not in OWN_TABLES}
-KINDS = ", ".join(repr(kind) for kind in TABLES | OWN_TABLES)
-
-if TYPE_CHECKING:
-    AnyShape = Shape
-else:
-    AnyShape = Annotated[
-        Union[tuple((TABLES | OWN_TABLES).values())],  # noqa: UP007
-        Field(discriminator="kind"),
-    ]
-
-
-class Freedoms(Table):
+class Along(Table):
     """A value along x, along y, or both."""
 
-    x: FiniteFloat | None = None
-    y: FiniteFloat | None = None
+    x: Number | None = Field(None, description="Value along x.")
+    y: Number | None = Field(None, description="Value along y.")
+
+
+KNOWN = {
+    float: Number,
+    int: Count,
+    _keywords.Along: Annotated[
+        Along | Pair, Words("a table with x, y or both, or a pair of finite numbers")
+    ],
+}
+"""Types that case files have for those of keywords."""
 
 
 def _checked(hint: Any) -> Any:
-    """Return the type that a case file has for a keyword: finite numbers, positive integers."""
-    known = {float: FiniteFloat, int: PositiveInt, _keywords.Freedoms: Freedoms | Pair}
+    """Return the type that a case file has for a keyword."""
     parts = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
-    return Union[(*(known.get(part, part) for part in parts), None)]
+    return Union[(*(KNOWN.get(part, part) for part in parts),)]
 
 
 class SolveKeywords(Table):
-    """Keywords of `nacre.solve` that a case file may have."""
+    """The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."""
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords that were given."""
-        found = {name: value for name, value in self if value is not None}
+        found = {name: value for name, value in self if name in self.model_fields_set}
         for name, value in found.items():
-            if isinstance(value, Freedoms):
+            if isinstance(value, Along):
                 found[name] = (value.x, value.y)
             elif isinstance(value, list):
                 found[name] = tuple(value)
@@ -242,8 +139,12 @@ def _solve() -> type[SolveKeywords]:
     """Return the table of those keywords."""
     groups = (_keywords.Motion, _keywords.Plan, _keywords.Search)
     hints = {name: hint for group in groups for name, hint in get_type_hints(group).items()}
-    fields: dict[str, Any] = {name: (_checked(hint), None) for name, hint in hints.items()}
-    return create_model("Solve", __base__=SolveKeywords, **fields)
+    signature = inspect.signature(nacre.solve).parameters
+    fields: dict[str, Any] = {
+        name: (_checked(hint), Field(default=signature[name].default, description=SOLVE[name]))
+        for name, hint in hints.items()
+    }
+    return create_model("Solve", __base__=SolveKeywords, __doc__=SolveKeywords.__doc__, **fields)
 
 
 if TYPE_CHECKING:
@@ -253,11 +154,11 @@ else:
 
 
 class Stress(Table):
-    """Keywords of `Solution.stress_summary`."""
+    """The stresses that are printed and kept, as `Solution.stress_summary` has them."""
 
-    body: Literal["body", "counterbody"] = "body"
-    friction: FiniteFloat = 0.0
-    direction: Pair | None = None
+    body: Literal["body", "counterbody"] = Field("body", description=STRESS["body"])
+    friction: Number = Field(0.0, description=STRESS["friction"])
+    direction: Pair | None = Field(None, description=STRESS["direction"])
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords."""
@@ -265,18 +166,26 @@ class Stress(Table):
         return {"body": self.body, "friction": self.friction, **direction}
 
 
+MOST_VALUES = 100_000
+"""Largest number of values of one parameter, so that a slip of the pen does not fill the memory."""
+
+
 class Range(Table):
     """Evenly spaced values, ends included."""
 
-    first: FiniteFloat
-    last: FiniteFloat
-    count: PositiveInt
-    scale: Literal["linear", "log"] = "linear"
+    first: Number = Field(description="First value.")
+    last: Number = Field(description="Last value.")
+    count: Count = Field(description=f"Number of values, at most {MOST_VALUES}.")
+    scale: Literal["linear", "log"] = Field(
+        "linear", description="Whether steps or ratios are the same."
+    )
 
     @model_validator(mode="after")
     def _logarithms_exist(self) -> Range:
         if self.scale == "log" and min(self.first, self.last) <= 0:
             raise ValueError("first and last must be above 0 on a logarithmic scale")
+        if self.count > MOST_VALUES:
+            raise ValueError(f"count must be at most {MOST_VALUES}, got {self.count}")
         return self
 
     def numbers(self) -> list[float]:
@@ -285,35 +194,69 @@ class Range(Table):
         return [float(value) for value in make(self.first, self.last, self.count)]
 
 
-class Sweep(Table):
-    """A study: values by dotted key of the case, the outputs and the file to store them in."""
+Values = Annotated[
+    Range | Annotated[list[Any], Field(min_length=1)],
+    Words("a list of values, or a table with first, last and count"),
+]
 
-    parameters: dict[str, Range | Annotated[list[Any], Field(min_length=1)]]
-    outputs: list[str] | None = None
-    store: str | None = None
+
+class Sweep(Table):
+    """A study, for ``nacre sweep``: every combination of values at some keys of the case."""
+
+    parameters: Annotated[
+        dict[str, Values], Words("a table of lists, or of tables with first, last and count")
+    ] = Field(
+        description='Values by key, such as parameters."body.layers[0].thickness" = [1e-6, 2e-6].'
+    )
+    outputs: Annotated[list[str], Words("a list of texts")] | None = Field(
+        None,
+        description="Numbers that are kept of each solution, as `nacre.sweep` has them; by default "
+        f"{', '.join(OUTPUTS)}.",
+    )
+    store: Text | None = Field(
+        None, description="File for the study, .nc, relative to the folder of the case."
+    )
 
 
 class CaseTable(Table):
-    """A whole case file."""
+    """Keys and tables of a case file."""
 
-    materials: dict[str, Material] = {}
-    shape: AnyShape
-    body: Body
-    counterbody: Body | None = None
-    grid: Grid | None = None
-    solve: Solve
-    stress: Stress | None = None
-    sweep: Sweep | None = None
+    units: Text = Field(
+        "SI",
+        description="Units of force, length and stress of all numbers in the file, and of what is "
+        'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
+    )
+    materials: Annotated[dict[str, Material], Words("a table of materials")] = Field(
+        {}, description="Materials by name."
+    )
+    shape: AnyShape = Field(description="Shape that is pressed in.")
+    body: Body = Field(description="Body that the shape is pressed into.")
+    counterbody: Body | None = Field(
+        None, description="Body that carries the shape; rigid where it is left out."
+    )
+    grid: Grid | None = Field(None, description=SOLVE["grid"])
+    solve: Solve = Field(description="What presses, and how the contact is solved.")
+    stress: Stress | None = Field(
+        None, description="Stresses below the surface; the table may be empty."
+    )
+    sweep: Sweep | None = Field(None, description="A study of the case.")
+
+    @field_validator("units")
+    @classmethod
+    def _consistent(cls, units: str) -> str:
+        System(units)
+        return units
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
-        with _at("shape"):
-            found: dict[str, Any] = {"shape": self.shape.make(folder)}
+        with at("shape"):
+            shape = self.shape.make(folder, System(self.units).metres)
+            found: dict[str, Any] = {"shape": shape}
         for name, body in (("body", self.body), ("counterbody", self.counterbody)):
             if body is not None:
                 found[name] = self._body(name, body)
         if self.grid is not None:
-            with _at("grid"):
+            with at("grid"):
                 found["grid"] = self.grid.make()
         return found | self.solve.keywords()
 
@@ -322,7 +265,8 @@ class CaseTable(Table):
         body = self.body if self.stress is None or self.stress.body == "body" else self.counterbody
         if body is None:
             return {}
-        named = [*(layer.material for layer in body.layers), body.substrate]
+        named = [*(layer.material for layer in body.layers)]
+        named += [] if self._is_rigid(body) else [body.substrate]
         found = [self.materials.get(one) if isinstance(one, str) else one for one in named]
         return {
             name: [getattr(material, name, None) for material in found]
@@ -330,39 +274,47 @@ class CaseTable(Table):
         }
 
     def _body(self, name: str, body: Body) -> nacre.HalfSpace:
-        with _at(f"{name}.substrate"):
-            rigid = body.substrate == "rigid" and "rigid" not in self.materials
+        with at(f"{name}.substrate"):
+            rigid = self._is_rigid(body)
             substrate = nacre.RIGID if rigid else self._material(body.substrate)
         layers = []
         for number, layer in enumerate(body.layers):
-            with _at(f"{name}.layers.{number}"):
-                material = self._material(layer.material)
+            with at(f"{name}.layers[{number}]"):
+                with at("material"):
+                    material = self._material(layer.material)
                 layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
-        with _at(name):
+        with at(name):
             return nacre.HalfSpace(substrate, layers)
+
+    def _is_rigid(self, body: Body) -> bool:
+        return body.substrate == "rigid" and "rigid" not in self.materials
 
     def _material(self, named: str | Material) -> nacre.Elastic:
         if isinstance(named, str):
             if named not in self.materials:
                 known = ", ".join(self.materials) or "none"
                 raise ValueError(f"must be one of the materials ({known}), got {named!r}")
-            with _at(f"materials.{named}"):
+            with at(f"materials.{named}"):
                 return self.materials[named].make()
         return named.make()
 
 
-def _made(maker: Any, given: dict[str, Any]) -> Any:
-    """Return what `maker` makes; a wrong argument is a `ValueError`."""
-    try:
-        return maker(**given)
-    except TypeError as error:
-        raise ValueError(str(error)) from error
+class WrongValue(ValueError):
+    """An error about the value of a key."""
+
+    def __init__(self, key: str, message: str) -> None:
+        super().__init__(f"{key}: {message}")
+        self.key, self.message = key, message
 
 
 @contextmanager
-def _at(key: str) -> Iterator[None]:
-    """Put a key before the message of a `ValueError`."""
+def at(key: str) -> Iterator[None]:
+    """Name the key whose value raises an error: a `WrongValue`."""
     try:
         yield
-    except (ValueError, OSError) as error:
-        raise ValueError(f"{key}: {error}") from error
+    except WrongValue as error:
+        if error.key.startswith("materials."):  # a key of its own, wherever it is used
+            raise
+        raise WrongValue(f"{key}.{error.key}", error.message) from error
+    except (ArithmeticError, OSError, TypeError, ValueError) as error:
+        raise WrongValue(key, str(error)) from error

@@ -1,10 +1,12 @@
 """Case files: a contact, and a study of it, in TOML.
 
 There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`;
-materials have names::
+materials have names. ``nacre schema`` prints the reference of all tables and keys::
+
+    units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out
 
     [materials]
-    steel = { young = 210e9, poisson = 0.3, yield_stress = 1.5e9 }  # for margins
+    steel = { young = 210e9, poisson = 0.3, yield_stress = 1.5e9 }  # for safety factors
     dlc = { young = 420e9, poisson = 0.3, strength = 2e9 }
 
     [shape]
@@ -35,16 +37,23 @@ from __future__ import annotations
 import copy
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from nacre._extras import extra
+from nacre._outputs import named
 
 with extra("cli"):
     from pydantic import ValidationError
 
-    from nacre._schema import KINDS, CaseTable, Range
+    from nacre._reference import Place, nearest, place
+    from nacre._schema import CaseTable, Range, WrongValue, at
+
+SHOWN = 60
+"""Largest number of characters of a wrong value that an error shows."""
+SOLVED = ("materials", "shape", "body", "counterbody", "grid", "solve")
+"""Tables that describe a solve, whose values a study can change."""
 
 
 class CaseError(ValueError):
@@ -67,28 +76,44 @@ class Case:
     def __init__(
         self, data: Mapping[str, Any], name: str = "case", folder: Path | None = None
     ) -> None:
-        self.data = copy.deepcopy(dict(data))
         self.name = name
         self.folder = folder or Path()
-        self._table = self._checked(self.data)
+        try:
+            self.data = copy.deepcopy(dict(data))
+            self._table = self._checked(self.data)
+        except RecursionError:
+            raise CaseError(f"{name}: tables and lists are nested too deeply") from None
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Case:
         """Return the case of a file; an unusable one is a `CaseError`."""
         path = Path(path)
         try:
-            data = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        except UnicodeDecodeError as error:
+            raise CaseError(f"{path}: not a TOML file: its letters must be UTF-8") from error
+        except ValueError as error:
             raise CaseError(f"{path}: not a TOML file: {error}") from error
+        except RecursionError:
+            raise CaseError(f"{path}: tables and lists are nested too deeply") from None
         except OSError as error:
             raise CaseError(f"{path}: {error.strerror or error}") from error
         return cls(data, str(path), path.parent)
+
+    @property
+    def units(self) -> str:
+        """Units of the numbers, as `nacre.display_units` takes them."""
+        return self._table.units
+
+    def in_units(self, units: str) -> Case:
+        """Return the case with its numbers in other units."""
+        return Case({**self.data, "units": units}, self.name, self.folder)
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments of `nacre.solve` that the case describes."""
         try:
             return self._table.arguments(self.folder)
-        except ValueError as error:
+        except WrongValue as error:
             raise CaseError(f"{self.name}: {error}") from error
 
     def stress(self) -> dict[str, Any] | None:
@@ -112,7 +137,7 @@ class Case:
         self.arguments()  # the case as it stands must be one
         for key in sweep.parameters:
             self._place(self.data, key)
-            if key.startswith("stress.") or key.endswith((".yield_stress", ".strength")):
+            if not key.startswith(SOLVED) or key.endswith((".yield_stress", ".strength")):
                 message = f"{self.name}: sweep.parameters: {key!r} changes nothing in a solve"
                 raise CaseError(message)
         found: dict[str, Any] = {
@@ -122,6 +147,11 @@ class Case:
             }
         }
         if sweep.outputs is not None:
+            try:
+                with at("sweep"):
+                    named(sweep.outputs)
+            except WrongValue as error:
+                raise CaseError(f"{self.name}: {error}") from error
             found["outputs"] = sweep.outputs
         if sweep.store is not None:
             found["store"] = self.folder / sweep.store
@@ -130,57 +160,88 @@ class Case:
         return found
 
     def _place(self, data: Any, key: str) -> tuple[Any, Any]:
-        """Return the table or list that holds a dotted key, and the last part of the key."""
-        parts: list[Any] = [int(part) if part.isdigit() else part for part in key.split(".")]
-        table = data
+        """Return the table or list that holds a key, and the last part of the key.
+
+        A layer is named by its number, ``body.layers[0]`` or ``body.layers.0``, or by its name.
+        """
+        parts = key.replace("[", ".").replace("]", "").split(".")
+        table, last = None, None
         try:
-            for part in parts[:-1]:
-                table = table[part]
-            table[parts[-1]]
+            for part in parts:
+                table = data if table is None else table[last]
+                last = _index(table, part)
+                table[last]
         except (LookupError, TypeError) as error:
-            message = f"{self.name}: sweep.parameters: {key!r} is not a key of this case"
-            raise CaseError(message) from error
-        return table, parts[-1]
+            keys = ", ".join(nearest(key, _keys({t: data[t] for t in SOLVED if t in data}))[:3])
+            raise CaseError(
+                f"{self.name}: sweep.parameters: {key!r} is not a key of this case; the nearest "
+                f"are {keys}"
+            ) from error
+        return table, last
 
     def _checked(self, data: Mapping[str, Any]) -> CaseTable:
         try:
             return CaseTable.model_validate(data)
         except ValidationError as error:
-            raise CaseError(f"{self.name}: {_first(error, data)}") from error
+            raise CaseError(f"{self.name}: {_first(error, data)}") from None
+
+
+def _index(table: Any, part: str) -> int | str:
+    """Return a part of a key as the index of a list, or as the key of a table."""
+    if not isinstance(table, list):
+        return part
+    if part.isascii() and part.isdigit():
+        return int(part)
+    names = [one.get("name") if isinstance(one, dict) else None for one in table]
+    if names.count(part) != 1:
+        raise LookupError(part)
+    return names.index(part)
+
+
+def _keys(data: Any, before: str = "") -> Iterator[str]:
+    """Yield the keys of all values that are neither tables nor lists of tables."""
+    items = data.items() if isinstance(data, dict) else enumerate(data)
+    for part, value in items:
+        key = f"{before}[{part}]" if isinstance(part, int) else f"{before}.{part}".removeprefix(".")
+        inner = isinstance(value, list) and any(isinstance(one, dict) for one in value)
+        if isinstance(value, dict) or inner:
+            yield from _keys(value, key)
+        else:
+            yield key
 
 
 def _first(error: ValidationError, data: Any) -> str:
     """Return a message about the first error: key, expected value and value found."""
     found = error.errors(include_url=False)
-    # A misspelt key is often also a missing one; the misspelt one says more.
-    first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
-    key = ".".join(str(part) for part in _path(first["loc"], data))
-    if first["type"] == "missing":
-        return f"{key}: this key is missing"
-    if first["type"] == "extra_forbidden":
-        return f"{key}: there is no such key"
-    if first["type"].startswith("union_tag"):
-        kinds = first["ctx"].get("expected_tags", KINDS)
-        return f"{key}.kind: should be one of {kinds}, got {first['ctx'].get('tag')!r}"
-    message = first["msg"].removeprefix("Value error, ").removeprefix("Input ")
-    value = first["input"]
-    got = "" if isinstance(value, dict) else f", got {value!r}"
-    return f"{key}: {message[:1].lower()}{message[1:]}{got}"
+    # A misspelt key is often also a missing one; the misspelt one says more. Of the errors of
+    # alternatives, the innermost belongs to the one that was meant.
+    places = [(one, place(data, one["loc"])) for one in found]
+    misspelt = [pair for pair in places if pair[0]["type"] == "extra_forbidden"]
+    first, here = misspelt[0] if misspelt else max(places, key=lambda pair: len(pair[1].path))
+    kind = first["type"]
+    if kind == "extra_forbidden":
+        return _no_key(here, str(first["loc"][-1]))
+    if kind == "missing":
+        return f"{here.key}: this key is missing"
+    if kind == "recursion_loop":
+        return f"{'.'.join(map(str, here.path[:2]))}: tables and lists are nested too deeply"
+    if kind.startswith("union_tag") and isinstance(here.value, dict):
+        got = here.value.get("kind")
+        kinds = ", ".join(map(repr, nearest(str(got), here.kinds())))
+        said = f"got {_shown(got)}" if "kind" in here.value else "this key is missing"
+        return f"{here.key}.kind: must be one of {kinds}; {said}"
+    if kind == "value_error":
+        return f"{here.key}: {first['ctx']['error']}"
+    return f"{here.key}: must be {here.words()}, got {_shown(here.value)}"
 
 
-def _path(location: tuple[int | str, ...], data: Any) -> list[int | str]:
-    """Return a location without the names of alternatives that pydantic inserts."""
-    path: list[int | str] = []
-    for number, part in enumerate(location):
-        last = number == len(location) - 1
-        inside = part in data if isinstance(data, dict) else isinstance(data, list)
-        if inside and isinstance(part, int) == isinstance(data, list):
-            path.append(part)
-            data = data[part] if not isinstance(part, int) or part < len(data) else None
-        elif last and isinstance(data, dict) and _is_key(part):
-            path.append(part)
-    return path
+def _no_key(here: Place, name: str) -> str:
+    """Return a message about a key that a table cannot have, with the keys that it can have."""
+    key = f"{here.key}.{name}".removeprefix(".")
+    return f"{key}: there is no such key; the keys here are {', '.join(nearest(name, here.keys()))}"
 
 
-def _is_key(part: int | str) -> bool:
-    return isinstance(part, str) and part.isidentifier()
+def _shown(value: Any) -> str:
+    """Return a value as an error shows it."""
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

@@ -15,6 +15,7 @@ import xarray
 
 import nacre
 import nacre.cli
+from nacre import _reference, _schema, _shape_tables
 from nacre.case import Case, CaseError
 
 TEXT = """
@@ -200,8 +201,8 @@ def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
     coating, substrate = found["layers"]
     value, place = summary.layers[1].von_mises
     assert substrate["von_mises"] == {"value": value, "at": list(place)}
-    assert substrate["yield_margin"] == 3e9 / value
-    assert coating["yield_margin"] is None
+    assert substrate["yield_safety_factor"] == 3e9 / value
+    assert coating["yield_safety_factor"] is None
     assert coating["depths"] == [0.0, 40e-6]
     assert substrate["depths"] == [40e-6, None]
     assert found["interfaces"][0]["shear"]["value"] == summary.interfaces[0].shear[0]
@@ -221,8 +222,16 @@ def test_stresses_of_a_study_have_the_friction_of_the_case(tmp_path: Path) -> No
     ("command", "change", "message"),
     [
         ("solve", "friction = 0.2 -> friction = -1", "stress: friction must be at least 0"),
-        ("solve", "friction = 0.2 -> fiction = 1", "stress.fiction: there is no such key"),
-        ("solve", 'friction = 0.2 -> body = "x"', "stress.body: should be 'body' or 'counterbody'"),
+        (
+            "solve",
+            "friction = 0.2 -> fiction = 1",
+            "stress.fiction: there is no such key; the keys here are friction, ",
+        ),
+        (
+            "solve",
+            'friction = 0.2 -> body = "x"',
+            'stress.body: must be "body" or "counterbody", got',
+        ),
         ("solve", 'friction = 0.2 -> body = "counterbody"', 'stress: body must be "body" where'),
         ("solve", "strength = 2e9 -> strength = -2", "stress: strength must be finite and above 0"),
         ("sweep", '"solve.load" -> "stress.friction"', "'stress.friction' changes nothing in a"),
@@ -245,29 +254,40 @@ def test_an_error_about_stresses_is_one_line(
 
 
 ERRORS = {
-    'radius = 5e-3 -> radius = "5"': "shape.radius: should be a valid number, got '5'",
+    'radius = 5e-3 -> radius = "5"': "shape.radius: must be a finite number, got '5'",
     "radius = 5e-3 -> radius = -5": "shape: radius must be finite and above 0, got -5",
-    "radius = 5e-3 -> radius = nan": "shape.radius: should be a finite number, got nan",
+    "radius = 5e-3 -> radius = nan": "shape.radius: must be a finite number, got nan",
     "radius = 5e-3 -> ": "shape.radius: this key is missing",
-    "flat_length -> flt_length": "shape.flt_length: there is no such key",
+    "flat_length -> flt_length": "shape.flt_length: there is no such key; the keys here are flat_",
     "crown_radius = 2 -> ": "shape: either flat_length and crown_radius or profile must be given",
-    '"roller" -> "roler"': "shape.kind: should be one of 'sphere'",
-    'kind = "roller" -> ': "shape.kind: should be one of 'sphere'",
-    "load = 1e3 -> load = true": "solve.load: should be a valid number, got True",
+    '"roller" -> "roler"': "shape.kind: must be one of 'roller', ",
+    '"roller" -> ["roller"]': "shape.kind: must be one of ",
+    'kind = "roller" -> ': "; this key is missing",
+    "load = 1e3 -> load = true": "solve.load: must be a finite number, got True",
+    "load = 1e3 -> load = 1979-05-27": "solve.load: must be a finite number, got datetime.date(",
     "load = 1e3 -> ": "solve: exactly one of load and approach must be given",
     "load = 1e3 -> load = 1\napproach = 1": "solve: exactly one of load and approach",
-    "{ x = 1e-3 } -> { z = 1e-3 }": "solve.eccentricity.z: there is no such key",
-    "{ x = 1e-3 } -> [1e-3]": "solve.eccentricity",
-    '"dlc", -> "dlx",': "body.layers.0: must be one of the materials (steel, dlc), got 'dlx'",
+    "{ x = 1e-3 } -> { z = 1e-3 }": "solve.eccentricity.z: there is no such key; the keys here",
+    "{ x = 1e-3 } -> [1e-3]": "solve.eccentricity: must be a table with x, y or both, or a pair of "
+    "finite numbers, got [0.001]",
+    '"dlc", -> "dlx",': "body.layers[0].material: must be one of the materials (steel, dlc)",
     '"steel" -> "stel"': "body.substrate: must be one of the materials (steel, dlc), got 'stel'",
-    "thickness = 40e-6 -> thickness = 0": "body.layers.0: thickness must be finite and above 0",
-    "thickness = 40e-6 -> thick = 1": "body.layers.0.thick: there is no such key",
+    "thickness = 40e-6 -> thickness = 0": "body.layers[0]: thickness must be finite and above 0",
+    "thickness = 40e-6 -> thick = 1": "layers[0].thick: there is no such key; the keys here are",
     "young = 420e9 -> young = -1": "materials.dlc: young must be finite and above 0, got -1",
-    "[solve] -> [solv]": "solv: there is no such key",
-    "[96, 40] -> [96]": "grid.shape: list should have at least 2 items",
-    "[96, 40] -> [96, 0]": "grid.shape.1: should be greater than 0, got 0",
-    "shape = [96, 40] -> ": "grid: either shape and size or, for a line contact, cells and width",
+    "[solve] -> [solv]": "solv: there is no such key; the keys here are solve, ",
+    "[96, 40] -> [96]": "grid.shape: must be a pair of integers above 0, got [96]",
+    "[96, 40] -> [96, 0]": "grid.shape: must be a pair of integers above 0, got [96, 0]",
+    "shape = [96, 40] -> ": "grid: must have shape and size or, for a line contact, cells",
     "[materials] -> [materials": "not a TOML file",
+    "[materials] -> x = [materials]": "not a TOML file",
+    "size = [14e-3, 2e-4] -> size = [14e-3, 2e-4]\ncenter = 1e-3": "grid: center must be a pair of",
+    "shape = [96, 40] -> cells = 96\nwidth = 1e-3\ncenter = [0, 0]\n#": "grid: must have shape and",
+    'substrate = "steel" -> substrate = 3': "body.substrate: must be the name of a material, or a "
+    "table with young and poisson, got 3",
+    "poisson = 0.3 } -> poison = 0.3 }": "materials.steel.poison: there is no such key; the keys",
+    "[materials] -> units = 'N-mm-kPa'\n[materials]": "units: units must be consistent, ",
+    "[materials] -> units = 3\n[materials]": "units: must be a text, got 3",
 }
 
 
@@ -300,7 +320,15 @@ def test_an_error_is_one_line_that_names_the_key(
         ("count = 3 -> count = 0", "sweep.parameters.solve.load"),
         ("first = 500 -> first = 0", "must be above 0 on a logarithmic scale"),
         ("[105e9, 420e9] -> []", "sweep.parameters.materials.dlc.young"),
-        ('"peak_pressure" -> "peak"', "outputs must be attributes of Solution"),
+        ('"peak_pressure" -> "peak"', "sweep: outputs must be approach, "),
+        ('"peak_pressure" -> "stiffness"', "sweep: outputs must be approach, "),
+        ('"peak_pressure" -> "report"', "sweep: outputs must be approach, "),
+        (
+            "[105e9, 420e9] -> 105e9",
+            "sweep.parameters.materials.dlc.young: must be a list of values",
+        ),
+        ('"materials.dlc -> "body.layers[1]', "is not a key of this case; the nearest are body."),
+        ('"solve.load" -> "sweep.store"', "changes nothing in a solve"),
         ('"study.nc" -> "study.txt"', "store must end in .nc"),
     ],
 )
@@ -413,6 +441,127 @@ def test_bodies_grids_and_motions_can_be_described() -> None:
         "moment": (None, 3),
         "threads": 2,
     }
+
+
+def test_a_byte_order_mark_is_taken(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(TEXT, encoding="utf-8-sig")
+    assert Case.read(path).arguments()["load"] == 1e3
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a = " + "{ b = " * 500 + "1" + " }" * 500, ".".join("a" * 500) + " = 1", "a = " + "[" * 9999],
+    ids=["tables", "key", "lists"],
+)
+def test_what_is_nested_too_deeply_is_refused(text: str, tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="tables and lists are nested too deeply"):
+        Case.read(written(tmp_path, text))
+
+
+def test_nested_sums_are_refused_or_solved() -> None:
+    def nested(depth: int) -> dict[str, Any]:
+        shape: dict[str, Any] = {"kind": "sphere", "radius": 1}
+        for _ in range(depth):
+            shape = {"kind": "sum", "parts": [shape]}
+        return shape
+
+    assert Case(base(shape=nested(20))).arguments()["shape"] == nacre.Sphere(1)
+    with pytest.raises(CaseError, match="tables and lists are nested too deeply"):
+        Case(base(shape=nested(500)))
+
+
+@pytest.mark.parametrize(
+    ("grid", "message"),
+    [
+        ({"cells": 8, "width": 1, "center": [0, 0]}, "grid: center must be a number for a line"),
+        ({"shape": [8, 8], "size": [1, 1], "center": 1}, "grid: center must be a pair of numbers"),
+        (
+            {"shape": [8, 8], "size": [1, 1], "center": "0"},
+            "grid.center: must be a finite number or a pair",
+        ),
+    ],
+)
+def test_the_centre_of_a_grid_is_of_its_kind(grid: dict[str, Any], message: str) -> None:
+    with pytest.raises(CaseError, match=f"^case: {re.escape(message)}"):
+        Case(base(grid=grid))
+
+
+def test_a_profile_has_the_keys_of_its_kind() -> None:
+    roller = {"kind": "roller", "radius": 1}
+    profile = {"kind": "iso16281", "diameter": 2}
+    with pytest.raises(CaseError, match=r"shape.profile.length: this key is missing"):
+        Case(base(shape=roller | {"profile": profile}))
+    profile |= {"length": 3, "radius": 1}
+    with pytest.raises(CaseError, match=r"profile.radius: .* keys here are diameter, kind, length"):
+        Case(base(shape=roller | {"profile": profile}))
+
+
+def test_a_rigid_base_has_stresses_in_its_layers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = STRESSED.replace('substrate = "steel"', 'substrate = "rigid"')
+    assert nacre_command("solve", written(tmp_path, text)) == 0
+    assert "layers[0], 0 m to 40 µm" in capsys.readouterr().out
+
+
+def test_layers_of_a_study_are_named_by_their_numbers() -> None:
+    layer = {"material": {"young": 1e9, "poisson": 0.5}, "thickness": 1e-3}
+    body = {"substrate": "rigid", "layers": [layer]}
+    for key in ("body.layers[0].thickness", "body.layers.0.thickness"):
+        case = Case(base(body=body, sweep={"parameters": {key: [1e-3, 2e-3]}}))
+        assert case.study()["parameters"] == {key: [1e-3, 2e-3]}
+        assert case(**{key: 2e-3})["body"].layers[0].thickness == 2e-3
+
+
+MILLIMETRES = """
+units = "N-mm-MPa"
+shape = { kind = "height_map", path = "a.npy", spacing = 0.01, unit = "um", detrend = "none" }
+body = { substrate = { young = 210e3, poisson = 0.3 } }
+solve = { load = 10 }
+stress = {}
+"""
+
+
+def test_units_of_a_case_are_those_of_its_map_and_of_what_is_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x = np.linspace(-1, 1, 32)
+    np.save(tmp_path / "a.npy", -(x**2) - x[:, np.newaxis] ** 2)
+    case = Case.read(written(tmp_path, MILLIMETRES))
+    shape = case.arguments()["shape"]
+    assert shape.spacing == pytest.approx((0.01, 0.01), rel=1e-15)
+    assert np.ptp(shape.heights) == pytest.approx(2e-3, rel=0.01)
+    assert nacre_command("solve", written(tmp_path, MILLIMETRES)) == 0
+    printed = capsys.readouterr().out
+    solution = nacre.solve(**case.arguments())
+    assert f"peak pressure  {solution.peak_pressure:.4g} MPa" in printed
+    text = MILLIMETRES.replace('units = "N-mm-MPa"', "")
+    assert nacre_command("solve", written(tmp_path, text), "--units", "N-mm-MPa") == 0
+    assert capsys.readouterr().out == printed
+    assert nacre_command("solve", written(tmp_path, text), "--units", "N-mm-MPa", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["units"] == "N-mm-MPa"
+    assert nacre_command("solve", written(tmp_path, text), "--units", "N-mm-Pa") == 2
+    assert "units must be consistent" in capsys.readouterr().err
+    assert f"{solution.peak_pressure:.6g} Pa," in repr(solution)  # SI again
+
+
+def test_the_reference_has_every_table_and_key(capsys: pytest.CaptureFixture[str]) -> None:
+    assert nacre_command("schema") == 0
+    text = capsys.readouterr().out
+    for section in _reference.sections():
+        assert section.title in text
+        for key in section.keys:
+            assert key.meaning, f"{section.title} {key.name}"
+            assert key.value not in ("", "any value")
+            assert f"  {key.name}: {key.value}" in text
+    assert "radius: finite number [m]; required" in text
+    assert "tolerance: finite number; default 1e-08" in text
+    assert all(f'kind = "{kind}"' in text for kind in (*_shape_tables.SHAPES, "sum", "iso16281"))
+    assert max(map(len, text.splitlines())) <= 120
+    assert nacre_command("schema", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found["properties"]) == set(_schema.CaseTable.model_fields)
 
 
 def test_a_case_can_be_called_with_other_values() -> None:

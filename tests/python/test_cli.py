@@ -35,6 +35,10 @@ def test_help_names_the_commands() -> None:
     assert [name for name in ("info", "paper", "solve", "sweep") if f" {name} " not in out] == []
 
 
+def test_version_is_one_line() -> None:
+    assert run("--version") == (0, f"nacre {nacre.__version__}\n", "")
+
+
 def test_info_prints_the_versions(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("info") == 0
     assert nacre.__version__ in capsys.readouterr().out

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import nacre
-from nacre import _keywords, _schema, values
+from nacre import _keywords, _schema, _shape_tables, values
 
 STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((16, 16), (2e-4, 2e-4))
@@ -112,8 +112,8 @@ def shapes() -> dict[str, type[nacre.Shape]]:
 def test_files_and_case_files_know_every_shape() -> None:
     assert len(shapes()) >= 6
     assert set(shapes()) <= set(values.KINDS)
-    assert {kind.__name__ for kind in _schema.SHAPES.values()} == set(shapes())
-    assert set(_schema.SHAPES) | {"sum"} == {kind.strip("'") for kind in _schema.KINDS.split(", ")}
+    assert {kind.__name__ for kind in _shape_tables.SHAPES.values()} == set(shapes())
+    assert set(_shape_tables.SHAPES) | {"sum"} == set(_shape_tables.TABLES)
 
 
 @pytest.mark.parametrize("kind", sorted(values.KINDS))
@@ -125,7 +125,7 @@ def test_arguments_of_a_constructor_are_attributes(kind: str) -> None:
 
 
 def test_the_public_names_are_those_of_the_stub() -> None:
-    assert set(nacre.__all__) == {*nacre._core.__all__, "load", "sweep"}
+    assert set(nacre.__all__) == {*nacre._core.__all__, "display_units", "load", "sweep"}
     assert not [name for name in nacre._core.__all__ if name.startswith("_") and "__" not in name]
 
 
