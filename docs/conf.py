@@ -78,6 +78,15 @@ def link_pages(app: Any, name: str, source: list[str]) -> None:
     source[0] = source[0].replace("(../benches/README.md)", "(benches.md)")
 
 
+def insert_reference(app: Any, name: str, source: list[str]) -> None:
+    """Insert the reference of case files, which is made from their schema."""
+    if name == "cases":
+        from nacre._reference import markdown
+
+        source[0] = source[0].replace("CASE-REFERENCE", markdown())
+
+
 def setup(app: Any) -> None:
     """Connect the functions that Sphinx calls."""
     app.connect("source-read", link_pages)
+    app.connect("source-read", insert_reference)

@@ -58,7 +58,8 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
     for name, output in items:
-        if not (callable(output) or output in NUMBERS or output in STRESSES):
+        known = isinstance(output, str) and (output in NUMBERS or output in STRESSES)
+        if not (known or callable(output)):
             raise ValueError(
                 f"outputs must be attributes of Solution that hold numbers ({', '.join(NUMBERS)}), "
                 f"stresses ({', '.join(STRESSES)}), or functions, got {output!r}"

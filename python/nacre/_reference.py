@@ -99,11 +99,11 @@ def _section(title: str, table: type[Table]) -> Section:
         else:
             given = field.default
             default = "" if given is None or given in ([], {}) else json.dumps(given)
-        meaning = UNIT.sub("", told).replace("``", "")
+        meaning = UNIT.sub("", told)
         keys.append(Key(name, value, unit[1] if unit else "", default, meaning))
     # Keys that must be given come first, and the common ones of shapes last.
     keys.sort(key=lambda key: (key.default != "required", key.name == "shift"))
-    summary = " ".join((table.__doc__ or "").split("\n\n")[0].split()).replace("``", "")
+    summary = " ".join((table.__doc__ or "").split("\n\n")[0].split())
     return Section(title, summary, keys)
 
 
@@ -137,13 +137,14 @@ def markdown() -> str:
     """Return the reference as Markdown, a heading and a table for each table of a case file."""
     lines = [INTRODUCTION]
     for section in sections():
-        lines += ["", f"## {section.title}", "", section.summary, ""]
+        lines += ["", f"## {section.title}", "", section.summary.replace("``", "`"), ""]
         if not section.keys:
             continue
         lines += ["| key | value | unit | default | meaning |", "|---|---|---|---|---|"]
         for key in section.keys:
             default = key.default if key.default in ("", "required") else f"`{key.default}`"
-            cells = (f"`{key.name}`", key.value, key.unit, default, key.meaning)
+            meaning = key.meaning.replace("``", "`")
+            cells = (f"`{key.name}`", key.value, key.unit, default, meaning)
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -320,9 +320,9 @@ def test_an_error_is_one_line_that_names_the_key(
         ("count = 3 -> count = 0", "sweep.parameters.solve.load"),
         ("first = 500 -> first = 0", "must be above 0 on a logarithmic scale"),
         ("[105e9, 420e9] -> []", "sweep.parameters.materials.dlc.young"),
-        ('"peak_pressure" -> "peak"', "sweep: outputs must be approach, "),
-        ('"peak_pressure" -> "stiffness"', "sweep: outputs must be approach, "),
-        ('"peak_pressure" -> "report"', "sweep: outputs must be approach, "),
+        ('"peak_pressure" -> "peak"', "sweep: outputs must be attributes of Solution"),
+        ('"peak_pressure" -> "stiffness"', "sweep: outputs must be attributes of Solution"),
+        ('"peak_pressure" -> "report"', "sweep: outputs must be attributes of Solution"),
         (
             "[105e9, 420e9] -> 105e9",
             "sweep.parameters.materials.dlc.young: must be a list of values",
@@ -578,3 +578,15 @@ def test_the_case_in_the_documentation_is_one(tmp_path: Path) -> None:
     case = Case.read(written(tmp_path, text))
     assert case.arguments()["load"] == 1e3
     assert len(case.study()["parameters"]["solve.load"]) == 10
+
+
+def test_the_case_of_the_page_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "cases.md").read_text(encoding="utf-8")
+    text = page.partition(":caption: ball.toml\n")[2].partition("```")[0]
+    path = written(tmp_path, text)
+    assert nacre_command("sweep", path) == 0
+    printed = capsys.readouterr().out
+    assert "peak_pressure [MPa]" in printed
+    assert "9 cases, 0 failed" in printed
+    assert nacre_command("solve", path) == 0
+    assert "safety factor" in capsys.readouterr().out
