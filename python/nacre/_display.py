@@ -48,8 +48,8 @@ VIRIDIS = (
 )
 
 
-def figures(solution: Solution) -> list[tuple[str, str]]:
-    """Return names and values of the key figures, with units."""
+def numbers(solution: Solution) -> list[tuple[str, str]]:
+    """Return names and values of the main numbers, with units."""
     line = solution.report.grid.is_line
     force, moment = ("N/m", "N") if line else ("N", "N m")
     extent, report = solution.contact_extent, solution.report
@@ -131,7 +131,7 @@ def interface_line(face: InterfaceStress) -> str:
 
 def text(solution: Solution) -> str:
     """Return the table that ``print(solution)`` shows."""
-    rows = figures(solution)
+    rows = numbers(solution)
     width = max(len(name) for name, _ in rows)
     lines = [f"{name:{width}}  {value}" for name, value in rows]
     lines += [f"warning: {warning}" for warning in solution.report.warnings]
@@ -176,24 +176,32 @@ def _peaks(summary: StressSummary) -> list[list[str]]:
         add("shear", layer.max_shear)
         ends = f"{written(top, 'm')} to {written(bottom, 'm')}"
         rows[start][0] = f"{_layer(layer)}, {ends}" if bottom < np.inf else "substrate"
+    names = {layer.layer: layer.name for layer in summary.layers}
     for face in summary.interfaces:
-        start = len(rows)
+        start, above = len(rows), names.get(face.interface)
         add("tension", face.tension)
         add("compression", face.compression)
         add("shear", face.shear)
         add("in-plane jump", face.jump)
-        rows[start][0] = f"interfaces[{face.interface}] at {written(face.depth, 'm')}"
+        below = "" if above is None else f" below {above}"
+        rows[start][0] = f"interfaces[{face.interface}]{below} at {written(face.depth, 'm')}"
     return rows
 
 
 def _layer(layer: LayerStress) -> str:
-    """Return the name of a layer in a summary."""
-    return f"layers[{layer.layer}]" if layer.depths[1] < np.inf else "the substrate"
+    """Return number and name of a layer in a summary."""
+    if layer.depths[1] == np.inf:
+        return "the substrate"
+    return _named(layer.layer, layer.name)
+
+
+def _named(number: int, name: str | None) -> str:
+    return f"layers[{number}]" if name is None else f"layers[{number}] {name}"
 
 
 def markup(solution: Solution) -> str:
     """Return the table and the small map, for a notebook."""
-    rows = "".join(_cells("td", row) for row in figures(solution))
+    rows = "".join(_cells("td", row) for row in numbers(solution))
     notes = "".join(f"<p>warning: {html.escape(text)}</p>" for text in solution.report.warnings)
     picture = base64.b64encode(thumbnail(solution.pressure)).decode()
     image = (
@@ -267,7 +275,10 @@ def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
     if body is None:
         return [(name, "rigid")]
     layers = [
-        (f"  layers[{number}]", f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}")
+        (
+            f"  {_named(number, layer.name)}",
+            f"{written(layer.thickness, 'm', 3)}, {_material(layer.material)}",
+        )
         for number, layer in enumerate(body.layers)
     ]
     if len(layers) > LAYER_ROWS:

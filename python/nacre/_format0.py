@@ -118,6 +118,7 @@ def _layer(state: tuple[Any, ...]) -> dict[str, Any]:
     layer, depths, (von_mises, tension, shear), factors = state
     return {
         "layer": layer,
+        "name": None,
         "depths": depths,
         "von_mises": _peak(von_mises),
         "tension": _peak(tension),

@@ -13,8 +13,8 @@ Along = tuple[float | None, float | None]
 Direction = tuple[float, float]
 Side = Literal["below", "above"]
 Member = Literal["body", "counterbody"]
-ByLayer = Mapping[int | Literal["substrate"], float] | Sequence[float | None]
-"""Values from the surface down; or by number of a layer, or "substrate"."""
+ByLayer = Mapping[int | str, float] | Sequence[float | None]
+"""Values from the surface down; or by number or name of a layer, or "substrate"."""
 
 
 class Plan(TypedDict, total=False):

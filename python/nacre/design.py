@@ -36,11 +36,12 @@ def coating_chart(
     friction: float = 0.0,
     **options: Any,
 ) -> xarray.Dataset:
-    """Peak pressure and stresses over the thickness and the modulus of a single coating.
+    """Peak pressure and stresses for thicknesses and moduli of a single coating.
 
-    The stresses are the ones that crack a coating and peel it off: the largest tension (principal
+    The stresses are the ones that crack a coating and detach it: the largest tension (principal
     stress) on its two faces, and the largest shear traction at the interface.
-    `Solution.stress_summary` also searches inside the coating, on over ten times as many planes.
+    `Solution.stress_summary` also searches inside the coating, on more than ten times as many
+    planes.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def coating_chart(
     -------
     xarray.Dataset
         ``peak_pressure``, ``coating_tension``, ``interface_shear``, ``contact_area`` and
-        ``approach`` over ``thickness`` and ``young``.
+        ``approach``, as functions of ``thickness`` and ``young``.
 
     Examples
     --------
@@ -104,7 +105,7 @@ def coating_chart(
 def load_curve(
     shape: core.Shape, body: core.HalfSpace | core.Elastic, load: Values, **options: Any
 ) -> xarray.Dataset:
-    """Approach, normal stiffness dW/dδ, area and peak pressure over the load.
+    """Approach, normal stiffness dW/dδ, area and peak pressure as functions of the load.
 
     The stiffness belongs to the approach alone, with the tilts held: it is the first element of
     `Solution.stiffness`.
@@ -121,7 +122,8 @@ def load_curve(
     Returns
     -------
     xarray.Dataset
-        ``approach``, ``stiffness``, ``contact_area`` and ``peak_pressure`` over ``load``.
+        ``approach``, ``stiffness``, ``contact_area`` and ``peak_pressure``, as functions of
+        ``load``.
 
     Examples
     --------
@@ -155,7 +157,7 @@ def tilt_curve(
     load: float,
     **options: Any,
 ) -> xarray.Dataset:
-    """Moment, point of the load and peak pressure over the tilt along x, under one load.
+    """Moment, point of the load and peak pressure as functions of the tilt along x, at one load.
 
     Parameters
     ----------
@@ -171,8 +173,8 @@ def tilt_curve(
     Returns
     -------
     xarray.Dataset
-        ``moment`` and ``eccentricity``, over ``axis`` too, ``approach`` and ``peak_pressure`` over
-        ``tilt``.
+        ``moment`` and ``eccentricity``, along x and y, ``approach`` and ``peak_pressure``, as
+        functions of ``tilt``.
 
     Examples
     --------

@@ -48,7 +48,7 @@ FIGURES = (
     "contact_area",
     "contact_extent",
 )
-"""Key figures that files carry as attributes, in the units of the computation."""
+"""Main numbers that files carry as attributes, in the units of the computation."""
 
 NAMES = {
     "pressure": "pressure",
@@ -68,7 +68,7 @@ ROUNDING = 1e-9
 def to_xarray(solution: core.Solution) -> xarray.Dataset:
     """Return the fields with coordinates, units and the whole problem.
 
-    Attributes hold the key figures, and bodies, motion and options as JSON. A repetition needs only
+    Attributes hold main numbers, bodies, motion and options as JSON. A repetition needs only
     the shape besides, whose gap is `gap - displacement + approach + tilt_x x + tilt_y y`.
     """
     with extra("files"):

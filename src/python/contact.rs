@@ -124,9 +124,9 @@ impl PyContact {
     #[doc = concat!("solve($self, shape, *, ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
     /// Presses `shape` into the body.
     ///
-    /// Each of the three freedoms of the rigid motion is prescribed or loaded, in any mixture. Exactly
-    /// one of `load` and `approach` is given, and along x and along y at most one of `eccentricity`,
-    /// `moment` and `tilt`; with none of them the tilt is locked at 0.
+    /// Each of the three degrees of freedom of the rigid motion is prescribed or loaded, in any
+    /// mixture. Exactly one of `load` and `approach` is given, and along x and along y at most one of
+    /// `eccentricity`, `moment` and `tilt`; with none of them the tilt is locked at 0.
     ///
     /// Parameters
     /// ----------
@@ -303,7 +303,7 @@ impl PyContact {
 ///
 /// See Also
 /// --------
-/// Contact.solve : explains the freedoms of the motion.
+/// Contact.solve : explains the degrees of freedom of the motion.
 ///
 /// Examples
 /// --------

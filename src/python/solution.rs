@@ -434,12 +434,12 @@ impl PySolution {
         PyReport(self.solution.report.clone())
     }
 
-    /// Draws map, sections and key figures; needs ``nacre-contact[plot]``.
+    /// Draws map, sections and main numbers; needs ``nacre-contact[plot]``.
     ///
     /// Parameters
     /// ----------
     /// axes : matplotlib.axes.Axes or dict of them, optional
-    ///     Axes to draw into: a dict with any of the names "map", "x", "y" and "figures", as
+    ///     Axes to draw into: a dict with any of the names "map", "x", "y" and "numbers", as
     ///     ``subplot_mosaic`` makes it, or one for the map; a new figure by default.
     ///
     /// Returns
@@ -457,7 +457,7 @@ impl PySolution {
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
     /// >>> sorted(solution.plot())
-    /// ['figures', 'map', 'x', 'y']
+    /// ['map', 'numbers', 'x', 'y']
     #[pyo3(signature = (axes=None))]
     fn plot<'py>(
         slf: &Bound<'py, Self>,
@@ -546,7 +546,7 @@ impl PySolution {
     /// Returns
     /// -------
     /// xarray.Dataset
-    ///     Fields over x and y; key figures, bodies, motion and options as attributes.
+    ///     Fields on x and y; main numbers, bodies, motion and options as attributes.
     ///
     /// Examples
     /// --------

@@ -1,4 +1,4 @@
-//! What a designer asks of a stress field: peaks in each layer, tractions at each interface.
+//! Summary of a stress field: peaks in each layer, tractions at each interface.
 
 use std::ops::ControlFlow;
 
@@ -35,6 +35,8 @@ pub struct Strengths {
 pub struct LayerSummary {
     /// Number of the layer, from the surface down; the substrate's is the number of layers.
     pub layer: usize,
+    /// Name of the layer, if it has one; the substrate has none.
+    pub name: Option<String>,
     /// Depths of the top and bottom faces \[m\]; the substrate's bottom is at infinity.
     pub depths: [f64; 2],
     /// Largest von Mises stress.
@@ -247,7 +249,8 @@ fn layer(
         peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
     });
     let layer = region[0].layer;
-    let thickness = body.layers().get(layer).map(Layer::thickness);
+    let own = body.layers().get(layer);
+    let thickness = own.map(Layer::thickness);
     let [yield_stress, strength] = strengths.of_layer(layer);
     let factor = |strength: Option<f64>, peak: Peak| {
         let strength = strength.filter(|_| peak.value > 0.0);
@@ -255,6 +258,7 @@ fn layer(
     };
     ControlFlow::Continue(LayerSummary {
         layer,
+        name: own.and_then(Layer::name).map(String::from),
         depths: [top, thickness.map_or(f64::INFINITY, |h| top + h)],
         yield_safety_factor: factor(yield_stress, von_mises),
         strength_safety_factor: factor(strength, tension),

@@ -505,13 +505,18 @@ def test_a_rigid_base_has_stresses_in_its_layers(
     assert "layers[0], 0 m to 40 µm" in capsys.readouterr().out
 
 
-def test_layers_of_a_study_are_named_by_their_numbers() -> None:
-    layer = {"material": {"young": 1e9, "poisson": 0.5}, "thickness": 1e-3}
+def test_layers_of_a_study_are_named_by_number_or_name() -> None:
+    layer = {"material": {"young": 1e9, "poisson": 0.5}, "thickness": 1e-3, "name": "DLC"}
     body = {"substrate": "rigid", "layers": [layer]}
-    for key in ("body.layers[0].thickness", "body.layers.0.thickness"):
+    keys = ("body.layers[0].thickness", "body.layers.0.thickness", "body.layers.DLC.thickness")
+    for key in keys:
         case = Case(base(body=body, sweep={"parameters": {key: [1e-3, 2e-3]}}))
         assert case.study()["parameters"] == {key: [1e-3, 2e-3]}
         assert case(**{key: 2e-3})["body"].layers[0].thickness == 2e-3
+    with pytest.raises(CaseError, match="is not a key of this case"):
+        Case(base(body=body))(**{"body.layers.TiN.thickness": 1.0})
+    with pytest.raises(CaseError, match="is not a key of this case"):
+        Case(base(body=body | {"layers": [layer, layer]}))(**{"body.layers.DLC.thickness": 1.0})
 
 
 MILLIMETRES = """

@@ -91,16 +91,16 @@ def test_a_scale_turns_si_into_the_unit_it_names() -> None:
     assert Scale.of(5e9, "Pa") == Scale(1e-9, "GPa")
 
 
-def test_the_overview_has_map_sections_and_figures(tilted: nacre.Solution) -> None:
+def test_the_overview_has_map_sections_and_numbers(tilted: nacre.Solution) -> None:
     axes = tilted.plot()
-    assert sorted(axes) == ["figures", "map", "x", "y"]
+    assert sorted(axes) == ["map", "numbers", "x", "y"]
     assert axes["map"].get_xlabel() == "x [mm]"
     assert axes["map"].get_ylabel() == "y [µm]"
     assert "different scales" in axes["map"].get_title(loc="left")
     (mesh,) = (c for c in axes["map"].collections if isinstance(c, QuadMesh))
     values: Array = np.ma.asarray(mesh.get_array()).filled(0.0).T
     np.testing.assert_allclose(values, 1e-9 * tilted.pressure, rtol=1e-12)
-    said = " ".join(text.get_text() for text in axes["figures"].texts)
+    said = " ".join(text.get_text() for text in axes["numbers"].texts)
     assert written(tilted.peak_pressure, "Pa") in said
     drawn(axes["map"].figure)
 
@@ -178,7 +178,7 @@ def test_the_interactive_view_holds_the_pressure(tilted: nacre.Solution) -> None
 
 def test_a_line_contact_has_one_section(line: nacre.Solution) -> None:
     axes = line.plot()
-    assert sorted(axes) == ["figures", "y"]
+    assert sorted(axes) == ["numbers", "y"]
     drawn(axes["y"].figure)
     for refused in (plot.pressure_map, plot.relief):
         with pytest.raises(ValueError, match="must have cells along x"):
@@ -201,7 +201,7 @@ def test_bad_arguments_are_named(tilted: nacre.Solution) -> None:
         plot.section(tilted, "y", quantity="line_load")
     with pytest.raises(ValueError, match=r"at must lie on the grid, -0\.00015 to 0\.00015, got 1"):
         plot.section(tilted, at=1.0)
-    with pytest.raises(ValueError, match="axes must be named map, x, y or figures, got 'z'"):
+    with pytest.raises(ValueError, match="axes must be named map, x, y or numbers, got 'z'"):
         tilted.plot({"z": plt.figure().add_subplot()})
     with pytest.raises(ValueError, match="at least one solution"):
         plot.compare([])
@@ -243,7 +243,7 @@ def test_studies_are_drawn_with_their_units() -> None:
     share = 100 * (abs(chart.peak_pressure_discretisation) / chart.peak_pressure).max().item()
     label = plot.chart(chart).figure.axes[1].get_ylabel()
     assert label == f"peak pressure [GPa], ± {share:.2g} % at most"
-    with pytest.raises(ValueError, match="quantity must be over 2 parameters"):
+    with pytest.raises(ValueError, match="quantity must depend on 2 parameters"):
         plot.chart(curve, "approach")
     with pytest.raises(ValueError, match=r"quantity must be one of .*, got 'force'"):
         plot.curve(curve, "force")

@@ -169,10 +169,38 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
         "substrate",
         "interfaces[0] at 20 µm",
     ]
+    assert "safety factor" in lines[0]
     (row,) = (line for line in lines if line.startswith("substrate"))
     assert written(value, "Pa") in row
     assert row.endswith(f"  {2e9 / value:.3g}")
     assert summary.finished
+
+
+def test_names_of_layers_are_keys_and_are_shown() -> None:
+    hard, soft = nacre.Elastic(420e9, 0.3), nacre.Elastic(250e9, 0.3)
+    layers = [
+        nacre.Layer(hard, 2e-6, name="TiN"),
+        nacre.Layer(soft, 1e-6),
+        nacre.Layer(hard, 2e-6, name="TiN"),
+        nacre.Layer(soft, 3e-6, name="CrN"),
+    ]
+    solution = nacre.solve(nacre.Sphere(5e-3), nacre.HalfSpace(STEEL, layers), load=10.0)
+    assert "layers[0] TiN" in str(solution)
+    assert "layers[1]   " in str(solution)
+    # A name stands for all layers that have it.
+    named = solution.stress_summary(strength={"TiN": 1e9, "CrN": 2e9}, residual={"TiN": -1e9})
+    numbered = solution.stress_summary(
+        strength={0: 1e9, 2: 1e9, 3: 2e9}, residual={0: -1e9, 2: -1e9}
+    )
+    assert named == numbered
+    assert [layer.name for layer in named.layers] == ["TiN", None, "TiN", "CrN", None]
+    assert nacre.StressSummary.from_dict(named.to_dict()) == named
+    rows = [line.split("  ")[0] for line in str(named).splitlines()]
+    assert "layers[0] TiN, 0 m to 2 µm" in rows
+    assert "layers[1], 2 µm to 3 µm" in rows
+    assert "interfaces[3] below CrN at 8 µm" in rows
+    with pytest.raises(ValueError, match=r"names of layers \(TiN, TiN, CrN\), got 'DLC'"):
+        solution.stress_summary(strength={"DLC": 1.0})
 
 
 def test_fields_and_summaries_are_values(solution: nacre.Solution) -> None:
@@ -221,6 +249,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"friction": float("nan")}, r"^friction must be finite, got NaN$"),
     ({"direction": (0.0, 0.0)}, r"^direction must be a vector of finite length above 0, got 0$"),
     ({"residual": {2: 1e9}}, r'^keys of residual must be "substrate"'),
+    ({"residual": {"DLC": 1e9}}, r"or names of layers \(here they have none\), got 'DLC'$"),
     ({"residual": [1.0, 2.0, 3.0]}, r"^residual must hold at most 2 values"),
     ({"residual": {0: float("inf")}}, r"^residual must be finite, got inf$"),
     ({"threads": 0}, r"^threads must be an integer of at least 1, got 0$"),

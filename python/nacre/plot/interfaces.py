@@ -115,7 +115,7 @@ def interface_map(
         if same:
             axes.set_aspect("equal")
         said = "the contact outlined" if same else "x and y to different scales"
-        axes.set_title(f"interface at z = {written(depth, 'm', 3)}; {said}")
+        axes.set_title(f"interfaces[{interface}] at z = {written(depth, 'm', 3)}; {said}")
     return axes
 
 

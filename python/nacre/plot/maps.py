@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nacre._core import Solution
-from nacre._display import figures
+from nacre._display import numbers
 from nacre._extras import extra
 from nacre.plot.sections import section
 from nacre.plot.style import COLOURMAP, WIDTH, lengths, new_axes, outline, styled
@@ -20,14 +20,14 @@ with extra("plot"):
 
 
 def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:
-    """Draw map, sections and key figures.
+    """Draw map, sections and main numbers.
 
     Parameters
     ----------
     solution
         Solution to draw.
     axes
-        Where to draw: axes by any of the names "map", "x", "y" and "figures", as
+        Where to draw: axes by any of the names "map", "x", "y" and "numbers", as
         ``subplot_mosaic`` makes them, or one for the map; a new figure by default.
 
     Returns
@@ -43,7 +43,7 @@ def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) 
     line = solution.report.grid.is_line
     with styled():
         if axes is None:
-            layout: list[Any] = [["y", "figures"]] if line else [["map", "figures"], ["x", "y"]]
+            layout: list[Any] = [["y", "numbers"]] if line else [["map", "numbers"], ["x", "y"]]
             size = (WIDTH, (0.42 if line else 0.78) * WIDTH)
             figure = plt.figure(figsize=size, layout="constrained")
             axes = figure.subplot_mosaic(layout, width_ratios=(1.25, 1))
@@ -57,10 +57,10 @@ def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) 
                 section(solution, "x", axes=part)
             elif name == "y":
                 section(solution, "y", axes=part)
-            elif name == "figures":
-                _key_figures(solution, part)
+            elif name == "numbers":
+                _numbers(solution, part)
             else:
-                raise ValueError(f"axes must be named map, x, y or figures, got {name!r}")
+                raise ValueError(f"axes must be named map, x, y or numbers, got {name!r}")
     return parts
 
 
@@ -139,10 +139,10 @@ def pressure_map(solution: Solution, axes: Axes | None = None) -> Axes:
     return axes
 
 
-def _key_figures(solution: Solution, axes: Axes) -> None:
-    """Write the key figures into axes of their own."""
+def _numbers(solution: Solution, axes: Axes) -> None:
+    """Write the main numbers into axes of their own."""
     axes.set_axis_off()
-    rows = figures(solution)
+    rows = numbers(solution)
     step = 1 / max(16, len(rows))
     for number, (name, value) in enumerate(rows):
         height = 1 - (number + 0.5) * step

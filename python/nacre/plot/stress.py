@@ -1,4 +1,4 @@
-"""Stress below a contact: sections, and curves over depth."""
+"""Stress below a contact: sections, and curves against depth."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def stress_depth(
     axes: Axes | None = None,
     **options: Any,
 ) -> Axes:
-    """Draw stresses over depth below a point, with both sides of every interface.
+    """Draw stresses against depth below a point, with both sides of every interface.
 
     Parameters
     ----------

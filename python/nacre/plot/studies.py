@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | None = None) -> Axes:
-    """Draw a quantity over the two parameters of a study, as `nacre.design.coating_chart` makes it.
+    """Draw a quantity against both parameters of a study, such as `nacre.design.coating_chart`.
 
     Parameters
     ----------
     study
-        A Dataset over two parameters; values of either that grow by factors get a logarithmic axis.
+        A Dataset of two parameters; values of either that grow by factors get a logarithmic axis.
     quantity
         What to draw. Its largest estimated error due to the size of the cells is in the label,
         where the study has it.
@@ -41,7 +41,7 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
     Raises
     ------
     ValueError
-        If the quantity is not one over two parameters.
+        If the quantity does not depend on two parameters.
     """
     field = _quantity(study, quantity, 2)
     x, y = (study[str(name)] for name in field.dims)
@@ -67,14 +67,14 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
 def curve(
     study: xarray.Dataset, quantity: str = "approach", axes: Axes | None = None, **style: Any
 ) -> Axes:
-    """Draw a quantity over the only parameter of a study: `load_curve`, `tilt_curve`.
+    """Draw a quantity against the only parameter of a study: `load_curve`, `tilt_curve`.
 
     Error bars show the estimated error due to the size of the cells, where the study has it.
 
     Parameters
     ----------
     study
-        A Dataset over one parameter. Of a quantity along x and y, as the moment, x is drawn.
+        A Dataset of one parameter. Of a quantity along x and y, as the moment, x is drawn.
     quantity
         What to draw.
     axes
@@ -90,7 +90,7 @@ def curve(
     Raises
     ------
     ValueError
-        If the quantity is not one over one parameter.
+        If the quantity does not depend on one parameter.
     """
     field = _quantity(study, quantity, 1)
     scale = _scale(field, quantity)
@@ -117,7 +117,8 @@ def _quantity(study: xarray.Dataset, quantity: str, parameters: int) -> xarray.D
         field = field.sel(axis="x")
     if field.ndim != parameters:
         raise ValueError(
-            f"quantity must be over {parameters} parameters here, {quantity} is over {field.dims}"
+            f"quantity must depend on {parameters} parameters here, {quantity} depends on "
+            f"{', '.join(map(str, field.dims))}"
         )
     return field
 

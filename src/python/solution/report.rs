@@ -203,7 +203,7 @@ impl PyReport {
         self.0.overlap
     }
 
-    /// Mismatch of the force, over W, and of the moments along x and y, over W times half the side.
+    /// Mismatch of the force, as a part of W, and of the moments along x and y, of W times half a side.
     #[getter]
     fn balance(&self) -> (f64, f64, f64) {
         let Balance {

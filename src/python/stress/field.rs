@@ -121,7 +121,7 @@ impl PyStress {
         self.stress.side.word()
     }
 
-    /// Traction over pressure, ``(x, y)``: the coefficient of friction times its direction.
+    /// Traction divided by pressure, ``(x, y)``: the coefficient of friction times its direction.
     #[getter]
     fn friction(&self) -> (f64, f64) {
         self.stress.friction.into()

@@ -4,7 +4,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::body::{HalfSpace, Substrate};
+use crate::body::{HalfSpace, Layer, Substrate};
 use crate::python::arguments::keywords::Keywords;
 use crate::python::arguments::{Repr, real_array};
 use crate::python::background;
@@ -49,8 +49,9 @@ direction : tuple of float, optional
     Direction of the traction on the body, of any length, along x by default; the traction on the
     counterbody is opposite.
 residual : dict or sequence, optional
-    Residual stress [Pa], equal along x and y, that is added in a layer. A dict maps numbers of
-    layers (0 at the surface) and ``\"substrate\"`` to it; a sequence holds it from the surface down."
+    Residual stress [Pa], equal along x and y, that is added in a layer. A dict maps layers to
+    it, by number (0 at the surface) or name, and ``\"substrate\"``; a sequence holds it from the
+    surface down."
     };
 }
 
@@ -66,9 +67,8 @@ macro_rules! strength_docs {
     () => {
         "\
 yield_stress : dict or sequence, optional
-    Yield stress [Pa] of layers. A dict maps numbers of layers (0 at the surface) and
-    ``\"substrate\"`` to it; a sequence holds it from the surface down, with None where it is not
-    known.
+    Yield stress [Pa] of layers. A dict maps layers to it, by number (0 at the surface) or name, and
+    ``\"substrate\"``; a sequence holds it from the surface down, with None where it is not known.
 strength : dict or sequence, optional
     Tensile strength [Pa] of layers, likewise."
     };
@@ -149,7 +149,8 @@ pub(in crate::python) fn strengths(keywords: &Keywords, body: &HalfSpace) -> PyR
 }
 
 /// Values of some layers, from the surface down and the substrate last. The argument is a sequence of
-/// them, or a dict from numbers of layers and "substrate".
+/// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
+/// have it.
 fn by_layer(keywords: &Keywords, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
     let Some(given) = keywords.given(name)? else {
         return Ok(Vec::new());
@@ -182,22 +183,36 @@ fn by_layer(keywords: &Keywords, name: &str, body: &HalfSpace) -> PyResult<Vec<O
     };
     let mut values = vec![None; count];
     for (key, value) in mapping {
-        let layer = match key.extract::<String>() {
-            Ok(word) if word == "substrate" && count > layers => layers,
-            Ok(_) => count,
-            Err(_) => key.extract::<usize>().unwrap_or(count),
+        let is_meant = |layer: usize| match key.extract::<String>() {
+            Ok(word) if layer == layers => word == "substrate",
+            Ok(word) => body.layers()[layer].name() == Some(&word),
+            Err(_) => key.extract().is_ok_and(|number: usize| number == layer),
         };
-        if layer >= count {
+        let meant: Vec<_> = (0..count).filter(|layer| is_meant(*layer)).collect();
+        if meant.is_empty() {
             return Err(PyValueError::new_err(format!(
-                "keys of {name} must be \"substrate\" (where it is elastic) or numbers of layers \
-                 from 0 at the surface to {}, got {}",
+                "keys of {name} must be \"substrate\" (where it is elastic), numbers of layers from 0 \
+                 at the surface to {}, or names of layers ({}), got {}",
                 count - 1,
+                names(body),
                 Repr(&key)
             )));
         }
-        values[layer] = Some(number(&value)?);
+        let value = number(&value)?;
+        for layer in meant {
+            values[layer] = Some(value);
+        }
     }
     Ok(values)
+}
+
+/// Names of the layers of a body, for a message.
+fn names(body: &HalfSpace) -> String {
+    let names: Vec<_> = body.layers().iter().filter_map(Layer::name).collect();
+    match names.is_empty() {
+        true => "here they have none".into(),
+        false => names.join(", "),
+    }
 }
 
 /// Depths, and whether the argument was a single number.

@@ -126,6 +126,12 @@ impl PyLayerStress {
         self.0.layer
     }
 
+    /// Name of the layer; None where it has none.
+    #[getter]
+    fn name(&self) -> Option<&str> {
+        self.0.name.as_deref()
+    }
+
     /// Depths of the two faces [m]; the lower one is infinite for the substrate.
     #[getter]
     fn depths(&self) -> (f64, f64) {
@@ -323,6 +329,7 @@ impl State for PyLayerStress {
     fn write(&self, fields: &Fields) -> PyResult<()> {
         let layer = &self.0;
         fields.set("layer", layer.layer)?;
+        fields.set("name", &layer.name)?;
         fields.set("depths", layer.depths)?;
         write_peak(fields, "von_mises", &layer.von_mises)?;
         write_peak(fields, "tension", &layer.tension)?;
@@ -334,6 +341,7 @@ impl State for PyLayerStress {
     fn read(fields: &Fields) -> PyResult<Self> {
         Ok(Self(LayerSummary {
             layer: fields.get("layer")?,
+            name: fields.get("name")?,
             depths: fields.get("depths")?,
             von_mises: read_peak(&fields.get_fields("von_mises")?)?,
             tension: read_peak(&fields.get_fields("tension")?)?,
