@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+from nacre._case_tables import Table, Words
 from nacre._schema import Along, Body, CaseTable, Grid, Layer, Material, Range, Solve, Stress, Sweep
 from nacre._shape_tables import PROFILE_TABLES, TABLES
-from nacre._case_tables import Table, Words
 
 WIDTH = 88
 """Width of the text that `nacre schema` prints."""
@@ -70,20 +70,20 @@ def nearest(name: str, names: Iterable[str]) -> list[str]:
 
 def sections() -> Iterator[Section]:
     """Yield the tables of the reference, the whole file first."""
-    yield _section("whole file", CaseTable)
-    yield _section("[materials.NAME]", Material)
+    yield _section("Whole file", CaseTable)
+    yield _section("`[materials.NAME]`", Material)
     for kind, table in TABLES.items():
-        yield _section(f'[shape] with kind = "{kind}"', table)
+        yield _section(f'`[shape]` with `kind = "{kind}"`', table)
     for kind, table in PROFILE_TABLES.items():
-        yield _section(f'[shape.profile] with kind = "{kind}"', table)
-    yield _section("[body] and [counterbody]", Body)
-    yield _section("[[body.layers]]", Layer)
-    yield _section("[grid]", Grid)
-    yield _section("[solve]", Solve)
-    yield _section("[solve.eccentricity], [solve.moment] and [solve.tilt]", Along)
-    yield _section("[stress]", Stress)
-    yield _section("[sweep]", Sweep)
-    yield _section('values of [sweep] such as parameters."solve.load" = { ... }', Range)
+        yield _section(f'`[shape.profile]` with `kind = "{kind}"`', table)
+    yield _section("`[body]` and `[counterbody]`", Body)
+    yield _section("`[[body.layers]]`", Layer)
+    yield _section("`[grid]`", Grid)
+    yield _section("`[solve]`", Solve)
+    yield _section("`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", Along)
+    yield _section("`[stress]`", Stress)
+    yield _section("`[sweep]`", Sweep)
+    yield _section('Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', Range)
 
 
 def _section(title: str, table: type[Table]) -> Section:
@@ -117,7 +117,11 @@ def text() -> str:
     """Return the reference as plain text."""
     lines = [*textwrap.wrap(INTRODUCTION, WIDTH)]
     for section in sections():
-        lines += ["", section.title, *textwrap.wrap(section.summary.replace("`", ""), WIDTH)]
+        lines += [
+            "",
+            section.title.replace("`", ""),
+            *textwrap.wrap(section.summary.replace("`", ""), WIDTH),
+        ]
         for key in section.keys:
             unit = f" [{key.unit}]" if key.unit else ""
             default = {"required": "; required", "": ""}.get(

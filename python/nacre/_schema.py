@@ -14,9 +14,9 @@ from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
 from nacre import _keywords
+from nacre._case_tables import Count, Counts, Number, Pair, Table, Text, Words, described
 from nacre._outputs import OUTPUTS
 from nacre._shape_tables import AnyShape
-from nacre._case_tables import Count, Counts, Number, Pair, Table, Text, Words, described
 from nacre.units import System
 
 CONSTANTS = described(nacre.Elastic)
