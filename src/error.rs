@@ -106,10 +106,22 @@ pub enum Error {
         /// Side lengths of the last grid.
         size: [f64; 2],
     },
+    /// An approach that is prescribed to a line contact whose datum lies too near.
+    #[error(
+        "approach cannot be prescribed on this grid: it is counted from the bare substrate's surface at \
+         {width:.3e} from the load, the grid's width, where stiff layers move the surface less; give a \
+         load, or a width of {needed:.3e} or more"
+    )]
+    Datum {
+        /// Width of the grid.
+        width: f64,
+        /// Width from which on the approach can be prescribed, estimated.
+        needed: f64,
+    },
     /// An iteration that ended before the tolerance was met.
     #[error(
-        "residual {residual:.2e}, overlap {overlap:.2e} above the tolerance {tolerance:.0e} after \
-         {iterations} iterations; raise max_iterations or the tolerance"
+        "not converged after {iterations} iterations: {}; raise max_iterations or the tolerance",
+        missed([*residual, *overlap, *balance], *tolerance)
     )]
     NotConverged {
         /// Number of iterations.
@@ -118,9 +130,31 @@ pub enum Error {
         residual: f64,
         /// Relative overlap at the end.
         overlap: f64,
+        /// Largest relative error of force and moments.
+        balance: f64,
         /// Requested tolerance.
         tolerance: f64,
     },
+}
+
+/// The conditions of convergence that were not met.
+fn missed([residual, overlap, balance]: [f64; 3], tolerance: f64) -> String {
+    // Errors of force and moments of balanced pressures are below this.
+    const BALANCED: f64 = 1e-12;
+    let above = [("residual", residual), ("overlap", overlap)];
+    let above = above.iter().filter(|(_, value)| *value > tolerance);
+    let above: Vec<String> = above
+        .map(|(name, value)| format!("{name} {value:.2e}"))
+        .collect();
+    let mut missed = Vec::new();
+    if !above.is_empty() {
+        let above = above.join(", ");
+        missed.push(format!("{above} above the tolerance {tolerance:.0e}"));
+    }
+    if missed.is_empty() || balance > BALANCED {
+        missed.push(format!("force and moments in error by {balance:.2e}"));
+    }
+    missed.join(", ")
 }
 
 /// Returns `value`, or an error unless it is finite and above 0.
@@ -146,5 +180,39 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
             requirement: "finite",
             value,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::missed;
+
+    /// The message names the conditions that were not met, and no others.
+    #[test]
+    fn conditions_that_were_not_met() {
+        for (errors, expected) in [
+            (
+                [2e-6, 1e-9, 1e-15],
+                "residual 2.00e-6 above the tolerance 1e-8",
+            ),
+            (
+                [2e-6, 3e-3, 1e-15],
+                "residual 2.00e-6, overlap 3.00e-3 above the tolerance 1e-8",
+            ),
+            (
+                [7e-17, 0.0, 4e-10],
+                "force and moments in error by 4.00e-10",
+            ),
+            (
+                [7e-17, 0.0, 4e-13],
+                "force and moments in error by 4.00e-13",
+            ),
+            (
+                [0.0, 1e-4, 3e-2],
+                "overlap 1.00e-4 above the tolerance 1e-8, force and moments in error by 3.00e-2",
+            ),
+        ] {
+            assert_eq!(missed(errors, 1e-8), expected);
+        }
     }
 }

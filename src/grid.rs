@@ -74,7 +74,9 @@ impl Grid {
     /// The shape of the grid is (1, `cells`). Loads are per unit length along x, so that forces are
     /// in \[N/m\]. In plane strain the displacement of an elastic half-space grows without limit
     /// with the distance. Displacement and approach are therefore relative to the surface of the
-    /// substrate at a distance `width` from the load.
+    /// bare substrate at a distance `width` from the load, whatever layers there are. Under a load this
+    /// datum shifts displacement and approach, and changes no pressure. Below stiff layers that are wider
+    /// than the grid an approach cannot be prescribed, since it would fall as the load grows.
     ///
     /// # Errors
     /// Unless there are at least two cells, one array of them fits into memory, and `width` is

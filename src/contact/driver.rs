@@ -41,6 +41,9 @@ impl Plan {
     ) -> Result<Solution> {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
+        if !freedoms.loaded[0] {
+            self.datum.check_approach()?;
+        }
         let criteria = options.stop_criteria()?;
         let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
         let mut report = Report::planned(self, motion, criteria.tolerance);
@@ -66,6 +69,7 @@ impl Plan {
             convolution: &self.convolution,
             freedoms: &freedoms,
             gap: slice(&gap),
+            local: &self.local,
         };
 
         // The start: a given pressure, or the coarser solutions.
@@ -82,15 +86,15 @@ impl Plan {
         let mut results = Vec::new();
         let outcome = if let Some(mut cascade) = cascade {
             results = std::mem::take(&mut cascade.results);
-            solve_in_window(&problem, cascade, &mut fields, criteria, &mut watch)
+            solve_in_window(&problem, cascade, &mut fields, criteria, &mut watch)?
         } else {
             fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
-            polonsky_keer::solve(&problem, &mut fields, criteria, &mut watch)
+            polonsky_keer::solve(&problem, &mut fields, criteria, &mut watch)?
         };
 
         // The certificate: everything that is reported is computed afresh from the pressure.
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
-        if !quality.finite || quality.overflows() {
+        if quality.overflows() {
             return Err(OVERFLOW);
         }
         let (approach, tilt) = freedoms.rigid_motion(fields.multipliers.lambda());
@@ -100,7 +104,12 @@ impl Plan {
             || warnings(pressure, window, &self.grid, shape),
         );
         report.count(outcome.iterations, outcome.work / unit, quality);
-        report.termination = outcome.termination;
+        // One rule decides, on the numbers that are reported.
+        report.termination = match outcome.termination {
+            Termination::Stopped => Termination::Stopped,
+            _ if quality.meets(criteria.tolerance) => Termination::Converged,
+            _ => Termination::IterationLimit,
+        };
         report.solver = Some(outcome.solver);
         if report.converged() {
             results.push(GridResult {
@@ -110,13 +119,17 @@ impl Plan {
             });
             report.discretisation = estimate(&results);
         }
+        let raised = self.datum.raise() * carried.force;
+        if raised != 0.0 {
+            fields.lower(raised);
+        }
         report.balance = carried.balance(&self.grid, motion);
         report.warnings = warnings;
         report.seconds = start.elapsed().as_secs_f64();
         Ok(Solution {
             pressure: fields.pressure,
             displacement: fields.displacement,
-            approach,
+            approach: approach - raised,
             tilt,
             report,
             gap: Gap::Computed {
@@ -152,7 +165,7 @@ fn solve_in_window(
     fields: &mut Fields,
     criteria: StopCriteria,
     watch: &mut Watch,
-) -> Outcome {
+) -> Result<Outcome> {
     let (mut iterations, mut retries) = (0, 0);
     loop {
         let outcome = cascade.solve(fields, criteria.after(iterations), watch);
@@ -164,14 +177,9 @@ fn solve_in_window(
             work: cascade.work,
             ..outcome
         };
-        if outcome.termination == Termination::Stopped || quality.meets(criteria.tolerance) {
-            return outcome;
-        }
-        if iterations >= criteria.max_iterations {
-            return Outcome {
-                termination: Termination::IterationLimit,
-                ..outcome
-            };
+        let stopped = outcome.termination == Termination::Stopped;
+        if stopped || quality.meets(criteria.tolerance) || iterations >= criteria.max_iterations {
+            return Ok(outcome);
         }
         let converged = outcome.termination == Termination::Converged;
         if converged && cascade.open(problem, fields) {
@@ -182,9 +190,8 @@ fn solve_in_window(
             let (left, before) = (criteria.after(iterations), cascade.work);
             let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
                 watch(iterations + more, before + work, quality)
-            });
-            fields.certify(problem, end.lambda);
-            return end.after(iterations, before);
+            })?;
+            return Ok(end.after(iterations, before));
         }
     }
 }

@@ -1,17 +1,22 @@
 //! A body on a grid, planned: coefficients, their transform, and the coarser grids.
 
+mod datum;
+
 use std::sync::Arc;
 
 use ndarray::Array2;
 
 use super::cascade::levels::Levels;
 use super::options::Setup;
+use super::problem::INDEFINITE;
+use super::problem::scale::LocalDisplacement;
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::coefficients_on;
+use crate::influence::{Method, coefficients_on};
 use crate::parallel::{Threads, check_memory};
 use crate::response::Body;
+use datum::Datum;
 
 /// Arrays of a solve, as many as there are on one cell at the same time. Measured: 135 bytes a cell in all
 /// where the contact fills the grid, 151 where it tilts as well, 67 where it fills a ninth.
@@ -25,22 +30,30 @@ pub(super) struct Plan {
     pub(super) setup: Setup,
     pub(super) convolution: Convolution,
     pub(super) levels: Levels,
+    pub(super) local: LocalDisplacement,
+    pub(super) datum: Datum,
 }
 
 impl Plan {
     pub(super) fn new(body: Body, grid: Grid, setup: Setup) -> Result<Self> {
         check_memory(grid.shape(), Self::memory(&grid))?;
         let threads = Arc::new(Threads::new(setup.threads)?);
-        let coefficients = |grid: &Grid| total_coefficients(&body, &setup, grid, &threads);
-        let finest = coefficients(&grid)?;
+        let (finest, datum) = operator(&body, &setup, &grid, &threads)?;
         let convolution = Convolution::plan_on(&finest, Arc::clone(&threads))?;
-        let levels = Levels::plan(grid, finest, &convolution, coefficients)?;
+        let levels = Levels::plan(grid, finest, &convolution, |grid| {
+            let coefficients = total_coefficients(&body, &setup, grid, &threads)?;
+            let local = LocalDisplacement::new(&bodies(&body, &setup), grid);
+            Ok((datum.moved(coefficients, grid), local))
+        })?;
+        let local = LocalDisplacement::new(&bodies(&body, &setup), &grid);
         Ok(Self {
             body,
             grid,
             setup,
             convolution,
             levels,
+            local,
+            datum,
         })
     }
 
@@ -53,6 +66,8 @@ impl Plan {
             setup: self.setup.clone(),
             levels: self.levels.beside(&convolution),
             convolution,
+            local: self.local.clone(),
+            datum: self.datum,
         }
     }
 
@@ -69,8 +84,38 @@ impl Plan {
     }
 }
 
+/// The two bodies, or the one that is not rigid.
+fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
+    [Some(body), setup.counterbody.as_ref()]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// Coefficients of body and counterbody together with which a contact on `grid` is solved, and their datum.
+///
+/// # Errors
+/// [`INDEFINITE`] where the coefficients show that they are not positive definite.
+pub(super) fn operator(
+    body: &Body,
+    setup: &Setup,
+    grid: &Grid,
+    threads: &Arc<Threads>,
+) -> Result<(Array2<f64>, Datum)> {
+    let coefficients = total_coefficients(body, setup, grid, threads)?;
+    let datum = Datum::find(&bodies(body, setup), grid, &coefficients, threads)?;
+    let coefficients = datum.moved(coefficients, grid);
+    // No coefficient of a positive definite operator is larger than that of the loaded cell.
+    let own = coefficients[[0, 0]];
+    let larger = |c: &f64| c.abs() > own;
+    if setup.method != Method::Exact && (own <= 0.0 || coefficients.iter().any(larger)) {
+        return Err(INDEFINITE);
+    }
+    Ok((coefficients, datum))
+}
+
 /// Influence coefficients of body and counterbody together.
-pub(super) fn total_coefficients(
+fn total_coefficients(
     body: &Body,
     setup: &Setup,
     grid: &Grid,

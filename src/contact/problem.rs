@@ -15,13 +15,22 @@ pub(super) mod fit;
 pub(super) mod freedoms;
 pub(super) mod load_point;
 pub(super) mod patch;
+pub(super) mod scale;
 
 use crate::convolution::{Convolution, Workspace};
+use crate::error::Error;
 use crate::grid::Window;
 use crate::parallel::{Lanes, Row, Rows, Total, ZERO, all, sum, update, update_with_largest};
 use constraint::NonNegative;
 use fit::FitSums;
 use freedoms::Freedoms;
+use scale::LocalDisplacement;
+
+/// The error for an operator K with a pressure p for which pᵀK p < 0.
+pub(super) const INDEFINITE: Error = Error::Inconsistent(
+    "the influence coefficients are not positive definite, so that the contact has no unique solution; \
+     take the method \"exact\", a larger refinement or a grid of more cells",
+);
 
 /// One contact problem: operator, degrees of freedom and undeformed gap.
 pub(super) struct Problem<'a> {
@@ -31,31 +40,40 @@ pub(super) struct Problem<'a> {
     pub(super) freedoms: &'a Freedoms,
     /// h, less the prescribed motion; +∞ where the shape cannot touch.
     pub(super) gap: &'a [f64],
+    pub(super) local: &'a LocalDisplacement,
 }
 
 /// How well a pressure solves the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Quality {
-    /// Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
+    /// Σ p|g| over the cells that can touch, relative to Σ p u, or to Σ p times the local displacement if
+    /// that is less; 0 when p = 0.
     pub(super) residual: f64,
-    /// max(−g, 0) / max u over the cells that can touch.
+    /// max(−g, 0) over the cells that can touch, relative to max |u|, or to the local displacement if that is
+    /// less.
     pub(super) overlap: f64,
     /// Whether force and moments are balanced.
     pub(super) balanced: bool,
-    /// Whether all displacements are finite; only [`Problem::judge`] checks it.
+    /// Whether the constraint allows the pressure; only [`Problem::judge`] checks it.
+    pub(super) allowed: bool,
+    /// Whether all sums are finite; [`Problem::judge`] checks the displacement of each cell as well.
     pub(super) finite: bool,
 }
+
+/// Smallest scale of the overlap, relative to max |u|. The rounding of displacements is some 1e-15 of them,
+/// so that no smaller overlap can be asked for by the usual tolerance of 1e-8.
+const SMALLEST_SCALE: f64 = 1e-6;
 
 impl Quality {
     /// Whether the pressure is a solution within `tolerance`.
     pub(super) fn meets(&self, tolerance: f64) -> bool {
         let close = self.residual <= tolerance && self.overlap <= tolerance;
-        self.balanced && self.finite && close
+        self.balanced && self.allowed && self.finite && close
     }
 
     /// Whether sums overflowed, which no further iteration can mend.
     pub(super) fn overflows(&self) -> bool {
-        self.residual.is_infinite()
+        !self.finite
     }
 }
 
@@ -64,7 +82,7 @@ impl Quality {
 pub(super) struct QualitySums {
     /// Deepest overlap −g; 0 where nothing overlaps.
     overlap: f64,
-    /// Largest displacement where the shape can touch.
+    /// Largest magnitude of the displacement where the shape can touch.
     displacement: f64,
     /// Σ p u
     work: f64,
@@ -175,7 +193,7 @@ impl Problem<'_> {
             base: near,
             change: self.freedoms.fitted(fit),
         };
-        let (sums, not_finite) = rows.blocks(inputs, [u], |block, [p, h], [u]| {
+        let (sums, [not_finite, not_allowed]) = rows.blocks(inputs, [u], |block, [p, h], [u]| {
             let local = block.local(&window[0]);
             displace(block.first, &mut u[..local.start * ny]);
             displace(block.first + local.end, &mut u[local.end * ny..]);
@@ -183,13 +201,16 @@ impl Problem<'_> {
                 let (extremes, not_finite) = overlap_of(multipliers, row, fields);
                 let inside = row.within(window, fields);
                 let carried = inside.map(|(row, fields)| mismatch_of(multipliers, row, fields));
-                let sums = QualitySums::of_row(extremes, carried.unwrap_or_default());
-                (sums, not_finite)
+                let [work, mismatch, not_allowed] = carried.unwrap_or_default();
+                let sums = QualitySums::of_row(extremes, [work, mismatch]);
+                (sums, [not_finite, not_allowed])
             })
         });
+        let quality = self.quality(sums, &fit);
         let quality = Quality {
-            finite: not_finite <= 0.0,
-            ..self.quality(sums, fit.moments)
+            allowed: not_allowed <= 0.0,
+            finite: quality.finite && not_finite <= 0.0,
+            ..quality
         };
         (multipliers, quality)
     }
@@ -219,20 +240,24 @@ impl Problem<'_> {
         self.freedoms.balance(p);
     }
 
-    /// The quality of a pressure with these sums and `moments`.
-    pub(super) fn quality(&self, sums: QualitySums, moments: [f64; 3]) -> Quality {
+    /// The quality of a pressure with these sums, which is allowed; `fit` are its sums for the fit of λ.
+    pub(super) fn quality(&self, sums: QualitySums, fit: &FitSums) -> Quality {
         // Before anything is deformed there is no scale: whatever overlaps, overlaps wholly.
         let relative = |a: f64, scale: f64| match (a > 0.0, scale > 0.0) {
-            _ if !(a + scale).is_finite() => f64::INFINITY,
             (true, true) => a / scale,
             (true, false) => f64::INFINITY,
             (false, _) => 0.0,
         };
+        let [force, ..] = fit.moments;
+        let far = sums.displacement;
+        let local = (self.local.under(force, fit.cells())).max(SMALLEST_SCALE * far);
+        let work = sums.work.abs().min(local * force);
         Quality {
-            residual: relative(sums.mismatch, sums.work),
-            overlap: relative(sums.overlap, sums.displacement),
-            balanced: self.freedoms.on_target(moments),
-            finite: true,
+            residual: relative(sums.mismatch, work),
+            overlap: relative(sums.overlap, local.min(far)),
+            balanced: self.freedoms.on_target(fit.moments),
+            allowed: true,
+            finite: (sums.mismatch + sums.work + sums.overlap + far).is_finite(),
         }
     }
 }
@@ -252,13 +277,14 @@ fn overlap_of(multipliers: Multipliers, row: Row, [_, u, h]: [&[f64]; 3]) -> ([f
     (extremes, not_finite)
 }
 
-/// Work Σ p u and mismatch Σ p|g| of one row.
-fn mismatch_of(multipliers: Multipliers, row: Row, [p, u, h]: [&[f64]; 3]) -> [f64; 2] {
+/// Work Σ p u and mismatch Σ p|g| of one row, and the number of its pressures that are not allowed.
+fn mismatch_of(multipliers: Multipliers, row: Row, [p, u, h]: [&[f64]; 3]) -> [f64; 3] {
     let overlap = multipliers.overlap(row);
     sum([p, u, h, row.y], |[p, u, h, y]| {
         // The gap is infinite only where there is no pressure.
         let mismatch = NonNegative.where_free(p, p * overlap([u, h, y]).abs());
-        [p * u, mismatch]
+        let (_, not_allowed) = NonNegative.clip(p);
+        [p * u, mismatch, not_allowed]
     })
 }
 

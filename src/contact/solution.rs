@@ -118,18 +118,7 @@ impl Solution {
         if self.report.converged() {
             return Ok(self);
         }
-        let Report {
-            iterations,
-            residual,
-            overlap,
-            ..
-        } = self.report;
-        Err(Error::NotConverged {
-            iterations,
-            residual,
-            overlap,
-            tolerance,
-        })
+        Err(self.report.not_converged(tolerance))
     }
 
     /// The grid.

@@ -46,7 +46,10 @@ impl PyGrid {
     ///
     /// Its shape is ``(1, cells)``, and loads on it are per unit length along x [N/m]. In plane
     /// strain the displacement of an elastic half-space has no limit at a distance. Displacement and
-    /// approach are therefore relative to the substrate's surface at a distance `width` from the load.
+    /// approach are therefore relative to the bare substrate's surface at a distance `width` from the load,
+    /// whatever layers there are. Under a load this datum shifts displacement and approach, and changes no
+    /// pressure. Below stiff layers that are wider than the grid an approach cannot be prescribed, since it
+    /// would fall as the load grows.
     ///
     /// Parameters
     /// ----------

@@ -21,8 +21,7 @@ use super::stress::keywords::{
 };
 use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
 use super::words::Word;
-use crate::contact::{Report, Solution, Termination};
-use crate::error::Error;
+use crate::contact::{Solution, Termination};
 use crate::stress::Member;
 
 mod named;
@@ -76,18 +75,7 @@ impl PySolution {
         if !check || solution.report.termination != Termination::IterationLimit {
             return Ok(solution.into());
         }
-        let Report {
-            iterations,
-            residual,
-            overlap,
-            ..
-        } = solution.report;
-        let message = Error::NotConverged {
-            iterations,
-            residual,
-            overlap,
-            tolerance,
-        };
+        let message = solution.report.not_converged(tolerance);
         let error = ConvergenceError::new_err(message.to_string());
         let unfinished = Bound::new(py, Self::from(solution))?;
         error.value(py).setattr("solution", unfinished)?;

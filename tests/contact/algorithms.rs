@@ -1,6 +1,7 @@
 //! The default algorithm and the reference algorithm find the same solution, for every shape and control,
 //! on coated and bare bodies.
 
+use nacre::influence::Method;
 use nacre::{
     Algorithm, Contact, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Layer, Motion, Options,
     Paraboloid, Result, Setup, Solution, Sphere, Surface,
@@ -140,6 +141,71 @@ fn cascade_finds_the_solution_of_polonsky_and_keer() -> Result<()> {
                 );
             }
         }
+    }
+    Ok(())
+}
+
+/// Where a direction of the reference algorithm does not descend, a step backwards would give cells that join
+/// a pressure below 0.
+#[test]
+fn no_pressure_is_below_zero() -> Result<()> {
+    let coat = Layer::new(Elastic::new(1.0, -0.99)?, 1.0 / 12.0)?;
+    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let contact = Contact::plan(body, Grid::line(24, 1.0)?, Setup::default())?;
+    let shape = FlatPunch::new(0.4)?;
+    for tilt in [0.002, 0.003, 0.004] {
+        let motion = Motion {
+            tilt: [None, Some(tilt)],
+            ..Motion::load(0.003)
+        };
+        let fast = solve(&contact, &shape, &motion, Algorithm::Cascade)?;
+        let reference = solve(&contact, &shape, &motion, Algorithm::PolonskyKeer)?;
+        let peak = fast.peak_pressure();
+        for (p, q) in fast.pressure.iter().zip(&reference.pressure) {
+            assert!(*p >= 0.0 && *q >= 0.0, "{tilt}: {p} {q}");
+            assert!((p - q).abs() < SAME * peak, "{tilt}: {p} {q}");
+        }
+    }
+    Ok(())
+}
+
+/// Influence coefficients by conversion on two cells are not positive definite: some pressure would pull.
+#[test]
+fn conversions_on_too_few_cells_are_named() -> Result<()> {
+    let coat = Layer::new(Elastic::new(5.0, 0.3)?, 4e-4)?;
+    let body = HalfSpace::new(Elastic::new(35425.0, 0.3)?, [coat])?;
+    let setup = Setup {
+        method: Method::Difference { refinement: 4 },
+        ..Setup::default()
+    };
+    let planned = Contact::plan(body, Grid::new([2, 2], [2e-3, 8e-7])?, setup);
+    let text = planned.map_or_else(|error| error.to_string(), |_| "planned".into());
+    let begins = "the influence coefficients are not positive definite, so that";
+    assert!(text.starts_with(begins), "{text}");
+    Ok(())
+}
+
+/// On a substrate 1e12 times softer than its coat, the displacement is uniform to 3e-8. The default tolerance
+/// refers to the part that is not, or to 1e-6 of the displacement, which leaves 30 · 1e-8 of the pressure.
+#[test]
+fn tolerance_is_that_of_the_local_displacement() -> Result<()> {
+    let coat = Layer::new(Elastic::new(200e9, 0.3)?, 3e-4)?;
+    let body = HalfSpace::new(Elastic::new(0.2, 0.45)?, [coat])?;
+    let contact = Contact::plan(body, Grid::new([48, 48], [1e-3; 2])?, Setup::default())?;
+    let (punch, motion) = (FlatPunch::new(2.5e-4)?, Motion::load(1.0));
+    let peak = |tolerance: f64, algorithm: Algorithm| -> Result<f64> {
+        let options = Options {
+            tolerance,
+            algorithm,
+            ..Options::default()
+        };
+        let solution = contact.solve(&punch, &motion, &options)?;
+        Ok(solution.require_converged(tolerance)?.peak_pressure())
+    };
+    let exact = peak(1e-9, Algorithm::Cascade)?;
+    for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+        let error = peak(1e-8, algorithm)? / exact - 1.0;
+        assert!(error.abs() < 1e-5, "{algorithm:?}: {error:e}");
     }
     Ok(())
 }

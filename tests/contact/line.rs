@@ -6,11 +6,12 @@ use std::f64::consts::PI;
 use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
-    Contact, Cylinder, Elastic, Grid, HalfSpace, Layer, Motion, Options, Result, Setup, Solution,
-    Substrate, hertz,
+    Algorithm, Contact, Cylinder, Elastic, Error, FlatPunch, Grid, HalfSpace, Layer, Motion,
+    Options, Result, Setup, Solution, Substrate, hertz,
 };
 use serde_json::Value;
 
+use crate::support::random::uniform;
 use crate::support::reference::{cases, list, number};
 
 /// Error of the peak pressure, extrapolated from 256 and 512 cells with an error of second order.
@@ -289,5 +290,114 @@ fn the_middle_of_a_long_cylinder_is_in_plane_strain() -> Result<()> {
         middle / line_load()?
     );
     assert!(worst < 1e-3, "{worst:e}");
+    Ok(())
+}
+
+/// Largest difference of two pressures, relative to the peak of the second.
+fn apart<'a>(a: impl IntoIterator<Item = &'a f64>, b: &'a Solution) -> f64 {
+    let differences = a.into_iter().zip(&b.pressure).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max) / b.peak_pressure()
+}
+
+/// A layer 8 times harder than the substrate and 4 half-widths thick. At a distance of 3 half-widths its
+/// surface moves less than that of the bare substrate, so that the influence coefficients are negative. A
+/// grid twice as wide with the same cells has the same pressures, and a datum that is farther away.
+#[test]
+fn a_datum_below_a_thick_hard_layer_changes_no_pressure() -> Result<()> {
+    let body = coated(8.0, 4.0 * HALF_WIDTH)?;
+    let strip = Grid::line(256, 3.0 * HALF_WIDTH)?;
+    let coefficients = influence_coefficients(&body, &strip, Method::Exact)?;
+    assert!(coefficients.iter().any(|&c| c < 0.0));
+    let (near, far) = (line(&body, 256, 3.0)?, line(&body, 512, 6.0)?);
+    // Both were solved to 1e-11; errors of the pressure are some thousand times larger.
+    let inside = far.pressure.iter().skip(128);
+    assert!(apart(inside, &near) < 1e-7);
+    let unit = 2.0 * line_load()? / (PI * steel()?.plane_strain_modulus());
+    let moved = (far.approach - near.approach) / (unit * 2.0_f64.ln());
+    assert!((moved - 1.0).abs() < 1e-7, "{moved}");
+    let shifts = far.displacement.iter().skip(128).zip(&near.displacement);
+    for (far, near) in shifts {
+        assert!(((far - near) / (unit * 2.0_f64.ln()) - 1.0).abs() < 1e-7);
+    }
+    Ok(())
+}
+
+/// An approach is refused where the datum lies too near, and the width in the message suffices. There it
+/// finds the load that it belongs to.
+#[test]
+fn an_approach_is_refused_where_it_would_fall_with_the_load() -> Result<()> {
+    let shape = Cylinder::new(RADIUS)?;
+    for (ratio, thickness) in [(8.0, 4.0), (60.0, 3.0), (1e4, 8.0)] {
+        let body = coated(ratio, thickness * HALF_WIDTH)?;
+        let plan = |width| Contact::plan(&body, Grid::line(200, width)?, Setup::default());
+        let narrow = plan(2.5 * HALF_WIDTH)?;
+        let refused = narrow.solve(&shape, &Motion::approach(1e-9), &Options::default());
+        let Err(Error::Datum { width, needed }) = refused else {
+            panic!("E1/E2 {ratio}: not refused");
+        };
+        assert!((width / (2.5 * HALF_WIDTH) - 1.0).abs() < 1e-12 && needed > width);
+        let wide = plan(needed)?;
+        let options = Options {
+            tolerance: 1e-11,
+            ..Options::default()
+        };
+        let loaded = wide.solve(&shape, &Motion::load(line_load()?), &options)?;
+        let moved = wide.solve(&shape, &Motion::approach(loaded.approach), &options)?;
+        assert!(moved.report.converged(), "{ratio}");
+        assert_relative_eq!(moved.load(), line_load()?, max_relative = 1e-7);
+
+        // A punch does not change its contact: approach and load are proportional.
+        let punch = FlatPunch::new(HALF_WIDTH)?;
+        for (contact, rises) in [(&narrow, false), (&wide, true)] {
+            let pressed = contact.solve(&punch, &Motion::load(1.0), &options)?;
+            let [[stiffness, ..], ..] = pressed.stiffness()?;
+            assert_relative_eq!(stiffness * pressed.approach, 1.0, max_relative = 1e-6);
+            assert_eq!(stiffness > 0.0, rises, "{ratio}");
+        }
+    }
+    Ok(())
+}
+
+/// Random hard layers, E1/E2 up to 100, of 0.1 to 10 half-widths on grids of 2.5 to 20: the default and the
+/// reference algorithm agree, and a grid twice as wide changes nothing.
+#[test]
+fn hard_layers_on_grids_of_any_width() -> Result<()> {
+    let random = uniform([24, 4], 22);
+    let mut datum_moved = 0;
+    for row in random.rows() {
+        let between = |k: usize, low: f64, high: f64| low * (high / low).powf(row[k]);
+        let (ratio, thickness) = (between(0, 1.0, 100.0), between(1, 0.1, 10.0));
+        let (width, cells) = (between(2, 2.5, 20.0), 2 * between(3, 20.0, 80.0) as usize);
+        let name = format!("E1/E2 {ratio:.1}, h/b {thickness:.2}, width {width:.1}");
+        let body = coated(ratio, thickness * HALF_WIDTH)?;
+        let grid = Grid::line(cells, width * HALF_WIDTH)?;
+        let contact = Contact::plan(&body, grid, Setup::default())?;
+        let [found, reference] = [Algorithm::Cascade, Algorithm::PolonskyKeer].map(|algorithm| {
+            let options = Options {
+                algorithm,
+                tolerance: 1e-10,
+                ..Options::default()
+            };
+            let (shape, motion) = (Cylinder::new(RADIUS)?, Motion::load(line_load()?));
+            let solution = contact.solve(&shape, &motion, &options)?;
+            solution.require_converged(options.tolerance)
+        });
+        let (found, reference) = (found?, reference?);
+        let difference = apart(&found.pressure, &reference);
+        assert!(difference < 1e-6, "{name}: {difference:e}");
+        // Where the contact ends on the grid.
+        if found.pressure[[0, 0]] <= 0.0 {
+            let wide = line(&body, 2 * cells, 2.0 * width)?;
+            let difference = apart(wide.pressure.iter().skip(cells / 2), &found);
+            assert!(difference < 1e-6, "{name}: {difference:e}");
+        }
+        let prescribed = contact.solve(
+            &Cylinder::new(RADIUS)?,
+            &Motion::approach(0.0),
+            &Options::default(),
+        );
+        datum_moved += usize::from(matches!(prescribed, Err(Error::Datum { .. })));
+    }
+    assert!((4..20).contains(&datum_moved), "{datum_moved}");
     Ok(())
 }

@@ -11,6 +11,7 @@ use super::discretisation::GridResult;
 use crate::contact::problem::Problem;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, copied, enclosing, widened};
+use crate::contact::problem::scale::LocalDisplacement;
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
 use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
 use crate::contact::start::checked_gaps;
@@ -57,25 +58,29 @@ pub(crate) struct Levels {
     coefficients: Arc<Vec<Array2<f64>>>,
     /// Convolutions of levels 1, 2, …; level 0 uses the contact's own.
     convolutions: Vec<Convolution>,
+    /// Local displacements of levels 1, 2, …; level 0 uses the contact's own.
+    locals: Vec<LocalDisplacement>,
     /// Grids of levels 0, 1, 2, …
     grids: Vec<Grid>,
     memory: Pool<Memory>,
 }
 
 impl Levels {
-    /// Plans the grids that are coarser than `finest`; `of` computes the coefficients of a grid.
+    /// Plans the grids that are coarser than `finest`; `of` computes the coefficients of a grid and its local
+    /// displacements.
     pub(crate) fn plan(
         finest: Grid,
         coefficients: Array2<f64>,
         convolution: &Convolution,
-        of: impl Fn(&Grid) -> Result<Array2<f64>>,
+        of: impl Fn(&Grid) -> Result<(Array2<f64>, LocalDisplacement)>,
     ) -> Result<Self> {
         let (mut coefficients, mut grids) = (vec![coefficients], vec![finest]);
-        let mut convolutions = Vec::new();
+        let (mut convolutions, mut locals) = (Vec::new(), Vec::new());
         let mut fine = finest;
         while halved(fine.shape()) != [false; 2] {
             fine = coarse_grid(&fine, halved(fine.shape()))?;
-            let coarse = of(&fine)?;
+            let (coarse, local) = of(&fine)?;
+            locals.push(local);
             convolutions.push(convolution.companion(&coarse));
             coefficients.push(coarse);
             grids.push(fine);
@@ -83,6 +88,7 @@ impl Levels {
         Ok(Self {
             coefficients: Arc::new(coefficients),
             convolutions,
+            locals,
             grids,
             memory: Pool::default(),
         })
@@ -94,6 +100,7 @@ impl Levels {
         Self {
             coefficients: Arc::clone(&self.coefficients),
             convolutions: convolutions.map(|c| c.sharing_with(finest)).collect(),
+            locals: self.locals.clone(),
             grids: self.grids.clone(),
             memory: Pool::default(),
         }
@@ -104,6 +111,7 @@ impl Levels {
         Level {
             coefficients: &self.coefficients[0],
             convolution: problem.convolution,
+            local: problem.local,
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
             memory: self.memory(),
@@ -121,8 +129,9 @@ impl Levels {
         let mut levels: Vec<Level> = Vec::new();
         let coarser = self.coefficients.iter().zip(&self.grids).skip(1);
         let finer = self.grids.iter().map(Grid::shape);
-        for (((coefficients, grid), convolution), finer) in
-            coarser.zip(&self.convolutions).zip(finer)
+        let locals = self.locals.iter();
+        for ((((coefficients, grid), convolution), local), finer) in
+            coarser.zip(&self.convolutions).zip(locals).zip(finer)
         {
             let halved = halved(finer);
             let fine = levels.last();
@@ -141,6 +150,7 @@ impl Levels {
             levels.push(Level {
                 coefficients,
                 convolution,
+                local,
                 freedoms,
                 gap: Cow::Owned(gap),
                 memory: self.memory(),
@@ -186,6 +196,7 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
 pub(crate) struct Level<'a> {
     coefficients: &'a Array2<f64>,
     convolution: &'a Convolution,
+    local: &'a LocalDisplacement,
     pub(crate) freedoms: Freedoms,
     pub(crate) gap: Cow<'a, Array2<f64>>,
     /// Memory of iterations, and the largest number of cells of one.
@@ -256,6 +267,7 @@ impl Level<'_> {
                 convolution: windowed.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,
                 gap: &gap,
+                local: self.local,
             };
             let mut solver = Preconditioned::new(&problem, &approximation, memory);
             let before = *work;

@@ -13,6 +13,7 @@ pub(crate) struct Fields {
     /// Window outside which the pressure is zero.
     pub(crate) window: Window,
     pub(crate) displacement: Array2<f64>,
+    /// Multipliers of the displacement, once it was computed.
     pub(crate) multipliers: Multipliers,
     pub(crate) quality: Option<Quality>,
 }
@@ -39,6 +40,12 @@ impl Fields {
         let columns = self.pressure.ncols();
         patch.paste(slice_mut(&mut self.pressure), columns);
         self.window = patch.window.clone();
+    }
+
+    /// Lowers displacement and approach, which is loaded, by `distance`; the gap stays.
+    pub(crate) fn lower(&mut self, distance: f64) {
+        self.displacement -= distance;
+        self.multipliers.base[0] -= distance;
     }
 
     /// Computes displacement, rigid motion and quality of the pressure afresh. Degrees of freedom that the

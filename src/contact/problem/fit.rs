@@ -21,6 +21,13 @@ pub(crate) struct FitSums {
     gram: [f64; 6],
 }
 
+impl FitSums {
+    /// Number of cells of the contact.
+    pub(crate) fn cells(&self) -> f64 {
+        self.gram[0]
+    }
+}
+
 impl Total for FitSums {
     const ZERO: Self = Self {
         counted: 0.0,

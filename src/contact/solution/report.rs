@@ -9,6 +9,7 @@ use crate::contact::motion::Motion;
 use crate::contact::plan::Plan;
 use crate::contact::problem::Quality;
 use crate::contact::solver::{Solver, Termination};
+use crate::error::Error;
 use crate::grid::Grid;
 use crate::influence::Method;
 use crate::response::Body;
@@ -26,9 +27,12 @@ pub struct Report {
     /// Work done, in convolutions of the whole grid. Convolutions of coarser grids, of windows and of the
     /// preconditioner count by the points P of their meshes, as P log P.
     pub convolutions: f64,
-    /// Complementarity: Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0.
+    /// Complementarity: Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0. Where Σ p u contains a far
+    /// displacement that moves the whole contact, as that of a soft substrate below a hard coat, Σ p u₀
+    /// takes its place: u₀ is 10 times the displacement that a wave of the mean pressure, 2πa long, causes,
+    /// where πa² is the contact area (2a the width of a line contact).
     pub residual: f64,
-    /// max(−g, 0) / max u over the cells that can touch.
+    /// max(−g, 0) / max u over the cells that can touch; relative to u₀ as above where that is less.
     pub overlap: f64,
     /// Errors of force and moments.
     pub balance: Balance,
@@ -57,6 +61,21 @@ impl Report {
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged
+    }
+
+    /// The error that says which conditions of convergence were not met; the message quotes `tolerance`.
+    pub(crate) fn not_converged(&self, tolerance: f64) -> Error {
+        let Balance {
+            force,
+            moment: [x, y],
+        } = self.balance;
+        Error::NotConverged {
+            iterations: self.iterations,
+            residual: self.residual,
+            overlap: self.overlap,
+            balance: force.max(x).max(y),
+            tolerance,
+        }
     }
 
     /// A report with nothing iterated yet.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::contact::Solution;
 use crate::contact::options::Setup;
-use crate::contact::plan::total_coefficients;
+use crate::contact::plan::operator;
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::{block, bounds};
 use crate::contact::solver::linear_cg;
@@ -21,6 +21,9 @@ const TOLERANCE: f64 = 1e-9;
 impl Solution {
     /// The exact tangent of (Σ p dA, Σ p x dA, Σ p y dA) with respect to (δ, s_x, s_y), of the
     /// discrete contact: symmetric, in N/m, N and N m.
+    ///
+    /// In a line contact δ is counted from the datum of [`Grid::line`](crate::Grid::line): below a stiff layer
+    /// that is wider than the grid, δ may fall as the load grows.
     ///
     /// The second row is the couple about y in which force at positive x is positive. While the
     /// contact C stays, K p = δ + s_x x + s_y y − h on it, so that the tangent is
@@ -76,6 +79,7 @@ impl Solution {
                 stiffness[i][j] = dot(b, x) + dot(y, &rest);
             }
         }
+        tangent.lower_datum(&mut stiffness);
         Ok(Some(tangent.about_origin(stiffness)))
     }
 }
@@ -89,6 +93,8 @@ struct Tangent {
     origin: [f64; 2],
     scale: [f64; 2],
     cell_area: f64,
+    /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
+    raise: f64,
 }
 
 impl Tangent {
@@ -106,7 +112,7 @@ impl Tangent {
             method: report.method,
             threads: None,
         };
-        let coefficients = total_coefficients(&report.body, &setup, grid, &threads)?;
+        let (coefficients, datum) = operator(&report.body, &setup, grid, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let convolution = Convolution::plan_on(&corner, threads)?;
         let [_, inverse] = convolution.preconditioner(&corner);
@@ -123,7 +129,19 @@ impl Tangent {
             scale: [half(0), half(1)],
             coordinates,
             cell_area: grid.cell_area(),
+            raise: datum.raise() * grid.cell_area(),
         })
+    }
+
+    /// Turns the tangent for K into that for K − s 1ᵀ1, by the formula of Sherman & Morrison.
+    fn lower_datum(&self, stiffness: &mut [[f64; 3]; 3]) {
+        let column = stiffness.map(|row| row[0]);
+        let factor = self.raise / (1.0 - self.raise * column[0]);
+        for (row, a) in stiffness.iter_mut().zip(column) {
+            for (entry, b) in row.iter_mut().zip(column) {
+                *entry += factor * a * b;
+            }
+        }
     }
 
     /// A column of B.

@@ -5,6 +5,7 @@
 use std::ops::ControlFlow;
 
 use super::conjugacy::Conjugacy;
+use crate::contact::problem::INDEFINITE;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
 
@@ -16,7 +17,7 @@ const MAX_ITERATIONS: usize = 10_000;
 /// `watch`, which is asked before each iteration, breaks.
 ///
 /// # Errors
-/// [`Error::NotConverged`].
+/// [`INDEFINITE`] where A is not positive definite and the iteration meets it; [`Error::NotConverged`].
 pub(crate) fn solve(
     right: &[f64],
     mut apply: impl FnMut(&[f64], &mut [f64]),
@@ -44,7 +45,11 @@ pub(crate) fn solve(
             *d = z + beta * *d;
         }
         apply(&direction, &mut image);
-        let step = descent / dot(&direction, &image);
+        let curvature = dot(&direction, &image);
+        if curvature <= 0.0 {
+            return Err(INDEFINITE);
+        }
+        let step = descent / curvature;
         for k in 0..cells {
             x[k] += step * direction[k];
             r[k] -= step * image[k];
@@ -54,6 +59,7 @@ pub(crate) fn solve(
         iterations: MAX_ITERATIONS,
         residual: dot(&r, &r).sqrt() / size,
         overlap: 0.0,
+        balance: 0.0,
         tolerance,
     })
 }

@@ -5,28 +5,41 @@
 //! - the mean gap over the contact is one of up to three multipliers, found together by least
 //!   squares: force and moments are balanced in the same iteration;
 //! - scaling p to the load becomes p ← [p (1 + Bμ)]₊, which restores force and moments;
-//! - the iteration ends on complementarity and overlap, not on the change of pressure.
+//! - the iteration ends on complementarity and overlap, not on the change of pressure;
+//! - where a direction does not descend, as after a change of the contact it may not, the gradient takes
+//!   its place.
 
 use super::conjugacy::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Termination, Watch};
-use crate::contact::problem::Problem;
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fields::{Fields, slice_mut};
+use crate::contact::problem::{INDEFINITE, Problem};
+use crate::error::Result;
 use crate::grid::full_window;
+use crate::parallel::dot;
 
-/// Solves from the balanced pressure in `fields`, which becomes the solution.
+/// Energy below 0 that may be rounding: of the displacement, some 1e-15 of that of one cell under the sum of
+/// all magnitudes.
+const ROUNDING: f64 = 1e-12;
+
+/// Solves from the balanced pressure and the multipliers in `fields`, which become the solution, with its
+/// quality.
+///
+/// # Errors
+/// [`INDEFINITE`].
 pub(crate) fn solve(
     problem: &Problem,
     fields: &mut Fields,
     criteria: StopCriteria,
     watch: &mut Watch,
-) -> Outcome {
+) -> Result<Outcome> {
     let freedoms = problem.freedoms;
     let Fields {
         pressure,
         displacement,
         window,
-        ..
+        multipliers,
+        quality,
     } = fields;
     // All of the grid may come into contact.
     *window = full_window(problem.convolution.shape());
@@ -42,23 +55,32 @@ pub(crate) fn solve(
     let mut work = 0.0;
 
     for iterations in 0.. {
-        let (multipliers, quality) = problem.judge(p, &window, u, [0.0; 3], workspace);
+        let near = multipliers.lambda();
+        let (mut found, mut now) = problem.judge(p, &window, u, near, workspace);
         work += problem.convolution.work();
-        problem.gap_into(u, multipliers, &mut g);
-        let end = |termination| Outcome {
-            solver: Solver::PolonskyKeer,
-            termination,
-            iterations,
-            work,
-            lambda: multipliers.lambda(),
+        if now.meets(criteria.tolerance) {
+            // Gaps are exact only near the multipliers that they are counted from.
+            (found, now) = problem.judge(p, &window, u, found.lambda(), workspace);
+            work += problem.convolution.work();
+        }
+        (*multipliers, *quality) = (found, Some(now));
+        problem.gap_into(u, found, &mut g);
+        let end = |termination| {
+            Ok(Outcome {
+                solver: Solver::PolonskyKeer,
+                termination,
+                iterations,
+                work,
+                lambda: found.lambda(),
+            })
         };
-        if quality.meets(criteria.tolerance) {
+        if now.meets(criteria.tolerance) {
             return end(Termination::Converged);
         }
-        if watch(iterations, work, quality).is_break() {
+        if watch(iterations, work, now).is_break() {
             return end(Termination::Stopped);
         }
-        if quality.overflows() || iterations == criteria.max_iterations {
+        if now.overflows() || iterations == criteria.max_iterations {
             return end(Termination::IterationLimit);
         }
 
@@ -71,28 +93,43 @@ pub(crate) fn solve(
                 steepness += g * g;
             }
         }
-        let beta = conjugacy.beta(steepness, 0.0);
-        for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&g) {
-            *t = if in_contact(p, g) { g + beta * *t } else { 0.0 };
-        }
-
-        problem.apply(&direction, &mut response, workspace);
-        work += problem.convolution.work();
-        let mean = problem.fit(p, &response, &no_gap);
-        freedoms.for_each(mean, |k, b| response[k] -= b);
-        let (mut slope, mut curvature) = (0.0, 0.0);
-        for (k, &t) in direction.iter().enumerate() {
-            if in_contact(p[k], g[k]) {
-                slope += g[k] * t;
-                curvature += response[k] * t;
+        let mut beta = conjugacy.beta(steepness, 0.0);
+        // The direction g + βt on the contact, and the step to the least energy along it.
+        let step = loop {
+            let (mut slope, mut size, mut energy) = (0.0, 0.0_f64, 0.0);
+            for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&g) {
+                *t = if in_contact(p, g) {
+                    let next = g + beta * *t;
+                    slope += g * next;
+                    size += next.abs();
+                    next
+                } else {
+                    0.0
+                };
             }
-        }
-        // A contact whose gap is exactly zero everywhere has only cells that join; their step is that of a
-        // single cell.
-        let step = if curvature > 0.0 {
-            slope / curvature
-        } else {
-            1.0 / problem.self_influence()
+            if slope > 0.0 || beta <= 0.0 {
+                problem.apply(&direction, &mut response, workspace);
+                work += problem.convolution.work();
+                energy = dot(&direction, &response);
+                let mean = problem.fit(p, &response, &no_gap);
+                freedoms.for_each(mean, |k, b| response[k] -= b);
+                let curvature = dot(&direction, &response);
+                if curvature > 0.0 {
+                    break slope / curvature;
+                }
+            }
+            if beta <= 0.0 {
+                let one_cell = problem.self_influence();
+                if one_cell <= 0.0 || energy < -ROUNDING * one_cell * size * size {
+                    return Err(INDEFINITE);
+                }
+                // A contact whose gap is exactly zero everywhere has only cells that join; their step is
+                // that of a single cell.
+                break 1.0 / one_cell;
+            }
+            conjugacy.restart();
+            conjugacy.beta(steepness, 0.0);
+            beta = 0.0;
         };
 
         let mut joined = false;
@@ -101,6 +138,7 @@ pub(crate) fn solve(
             if inside {
                 *p = NonNegative.nearest(*p - step * direction[k]);
             }
+            // A step is above 0, so that no cell joins with a pressure below 0.
             if !NonNegative.is_free(*p) && g[k] < 0.0 && problem.gap[k].is_finite() {
                 joined |= !inside;
                 *p = -step * g[k];

@@ -247,7 +247,7 @@ impl<'a> Preconditioned<'a> {
         let left = mem::replace(&mut self.members, inside) - free;
         Assessment {
             lambda,
-            quality: problem.quality(sums, fit.moments),
+            quality: problem.quality(sums, &fit),
             contact_changed: joined > 0.0 || left.abs() > 0.0,
         }
     }

@@ -10,6 +10,7 @@ use crate::body::{HalfSpace, Layer};
 use crate::contact::motion::Motion;
 use crate::contact::problem::Problem;
 use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::problem::scale::LocalDisplacement;
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -122,6 +123,7 @@ fn with_both<R>(case: &Case, work: impl FnOnce(Preconditioned, Textbook, Field) 
         convolution: &convolution,
         freedoms: &freedoms,
         gap: &gap,
+        local: &LocalDisplacement::new(&[&case.body], &case.grid),
     };
     let pressed = |(i, j): (usize, usize)| x[i].hypot(y[j]) < case.start;
     let pressed = Array2::from_shape_fn(coefficients.dim(), pressed);

@@ -145,7 +145,8 @@ impl<'a> Textbook<'a> {
         ((0..v.len()).map(motion).collect(), lambda)
     }
 
-    /// λ from u + h ≈ Bλ over p > 0; C = {p > 0 or −g > 0}. Returns λ, Σ p|g| / Σ p u and max(−g) / max u.
+    /// λ from u + h ≈ Bλ over p > 0; C = {p > 0 or −g > 0}. Returns λ, Σ p|g| / Σ p u and max(−g) / max u, with
+    /// the local displacement for u where that is less.
     pub(super) fn assess(&mut self, p: &[f64]) -> ([f64; 3], [f64; 2]) {
         let u = convolved(self.problem.convolution, p);
         let shape = sum(&u, 1.0, self.problem.gap);
@@ -165,7 +166,12 @@ impl<'a> Textbook<'a> {
         let mismatch: f64 = zip(p, &self.r).map(|(p, r)| p * r.abs()).sum();
         let touches: Vec<bool> = self.problem.gap.iter().map(|h| h.is_finite()).collect();
         let deepest = overlap.iter().fold(0.0_f64, |a, &b| a.max(b));
-        let quality = [mismatch / dot(p, &u), deepest / largest(&on(&touches, &u))];
+        let force = p.iter().sum();
+        let local = self.problem.local.under(force, count(&pressed));
+        let quality = [
+            mismatch / dot(p, &u).min(local * force),
+            deepest / largest(&on(&touches, &u)).min(local),
+        ];
         (lambda, quality)
     }
 

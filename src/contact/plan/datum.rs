@@ -1,0 +1,148 @@
+//! The datum of a line contact: where the displacement is 0.
+//!
+//! In plane strain the displacement grows as A/π ln(1/y) with the distance y from the load, where A belongs
+//! to the substrates, so that it is counted from that of the bare substrate at a distance, the datum. Users
+//! see the datum at the width of the grid ([`Grid::line`]). Below a stiff layer that is wider than the grid
+//! the true displacement at this distance is far less: pressures would lift the surface, and the operator
+//! would not be positive definite. Such contacts are solved with a farther datum ℓ'. Under a load W this
+//! changes no pressure, and displacement and approach by the same A W/π ln(ℓ'/ℓ), which is taken back in the
+//! end. The method is nacre's own.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use ndarray::Array2;
+
+use crate::contact::problem::INDEFINITE;
+use crate::contact::solver::linear_cg;
+use crate::convolution::Convolution;
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::parallel::Threads;
+use crate::response::Body;
+
+/// Factor between data that are tried.
+const FARTHER: f64 = 10.0;
+
+/// Number of data that are tried: far more than the stiffest layers need, whose reach is the thickness times
+/// the cube root of the ratio of moduli.
+const TRIALS: i32 = 15;
+
+/// Residual of the linear system. The error of the sum that is found is its square.
+const TOLERANCE: f64 = 1e-6;
+
+/// The datum that contacts on a line grid are solved with.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Datum {
+    /// A of both bodies \[1/Pa\]; 0 where there is no datum.
+    compliance: f64,
+    /// ℓ' \[m\].
+    distance: f64,
+    /// Width ℓ of the grid \[m\].
+    width: f64,
+    /// Datum from which on the operator is positive definite \[m\]; 0 where that of the grid does.
+    least: f64,
+}
+
+impl Datum {
+    /// Finds the datum for the `coefficients` of `bodies` together on `grid`.
+    ///
+    /// # Errors
+    /// [`INDEFINITE`] where the operator is not positive definite with any datum.
+    pub(crate) fn find(
+        bodies: &[&Body],
+        grid: &Grid,
+        coefficients: &Array2<f64>,
+        threads: &Arc<Threads>,
+    ) -> Result<Self> {
+        if !grid.is_line() {
+            return Ok(Self::default());
+        }
+        let width = grid.size()[1];
+        let near = Self {
+            compliance: bodies.iter().map(|body| body.asymptotes().long).sum(),
+            distance: width,
+            width,
+            least: 0.0,
+        };
+        let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
+        if homogeneous || near.compliance <= 0.0 {
+            return Ok(near);
+        }
+        for trial in 0..TRIALS {
+            let datum = Self {
+                distance: width * FARTHER.powi(trial),
+                ..near
+            };
+            let total = total_pressure(&datum.moved(coefficients.clone(), grid), threads)?;
+            let Some(total) = total.filter(|&total| total > 0.0) else {
+                continue;
+            };
+            if trial == 0 {
+                return Ok(near);
+            }
+            // K − s 1ᵀ1 is positive definite as long as s 1ᵀK⁻¹1 < 1.
+            let nearer = PI / (near.compliance * grid.spacing()[1] * total);
+            return Ok(Self {
+                distance: FARTHER * datum.distance,
+                least: datum.distance * (-nearer).exp(),
+                ..near
+            });
+        }
+        Err(INDEFINITE)
+    }
+
+    /// Coefficients on `grid`, whose datum is its own width, with this datum.
+    pub(crate) fn moved(&self, mut coefficients: Array2<f64>, grid: &Grid) -> Array2<f64> {
+        let [_, spacing] = grid.spacing();
+        let [_, width] = grid.size();
+        if self.compliance > 0.0 {
+            coefficients += self.compliance * spacing / PI * (self.distance / width).ln();
+        }
+        coefficients
+    }
+
+    /// Displacement per load per length \[m²/N\] by which this datum raises displacement and approach.
+    pub(crate) fn raise(&self) -> f64 {
+        if self.compliance > 0.0 {
+            self.compliance / PI * (self.distance / self.width).ln()
+        } else {
+            0.0
+        }
+    }
+
+    /// An error where an approach cannot be prescribed.
+    ///
+    /// # Errors
+    /// [`Error::Datum`] where the operator is not positive definite with the datum of the grid.
+    pub(crate) fn check_approach(&self) -> Result<()> {
+        if self.least > 0.0 {
+            return Err(Error::Datum {
+                width: self.width,
+                // The wider the grid, the farther its datum must lie, by a quarter of the width at last.
+                needed: 2.0 * self.least,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Sum of the pressure that displaces all cells by 1 \[1/m\], 1ᵀK⁻¹1. It is above 0 where K, which is
+/// positive definite for pressures of sum 0, is so for all; `None` where the system shows that it is not.
+fn total_pressure(coefficients: &Array2<f64>, threads: &Arc<Threads>) -> Result<Option<f64>> {
+    let convolution = Convolution::plan_on(coefficients, Arc::clone(threads))?;
+    let [_, inverse] = convolution.preconditioner(coefficients);
+    let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
+    let pressure = linear_cg::solve(
+        &vec![1.0; coefficients.len()],
+        |input, out| convolution.apply_slices(input, out, &mut first),
+        |input, out| inverse.apply_slices(input, out, &mut second),
+        TOLERANCE,
+        &mut || ControlFlow::Continue(()),
+    );
+    Ok(pressure
+        .ok()
+        .flatten()
+        .map(|pressure| pressure.iter().sum()))
+}
