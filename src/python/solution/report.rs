@@ -191,13 +191,15 @@ impl PyReport {
         self.0.convolutions
     }
 
-    /// Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch.
+    /// Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch; u is replaced by the
+    /// local displacement where that is less, as on a substrate much softer than its coat.
     #[getter]
     fn residual(&self) -> f64 {
         self.0.residual
     }
 
-    /// ``max(-g, 0) / max(u)`` over the cells that can touch.
+    /// ``max(-g, 0) / max(u)`` over the cells that can touch; relative to the local displacement where
+    /// that is less.
     #[getter]
     fn overlap(&self) -> f64 {
         self.0.overlap
