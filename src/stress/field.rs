@@ -4,7 +4,7 @@ use ndarray::{Array1, Array3};
 
 use super::options::Side;
 use crate::body::HalfSpace;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, finite};
 
 /// Stress at some depths. Arrays are (depths, nx, ny); on a section nx or ny is 1. Tension is
 /// positive.
@@ -34,7 +34,7 @@ impl Stress {
     /// A stress field from coordinates and fields of shape (depths, nx, ny).
     ///
     /// # Errors
-    /// A field whose shape is not that of its coordinates.
+    /// A field whose shape is not that of its coordinates, and a coordinate that is not finite.
     pub fn from_fields(
         [z, x, y]: [Array1<f64>; 3],
         body: HalfSpace,
@@ -49,6 +49,9 @@ impl Stress {
             return Err(Error::Inconsistent(
                 "every component must have shape (len(z), len(x), len(y))",
             ));
+        }
+        for coordinate in [&z, &x, &y].into_iter().flatten() {
+            finite("coordinates of a stress", *coordinate)?;
         }
         Ok(Self {
             z,

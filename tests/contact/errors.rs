@@ -399,5 +399,28 @@ fn fields_that_were_kept() -> Result<()> {
         message(again(Array2::zeros((12, 16)))),
         "gap: expected shape [16, 12], got [12, 16]"
     );
+    // A gap may be +inf, where the shape cannot touch.
+    assert!(again(solution.gap() + f64::INFINITY).is_ok());
+    assert_eq!(
+        message(again(solution.gap() * f64::NAN)),
+        "gap must be a number or +inf, got NaN"
+    );
+    let pressed = |pressure: f64| {
+        let mut fields = [
+            solution.pressure.clone(),
+            solution.gap(),
+            solution.displacement.clone(),
+        ];
+        fields[0][[3, 2]] = pressure;
+        Solution::from_fields(fields, 0.0, [0.0; 2], solution.report.clone())
+    };
+    assert_eq!(
+        message(pressed(f64::INFINITY)),
+        "pressure is not finite at [3, 2]"
+    );
+    assert_eq!(
+        message(pressed(-1.0)),
+        "pressure must be at least 0, got -1"
+    );
     Ok(())
 }

@@ -213,3 +213,16 @@ def test_a_newer_journal_is_refused_by_the_version_that_wrote_it(tmp_path: Path)
     with pytest.raises(ValueError, match=r"has format 2, written by nacre 7\.3\.1"), Journal(path):
         pass
     assert path.read_text() == newer
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"axes": ["z", "q"]}, r'axes must be among \["z", "x", "y"\], got "q"'),
+        ({"axes": []}, "axes must name each axis with more or less than one coordinate, got"),
+        ({"z": np.array([0.0, np.nan])}, "coordinates of a stress must be finite, got NaN"),
+    ],
+)
+def test_a_stress_with_wrong_axes_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        nacre.Stress.from_dict(RESULTS["Stress"].to_dict() | changes)

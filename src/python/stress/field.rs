@@ -362,9 +362,25 @@ impl State for PyStress {
                 .read(|fields| read_arrays(fields, COMPONENTS))?,
             displacement,
         )?;
+        if let Some(other) = axes.iter().find(|axis| !AXES.contains(&axis.as_str())) {
+            return Err(PyValueError::new_err(format!(
+                "axes must be among {AXES:?}, got {other:?}"
+            )));
+        }
+        let dropped = AXES.map(|axis| !axes.iter().any(|kept| kept == axis));
+        let lengths = [stress.z.len(), stress.x.len(), stress.y.len()];
+        if dropped
+            .iter()
+            .zip(lengths)
+            .any(|(&dropped, n)| dropped && n != 1)
+        {
+            return Err(PyValueError::new_err(format!(
+                "axes must name each axis with more or less than one coordinate, got {axes:?}"
+            )));
+        }
         Ok(Self {
             stress: Arc::new(stress),
-            dropped: AXES.map(|axis| !axes.iter().any(|kept| kept == axis)),
+            dropped,
         })
     }
 }
