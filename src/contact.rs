@@ -76,7 +76,9 @@ impl Contact {
         &self.0.grid
     }
 
-    /// The convolution with the influence coefficients of both bodies together.
+    /// The convolution with the influence coefficients of both bodies together. In a line contact whose
+    /// coefficients are not positive definite with the datum of [`Grid::line`], it has a farther datum, which
+    /// raises the displacement everywhere by the same; solutions have the datum of the grid.
     pub fn convolution(&self) -> &Convolution {
         &self.0.convolution
     }
