@@ -101,7 +101,7 @@ impl Plan {
         let (pressure, window) = (&fields.pressure, &fields.window);
         let (carried, warnings) = rows.both(
             || Carried::by(pressure, window, &self.grid),
-            || warnings(pressure, window, &self.grid, shape),
+            || warnings(pressure, window, &gap, &self.grid, shape),
         );
         report.count(outcome.iterations, outcome.work / unit, quality);
         // One rule decides, on the numbers that are reported.

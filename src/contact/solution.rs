@@ -2,6 +2,7 @@
 
 pub(super) mod carried;
 pub(super) mod gap;
+mod outline;
 pub(super) mod report;
 mod stiffness;
 pub(super) mod warnings;

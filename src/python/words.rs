@@ -147,30 +147,34 @@ pub(super) fn method_words(method: Method) -> (&'static str, usize) {
 
 /// Kind, axis and figure of a warning; 0 where it has none.
 pub(super) fn warning_words(warning: &Warning) -> (&'static str, usize, f64) {
-    match *warning {
-        Warning::GridEdge => ("grid edge", 0, 0.0),
-        Warning::SharpEnd { axis } => ("sharp end", axis, 0.0),
-        Warning::Coarse { axis, cells } => ("coarse", axis, cells as f64),
-        Warning::LargeContact { axis, ratio } => ("large contact", axis, ratio),
-    }
+    let (axis, figure) = match *warning {
+        Warning::GridEdge | Warning::SharpEdge => (0, 0.0),
+        Warning::SharpEnd { axis } | Warning::MapRim { axis } => (axis, 0.0),
+        Warning::Coarse { axis, cells } => (axis, cells as f64),
+        Warning::CoarseSpots { axis, cells } => (axis, cells),
+        Warning::LargeContact { axis, ratio } => (axis, ratio),
+    };
+    (warning.kind(), axis, figure)
 }
 
 /// Warning of that kind, with its axis and figure.
 pub(super) fn warning(kind: &str, axis: usize, figure: f64) -> PyResult<Warning> {
-    Ok(match kind {
-        "grid edge" => Warning::GridEdge,
-        "sharp end" => Warning::SharpEnd { axis },
-        "coarse" => Warning::Coarse {
+    let (cells, ratio) = (figure as usize, figure);
+    let warnings = [
+        Warning::GridEdge,
+        Warning::SharpEnd { axis },
+        Warning::SharpEdge,
+        Warning::MapRim { axis },
+        Warning::Coarse { axis, cells },
+        Warning::CoarseSpots {
             axis,
-            cells: figure as usize,
+            cells: figure,
         },
-        "large contact" => Warning::LargeContact {
-            axis,
-            ratio: figure,
-        },
-        other => {
-            let kinds = ["grid edge", "sharp end", "coarse", "large contact"];
-            return Err(unknown("kind of a warning", &kinds, other));
-        }
+        Warning::LargeContact { axis, ratio },
+    ];
+    let found = warnings.iter().find(|warning| warning.kind() == kind);
+    found.copied().ok_or_else(|| {
+        let kinds = warnings.map(|warning| warning.kind());
+        unknown("kind of a warning", &kinds, kind)
     })
 }

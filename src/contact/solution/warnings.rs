@@ -4,10 +4,9 @@ use std::fmt;
 
 use ndarray::Array2;
 
+use super::outline::Outline;
 use crate::contact::problem::constraint::NonNegative;
-use crate::contact::problem::patch::rows;
 use crate::grid::{Grid, Window};
-use crate::parallel::update_with_largest;
 use crate::surface::{Extent, Surface};
 
 /// A warning: something about a solution that its user should know.
@@ -16,8 +15,15 @@ use crate::surface::{Extent, Surface};
 pub enum Warning {
     /// The contact touches the edge of the grid, and the shape goes on beyond it.
     GridEdge,
-    /// The contact reaches the end of a shape of finite length.
+    /// The contact reaches the end of a shape of finite length, as of a roller.
     SharpEnd {
+        /// 0 along x, 1 along y.
+        axis: usize,
+    },
+    /// The contact reaches an edge of the shape that is not an end along x or y, as that of a punch.
+    SharpEdge,
+    /// The contact reaches the rim of a measured map.
+    MapRim {
         /// 0 along x, 1 along y.
         axis: usize,
     },
@@ -27,6 +33,13 @@ pub enum Warning {
         axis: usize,
         /// Number of cells across the contact.
         cells: usize,
+    },
+    /// The spots of a rough contact are only a few cells wide.
+    CoarseSpots {
+        /// 0 along x, 1 along y.
+        axis: usize,
+        /// Mean width of the spots in cells, weighted by their load.
+        cells: f64,
     },
     /// The contact is not small compared with a radius of curvature.
     LargeContact {
@@ -42,6 +55,40 @@ const LARGE_CONTACT: f64 = 0.2;
 
 /// Cells across the contact below which pressure errs by some per cent.
 const FEW_CELLS: usize = 8;
+
+/// Mean width of the contact's spots, in cells, below which pressure errs by ten per cent and more: a round
+/// spot of six cells across has 5.3.
+const NARROW_SPOTS: f64 = 5.0;
+
+/// Distance between the end of a shape and the rim of its map, relative to the map, that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Warning {
+    /// Name of the kind of warning, without numbers, by which warnings are counted.
+    ///
+    /// ```
+    /// assert_eq!(nacre::Warning::SharpEnd { axis: 0 }.kind(), "sharp end");
+    /// ```
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::GridEdge => "grid edge",
+            Self::SharpEnd { .. } => "sharp end",
+            Self::SharpEdge => "sharp edge",
+            Self::MapRim { .. } => "map rim",
+            Self::Coarse { .. } => "coarse",
+            Self::CoarseSpots { .. } => "coarse spots",
+            Self::LargeContact { .. } => "large contact",
+        }
+    }
+
+    /// Whether the pressure is singular there, so that its peak has no limit on ever finer cells.
+    pub(crate) fn is_singular(&self) -> bool {
+        matches!(
+            self,
+            Self::GridEdge | Self::SharpEnd { .. } | Self::SharpEdge | Self::MapRim { .. }
+        )
+    }
+}
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -59,9 +106,27 @@ impl fmt::Display for Warning {
                  a sharp edge on a half-space that goes on, and grows as the grid is refined",
                 along(axis)
             ),
+            Self::SharpEdge => write!(
+                f,
+                "the contact reaches a sharp edge of the shape: the pressure there has no limit, and \
+                 grows as the grid is refined"
+            ),
+            Self::MapRim { axis } => write!(
+                f,
+                "the contact reaches the rim of the measured map along {}: nothing is known beyond it, \
+                 so that nothing touches there, and the pressure at the rim is that of a sharp edge; \
+                 take a larger map",
+                along(axis)
+            ),
             Self::Coarse { axis, cells } => write!(
                 f,
                 "the contact is only {cells} cells wide along {}; take a finer grid",
+                along(axis)
+            ),
+            Self::CoarseSpots { axis, cells } => write!(
+                f,
+                "the spots that carry the load are on average only {cells:.1} cells wide along {}, \
+                 which does not resolve their pressure; take a finer grid",
                 along(axis)
             ),
             Self::LargeContact { axis, ratio } => write!(
@@ -74,79 +139,116 @@ impl fmt::Display for Warning {
     }
 }
 
-/// What the user of a solution should know.
+/// What the user of a solution should know. The pressure is zero outside `window`; the `gap` is infinite
+/// where the shape cannot touch.
 pub(crate) fn warnings(
     pressure: &Array2<f64>,
     window: &Window,
+    gap: &Array2<f64>,
     grid: &Grid,
     shape: &dyn Surface,
 ) -> Vec<Warning> {
-    let [nx, ny] = grid.shape();
-    let [dx, dy] = grid.spacing();
-    let (x, y) = (grid.x(), grid.y());
+    let outline = Outline::of(pressure, gap, window);
     let mut warnings = Vec::new();
-
-    let goes_on = |i: usize, j: usize| {
-        let beyond = |at: usize, n: usize, d: f64| match at {
-            _ if n == 1 => 0.0,
-            0 => -d,
-            _ if at == n - 1 => d,
-            _ => 0.0,
-        };
-        shape
-            .gap(x[i] + beyond(i, nx, dx), y[j] + beyond(j, ny, dy))
-            .is_finite()
-    };
-    let mut at_edge = false;
-    // Largest pressures of the lines of cells across each axis.
-    let mut highest = [vec![0.0; nx], vec![0.0; ny]];
-    for (i, row) in window[0].clone().zip(rows(pressure, window)) {
-        let columns = &mut highest[1][window[1].clone()];
-        let ([top], []) = update_with_largest([row], [columns], |[p], [highest]| {
-            ([highest.fast_max(p)], [p], [])
-        });
-        highest[0][i] = top;
-        let reaches = |j: usize| NonNegative.is_free(row[j - window[1].start]) && goes_on(i, j);
-        let mut ends = [0, ny - 1].into_iter().filter(|j| window[1].contains(j));
-        at_edge |= if !grid.is_line() && (i == 0 || i == nx - 1) {
-            window[1].clone().any(reaches)
-        } else {
-            ends.any(reaches)
-        };
+    if !outline.lines[0].contains(&true) {
+        return warnings;
     }
-    if at_edge {
+    let rim = Rim::of(pressure, grid, shape);
+    if rim.goes_on {
         warnings.push(Warning::GridEdge);
     }
 
-    let (mut cells, mut ends) = ([0; 2], [[f64::INFINITY, f64::NEG_INFINITY]; 2]);
-    for (axis, coordinates) in [&x, &y].into_iter().enumerate() {
-        let lines = coordinates.iter().zip(&highest[axis]);
-        for (at, _) in lines.filter(|(_, highest)| NonNegative.is_free(**highest)) {
-            cells[axis] += 1;
-            ends[axis] = [ends[axis][0].min(*at), ends[axis][1].max(*at)];
+    let mut is_cut = outline.is_cut || rim.ends;
+    let (extent, radii) = (shape.extent(), shape.radii());
+    let axes = if grid.is_line() { 1..2 } else { 0..2 };
+    for axis in axes.clone() {
+        let (spacing, coordinates) = (grid.spacing()[axis], grid.coordinates(axis));
+        let lines = || outline.lines[axis].iter().zip(&coordinates);
+        let touching = || lines().filter(|(touches, _)| **touches).map(|(_, at)| *at);
+        let cells = touching().count();
+        let (first, last) = (touching().next(), touching().next_back());
+        let [low, high] = [first, last].map(|end| end.unwrap_or(0.0));
+        if let Extent::CutOff(ends) = extent[axis] {
+            let reached = [low - spacing < ends[0], high + spacing > ends[1]];
+            let on_map = on_map_rim(ends, axis, shape);
+            if (0..2).any(|k| reached[k] && !on_map[k]) {
+                warnings.push(Warning::SharpEnd { axis });
+                is_cut = false;
+            }
+            if (0..2).any(|k| reached[k] && on_map[k]) {
+                warnings.push(Warning::MapRim { axis });
+                is_cut = false;
+            }
         }
-    }
-    if cells[0] == 0 {
-        return warnings;
-    }
-    for axis in if grid.is_line() { 1..2 } else { 0..2 } {
-        let spacing = grid.spacing()[axis];
-        if let Extent::CutOff([low, high]) = shape.extent()[axis]
-            && (ends[axis][0] - spacing < low || ends[axis][1] + spacing > high)
-        {
-            warnings.push(Warning::SharpEnd { axis });
+        if cells < FEW_CELLS {
+            warnings.push(Warning::Coarse { axis, cells });
         }
-        if cells[axis] < FEW_CELLS {
-            warnings.push(Warning::Coarse {
-                axis,
-                cells: cells[axis],
-            });
-        }
-        let half_width = 0.5 * (ends[axis][1] - ends[axis][0] + spacing);
-        let ratio = half_width / shape.radii()[axis];
+        let half_width = 0.5 * (high - low + spacing);
+        let ratio = half_width / radii[axis];
         if ratio > LARGE_CONTACT {
             warnings.push(Warning::LargeContact { axis, ratio });
         }
     }
+    if is_cut {
+        warnings.push(Warning::SharpEdge);
+    }
+    let widths = outline.widths;
+    let narrow = axes.min_by(|&a, &b| widths[a].total_cmp(&widths[b]));
+    let is_coarse = |warning: &Warning| matches!(warning, Warning::Coarse { .. });
+    if let Some(axis) = narrow
+        && widths[axis] < NARROW_SPOTS
+        && !warnings.iter().any(is_coarse)
+    {
+        let cells = widths[axis];
+        warnings.push(Warning::CoarseSpots { axis, cells });
+    }
     warnings
+}
+
+/// How a contact meets the outermost cells of its grid.
+#[derive(Default)]
+struct Rim {
+    /// Whether it touches one of them beyond which the shape goes on.
+    goes_on: bool,
+    /// Whether it touches one of them beyond which the shape cannot touch.
+    ends: bool,
+}
+
+impl Rim {
+    fn of(pressure: &Array2<f64>, grid: &Grid, shape: &dyn Surface) -> Self {
+        let [nx, ny] = grid.shape();
+        let [dx, dy] = grid.spacing();
+        let (x, y) = (grid.x(), grid.y());
+        let mut rim = Self::default();
+        let mut look = |i: usize, j: usize, [beyond_x, beyond_y]: [f64; 2]| {
+            if NonNegative.is_free(pressure[[i, j]]) {
+                let goes_on = shape.gap(x[i] + beyond_x, y[j] + beyond_y).is_finite();
+                rim.goes_on |= goes_on;
+                rim.ends |= !goes_on;
+            }
+        };
+        for i in 0..nx {
+            look(i, 0, [0.0, -dy]);
+            look(i, ny - 1, [0.0, dy]);
+        }
+        if !grid.is_line() {
+            for j in 0..ny {
+                look(0, j, [-dx, 0.0]);
+                look(nx - 1, j, [dx, 0.0]);
+            }
+        }
+        rim
+    }
+}
+
+/// Whether the ends of a shape along an axis are those of its measured map.
+fn on_map_rim(ends: [f64; 2], axis: usize, shape: &dyn Surface) -> [bool; 2] {
+    shape.grid().map_or([false; 2], |map| {
+        let (center, size) = (map.center()[axis], map.size()[axis]);
+        [-0.5, 0.5].map(|half| {
+            let rim = center + half * size;
+            let end = if half < 0.0 { ends[0] } else { ends[1] };
+            (end - rim).abs() <= ROUNDING * size
+        })
+    })
 }
