@@ -1,6 +1,7 @@
 //! Contacts: every algorithm, control, domain and body, and what cannot be solved.
 
 mod support {
+    pub(crate) mod contacts;
     pub(crate) mod foundation;
     pub(crate) mod messages;
     pub(crate) mod random;
@@ -20,4 +21,5 @@ mod contact {
     mod stiffness;
     mod thin_layers;
     mod two_bodies;
+    mod warnings;
 }

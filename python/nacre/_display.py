@@ -260,6 +260,8 @@ def _estimated(solution: Solution, name: str, unit: str) -> str:
     """Return a number, with the discretisation error where it is estimated."""
     value = getattr(solution, name)
     error = (solution.report.discretisation or {}).get(name, 0.0)
+    if error is None:
+        return f"{written(value, unit)} (error not known: see the warning)"
     return written(value, unit) + (
         f" ± {rounded(100 * abs(error / value), 1)} %" if error and value else ""
     )

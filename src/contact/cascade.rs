@@ -7,6 +7,7 @@
 
 pub(super) mod discretisation;
 pub(super) mod levels;
+pub(super) mod unresolved;
 
 use ndarray::Array2;
 

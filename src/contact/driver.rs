@@ -18,7 +18,7 @@ use super::solution::Solution;
 use super::solution::carried::Carried;
 use super::solution::gap::Gap;
 use super::solution::report::{Progress, Report};
-use super::solution::warnings::warnings;
+use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
 use super::start::{Sampled, checked_gaps, given_pressure, uniform_pressure};
 use crate::error::Result;
@@ -117,7 +117,12 @@ impl Plan {
                 approach,
                 load: carried.force,
             });
-            report.discretisation = estimate(&results);
+            let singular = warnings.iter().any(Warning::is_singular);
+            report.discretisation = estimate(&results, singular).map(|changes| {
+                let (fields, loaded) = ([pressure, &fields.displacement], motion.load.is_some());
+                let unresolved = &self.unresolved;
+                changes.plus(unresolved.errors(fields, window, &self.grid, loaded, singular))
+            });
         }
         let raised = self.datum.raise() * carried.force;
         if raised != 0.0 {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::cascade::levels::Levels;
+use super::cascade::unresolved::Unresolved;
 use super::options::Setup;
 use super::problem::INDEFINITE;
 use super::problem::scale::LocalDisplacement;
@@ -32,6 +33,7 @@ pub(super) struct Plan {
     pub(super) levels: Levels,
     pub(super) local: LocalDisplacement,
     pub(super) datum: Datum,
+    pub(super) unresolved: Unresolved,
 }
 
 impl Plan {
@@ -46,6 +48,7 @@ impl Plan {
             Ok((datum.moved(coefficients, grid), local))
         })?;
         let local = LocalDisplacement::new(&bodies(&body, &setup), &grid);
+        let unresolved = Unresolved::new(&bodies(&body, &setup), &grid);
         Ok(Self {
             body,
             grid,
@@ -54,6 +57,7 @@ impl Plan {
             levels,
             local,
             datum,
+            unresolved,
         })
     }
 
@@ -65,6 +69,7 @@ impl Plan {
             grid: self.grid,
             setup: self.setup.clone(),
             levels: self.levels.beside(&convolution),
+            unresolved: self.unresolved,
             convolution,
             local: self.local.clone(),
             datum: self.datum,

@@ -113,6 +113,22 @@ def test_an_estimate_of_the_error_stands_with_the_figure() -> None:
     assert table(solution)["approach"] == "600 nm"
 
 
+def test_a_peak_without_limit_has_no_estimate(tmp_path: Path) -> None:
+    with pytest.warns(nacre.NacreWarning, match="sharp edge"):
+        solution = nacre.solve(nacre.FlatPunch(1e-4), STEEL, load=10.0)
+    estimate = solution.report.discretisation
+    assert estimate is not None
+    assert estimate["peak_pressure"] is None
+    assert estimate["approach"]
+    assert solution.report.warning_kinds == ["sharp edge"]
+    assert table(solution)["peak pressure"].endswith("(error not known: see the warning)")
+    assert "±" in table(solution)["approach"]
+    assert nacre.Report.from_dict(solution.report.to_dict()) == solution.report
+    saved = nacre.load(solution.save(tmp_path / "punch.nc"))
+    assert saved.report == solution.report
+    assert '"peak_pressure": null' in solution.to_xarray().attrs["discretisation"]
+
+
 def test_a_large_estimate_is_printed_without_an_exponent() -> None:
     assert rounded(17.3, 1) == "20"
     assert rounded(0.0123, 1) == "0.01"

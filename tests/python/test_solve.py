@@ -378,9 +378,22 @@ WARNINGS: dict[str, tuple[Callable[[], nacre.Solution], str]] = {
         ),
         r"reaches the end .* along x",
     ),
-    "sharp end of a height map": (
+    "sharp edge of a punch": (
+        lambda: nacre.solve(nacre.FlatPunch(1e-4), STEEL, load=LOAD),
+        r"reaches a sharp edge",
+    ),
+    "rim of a height map": (
         lambda: nacre.solve(nacre.HeightMap(np.zeros((20, 20)), 1e-5), STEEL, load=LOAD),
-        r"reaches the end .* along y",
+        r"rim of the measured map along y",
+    ),
+    "coarse spots": (
+        lambda: nacre.solve(
+            nacre.HeightMap(1e-6 * (np.indices((24, 24)).sum(axis=0) % 4 == 0), 1e-5)
+            + nacre.Sphere(5e-3),
+            STEEL,
+            load=LOAD,
+        ),
+        r"spots .* only \d\.\d cells wide",
     ),
     "coarse": (lambda: CONTACT.solve(SPHERE, load=0.05), r"only \d cells wide along y"),
     "large contact": (
@@ -400,6 +413,10 @@ def test_each_warning_is_issued_and_reported(
     messages = [str(warning.message) for warning in issued]
     assert any(re.search(message, text) for text in messages), messages
     assert messages == list(solution.report.warnings)
+    kinds = solution.report.warning_kinds
+    assert len(kinds) == len(messages)
+    # A warning that is counted by its kind comes back from a file.
+    assert nacre.Report.from_dict(solution.report.to_dict()).warning_kinds == kinds
     assert {warning.category for warning in issued} == {nacre.NacreWarning}
     # They point at the call, which is above.
     assert {warning.filename for warning in issued} == {__file__}

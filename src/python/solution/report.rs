@@ -4,7 +4,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::contact::{Balance, Discretisation, Motion, Report};
+use crate::contact::{Balance, Discretisation, Motion, Report, Warning};
 use crate::python::bodies::PyHalfSpace;
 use crate::python::grid::PyGrid;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
@@ -218,8 +218,10 @@ impl PyReport {
     /// Errors due to the size of the cells, estimated from coarser grids.
     ///
     /// The keys are ``peak_pressure`` [Pa], ``approach`` [m] and ``load`` [N]; a prescribed quantity
-    /// has the error 0. `None` where no coarser grid was solved: on small grids, from a given
-    /// pressure, by another algorithm, or without convergence.
+    /// has the error 0. The peak pressure has none, `None`, where the pressure is singular: at a sharp
+    /// edge of the shape, or where the grid cuts the contact; a warning says so. `None` altogether where
+    /// no coarser grid was solved: on small grids, from a given pressure, by another algorithm, or
+    /// without convergence.
     #[getter]
     fn discretisation<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(errors) = self.0.discretisation else {
@@ -236,6 +238,15 @@ impl PyReport {
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.0.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// Kinds of the warnings, without their numbers: words by which warnings are counted.
+    ///
+    /// They are "grid edge", "sharp end", "sharp edge", "map rim", "coarse", "coarse spots" and "large
+    /// contact".
+    #[getter]
+    fn warning_kinds(&self) -> Vec<&'static str> {
+        self.0.warnings.iter().map(Warning::kind).collect()
     }
 
     /// Grid of the solve.
