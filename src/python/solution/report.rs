@@ -130,10 +130,10 @@ fn checked(report: Report) -> PyResult<Report> {
     let balance = [report.balance.force]
         .into_iter()
         .chain(report.balance.moment);
-    let estimates = report
-        .discretisation
-        .iter()
-        .flat_map(|errors| [errors.peak_pressure, errors.approach, errors.load]);
+    let estimates = report.discretisation.iter().flat_map(|errors| {
+        let others = [errors.approach, errors.load];
+        errors.peak_pressure.into_iter().chain(others)
+    });
     let sizes = [
         ("residual", report.residual),
         ("overlap", report.overlap),
