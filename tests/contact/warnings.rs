@@ -118,7 +118,7 @@ fn edges_of_punches_are_sharp() -> Result<()> {
     };
     assert_eq!(kinds(&punch()?, &Motion::load(1.0))?, ["sharp edge"]);
     assert_eq!(kinds(&punch()?, &tilted)?, ["sharp edge"]);
-    let sum = punch()?.plus(Paraboloid::new(1e5, 1e5)?);
+    let sum = punch()?.plus(Paraboloid::new(RADIUS, RADIUS)?);
     assert_eq!(kinds(&sum, &Motion::load(LOAD))?, [""; 0]);
     assert_eq!(kinds(&sum, &Motion::load(LOAD * 10.0))?, ["sharp edge"]);
     let roller = Roller::new(RADIUS, 60.0, 1e6)?.with_length(60.0)?;
