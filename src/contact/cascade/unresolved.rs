@@ -98,10 +98,10 @@ impl Pairs {
 
 impl Unresolved {
     /// Coefficients of `bodies` together, on the cells of `grid`.
-    pub(crate) fn new<'a>(bodies: impl Iterator<Item = &'a Body> + Clone, grid: &Grid) -> Self {
+    pub(crate) fn new(bodies: &[&Body], grid: &Grid) -> Self {
         let spacing = grid.spacing();
         // α û_z/p̂ of all bodies; c/q = α û_z/p̂ / q².
-        let normal = |q: f64| bodies.clone().map(|body| body.normal(q)).sum::<f64>();
+        let normal = |q: f64| bodies.iter().map(|body| body.normal(q)).sum::<f64>();
         let ratio = |q: f64| normal(q) / (q * q);
         let alias = |spacing: f64| {
             let term = |k: usize| {
@@ -122,8 +122,8 @@ impl Unresolved {
         } else {
             finest = finest.min(spacing[0]);
         }
-        let short: f64 = bodies.clone().map(|body| body.asymptotes().short).sum();
-        let local: f64 = bodies.clone().map(|body| body.local()).sum();
+        let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
+        let local: f64 = bodies.iter().map(|body| body.local()).sum();
         let stiffening = if short > 0.0 && local <= 0.0 {
             (normal(PI / finest) / short).max(1.0)
         } else {
@@ -253,7 +253,7 @@ mod tests {
     fn a_half_space_has_a_small_coefficient() -> Result<()> {
         let body = Body::from(Elastic::new(1.0, 0.0)?);
         let grid = Grid::new([10, 20], [1.0, 1.0])?;
-        let found = Unresolved::new([&body].into_iter(), &grid);
+        let found = Unresolved::new(&[&body], &grid);
         for (found, spacing) in found.aliases.into_iter().zip([0.1, 0.05]) {
             let zeta = 1.202_056_903_159_594;
             let expected = 4.0 * 2.0 * (spacing / std::f64::consts::TAU).powi(3) * 0.75 * zeta;
@@ -272,7 +272,7 @@ mod tests {
     fn cells_that_do_not_resolve_an_incompressible_layer_err_by_all() -> Result<()> {
         let (h, rubber) = (1e-3, Elastic::new(3.0, 0.5)?);
         let body = Body::from(HalfSpace::new(Substrate::Rigid, [Layer::new(rubber, h)?])?);
-        let found = Unresolved::new([&body].into_iter(), &Grid::line(10, 1.0)?);
+        let found = Unresolved::new(&[&body], &Grid::line(10, 1.0)?);
         let (expected, [along_x, along_y]) = (h.powi(3) / 3.0, found.aliases);
         assert!(along_x.abs() < f64::MIN_POSITIVE);
         assert!(
@@ -287,7 +287,7 @@ mod tests {
     fn a_hard_layer_stiffens_below_the_cell() -> Result<()> {
         let coat = Layer::new(Elastic::new(100.0, 0.3)?, 1e-6)?;
         let body = Body::from(HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?);
-        let found = Unresolved::new([&body].into_iter(), &Grid::new([10, 10], [1.0, 1.0])?);
+        let found = Unresolved::new(&[&body], &Grid::new([10, 10], [1.0, 1.0])?);
         assert!((found.stiffening / 100.0 - 1.0).abs() < 0.01, "{found:?}");
         Ok(())
     }
