@@ -191,7 +191,7 @@ fn interior(c: &mut Criterion) {
         let pressure =
             Array2::from_shape_fn((n, n), |(i, j)| f64::from(u8::from(inside(i) && inside(j))));
         let field = stress(&body, &grid, &pressure, &[0.0], &options).expect("valid");
-        assert!((field.components[2][[0, n / 2, n / 2]] + 1.0).abs() < 1e-12);
+        assert!((field.zz()[[0, n / 2, n / 2]] + 1.0).abs() < 1e-12);
         group.throughput(Throughput::Elements((16 * n * n) as u64));
         group.bench_function(BenchmarkId::new("depths16", n), |b| {
             b.iter(|| stress(&body, &grid, &pressure, &depths, &options));

@@ -69,7 +69,7 @@ fn measure(name: &str, pressure: &Array2<f64>, depths: usize, threads: usize) ->
             one = one.min(seconds(apply)?.0);
         }
         let (time, field) = seconds(|| stress(&body, &grid, pressure, &planes, &options))?;
-        assert!(field.components[2][[0, cells / 2, cells / 2]] < 0.0);
+        assert!(field.zz()[[0, cells / 2, cells / 2]] < 0.0);
         all = all.min(time);
     }
     let convolutions = all / depths as f64 / one;
@@ -99,7 +99,7 @@ fn measure_plan(cells: usize, depths: usize, threads: usize) -> Result<()> {
         let (time, planned) = seconds(|| solution.stress_plan(Member::Body, Some(threads)))?;
         plan = plan.min(time);
         let (time, field) = seconds(|| planned.stress(&planes, &whole))?;
-        assert!(field.components[2][[0, cells / 2, cells / 2]] < 0.0);
+        assert!(field.zz()[[0, cells / 2, cells / 2]] < 0.0);
         evaluate = evaluate.min(time);
         section = section.min(seconds(|| planned.stress(&[0.0], &line))?.0);
     }

@@ -20,7 +20,10 @@ for thickness in (2e-6, 10e-6, 40e-6):
     body = nacre.HalfSpace(steel, layers=[nacre.Layer(coating, thickness)])
     solution = nacre.solve(nacre.Sphere(5e-3), body, steel, grid=grid, load=LOAD)
     summary = solution.stress_summary(
-        friction=0.15, strength={0: STRENGTH}, yield_stress={"substrate": YIELD}
+        friction=0.15,
+        direction=(1, 0),
+        strength={0: STRENGTH},
+        yield_stress={"substrate": YIELD},
     )
     layer, substrate = summary.layers
     tension, (x, _, z) = layer.tension

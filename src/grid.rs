@@ -110,6 +110,12 @@ impl Grid {
         })
     }
 
+    /// Unit vector along which a contact on this grid rolls: across the strips of a line contact. `None`
+    /// for other grids, where it is a matter of the shape.
+    pub(crate) fn rolling_direction(&self) -> Option<[f64; 2]> {
+        self.plane_strain.then_some([0.0, 1.0])
+    }
+
     /// Numbers of cells `[nx, ny]`.
     pub fn shape(&self) -> [usize; 2] {
         self.shape

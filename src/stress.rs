@@ -53,7 +53,7 @@ pub use options::{Section, Side, StressOptions, StressProgress};
 pub use plan::StressPlan;
 pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
 
-use plan::{Form, Source};
+use plan::Source;
 use request::stress_once;
 
 /// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell.
@@ -72,8 +72,8 @@ use request::stress_once;
 /// let pressure = array![[1.0, 1.0], [1.0, 1.0]];
 /// let options = StressOptions { section: nacre::Section::Y(0.0), ..StressOptions::default() };
 /// let field = stress(&Elastic::new(1.0, 0.3)?.into(), &grid, &pressure, &[0.0, 1.0], &options)?;
-/// assert!((field.components[2][[0, 0, 0]] + 1.0).abs() < 1e-12);
-/// assert!(field.components[2][[1, 0, 0]] > -0.7);
+/// assert!((field.zz()[[0, 0, 0]] + 1.0).abs() < 1e-12);
+/// assert!(field.zz()[[1, 0, 0]] > -0.7);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 pub fn stress(
@@ -100,12 +100,10 @@ pub fn stress_watched(
     options: &StressOptions,
     progress: &mut StressProgress,
 ) -> Result<Stress> {
-    let source = Source {
-        body,
-        grid,
-        pressure,
-        form: Form::Uniform,
-        friction_sign: 1.0,
-    };
-    stress_once(&source, depths, options, progress)
+    stress_once(
+        &Source::uniform(body, grid, pressure),
+        depths,
+        options,
+        progress,
+    )
 }

@@ -115,6 +115,12 @@ pub trait Surface: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Unit vector along which the shape rolls: across the axis of a roller. Friction acts along it
+    /// where no other direction is given. `None` for shapes that roll in any direction, or in none.
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// This shape, moved by (x, y) \[m\].
     ///
     /// # Errors
@@ -156,6 +162,9 @@ macro_rules! forward_surface {
             fn grid(&self) -> Option<Grid> {
                 (**self).grid()
             }
+            fn rolling_direction(&self) -> Option<[f64; 2]> {
+                (**self).rolling_direction()
+            }
         }
     };
 }
@@ -195,6 +204,10 @@ impl<S: Surface> Surface for Shifted<S> {
         let [x, y] = grid.center();
         grid.centered_at([x + self.by[0], y + self.by[1]]).ok()
     }
+
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        self.shape.rolling_direction()
+    }
 }
 
 /// A shape whose gap is the sum of the gaps of two shapes.
@@ -222,5 +235,16 @@ impl<A: Surface, B: Surface> Surface for Sum<A, B> {
 
     fn grid(&self) -> Option<Grid> {
         self.0.grid().or_else(|| self.1.grid())
+    }
+
+    /// Direction of the part that has one, as that of a roller with roughness; `None` where two differ.
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        match (self.0.rolling_direction(), self.1.rolling_direction()) {
+            (Some([x, y]), Some(other)) => {
+                let [dx, dy] = [x - other[0], y - other[1]];
+                (dx.hypot(dy) < f64::EPSILON).then_some(other)
+            }
+            (one, other) => one.or(other),
+        }
     }
 }

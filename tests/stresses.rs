@@ -10,8 +10,11 @@ mod stress {
     mod closed_forms;
     mod coated;
     mod edge;
+    mod friction;
     mod invariants;
+    mod limits;
     mod patch;
     mod plan;
+    mod resolution;
     mod threads;
 }

@@ -13,7 +13,7 @@ import typer
 import nacre
 from nacre import _reference
 from nacre._commands import app
-from nacre._outputs import ERROR
+from nacre._outputs import ERROR, check_direction
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES, PICTURES
 from nacre.units import system
@@ -45,6 +45,10 @@ def solve(
     arguments, asked = described.arguments(), described.stress()
     for path in save or []:
         _check_ending(path)
+    try:
+        check_direction(arguments, **(asked or {}))
+    except ValueError as error:
+        raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(described.units):
         _solve(case, arguments, asked, save or [], as_json)
 
@@ -69,10 +73,10 @@ def _solve(
             solution = nacre.solve(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: solve: {error}") from error
-    try:
-        stress = None if asked is None else solution.stress_summary(**asked)
-    except (ArithmeticError, TypeError, ValueError) as error:
-        raise CaseError(f"{case}: stress: {error}") from error
+        try:
+            stress = None if asked is None else solution.stress_summary(**asked)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: stress: {error}") from error
     for path in save:
         solution.save(path)
     if as_json:

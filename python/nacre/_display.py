@@ -146,6 +146,7 @@ def stresses(summary: StressSummary) -> str:
         "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]
+    lines += [f"warning: {warning}" for warning in summary.warnings]
     return "\n".join(lines if summary.finished else [*lines, UNFINISHED])
 
 
@@ -154,35 +155,48 @@ def stresses_markup(summary: StressSummary) -> str:
     heading, *rows = _peaks(summary)
     lines = [_cells("th", heading), *(_cells("td", row) for row in rows)]
     table = f"<table>{''.join(lines)}</table>"
-    return table if summary.finished else f"{table}<p>{UNFINISHED}</p>"
+    notes = [f"warning: {html.escape(warning)}" for warning in summary.warnings]
+    notes += [] if summary.finished else [UNFINISHED]
+    return table + "".join(f"<p>{note}</p>" for note in notes)
+
+
+def _share(error: float, value: float) -> str:
+    """Return an error in per cent of a value."""
+    if error >= abs(value):
+        return "> 100 %"
+    percent = 100 * error / abs(value)
+    return f"{percent:.2g} %" if percent >= 0.01 else "< 0.01 %"
 
 
 def _peaks(summary: StressSummary) -> list[list[str]]:
     """Return the rows of the table of a stress summary, the heading first."""
-    rows = [["", "largest", "value", "z", "x, y", "safety factor"]]
+    rows = [["", "largest", "value", "±", "z", "x, y", "safety factor"]]
 
-    def add(name: str, peak: Peak | None, factor: float | None = None) -> None:
+    def add(name: str, peak: Peak | None, error: float | None, factor: float | None = None) -> None:
         if peak is None:
             return
         value, (x, y, z) = peak
+        share = "" if error is None else _share(error, value)
         place = f"{written(x, 'm', 3)}, {written(y, 'm', 3)}"
         number = "" if factor is None else rounded(factor, 3)
-        rows.append(["", name, written(value, "Pa"), written(z, "m"), place, number])
+        rows.append(["", name, written(value, "Pa"), share, written(z, "m"), place, number])
 
     for layer in summary.layers:
         start, (top, bottom) = len(rows), layer.depths
-        add("von Mises", layer.von_mises, layer.yield_safety_factor)
-        add("tension", layer.tension, layer.strength_safety_factor)
-        add("shear", layer.max_shear)
+        error = layer.uncertainty.get
+        add("von Mises", layer.von_mises, error("von_mises"), layer.yield_safety_factor)
+        add("tension", layer.tension, error("tension"), layer.strength_safety_factor)
+        add("shear", layer.max_shear, error("max_shear"))
         ends = f"{written(top, 'm')} to {written(bottom, 'm')}"
         rows[start][0] = f"{_layer(layer)}, {ends}" if bottom < np.inf else "substrate"
     names = {layer.layer: layer.name for layer in summary.layers}
     for face in summary.interfaces:
         start, above = len(rows), names.get(face.interface)
-        add("tension", face.tension)
-        add("compression", face.compression)
-        add("shear", face.shear)
-        add("in-plane jump", face.jump)
+        error = face.uncertainty.get
+        add("tension", face.tension, error("tension"))
+        add("compression", face.compression, error("compression"))
+        add("shear", face.shear, error("shear"))
+        add("in-plane jump", face.jump, error("jump"))
         below = "" if above is None else f" below {above}"
         rows[start][0] = f"interfaces[{face.interface}]{below} at {written(face.depth, 'm')}"
     return rows

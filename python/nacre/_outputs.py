@@ -83,11 +83,15 @@ def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str
 
 
 def evaluated(
-    solution: core.Solution, outputs: Mapping[str, Output], stress: Mapping[str, Any]
+    solution: core.Solution,
+    outputs: Mapping[str, Output],
+    stress: Mapping[str, Any],
+    unresolved: list[str],
 ) -> dict[str, Any]:
     """Return the outputs of a solution as plain numbers; the stresses are summed up once.
 
-    The errors of outputs are among them; they are NaN where there is no estimate.
+    The errors of outputs are among them; they are NaN where there is no estimate. Warnings about
+    stresses that the cells do not resolve are added to `unresolved`.
     """
     summary = None
     found: dict[str, Any] = {}
@@ -95,7 +99,9 @@ def evaluated(
         if not isinstance(output, str):
             value = output(solution)
         elif output in STRESSES:
-            summary = summary or solution.stress_summary(**stress)
+            if summary is None:
+                summary = solution.stress_summary(**stress)
+                unresolved += summary.warnings
             value = max(STRESSES[output](summary), default=np.nan)
         else:
             value = getattr(solution, output)
@@ -105,3 +111,16 @@ def evaluated(
         estimate = estimates.get(quantity)
         found[name] = np.nan if estimate is None else float(estimate)
     return found
+
+
+def check_direction(
+    arguments: Mapping[str, Any], friction: float = 0.0, direction: object = None, **_: object
+) -> None:
+    """Raise a `ValueError` before a solve whose stresses need a direction of friction."""
+    grid, shape = arguments.get("grid"), arguments.get("shape")
+    rolls = getattr(grid, "is_line", False) or getattr(shape, "rolling_direction", None)
+    if friction > 0 and direction is None and not rolls:
+        raise ValueError(
+            "direction must be given where friction is above 0: only rollers, cylinders and line "
+            "contacts have a rolling direction to take instead; (1, 0) is along x"
+        )

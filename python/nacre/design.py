@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._outputs import Output
+from nacre._keywords import Direction
+from nacre._outputs import Output, check_direction
 from nacre.studies import ARGUMENTS, sweep
 from nacre.units import symbol
 
@@ -34,6 +35,7 @@ def coating_chart(
     young: Values,
     poisson: float = 0.3,
     friction: float = 0.0,
+    direction: Direction | None = None,
     **options: Any,
 ) -> xarray.Dataset:
     """Peak pressure and stresses for thicknesses and moduli of a single coating.
@@ -54,7 +56,11 @@ def coating_chart(
     poisson
         Poisson's ratio of the coating.
     friction
-        Coefficient of friction of sliding, with the traction on the coating along x.
+        Coefficient of friction of sliding.
+    direction
+        Direction ``(x, y)`` of the traction on the coating. By default the direction in which the
+        shape rolls, as in `Solution.stress`; for shapes without one it must be given where
+        `friction` is above 0.
     options
         Arguments of `nacre.solve`, such as `load` and `counterbody`, and of `nacre.sweep`.
 
@@ -84,10 +90,12 @@ def coating_chart(
         coating = core.Layer(core.Elastic(young, poisson), thickness)
         return {"shape": shape, "body": core.HalfSpace(substrate, [coating]), **asked}
 
+    sliding: dict[str, Any] = {"friction": friction, "direction": direction}
+    check_direction({"shape": shape, **asked}, **sliding)
     outputs: dict[str, Output] = {
         "peak_pressure": "peak_pressure",
-        "coating_tension": partial(coating_tension, friction=friction),
-        "interface_shear": partial(interface_shear, friction=friction),
+        "coating_tension": partial(coating_tension, **sliding),
+        "interface_shear": partial(interface_shear, **sliding),
         "contact_area": "contact_area",
         "approach": "approach",
     }
@@ -194,17 +202,23 @@ def tilt_curve(
     return sweep(case, {"tilt": tilt}, outputs=outputs, **study)
 
 
-def coating_tension(solution: core.Solution, friction: float = 0.0) -> float:
+def coating_tension(
+    solution: core.Solution, friction: float = 0.0, direction: Direction | None = None
+) -> float:
     """Return the largest principal stress on the faces of the only layer [Pa]."""
     (bottom,) = solution.report.body.interfaces
-    field = solution.stress([0.0, bottom], side="above", friction=friction, threads=1)
+    sliding: Any = {"friction": friction, "direction": direction, "threads": 1}
+    field = solution.stress([0.0, bottom], side="above", **sliding)
     return field.peak("tension")[0]
 
 
-def interface_shear(solution: core.Solution, friction: float = 0.0) -> float:
+def interface_shear(
+    solution: core.Solution, friction: float = 0.0, direction: Direction | None = None
+) -> float:
     """Return the largest shear traction at the only interface [Pa]."""
     (bottom,) = solution.report.body.interfaces
-    field = solution.stress(bottom, side="above", friction=friction, threads=1)
+    sliding: Any = {"friction": friction, "direction": direction, "threads": 1}
+    field = solution.stress(bottom, side="above", **sliding)
     return float(np.hypot(field.xz, field.yz).max())
 
 

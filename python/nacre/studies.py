@@ -19,7 +19,7 @@ from nacre._dataset import assembled, counted, laid_out
 from nacre._extras import extra
 from nacre._identity import identified, key_of
 from nacre._journal import Journal, Record
-from nacre._outputs import OUTPUTS, STRESSES, Output, evaluated, named
+from nacre._outputs import OUTPUTS, STRESSES, Output, check_direction, evaluated, named
 from nacre._progress import shown
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ def sweep(
         tasks: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
         failures: dict[str, Record] = {}
         for point in points:
-            arguments, failure = _describe(case, point)
+            arguments, failure = _describe(case, point, asked)
             key = key_of(arguments if failure is None else {"failed": point}, identity)
             keys.append(key)
             known = journal.records.get(key)
@@ -186,10 +186,13 @@ def sweep(
     return dataset
 
 
-def _describe(case: Case, point: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
+def _describe(
+    case: Case, point: dict[str, Any], stress: Mapping[str, Any]
+) -> tuple[dict[str, Any], str | None]:
     """Return the arguments of a solve, or the reason why the case has none."""
     try:
         arguments = dict({**case, **point} if isinstance(case, Mapping) else case(**point))
+        check_direction(arguments, **stress)
     except (ValueError, ArithmeticError) as error:
         return {}, _reason(error)
     unknown = set(arguments) - ARGUMENTS
@@ -277,9 +280,15 @@ def _solve(
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the record has them
     try:
         solution = core.solve(**arguments)
-        values = evaluated(solution, outputs, {"threads": arguments["threads"], **stress})
+        unresolved: list[str] = []
+        threads = {"threads": arguments["threads"]}
+        values = evaluated(solution, outputs, threads | stress, unresolved)
         kinds = [warning["kind"] for warning in solution.report.to_dict()["warnings"]]
-        return {"values": values, "warnings": solution.report.warnings, "kinds": kinds}
+        return {
+            "values": values,
+            "warnings": solution.report.warnings + unresolved,
+            "kinds": kinds + ["unresolved stress"] * len(unresolved),
+        }
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
 

@@ -46,7 +46,7 @@ impl Plan {
         }
         let criteria = options.stop_criteria()?;
         let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
-        let mut report = Report::planned(self, motion, criteria.tolerance);
+        let mut report = Report::planned(self, shape, motion, criteria.tolerance);
         let unit = self.convolution.work();
         let mut watch = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
             report.count(iterations, work / unit, quality);

@@ -51,11 +51,6 @@ pub(crate) struct KernelRows {
 }
 
 impl KernelRows {
-    /// Number of kernels.
-    pub(crate) fn count(&self) -> usize {
-        self.odd.len()
-    }
-
     pub(super) fn odd(&self, kernel: usize) -> [bool; 2] {
         self.odd[kernel]
     }

@@ -44,6 +44,9 @@ pub(crate) trait Load<const N: usize>: Sync {
     /// Bessel orders and kinds of the radial functions.
     const ORDERS: [Order; N];
 
+    /// Whether this is a traction along x, instead of a pressure.
+    const IS_TRACTION: bool;
+
     /// D of each radial function of [`super::series`]; displacements times α.
     fn radial(fields: &Fields, material: Elastic) -> [f64; N];
 
@@ -82,6 +85,8 @@ impl Load<6> for Pressure {
         displacement(0.0),
         displacement(1.0),
     ];
+
+    const IS_TRACTION: bool = false;
 
     fn radial(fields: &Fields, material: Elastic) -> [f64; 6] {
         let state = &fields.pressure;
@@ -124,6 +129,8 @@ pub(crate) struct PressureStress;
 impl Load<4> for PressureStress {
     const ORDERS: [Order; 4] = [stress(0.0), stress(0.0), stress(2.0), stress(1.0)];
 
+    const IS_TRACTION: bool = false;
+
     fn radial(fields: &Fields, material: Elastic) -> [f64; 4] {
         let [p, s, d, tau, ..] = Pressure::radial(fields, material);
         [p, s, d, tau]
@@ -155,6 +162,8 @@ impl Load<9> for Traction {
         displacement(0.0),
         displacement(2.0),
     ];
+
+    const IS_TRACTION: bool = true;
 
     fn radial(fields: &Fields, material: Elastic) -> [f64; 9] {
         let state = &fields.shear;
@@ -212,6 +221,8 @@ impl Load<6> for TractionStress {
         stress(1.0),
         stress(3.0),
     ];
+
+    const IS_TRACTION: bool = true;
 
     fn radial(fields: &Fields, material: Elastic) -> [f64; 6] {
         let [p, a, b, s, e1, e3, ..] = Traction::radial(fields, material);

@@ -16,8 +16,9 @@ use super::background::{self, Caller};
 use super::errors::{ConvergenceError, NacreWarning};
 use super::state::{self, Reduced, from_dict_docs, to_dict_docs};
 use super::stress::keywords::{
-    options, progress_docs, run_signature, section, section_docs, section_signature, strength_docs,
-    strength_signature, strengths, threads_docs, traction_docs, traction_signature, watched,
+    issue_warnings, options, progress_docs, run_signature, section, section_docs,
+    section_signature, strength_docs, strength_signature, strengths, threads_docs, traction_docs,
+    traction_signature, watched,
 };
 use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
 use super::words::Word;
@@ -302,6 +303,7 @@ impl PySolution {
         let evaluated = watched(py, progress, move |progress| {
             solution.stress_watched(&depths, member, &options, progress)
         })?;
+        issue_warnings(py, evaluated.warnings())?;
         Ok(PyStress::new(evaluated, one, lines))
     }
 
@@ -363,6 +365,7 @@ impl PySolution {
         let summary = watched(py, progress, move |progress| {
             solution.stress_summary(member, &strengths, &options, progress)
         })?;
+        issue_warnings(py, summary.warnings())?;
         Ok(PyStressSummary(summary))
     }
 
@@ -392,8 +395,8 @@ impl PySolution {
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
     /// >>> plan = solution.stress_plan()
-    /// >>> [bool(plan.stress(z, friction=0.1).xz.max() > 0.0) for z in (10e-6, 20e-6)]
-    /// [True, True]
+    /// >>> [plan.stress(z, friction=0.1, direction=(1, 0)).friction for z in (10e-6, 20e-6)]
+    /// [(0.1, 0.0), (0.1, 0.0)]
     #[pyo3(signature = (body="body", threads=None))]
     fn stress_plan(
         slf: &Bound<'_, Self>,

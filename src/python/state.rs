@@ -197,6 +197,31 @@ impl<'py> Fields<'py> {
         value.extract().map_err(|_| self.refuse(name, &value))
     }
 
+    /// Reads a number, a text or a list of them; `None` where the key is missing, as in states that
+    /// earlier versions wrote.
+    pub(super) fn get_newer<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<Option<T>> {
+        match self.dict.contains(name)? {
+            true => self.get(name),
+            false => Ok(None),
+        }
+    }
+
+    /// Reads an array; `None` where it is, or where the key is missing as in states that earlier versions
+    /// wrote.
+    pub(super) fn get_newer_array<D: Dimension>(
+        &self,
+        name: &str,
+    ) -> PyResult<Option<Array<f64, D>>> {
+        match self
+            .dict
+            .get_item(name)?
+            .is_some_and(|value| !value.is_none())
+        {
+            true => self.get_array(name).map(Some),
+            false => self.get_newer::<Option<f64>>(name).map(|_| None),
+        }
+    }
+
     /// Reads an array, or nested lists of numbers.
     pub(super) fn get_array<D: Dimension>(&self, name: &str) -> PyResult<Array<f64, D>> {
         let value = self.take(name)?;

@@ -22,6 +22,9 @@ pub struct Peak {
     pub value: f64,
     /// x, y, z \[m\].
     pub position: [f64; 3],
+    /// Estimated error of the value \[Pa\], due to the size of the cells: [`Stress::uncertainty`] at this
+    /// depth.
+    pub uncertainty: Option<f64>,
 }
 
 impl Tensor {
@@ -143,6 +146,7 @@ impl Stress {
         found.map(|((k, i, j), &value)| Peak {
             value,
             position: [self.x[i], self.y[j], self.z[k]],
+            uncertainty: self.uncertainty.as_ref().map(|errors| errors[k]),
         })
     }
 

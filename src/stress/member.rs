@@ -3,9 +3,11 @@
 use std::ops::ControlFlow;
 
 use super::field::Stress;
+use super::friction::Sliding;
 use super::options::{StressOptions, StressProgress};
 use super::plan::{Form, Source, StressPlan};
 use super::request::stress_once;
+use super::subcell::Pair;
 use super::summary::{Strengths, StressSummary, summary_once};
 use crate::body::HalfSpace;
 use crate::contact::Solution;
@@ -23,15 +25,17 @@ pub enum Member {
 }
 
 impl Solution {
-    /// Stress at `depths` in one of the bodies. Friction's direction is that of the traction on the
-    /// body; the counterbody gets the opposite.
+    /// Stress at `depths` in one of the bodies. The direction of friction is that of the traction on the
+    /// body; the counterbody gets the opposite. Without a direction, friction acts along the direction in
+    /// which the shape rolls.
     ///
     /// The pressure is reconstructed within cells, with a square-root profile near a smooth edge;
     /// [`stress`](crate::stress()) takes it as uniform over each cell. To evaluate a solution several
     /// times, make its [`StressPlan`] with [`Solution::stress_plan`].
     ///
     /// # Errors
-    /// Bad input, a counterbody that is rigid, too little memory.
+    /// Bad input, a counterbody that is rigid, friction without a direction on a shape that has none, too
+    /// little memory.
     ///
     /// ```
     /// use nacre::{Elastic, Member, Motion, Sphere, StressOptions, solve};
@@ -123,14 +127,19 @@ impl Solution {
 
     /// The pressure on one of the bodies, with the sign of friction there.
     fn source(&self, member: Member) -> Result<Source<'_>> {
+        let (body, counterbody) = (&self.report.body, &self.report.counterbody);
+        let bodies = std::iter::once(body).chain(counterbody);
         Ok(Source {
             body: self.member(member)?,
             grid: self.grid(),
             pressure: &self.pressure,
-            form: Form::Solved,
-            friction_sign: match member {
-                Member::Body => 1.0,
-                Member::Counterbody => -1.0,
+            form: Form::Solved(Pair(bodies.map(|body| &**body).collect())),
+            sliding: Sliding {
+                sign: match member {
+                    Member::Body => 1.0,
+                    Member::Counterbody => -1.0,
+                },
+                direction: self.report.rolling_direction,
             },
         })
     }

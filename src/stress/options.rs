@@ -39,8 +39,10 @@ pub struct StressOptions {
     /// Coefficient of friction μ. Default: 0.
     pub friction: f64,
     /// Direction of the traction on the body, a vector of any length above 0; a counterbody gets the
-    /// opposite. Default: along x.
-    pub direction: [f64; 2],
+    /// opposite. Default: the direction in which the shape rolls
+    /// ([`Report::rolling_direction`](crate::Report::rolling_direction)), across the axis of a roller, and
+    /// across the strips of a line contact. With friction it must be given for other shapes.
+    pub direction: Option<[f64; 2]>,
     /// Residual stress \[Pa\] of each layer from the surface down, then of the substrate; a shorter
     /// list leaves the rest at 0. It is added to σ_xx and σ_yy. Default: none.
     pub residual: Vec<f64>,
@@ -58,7 +60,7 @@ impl Default for StressOptions {
             side: Side::default(),
             section: Section::default(),
             friction: 0.0,
-            direction: [1.0, 0.0],
+            direction: None,
             residual: Vec::new(),
             displacement: false,
             threads: None,

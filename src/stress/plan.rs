@@ -2,17 +2,19 @@
 
 use std::ops::ControlFlow;
 
-use ndarray::ArrayRef2;
+use ndarray::{Array1, ArrayRef2};
 
+use super::friction::Sliding;
 use super::options::StressProgress;
-use super::subcell::SubcellStress;
-use crate::body::HalfSpace;
+use super::subcell::{Pair, SubcellStress};
+use crate::body::{HalfSpace, Substrate};
 use crate::error::{Error, Result};
 use crate::fft::{PaddedTransform, QuarterTransform, Transformed};
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::kernel::loads;
 use crate::kernel::plans::Kernels;
 use crate::parallel::{Threads, check_memory};
+use crate::response::interior::Place;
 
 /// Stress below a pressure, planned once and evaluated any number of times.
 ///
@@ -28,10 +30,10 @@ use crate::parallel::{Threads, check_memory};
 /// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
 /// let plan = solution.stress_plan(Member::Body, None)?;
 /// let axis = StressOptions { section: Section::Axis([0.0, 0.0]), ..StressOptions::default() };
-/// let sliding = StressOptions { friction: 0.3, ..StressOptions::default() };
+/// let sliding = StressOptions { friction: 0.3, direction: Some([1.0, 0.0]), ..StressOptions::default() };
 /// let below = plan.stress(&[1e-5, 2e-5, 4e-5], &axis)?;
 /// let surface = plan.stress(&[0.0], &sliding)?;
-/// assert!(below.components[2].iter().all(|zz| *zz < 0.0));
+/// assert!(below.zz().iter().all(|zz| *zz < 0.0));
 /// assert_eq!(surface, solution.stress(&[0.0], Member::Body, &sliding)?);
 /// # Ok::<(), nacre::Error>(())
 /// ```
@@ -39,13 +41,14 @@ use crate::parallel::{Threads, check_memory};
 pub struct StressPlan {
     pub(super) body: HalfSpace,
     pub(super) grid: Grid,
-    /// Sign of the options' direction of friction; see [`Source`].
-    pub(super) friction_sign: f64,
+    pub(super) sliding: Sliding,
     /// Half the width of the loaded cells along their shorter side \[m\].
     pub(super) half_width: f64,
     pub(super) kernels: Kernels,
     /// Number of offsets along x and y between a loaded cell and any other.
     pub(super) offsets: [usize; 2],
+    /// The pressure \[Pa\], in C order.
+    pub(super) pressure: Vec<f64>,
     pub(super) transform: PaddedTransform,
     pub(super) quarter: QuarterTransform,
     /// Transform of the pressure that is taken as uniform over cells for stresses.
@@ -64,12 +67,11 @@ pub(super) struct Solved {
 }
 
 /// Distribution of the pressure over a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Form {
+pub(super) enum Form<'a> {
     /// Uniform over each cell.
     Uniform,
-    /// Reconstructed within cells, from the pressure of a solved contact.
-    Solved,
+    /// Reconstructed within cells, from the pressure of a solved contact of these bodies.
+    Solved(Pair<'a>),
 }
 
 /// The pressure that a plan is made for, and the body below it.
@@ -77,17 +79,38 @@ pub(super) struct Source<'a> {
     pub(super) body: &'a HalfSpace,
     pub(super) grid: &'a Grid,
     pub(super) pressure: &'a ArrayRef2<f64>,
-    pub(super) form: Form,
-    /// 1, or −1 for a counterbody, on which friction acts the other way.
-    pub(super) friction_sign: f64,
+    pub(super) form: Form<'a>,
+    pub(super) sliding: Sliding,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// A pressure that is uniform over each cell, and whose shape is not known.
+    pub(super) fn uniform(
+        body: &'a HalfSpace,
+        grid: &'a Grid,
+        pressure: &'a ArrayRef2<f64>,
+    ) -> Self {
+        Self {
+            body,
+            grid,
+            pressure,
+            form: Form::Uniform,
+            sliding: Sliding {
+                sign: 1.0,
+                direction: grid.rolling_direction(),
+            },
+        }
+    }
+
     /// Bytes that planning takes.
     pub(super) fn memory(&self) -> u64 {
         // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
         // and the transform of the solver's pressure, as 24.
-        let arrays = 8 + if self.form == Form::Solved { 24 } else { 0 };
+        let arrays = 8 + if matches!(self.form, Form::Uniform) {
+            0
+        } else {
+            24
+        };
         transforms_memory(self.grid, arrays)
     }
 
@@ -106,15 +129,18 @@ impl Source<'_> {
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
         let Self { body, grid, .. } = *self;
+        check_magnitudes(body, grid)?;
         let pressure = checked(grid, self.pressure)?;
         check_memory(grid.shape(), self.memory())?;
         let threads = Threads::new(threads)?;
-        let subcell = match self.form {
+        let subcell = match &self.form {
             Form::Uniform => None,
-            Form::Solved => match SubcellStress::plan(body, grid, &pressure, &threads, progress) {
-                ControlFlow::Continue(subcell) => Some(subcell),
-                ControlFlow::Break(()) => return Ok(None),
-            },
+            Form::Solved(pair) => {
+                match SubcellStress::plan((body, pair), grid, &pressure, &threads, progress) {
+                    ControlFlow::Continue(subcell) => Some(subcell),
+                    ControlFlow::Break(()) => return Ok(None),
+                }
+            }
         };
         let [lx, ly] = grid.size();
         // One per cent more than the diagonal, for rounding.
@@ -133,11 +159,12 @@ impl Source<'_> {
         Ok(Some(StressPlan {
             body: body.clone(),
             grid: *grid,
-            friction_sign: self.friction_sign,
+            sliding: self.sliding,
             half_width: half_width(grid, loaded_cells(grid.shape(), &[&pressure])),
             kernels,
             offsets,
             quarter: transform.quarter_transform(),
+            pressure,
             transform,
             uniform,
             solved,
@@ -160,19 +187,60 @@ impl StressPlan {
         pressure: &ArrayRef2<f64>,
         threads: Option<usize>,
     ) -> Result<Self> {
-        let source = Source {
-            body,
-            grid,
-            pressure,
-            form: Form::Uniform,
-            friction_sign: 1.0,
-        };
-        source.plan_unwatched(threads)
+        Source::uniform(body, grid, pressure).plan_unwatched(threads)
     }
 
     /// The body.
     pub fn body(&self) -> &HalfSpace {
         &self.body
+    }
+
+    /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
+    /// none where the pressure is given as uniform over them.
+    pub(super) fn uncertainties(
+        &self,
+        places: &[Place],
+        friction: [f64; 2],
+        window: &Window,
+    ) -> Option<Array1<f64>> {
+        let subcell = &self.solved.as_ref()?.subcell;
+        let steps = subcell.steps(window);
+        let error = |place: &Place| subcell.uncertainty(&self.body, place, friction, steps);
+        Some(places.iter().map(error).collect())
+    }
+
+    /// Pressure that is taken as uniform over cells for stresses.
+    pub(super) fn stress_pressure(&self) -> &[f64] {
+        let solved = self.solved.as_ref();
+        solved.map_or(&self.pressure, |solved| solved.subcell.uniform())
+    }
+}
+
+/// Smallest and largest length and modulus, in whatever units: kernels take fifth powers of lengths and
+/// fourth powers of moduli, which neither overflow nor vanish between these.
+pub(super) const MAGNITUDES: [f64; 2] = [1e-60, 1e60];
+
+/// Refuses lengths and moduli outside of [`MAGNITUDES`].
+fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
+    let check = |name, value: f64| match (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value) {
+        true => Ok(()),
+        false => Err(Error::Parameter {
+            name,
+            requirement: "between 1e-60 and 1e60 for stresses (take other units)",
+            value,
+        }),
+    };
+    for axis in 0..2 {
+        check("size of the grid", grid.size()[axis])?;
+        check("spacing of the grid", grid.spacing()[axis])?;
+    }
+    for layer in body.layers() {
+        check("thickness", layer.thickness())?;
+        check("young", layer.material().young())?;
+    }
+    match body.substrate() {
+        Substrate::Elastic(material) => check("young", material.young()),
+        Substrate::Rigid => Ok(()),
     }
 }
 
@@ -204,7 +272,7 @@ fn checked(grid: &Grid, pressure: &ArrayRef2<f64>) -> Result<Vec<f64>> {
 
 /// First and last row, then first and last column, of the cells that any of `pressures` loads; none
 /// where all are zero.
-fn loaded_cells(shape: [usize; 2], pressures: &[&[f64]]) -> Option<[[usize; 2]; 2]> {
+pub(super) fn loaded_cells(shape: [usize; 2], pressures: &[&[f64]]) -> Option<[[usize; 2]; 2]> {
     let mut ends = [[usize::MAX, 0]; 2];
     for pressure in pressures {
         for (k, _) in pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {

@@ -1,22 +1,24 @@
 //! Stress and displacement of a plan, on one plane z = const after another: each component is one
 //! convolution.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 
 use super::options::StressProgress;
 use super::plan::{StressPlan, transforms_memory};
 use super::subcell::{NearTable, STRESSES};
-use crate::fft::{Keep, KernelRows, Workspace};
+use crate::fft::{KernelRows, Workspace};
 use crate::grid::Grid;
-use crate::kernel::cells::Source;
-use crate::kernel::loads::{
-    self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress,
-};
-use crate::kernel::plane::{Kernel, Plan};
-use crate::kernel::plans::Kernels;
-use crate::kernel::strip::{self, LinePlan};
 use crate::parallel::Threads;
 use crate::response::interior::Place;
+
+mod coefficients;
+mod points;
+
+pub(super) use points::PointEvaluator;
+
+pub(super) use coefficients::components;
+
+use coefficients::{Coefficients, RowSource, SurfaceLoad};
 
 /// Components that are convolved together. More of them read the load's transform less often; fewer
 /// write and read less memory in between. Chosen by trial.
@@ -33,46 +35,27 @@ pub(super) struct PlaneEvaluator<'a> {
     friction: [f64; 2],
     /// Number of components: the stresses, or all with the displacements.
     components: usize,
-    loads: Vec<LoadRows>,
+    loads: Vec<SurfaceLoad>,
+    /// Transformed coefficients of each load at one depth.
+    rows: Vec<KernelRows>,
     workspace: Workspace,
     near: NearTable,
-}
-
-/// Transformed coefficients of one load at one depth.
-#[derive(Debug)]
-struct LoadRows {
-    /// Load per unit of pressure: 1, or a component of the friction.
-    factor: f64,
-    /// Axis along which the traction acts; none for pressure.
-    axis: Option<usize>,
-    rows: KernelRows,
-}
-
-/// Whether each component is odd in x and in y, under traction along `axis` or under pressure.
-fn odd(axis: Option<usize>) -> [[bool; 2]; COMPONENTS] {
-    ODD.map(|odd| [0, 1].map(|along| odd[along] != (axis == Some(along))))
 }
 
 impl<'a> PlaneEvaluator<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2], displacement: bool) -> Self {
         let components = components(displacement);
-        let loads = [(1.0, None), (friction[0], Some(0)), (friction[1], Some(1))];
-        let loads = loads.into_iter().filter(|(factor, _)| *factor != 0.0);
-        let rows = |axis| {
-            let odd = odd(axis)[..components].to_vec();
+        let loads = SurfaceLoad::all(friction);
+        let rows = |load: &SurfaceLoad| {
+            let odd = load.odd()[..components].to_vec();
             plan.transform.kernel_rows(plan.offsets, odd)
         };
         Self {
             plan,
             friction,
             components,
-            loads: loads
-                .map(|(factor, axis)| LoadRows {
-                    factor,
-                    axis,
-                    rows: rows(axis),
-                })
-                .collect(),
+            rows: loads.iter().map(rows).collect(),
+            loads,
             workspace: plan.transform.workspace(),
             near: NearTable::default(),
         }
@@ -102,7 +85,8 @@ impl<'a> PlaneEvaluator<'a> {
             }
             self.coefficients(place);
         });
-        let sets: Vec<_> = self.loads.iter().map(|l| (l.factor, &l.rows)).collect();
+        let factors = self.loads.iter().map(|load| load.factor);
+        let sets: Vec<_> = factors.zip(&self.rows).collect();
         let mut done = 0;
         for outputs in outputs.chunks_mut(TOGETHER) {
             progress(done as f64 / self.components as f64)?;
@@ -133,107 +117,19 @@ impl<'a> PlaneEvaluator<'a> {
 
     /// Computes the coefficients of all loads at `place`. On the threads of the caller.
     fn coefficients(&mut self, place: &Place) {
-        let slides = self.loads.iter().any(|load| load.axis.is_some());
-        match &self.plan.kernels {
-            Kernels::Line(plan) => self.strips(plan, place),
-            Kernels::Plane {
-                plan,
-                pressure,
-                traction,
-            } => {
-                // Made without rayon, so that a thread that waits for it cannot be asked to make it.
-                let traction = slides
-                    .then(|| traction.get_or_init(|| plan.multipliers::<9, loads::Traction>()));
-                // Stresses alone need fewer radial functions.
-                if self.components > STRESSES {
-                    self.cells::<6, COMPONENTS, loads::Pressure>(plan, pressure, place, false);
-                    if let Some(traction) = traction {
-                        self.cells::<9, COMPONENTS, loads::Traction>(plan, traction, place, true);
-                    }
-                } else {
-                    self.cells::<4, STRESSES, PressureStress>(plan, pressure, place, false);
-                    if let Some(traction) = traction {
-                        self.cells::<6, STRESSES, TractionStress>(plan, traction, place, true);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Computes the coefficients of line contact.
-    fn strips(&mut self, plan: &LinePlan, place: &Place) {
-        for LoadRows { axis, rows, .. } in &mut self.loads {
-            let values = match axis {
-                None => plan.coefficients::<6, strip::Pressure>(place),
-                Some(0) => plan.coefficients::<3, strip::Along>(place),
-                Some(_) => plan.coefficients::<6, strip::Across>(place),
-            };
-            let components = rows.count();
-            let source = |rows: Range<usize>, keep: &mut Keep| {
-                for i in rows {
-                    for k in 0..components {
-                        let row: Vec<f64> = values.iter().map(|values| values[k]).collect();
-                        keep(i, k, &row);
-                    }
-                }
-            };
-            transform_rows(self.plan, rows, &source, &mut self.workspace);
-        }
-    }
-
-    /// Computes C coefficients of pressure, or, if `lateral`, of the tractions along x and along y.
-    fn cells<const N: usize, const C: usize, L: Load<N>>(
-        &mut self,
-        plan: &Plan,
-        multipliers: &[Vec<(f64, f64)>],
-        place: &Place,
-        lateral: bool,
-    ) {
-        let kernel = Kernel::new::<L>(plan, multipliers, place);
-        let (offsets, spacing) = (self.plan.offsets, self.plan.grid.spacing());
-        let half @ [a, b] = spacing.map(|d| 0.5 * d);
-        let depth = place.depth;
-        let loads = self.loads.iter_mut();
-        for load in loads.filter(|load| load.axis.is_some() == lateral) {
-            let odd = odd(load.axis);
-            let odd: [[bool; 2]; C] = std::array::from_fn(|k| odd[k]);
-            let mut transform = |source: &RowSource| {
-                transform_rows(self.plan, &mut load.rows, source, &mut self.workspace);
-            };
-            if load.axis == Some(1) {
-                // Traction along y is traction along x with both exchanged.
-                let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
-                let source = Source {
-                    offsets,
-                    spacing,
-                    depth,
-                    odd,
-                    mean: |x, y| exchanged(kernel.at::<L>([y, x], [b, a])),
-                    point: |x, y| exchanged(kernel.far::<L>(y, x)),
-                };
-                transform(&|rows, keep| source.rows(rows, keep));
-            } else {
-                let source = Source {
-                    offsets,
-                    spacing,
-                    depth,
-                    odd,
-                    mean: |x, y| kernel.at::<L>([x, y], half),
-                    point: |x, y| kernel.far::<L>(x, y),
-                };
-                transform(&|rows, keep| source.rows(rows, keep));
-            }
-        }
+        let plan = self.plan;
+        let coefficients = Coefficients {
+            plan,
+            place,
+            offsets: plan.offsets,
+            displacement: self.components > STRESSES,
+        };
+        let (rows, workspace) = (&mut self.rows, &mut self.workspace);
+        coefficients.each(&self.loads, &mut |number, source| {
+            transform_rows(plan, &mut rows[number], source, workspace);
+        });
     }
 }
-
-/// Number of components: six stresses, and three displacements where they are asked for.
-pub(super) fn components(displacement: bool) -> usize {
-    if displacement { COMPONENTS } else { STRESSES }
-}
-
-/// Gives the coefficients of some rows to its second argument.
-type RowSource<'a> = dyn Fn(Range<usize>, &mut Keep) + Sync + 'a;
 
 /// Transforms the coefficients of `source` along y into `rows`.
 fn transform_rows(

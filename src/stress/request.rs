@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use ndarray::Array3;
+use ndarray::{Array1, Array3};
 
 use super::field::Stress;
-use super::friction::friction;
+use super::friction::Sliding;
 use super::options::{StressOptions, StressProgress};
 use super::plan::{Source, StressPlan};
-use super::plane::{PlaneEvaluator, components};
+use super::plane::{PlaneEvaluator, PointEvaluator, components};
 use super::section::{Points, place};
 use crate::body::HalfSpace;
 use crate::error::Result;
@@ -38,7 +38,7 @@ impl StressPlan {
         progress: &mut StressProgress,
     ) -> Result<Stress> {
         let (body, grid) = (&self.body, &self.grid);
-        let request = Request::checked(body, grid, self.friction_sign, depths, options)?;
+        let request = Request::checked(body, grid, &self.sliding, depths, options)?;
         check_memory(grid.shape(), request.memory())?;
         Ok(request.evaluate(self, progress))
     }
@@ -52,12 +52,12 @@ pub(super) fn stress_once(
     progress: &mut StressProgress,
 ) -> Result<Stress> {
     let (body, grid) = (source.body, source.grid);
-    let request = Request::checked(body, grid, source.friction_sign, depths, options)?;
+    let request = Request::checked(body, grid, &source.sliding, depths, options)?;
     check_memory(grid.shape(), request.memory() + source.memory())?;
     Ok(match source.plan(options.threads, progress)? {
         Some(plan) => request.evaluate(&plan, progress),
         // Stopped while planning: no depth is done.
-        None => request.result(zeros(request.components(), 0), 0),
+        None => request.result(zeros(request.components(), 0), 0, None),
     })
 }
 
@@ -79,7 +79,7 @@ impl<'a> Request<'a> {
     fn checked(
         body: &'a HalfSpace,
         grid: &'a Grid,
-        friction_sign: f64,
+        sliding: &Sliding,
         depths: &'a [f64],
         options: &'a StressOptions,
     ) -> Result<Self> {
@@ -92,7 +92,7 @@ impl<'a> Request<'a> {
             places: places.collect::<Result<_>>()?,
             points: Points::new(grid, options.section)?,
             residual: options.residual_by_layer(body)?,
-            friction: friction(body, friction_sign, options)?,
+            friction: sliding.traction(body, options)?,
         })
     }
 
@@ -103,6 +103,9 @@ impl<'a> Request<'a> {
     /// Bytes that the evaluation and its result take.
     fn memory(&self) -> u64 {
         let result = 8 * self.places.len() * self.points.count() * self.components();
+        if self.points.count() == 1 {
+            return result as u64 + PointEvaluator::memory(self.grid);
+        }
         let slides = self.options.friction != 0.0;
         result as u64 + PlaneEvaluator::memory(self.grid, slides, self.options.displacement)
     }
@@ -110,7 +113,9 @@ impl<'a> Request<'a> {
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> Stress {
         let mut fields = zeros(self.components(), self.places.len() * self.points.count());
         let done = self.fill(plan, &mut fields, progress);
-        self.result(fields, done)
+        let window = self.points.window(self.grid.shape());
+        let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window);
+        self.result(fields, done, uncertainty)
     }
 
     /// Evaluates one place after another into `fields`; returns how many were finished.
@@ -122,7 +127,10 @@ impl<'a> Request<'a> {
     ) -> usize {
         let shape = self.grid.shape();
         let count = self.points.count();
-        // Whole planes are evaluated in place, sections by way of a plane.
+        if count == 1 {
+            return self.fill_point(plan, fields, progress);
+        }
+        // Whole planes are evaluated in place, lines by way of a plane.
         let mut planes = match self.points.are_all_cells() {
             true => Vec::new(),
             false => zeros(fields.len(), shape[0] * shape[1]),
@@ -147,20 +155,62 @@ impl<'a> Request<'a> {
             for (plane, here) in planes.iter().zip(&mut here) {
                 self.points.interpolate(plane, shape, here);
             }
-            let residual = self.residual[place.layer];
-            if residual != 0.0 {
-                for in_plane in &mut here[..2] {
-                    in_plane.iter_mut().for_each(|s| *s += residual);
-                }
-            }
+            self.add_residual(place, &mut here);
         }
         // All is done: a break has nothing left to stop.
         let _ = progress(1.0);
         self.places.len()
     }
 
+    /// [`Request::fill`] where a plane has a single point, which needs no other cells than those that it
+    /// is interpolated from.
+    fn fill_point(
+        &self,
+        plan: &StressPlan,
+        fields: &mut [Vec<f64>],
+        progress: &mut StressProgress,
+    ) -> usize {
+        let (cells, weights): (Vec<_>, Vec<_>) = self.points.weighted_cells().into_iter().unzip();
+        let evaluator = PointEvaluator::new(plan, self.friction, self.options.displacement, cells);
+        for (done, place) in self.places.iter().enumerate() {
+            let total = self.places.len() as f64;
+            let mut progress = |part: f64| progress((done as f64 + part) / total);
+            let ControlFlow::Continue(found) = evaluator.evaluate(place, &mut progress) else {
+                return done;
+            };
+            for (k, field) in fields.iter_mut().enumerate() {
+                let parts = found.iter().zip(&weights);
+                field[done] = parts
+                    .map(|(components, weight)| weight * components[k])
+                    .sum();
+            }
+            let mut here: Vec<&mut [f64]> = fields
+                .iter_mut()
+                .map(|field| &mut field[done..=done])
+                .collect();
+            self.add_residual(place, &mut here);
+        }
+        let _ = progress(1.0);
+        self.places.len()
+    }
+
+    /// Adds the residual stress of the layer at `place`.
+    fn add_residual(&self, place: &Place, here: &mut [&mut [f64]]) {
+        let residual = self.residual[place.layer];
+        if residual != 0.0 {
+            for in_plane in &mut here[..2] {
+                in_plane.iter_mut().for_each(|s| *s += residual);
+            }
+        }
+    }
+
     /// The result of the first `done` places.
-    fn result(&self, fields: Vec<Vec<f64>>, done: usize) -> Stress {
+    fn result(
+        &self,
+        fields: Vec<Vec<f64>>,
+        done: usize,
+        uncertainty: Option<Array1<f64>>,
+    ) -> Stress {
         let [ox, oy] = self.points.shape;
         let mut arrays = fields.into_iter().map(|mut values| {
             values.truncate(done * self.points.count());
@@ -175,6 +225,7 @@ impl<'a> Request<'a> {
             side: self.options.side,
             friction: self.friction,
             components: std::array::from_fn(|_| next()),
+            uncertainty,
             displacement: self
                 .options
                 .displacement

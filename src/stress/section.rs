@@ -3,9 +3,10 @@
 use ndarray::Array1;
 
 use super::options::{Section, Side};
+use super::plan::MAGNITUDES;
 use crate::body::{HalfSpace, Substrate};
 use crate::error::{Error, Result, finite};
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::response::interior::Place;
 
 /// Relative distance within which a depth counts as that of an interface: depths of interfaces are
@@ -22,6 +23,13 @@ pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
         return Err(Error::Parameter {
             name: "z",
             requirement: "finite and at least 0",
+            value: z,
+        });
+    }
+    if z > MAGNITUDES[1] {
+        return Err(Error::Parameter {
+            name: "z",
+            requirement: "at most 1e60 (take other units)",
             value: z,
         });
     }
@@ -112,6 +120,28 @@ impl Points {
     /// Whether they are all cell centres.
     pub(super) fn are_all_cells(&self) -> bool {
         self.interpolation.iter().all(Option::is_none)
+    }
+
+    /// Cells that the points are interpolated from.
+    pub(super) fn window(&self, shape: [usize; 2]) -> Window {
+        [0, 1].map(|axis| match self.interpolation[axis] {
+            Some(at) => at.lower..at.upper + 1,
+            None => 0..shape[axis],
+        })
+    }
+
+    /// Cells that a single point is interpolated from, and their weights.
+    pub(super) fn weighted_cells(&self) -> Vec<([usize; 2], f64)> {
+        let along = |axis: usize| match self.interpolation[axis] {
+            Some(at) => vec![(at.lower, 1.0 - at.weight), (at.upper, at.weight)],
+            None => vec![(0, 1.0)],
+        };
+        let (rows, columns) = (along(0), along(1));
+        let pairs = rows.iter().flat_map(|(i, wx)| {
+            let pair = move |(j, wy): &(usize, f64)| ([*i, *j], wx * wy);
+            columns.iter().map(pair)
+        });
+        pairs.filter(|(_, weight)| *weight > 0.0).collect()
     }
 
     /// Writes the values of `plane`, of (nx, ny) cells, at these points to `values`.

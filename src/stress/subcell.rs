@@ -50,6 +50,8 @@
 //! | `cut` | cells cut into rectangles |
 //! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots |
 //! | `near` | the sum of the third part over the cells around |
+//! | `scale` | whether cells resolve the law of the pressure at an edge |
+//! | `uncertainty` | the error that the size of the cells leaves, at a depth |
 //! | `within` | the stresses of rectangles in a given body, and the whole for a plan |
 
 mod cut;
@@ -58,7 +60,10 @@ mod fit;
 mod near;
 mod neighbours;
 mod reconstruction;
+mod scale;
+mod uncertainty;
 mod within;
 
 pub(super) use near::{NearTable, STRESSES};
+pub(super) use scale::Pair;
 pub(super) use within::SubcellStress;

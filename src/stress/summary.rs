@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use super::derived::Peak;
-use super::friction::friction;
-use super::options::{Side, StressOptions, StressProgress};
+use super::field::Percent;
+use super::friction::Sliding;
+use super::options::{StressOptions, StressProgress};
 use super::plan::{Source, StressPlan};
 use super::plane::PlaneEvaluator;
-use super::section::place;
-use crate::body::{HalfSpace, Layer};
+use crate::body::{HalfSpace, Layer, Substrate};
 use crate::error::{Result, positive};
 use crate::grid::Grid;
 use crate::parallel::check_memory;
@@ -81,6 +81,59 @@ pub struct StressSummary {
     pub finished: bool,
 }
 
+/// Estimated error over an extreme above which a warning says so. The estimate is some three times the
+/// error (`tests/stress/resolution.rs`).
+const UNRESOLVED: f64 = 0.25;
+
+/// Error, over the largest von Mises stress of all layers, below which a warning says nothing.
+const NEGLIGIBLE: f64 = 0.02;
+
+impl StressSummary {
+    /// Warnings about what the cells do not resolve: layers and interfaces whose extremes have an estimated
+    /// error above a quarter of them.
+    pub fn warnings(&self) -> Vec<String> {
+        let peaks = self.layers.iter().map(|layer| layer.von_mises.value);
+        let negligible = NEGLIGIBLE * peaks.fold(0.0, f64::max);
+        let unresolved = |peaks: &[(&str, &Peak)]| -> Option<String> {
+            let ratio = |(name, peak): &(&str, &Peak)| {
+                let error = peak.uncertainty.filter(|error| *error > negligible)?;
+                let ratio = error / peak.value.abs();
+                (ratio > UNRESOLVED).then(|| format!("{name} by {}", Percent(ratio)))
+            };
+            let said: Vec<String> = peaks.iter().filter_map(ratio).collect();
+            (!said.is_empty()).then(|| said.join(", "))
+        };
+        let layers = self.layers.iter().filter_map(|layer| {
+            let LayerSummary {
+                von_mises,
+                tension,
+                shear,
+                ..
+            } = layer;
+            let peaks = [
+                ("von Mises", von_mises),
+                ("tension", tension),
+                ("shear", shear),
+            ];
+            // Compression everywhere is no tension to be known.
+            let known = if tension.value > 0.0 { 3 } else { 1 };
+            let said = unresolved(&peaks[..known])?;
+            Some((format!("layers[{}]", layer.layer), said))
+        });
+        let interfaces = self.interfaces.iter().filter_map(|face| {
+            let said = unresolved(&[("shear", &face.shear), ("compression", &face.compression)])?;
+            Some((format!("interfaces[{}]", face.interface), said))
+        });
+        let said = |(place, said): (String, String)| {
+            format!(
+                "the extremes in {place} are uncertain, {said}, due to the size of the cells: take \
+                 smaller cells"
+            )
+        };
+        layers.chain(interfaces).map(said).collect()
+    }
+}
+
 /// How many times a peak inside a layer is refined by a parabola. Chosen by trial.
 const REFINEMENTS: usize = 3;
 
@@ -100,13 +153,8 @@ impl StressPlan {
         options: &StressOptions,
         progress: &mut StressProgress,
     ) -> Result<StressSummary> {
-        let request = SummaryRequest::checked(
-            &self.body,
-            &self.grid,
-            self.friction_sign,
-            strengths,
-            options,
-        )?;
+        let request =
+            SummaryRequest::checked(&self.body, &self.grid, &self.sliding, strengths, options)?;
         check_memory(self.grid.shape(), request.memory)?;
         Ok(request.evaluate(self, progress))
     }
@@ -120,7 +168,7 @@ pub(super) fn summary_once(
     progress: &mut StressProgress,
 ) -> Result<StressSummary> {
     let (body, grid) = (source.body, source.grid);
-    let request = SummaryRequest::checked(body, grid, source.friction_sign, strengths, options)?;
+    let request = SummaryRequest::checked(body, grid, &source.sliding, strengths, options)?;
     check_memory(grid.shape(), request.memory + source.memory())?;
     Ok(match source.plan(options.threads, progress)? {
         Some(plan) => request.evaluate(&plan, progress),
@@ -163,7 +211,7 @@ impl<'a> SummaryRequest<'a> {
     fn checked(
         body: &HalfSpace,
         grid: &Grid,
-        friction_sign: f64,
+        sliding: &Sliding,
         strengths: &'a Strengths,
         options: &StressOptions,
     ) -> Result<Self> {
@@ -174,7 +222,7 @@ impl<'a> SummaryRequest<'a> {
         Ok(Self {
             strengths,
             residual: options.residual_by_layer(body)?,
-            friction: friction(body, friction_sign, options)?,
+            friction: sliding.traction(body, options)?,
             memory: planes + PlaneEvaluator::memory(grid, options.friction != 0.0, false),
         })
     }
@@ -211,10 +259,9 @@ impl<'a> SummaryRequest<'a> {
             top = layer.depths[1];
             summary.layers.push(layer);
         }
-        for (number, depth) in body.interfaces().into_iter().enumerate() {
-            summary
-                .interfaces
-                .extend(interface(planes, body, number, depth)?);
+        for (number, layer) in body.layers().iter().enumerate() {
+            let faces = faces(body, number, layer);
+            summary.interfaces.push(interface(planes, number, &faces)?);
         }
         ControlFlow::Continue(())
     }
@@ -240,7 +287,9 @@ fn layer(
                 break;
             };
             evaluated.push((place, planes.extremes(&place)?));
-            evaluated.sort_by(|a, b| a.0.depth.total_cmp(&b.0.depth));
+            // By the depth in the layer: depths below the surface are equal where a layer is thinner than
+            // their rounding.
+            evaluated.sort_by(|a, b| a.0.below_top.total_cmp(&b.0.below_top));
         }
     }
     let [von_mises, tension, shear] = Extremes::EACH.map(|which| {
@@ -268,32 +317,58 @@ fn layer(
     })
 }
 
-/// Summary of interface `number`, which is at `depth`; none if no layer ends there.
+/// Places on both sides of an interface. There is none below it on a rigid base.
+struct Faces {
+    above: Place,
+    below: Option<Place>,
+}
+
+/// The two sides of the interface below `layer`, which has the `number`.
+fn faces(body: &HalfSpace, number: usize, layer: &Layer) -> Faces {
+    let depth = body.layers()[..=number].iter().map(Layer::thickness).sum();
+    let next = body.layers().get(number + 1).map(Layer::material);
+    let below = next.or(match body.substrate() {
+        Substrate::Elastic(material) => Some(material),
+        Substrate::Rigid => None,
+    });
+    Faces {
+        above: Place {
+            layer: number,
+            below_top: layer.thickness(),
+            depth,
+            material: layer.material(),
+        },
+        below: below.map(|material| Place {
+            layer: number + 1,
+            below_top: 0.0,
+            depth,
+            material,
+        }),
+    }
+}
+
+/// Summary of interface `number`, which has these `faces`.
 fn interface(
     planes: &mut Planes,
-    body: &HalfSpace,
     number: usize,
-    depth: f64,
-) -> ControlFlow<(), Option<InterfaceSummary>> {
-    let Ok(above) = place(body, depth, Side::Above) else {
-        return ControlFlow::Continue(None);
-    };
+    faces: &Faces,
+) -> ControlFlow<(), InterfaceSummary> {
     let Tractions {
         tension,
         compression,
         shear,
-    } = planes.tractions(&above)?;
-    let jump = match place(body, depth, Side::Below) {
-        Ok(below) => Some(planes.jump(&below)?),
-        // On a rigid base there is no stress below.
-        Err(_) => None,
-    };
-    ControlFlow::Continue(Some(InterfaceSummary {
+    } = planes.tractions(&faces.above)?;
+    let below = faces.below.as_ref();
+    let jump = below.map(|below| planes.jump(below));
+    ControlFlow::Continue(InterfaceSummary {
         interface: number,
-        depth,
+        depth: faces.above.depth,
         tension,
         compression,
         shear,
-        jump,
-    }))
+        jump: match jump {
+            Some(jump) => Some(jump?),
+            None => None,
+        },
+    })
 }

@@ -3,6 +3,9 @@
 use super::{Extent, Surface};
 use crate::error::{Result, positive};
 
+/// Rolling direction of a shape whose axis lies along x.
+pub(super) const ACROSS: [f64; 2] = [0.0, 1.0];
+
 /// R − √(R² − s), computed without cancellation; +∞ where s > R².
 ///
 /// ```text
@@ -146,6 +149,10 @@ impl Surface for Cylinder {
 
     fn radii(&self) -> [f64; 2] {
         [f64::INFINITY, self.radius]
+    }
+
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        Some(ACROSS)
     }
 }
 

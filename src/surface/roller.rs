@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use super::profile::{CrownedProfile, Profile};
-use super::quadric::sagitta;
+use super::quadric::{ACROSS, sagitta};
 use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
@@ -158,5 +158,9 @@ impl Surface for Roller {
 
     fn radii(&self) -> [f64; 2] {
         [self.profile.radius(), self.radius]
+    }
+
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        Some(ACROSS)
     }
 }

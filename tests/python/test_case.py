@@ -200,7 +200,8 @@ def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
     found = json.loads(capsys.readouterr().out)["stress"]
     coating, substrate = found["layers"]
     value, place = summary.layers[1].von_mises
-    assert substrate["von_mises"] == {"value": value, "at": list(place)}
+    error = summary.layers[1].uncertainty["von_mises"]
+    assert substrate["von_mises"] == {"value": value, "at": list(place), "uncertainty": error}
     assert substrate["yield_safety_factor"] == 3e9 / value
     assert coating["yield_safety_factor"] is None
     assert coating["depths"] == [0.0, 40e-6]
@@ -216,6 +217,17 @@ def test_stresses_of_a_study_have_the_friction_of_the_case(tmp_path: Path) -> No
     one = study.sel({"materials.dlc.young": 420e9, "solve.load": 1000.0}, method="nearest")
     expected = same_call(load=one["solve.load"].item()).stress_summary(friction=0.2)
     assert one.interface_shear == expected.interfaces[0].shear[0]
+
+
+def test_friction_of_a_ball_needs_a_direction(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    roller = 'kind = "roller"\nradius = 5e-3\nflat_length = 8e-3\ncrown_radius = 2'
+    assert roller in STRESSED
+    ball = STRESSED.replace(roller, 'kind = "sphere"\nradius = 5e-3')
+    assert nacre_command("solve", written(tmp_path, ball)) == 2
+    message = "stress: direction must be given where friction is above 0"
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -270,14 +270,16 @@ def meshes(axes: Axes) -> list[QuadMesh]:
 
 @pytest.mark.parametrize("quantity", ["von_mises", "xx", "tension"])
 def test_a_stress_section_shows_the_stress(coated: nacre.Solution, quantity: str) -> None:
-    axes = plot.stress_section(coated, quantity, along="y", at=1e-5, rows=12, friction=0.2)
+    axes = plot.stress_section(
+        coated, quantity, along="y", at=1e-5, rows=12, friction=0.2, direction=(1.0, 0.0)
+    )
     drawn(axes.figure)
     (mesh,) = meshes(axes)
     shown = np.asarray(mesh.get_array(), dtype=np.float64)
     edges = np.asarray(mesh.get_coordinates())[:, 0, 1] / 1e6
     assert 30e-6 in edges.round(12)
     depths = 0.5 * (edges[1:] + edges[:-1])
-    field = coated.stress(depths, x=1e-5, friction=0.2)
+    field = coated.stress(depths, x=1e-5, friction=0.2, direction=(1.0, 0.0))
     values = field.principal[0] if quantity == "tension" else getattr(field, quantity)
     assert axes.get_ylim()[1] == 0.0
     np.testing.assert_allclose(shown, values / 1e9, atol=1e-9)
@@ -297,13 +299,13 @@ def test_curves_over_depth_hold_both_sides_of_an_interface(coated: nacre.Solutio
 
 
 def test_an_interface_map_shows_the_traction(coated: nacre.Solution) -> None:
-    field = coated.stress(30e-6, friction=0.1)
-    axes = plot.interface_map(coated, friction=0.1)
+    field = coated.stress(30e-6, friction=0.1, direction=(1.0, 0.0))
+    axes = plot.interface_map(coated, friction=0.1, direction=(1.0, 0.0))
     drawn(axes.figure)
     (mesh,) = meshes(axes)
     shear = np.hypot(field.xz, field.yz).T / 1e6
     np.testing.assert_allclose(np.asarray(mesh.get_array()), shear, rtol=1e-9)
-    axes = plot.interface_map(coated, quantity="normal", friction=0.1)
+    axes = plot.interface_map(coated, quantity="normal", friction=0.1, direction=(1.0, 0.0))
     (mesh,) = meshes(axes)
     np.testing.assert_allclose(np.asarray(mesh.get_array()), field.zz.T / 1e9, rtol=1e-9)
 

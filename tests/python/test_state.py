@@ -25,7 +25,9 @@ SUMMARY = SOLUTION.stress_summary(yield_stress={0: 2e9})
 RESULTS: dict[str, Any] = {
     "Solution": SOLUTION,
     "Report": SOLUTION.report,
-    "Stress": SOLUTION.stress([0.0, 1e-5], x=0.0, friction=0.1, displacement=True),
+    "Stress": SOLUTION.stress(
+        [0.0, 1e-5], x=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
+    ),
     "StressSummary": SUMMARY,
     "LayerStress": SUMMARY.layers[1],
     "InterfaceStress": SUMMARY.interfaces[0],
@@ -87,9 +89,13 @@ def test_a_newer_format_is_refused_by_the_version_that_wrote_it(kind: str) -> No
         type(RESULTS[kind]).from_dict(state)
 
 
+LATER = {"rolling_direction", "uncertainty"}
+"""Keys that states of format 1 did not have at first: without them they are None."""
+
+
 @every_result
 def test_a_missing_key_is_named(kind: str) -> None:
-    for key in RESULTS[kind].to_dict():
+    for key in RESULTS[kind].to_dict().keys() - LATER:
         state = RESULTS[kind].to_dict()
         del state[key]
         with pytest.raises(ValueError, match=rf'{kind}: the key "{key}" is missing'):

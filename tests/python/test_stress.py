@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -44,9 +45,13 @@ def test_axes_that_are_numbers_are_dropped(solution: nacre.Solution) -> None:
 
 def test_sections_are_those_of_the_planes(solution: nacre.Solution) -> None:
     depths = np.array([0.0, 5e-6, 40e-6])
-    planes = solution.stress(depths, friction=0.2, displacement=True)
-    along = solution.stress(depths, friction=0.2, displacement=True, y=GRID.y[12])
-    between = solution.stress(depths, x=0.5 * (GRID.x[3] + GRID.x[4]), friction=0.2)
+    planes = solution.stress(depths, friction=0.2, direction=(1.0, 0.0), displacement=True)
+    along = solution.stress(
+        depths, friction=0.2, direction=(1.0, 0.0), displacement=True, y=GRID.y[12]
+    )
+    between = solution.stress(
+        depths, x=0.5 * (GRID.x[3] + GRID.x[4]), friction=0.2, direction=(1.0, 0.0)
+    )
     for name in ("xx", "yy", "zz", "xy", "yz", "xz"):
         plane = getattr(planes, name)
         assert np.array_equal(getattr(along, name), plane[:, :, 12])
@@ -59,8 +64,10 @@ def test_sections_are_those_of_the_planes(solution: nacre.Solution) -> None:
 def test_the_free_function_takes_pressure_as_uniform(solution: nacre.Solution) -> None:
     # Five cells deep a solution's stresses differ by the edge alone, which it knows.
     depths = [0.0, 5e-5]
-    field = nacre.stress(COATED, GRID, solution.pressure, depths, friction=0.1)
-    known = solution.stress(depths, friction=0.1)
+    field = nacre.stress(
+        COATED, GRID, solution.pressure, depths, friction=0.1, direction=(1.0, 0.0)
+    )
+    known = solution.stress(depths, friction=0.1, direction=(1.0, 0.0))
     assert np.allclose(known.xx[1], field.xx[1], rtol=0.0, atol=1e-3 * solution.peak_pressure)
     assert np.abs(known.xx[0] - field.xx[0]).max() > 1e-3 * solution.peak_pressure
     assert np.array_equal(known.zz[0], -solution.pressure)
@@ -94,6 +101,94 @@ def test_the_counterbody_is_drawn_the_other_way(solution: nacre.Solution) -> Non
     assert close(body.yz, -0.3 * solution.pressure, solution)
     assert close(counterbody.yz, 0.3 * solution.pressure, solution)
     assert close(body.xz, 0.0, solution)
+
+
+NARROW = nacre.Grid((41, 64), (4.1e-4, 2e-4))
+
+
+def test_friction_acts_along_the_rolling_direction(tmp_path: Path) -> None:
+    roller = nacre.Roller(5e-3, flat_length=1e-4, crown_radius=0.01)
+    solution = nacre.solve(roller, COATED, HARD, grid=NARROW, load=5.0)
+    assert roller.rolling_direction == solution.report.rolling_direction == (0.0, 1.0)
+    field = solution.stress(0.0, friction=0.3)
+    assert field.friction == (0.0, 0.3)
+    assert field == solution.stress(0.0, friction=0.3, direction=(0, 2))
+    assert solution.stress(0.0, friction=0.3, body="counterbody").friction == (0.0, -0.3)
+    rough = nacre.HeightMap(np.zeros((41, 31)), spacing=1e-5)
+    shapes = (roller + rough, rough + roller.shifted(1e-5, 0.0), nacre.Cylinder(5e-3))
+    assert [shape.rolling_direction for shape in shapes] == [(0.0, 1.0)] * 3
+    # Files and pickles keep it.
+    again = nacre.load(solution.save(tmp_path / "roller.nc"))
+    assert again.stress(0.0, friction=0.3) == field
+    assert pickle.loads(pickle.dumps(solution)).report.rolling_direction == (0.0, 1.0)
+
+
+def test_friction_is_asked_for_its_direction(solution: nacre.Solution) -> None:
+    message = (
+        r"^direction must be given where friction is above 0: only rollers, cylinders and line"
+    )
+    calls: list[Any] = [
+        lambda: solution.stress(0.0, friction=0.1),
+        lambda: solution.stress_summary(friction=0.1),
+        lambda: solution.stress_plan().stress(0.0, friction=0.1),
+        lambda: nacre.stress(COATED, GRID, solution.pressure, 0.0, friction=0.1),
+    ]
+    for call in calls:
+        with pytest.raises(ValueError, match=message):
+            call()
+    assert solution.report.rolling_direction is None
+    assert nacre.Sphere(1.0).rolling_direction is None
+    # A report of an earlier version does not know it, and reads as one without.
+    roller = nacre.solve(nacre.Roller(5e-3, 1e-4, 0.01), COATED, grid=NARROW, load=5.0)
+    state = roller.to_dict()
+    del state["report"]["rolling_direction"]
+    with pytest.raises(ValueError, match=message):
+        nacre.Solution.from_dict(state).stress(0.0, friction=0.1)
+
+
+def test_a_line_contact_slides_across_its_strips() -> None:
+    grid = nacre.Grid.line(64, 3e-4)
+    solution = nacre.solve(nacre.Cylinder(5e-3), COATED, grid=grid, load=2e4)
+    field = solution.stress(0.0, friction=0.1)
+    assert field.friction == (0.0, 0.1)
+    uniform = nacre.stress(COATED, grid, solution.pressure, 0.0, friction=0.1)
+    assert uniform.friction == (0.0, 0.1)
+
+
+def test_a_stress_says_how_well_its_depth_is_resolved(solution: nacre.Solution) -> None:
+    field = solution.stress([0.0, 5e-6, 40e-6, 4e-4])
+    errors = field.uncertainty
+    assert errors is not None
+    assert (np.diff(errors) < 0.0).all()
+    assert errors[0] < 0.2 * solution.peak_pressure
+    assert errors[-1] < 1e-6 * solution.peak_pressure
+    assert pickle.loads(pickle.dumps(field)).uncertainty.tolist() == errors.tolist()
+    assert nacre.stress(COATED, GRID, solution.pressure, 0.0).uncertainty is None
+    coating, substrate = solution.stress_summary().layers
+    assert coating.uncertainty.keys() == {"von_mises", "tension", "max_shear"}
+    value, (_, _, z) = substrate.von_mises
+    (error,) = solution.stress([z]).uncertainty  # type: ignore[misc]
+    assert substrate.uncertainty["von_mises"] <= error < 5e-2 * value
+
+
+def test_stresses_that_cells_do_not_resolve_are_warned_of() -> None:
+    # A soft coating of an eighth of a cell: the tension on its faces is off by as much as itself.
+    coating = nacre.Layer(nacre.Elastic(4.6e9, 0.45), 1.25e-6)
+    body = nacre.HalfSpace(STEEL, [coating])
+    solution = nacre.solve(nacre.Sphere(2e-2), body, grid=GRID, approach=1e-6)
+    with pytest.warns(nacre.NacreWarning, match=r"^the extremes in layers\[0\] are uncertain, "):
+        summary = solution.stress_summary()
+    coating_stress = summary.layers[0]
+    assert coating_stress.uncertainty["tension"] > 0.25 * coating_stress.tension[0]
+    assert coating_stress.uncertainty["von_mises"] < 0.1 * coating_stress.von_mises[0]
+    assert summary.warnings[0].endswith("due to the size of the cells: take smaller cells")
+    assert f"warning: {summary.warnings[0]}" in str(summary)
+    # A sharp edge has no pressure to reconstruct.
+    punch = nacre.solve(nacre.FlatPunch(1e-4), STEEL, grid=GRID, load=5.0)
+    with pytest.warns(nacre.NacreWarning, match=r"^at depth 0e0 the stress is uncertain by "):
+        field = punch.stress([0.0, 1e-4])
+    assert len(field.warnings) == 1
+    assert punch.stress(1e-4).warnings == []
 
 
 def test_residual_stress_is_added_in_its_layer(solution: nacre.Solution) -> None:
@@ -134,16 +229,22 @@ def test_invariants_are_those_of_the_components(solution: nacre.Solution) -> Non
 
 def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     summary = solution.stress_summary(
-        yield_stress={"substrate": 2e9}, strength=[1e9, None], friction=0.2, residual={0: -1e9}
+        yield_stress={"substrate": 2e9},
+        strength=[1e9, None],
+        friction=0.2,
+        direction=(1.0, 0.0),
+        residual={0: -1e9},
     )
     coating, substrate = summary.layers
     (interface,) = summary.interfaces
     depths = np.linspace(0.0, 20e-6, 41)
-    fine = solution.stress(depths, side="above", friction=0.2, residual={0: -1e9})
+    fine = solution.stress(
+        depths, side="above", friction=0.2, direction=(1.0, 0.0), residual={0: -1e9}
+    )
     # Parabolas between depths: the second order of what is left between them.
     assert coating.von_mises[0] == pytest.approx(fine.von_mises.max(), rel=2e-3)
     assert coating.tension[0] == pytest.approx(fine.principal[0].max(), rel=2e-3)
-    fine = solution.stress(20e-6 + np.linspace(0.0, 150e-6, 76), friction=0.2)
+    fine = solution.stress(20e-6 + np.linspace(0.0, 150e-6, 76), friction=0.2, direction=(1.0, 0.0))
     value, (_, _, z) = substrate.von_mises
     assert value == pytest.approx(fine.von_mises.max(), rel=1e-3)
     assert z == pytest.approx(fine.peak("von_mises")[1][2], abs=3e-6)
@@ -152,8 +253,10 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     assert coating.yield_safety_factor is None
     assert coating.strength_safety_factor == pytest.approx(1e9 / coating.tension[0])
     assert substrate.strength_safety_factor is None
-    above = solution.stress(20e-6, side="above", friction=0.2, residual={0: -1e9})
-    below = solution.stress(20e-6, friction=0.2)
+    above = solution.stress(
+        20e-6, side="above", friction=0.2, direction=(1.0, 0.0), residual={0: -1e9}
+    )
+    below = solution.stress(20e-6, friction=0.2, direction=(1.0, 0.0))
     assert interface.depth == 20e-6
     assert interface.shear[0] == pytest.approx(np.hypot(below.xz, below.yz).max(), rel=1e-12)
     assert interface.tension[0] == pytest.approx(below.zz.max(), rel=1e-9)
@@ -163,8 +266,8 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     assert interface.jump is not None
     assert interface.jump[0] == pytest.approx(largest.max(), rel=1e-12)
     lines = str(summary).splitlines()
-    assert max(map(len, lines)) <= 100
-    assert [line.split("  ")[0] for line in lines if not line.startswith(" ")] == [
+    assert max(len(line) for line in lines if not line.startswith("warning")) <= 100
+    assert [line.split("  ")[0] for line in lines if line[0] not in " w"] == [
         "layers[0], 0 m to 20 µm",
         "substrate",
         "interfaces[0] at 20 µm",
@@ -204,7 +307,9 @@ def test_names_of_layers_are_keys_and_are_shown() -> None:
 
 
 def test_fields_and_summaries_are_values(solution: nacre.Solution) -> None:
-    field = solution.stress([0.0, 30e-6], y=0.0, friction=0.1, displacement=True)
+    field = solution.stress(
+        [0.0, 30e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
+    )
     again = pickle.loads(pickle.dumps(field))
     assert again == field == copy.deepcopy(field)
     assert np.array_equal(again.ux, field.ux)

@@ -27,7 +27,9 @@ def test_it_gives_the_bits_of_the_solution(solution: nacre.Solution, body: str) 
     report = solution.report
     assert plan.body == (report.body if body == "body" else report.counterbody)
     for _ in range(2):
-        assert plan.stress(1e-5, friction=0.2) == solution.stress(1e-5, friction=0.2, body=body)  # type: ignore[arg-type]
+        assert plan.stress(1e-5, friction=0.2, direction=(1.0, 0.0)) == solution.stress(
+            1e-5, friction=0.2, direction=(1.0, 0.0), body=body
+        )  # type: ignore[arg-type]
         section = plan.stress([0.0, 2e-5], y=0.0, side="above", displacement=True)
         whole = solution.stress([0.0, 2e-5], y=0.0, side="above", displacement=True, body=body)  # type: ignore[arg-type]
         assert section == whole
@@ -70,7 +72,7 @@ def test_ctrl_c_interrupts_it(solution: nacre.Solution) -> None:
     start = time.monotonic()
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        plan.stress(np.linspace(0.0, 1e-3, 20_000), friction=0.3)
+        plan.stress(np.linspace(0.0, 1e-3, 20_000), friction=0.3, direction=(1.0, 0.0))
     assert time.monotonic() - start < 10.0
 
 

@@ -92,7 +92,7 @@ def test_each_case_is_the_solve_it_describes() -> None:
 
 
 def shear_of_summary(solution: nacre.Solution) -> float:
-    return solution.stress_summary(friction=0.2).interfaces[0].shear[0]
+    return solution.stress_summary(friction=0.2, direction=(1.0, 0.0)).interfaces[0].shear[0]
 
 
 STRESSES = [
@@ -109,10 +109,14 @@ def test_stresses_are_outputs_by_name_and_by_function(tmp_path: Path) -> None:
     outputs: list[Output] = [*STRESSES, shear_of_summary]
     case = {"thickness": [2e-5], "young": YOUNG}
     store = tmp_path / "study.nc"
-    study = nacre.sweep(ball, case, outputs=outputs, stress={"friction": 0.2}, store=store)
+    study = nacre.sweep(
+        ball, case, outputs=outputs, stress={"friction": 0.2, "direction": (1, 0)}, store=store
+    )
     for young in YOUNG:
         one = study.sel(thickness=2e-5, young=young)
-        summary = nacre.solve(**ball(2e-5, young)).stress_summary(friction=0.2)
+        summary = nacre.solve(**ball(2e-5, young)).stress_summary(
+            friction=0.2, direction=(1.0, 0.0)
+        )
         (coating, substrate), (interface,) = summary.layers, summary.interfaces
         assert one.von_mises == max(coating.von_mises[0], substrate.von_mises[0])
         assert one.tension == max(coating.tension[0], substrate.tension[0])
@@ -125,6 +129,37 @@ def test_stresses_are_outputs_by_name_and_by_function(tmp_path: Path) -> None:
     other = nacre.sweep(ball, case, outputs=outputs, store=store)
     assert (other.shear_of_summary == study.shear_of_summary).all()
     assert (other.interface_shear < study.interface_shear).all()
+
+
+def test_friction_without_a_direction_is_refused_before_a_solve() -> None:
+    message = "direction must be given where friction is above 0"
+    with pytest.warns(nacre.NacreWarning):
+        study = nacre.sweep(
+            ball,
+            {"thickness": [2e-5], "young": YOUNG},
+            outputs=["tension"],
+            stress={"friction": 0.2},
+        )
+    assert all(message in str(error) for error in study.error.values.ravel())
+    with pytest.raises(ValueError, match=message):
+        design.coating_chart(
+            nacre.Sphere(5e-3), STEEL, thickness=[2e-5], young=YOUNG, friction=0.2, load=1.0
+        )
+    # A cylinder has a rolling direction.
+    grid = nacre.Grid.line(48, 2e-4)
+    chart = design.coating_chart(
+        nacre.Cylinder(5e-3),
+        STEEL,
+        thickness=[2e-5],
+        young=[420e9],
+        friction=0.2,
+        grid=grid,
+        load=1e4,
+    )
+    body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.3), 2e-5)])
+    solution = nacre.solve(nacre.Cylinder(5e-3), body, grid=grid, load=1e4)
+    field = solution.stress([0.0, 2e-5], side="above", friction=0.2, direction=(0, 1))
+    assert chart.coating_tension.item() == field.peak("tension")[0]
 
 
 def test_a_bare_body_has_no_stress_in_a_coating() -> None:
@@ -800,12 +835,20 @@ def test_the_stresses_of_the_chart_are_those_of_the_summary(friction: float) -> 
     thickness, young = [2e-6, 2e-5, 1e-4], [52.5e9, 840e9]
     options: dict[str, Any] = {"grid": GRID, "load": 10.0}
     chart = design.coating_chart(
-        nacre.Sphere(5e-3), STEEL, thickness=thickness, young=young, friction=friction, **options
+        nacre.Sphere(5e-3),
+        STEEL,
+        thickness=thickness,
+        young=young,
+        friction=friction,
+        direction=(1.0, 0.0),
+        **options,
     )
     depths = set()
     for h in thickness:
         for modulus in young:
-            summary = nacre.solve(**ball(h, modulus)).stress_summary(friction=friction)
+            summary = nacre.solve(**ball(h, modulus)).stress_summary(
+                friction=friction, direction=(1.0, 0.0)
+            )
             one = chart.sel(thickness=h, young=modulus)
             tension, (_, _, z) = summary.layers[0].tension
             depths.add(round(z / h, 9))

@@ -64,7 +64,9 @@ VALUES = MADE_BY_A_CALL | {
     "solution": SOLUTION,
     "convolution": nacre.Convolution(THIRDS, threads=2),
     "report": SOLUTION.report,
-    "stress": SOLUTION.stress([0.0, 1e-6], y=0.0, friction=0.1, displacement=True),
+    "stress": SOLUTION.stress(
+        [0.0, 1e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
+    ),
     "stress plan": SOLUTION.stress_plan(threads=1),
     "stress summary": SUMMARY,
     "layer stress": SUMMARY.layers[0],

@@ -132,6 +132,7 @@ fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
     };
     let sliding = StressOptions {
         friction: 1.0,
+        direction: Some([1.0, 0.0]),
         ..pressed.clone()
     };
     let pressed = stress(&steel()?, &grid, &pressure, &depths, &pressed)?;
@@ -292,11 +293,11 @@ fn tension_at_the_trailing_edge_of_a_sliding_line_contact() -> Result<()> {
         let pressure = Array2::from_shape_fn((1, n), |(_, j)| (1.0 - y[j] * y[j]).max(0.0).sqrt());
         let options = StressOptions {
             friction: 0.4,
-            direction: [0.0, 1.0],
+            direction: Some([0.0, 1.0]),
             ..StressOptions::default()
         };
         let field = stress(&steel()?, &grid, &pressure, &[0.0], &options)?;
-        let largest = field.components[1].fold(0.0_f64, |m, v| m.max(*v));
+        let largest = field.yy().fold(0.0_f64, |m, v| m.max(*v));
         Ok((largest / 0.8 - 1.0).abs())
     };
     let errors = [error(500)?, error(2000)?, error(8000)?];
@@ -328,7 +329,7 @@ fn equilibrium_and_hookes_law_hold() -> Result<()> {
         let pressure = hertz_pressure(&grid);
         let options = StressOptions {
             friction: 0.3,
-            direction: [1.0, 2.0],
+            direction: Some([1.0, 2.0]),
             displacement: true,
             ..StressOptions::default()
         };

@@ -94,11 +94,7 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
     for point in list(case, "axis") {
         let field = on_axis(&solution, point, thickness)?;
         let mises = field.von_mises();
-        for (values, name) in [
-            (&field.components[2], "szz"),
-            (&field.components[0], "srr"),
-            (&mises, "vm"),
-        ] {
+        for (values, name) in [(field.zz(), "szz"), (field.xx(), "srr"), (&mises, "vm")] {
             let error = (values[[0, 0, 0]] / hertz - number(point, name)).abs();
             errors[0] = errors[0].max(error / number(case, "p0_over_pH"));
         }
@@ -108,11 +104,11 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
         ..StressOptions::default()
     };
     let interface = solution.stress(&[thickness], Member::Body, &section)?;
-    let (shear, place) = largest(&interface.components[5], &interface.x);
+    let (shear, place) = largest(interface.xz(), &interface.x);
     errors[1] = (shear / hertz / number(case, "interface_shear_max_over_pH") - 1.0).abs();
     errors[2] = (place - number(case, "interface_shear_at_r_over_aH")).abs();
     let surface = solution.stress(&[0.0], Member::Body, &section)?;
-    let radial = &surface.components[0];
+    let radial = surface.xx();
     let reference = &case["surface"];
     let exact = list(reference, "srr_over_pH")
         .iter()
@@ -167,18 +163,14 @@ fn cylinder_on_a_coating() -> Result<()> {
             for point in list(&case, "axis") {
                 let field = on_axis(&solution, point, thickness)?;
                 let mises = field.von_mises();
-                for (values, name) in [
-                    (&field.components[2], "szz"),
-                    (&field.components[1], "sxx"),
-                    (&mises, "vm"),
-                ] {
+                for (values, name) in [(field.zz(), "szz"), (field.yy(), "sxx"), (&mises, "vm")] {
                     let error = (values[[0, 0, 0]] / hertz - number(point, name)).abs();
                     errors[0] = errors[0].max(error);
                 }
             }
             let interface =
                 solution.stress(&[thickness], Member::Body, &StressOptions::default())?;
-            let (shear, place) = largest(&interface.components[4], &interface.y);
+            let (shear, place) = largest(interface.yz(), &interface.y);
             errors[1] = (shear / hertz / number(&case, "interface_shear_max_over_pH") - 1.0).abs();
             errors[2] = (place - number(&case, "at_x_over_bH")).abs();
             Ok(errors)
@@ -261,10 +253,10 @@ fn disc_on_layers() -> Result<()> {
                 panic!("asked for")
             };
             for (values, name, scale) in [
-                (&field.components[2], "szz", 1.0),
-                (&field.components[5], "srz", 1.0),
-                (&field.components[0], "srr", 1.0),
-                (&field.components[1], "stt", 1.0),
+                (field.zz(), "szz", 1.0),
+                (field.xz(), "srz", 1.0),
+                (field.xx(), "srr", 1.0),
+                (field.yy(), "stt", 1.0),
                 (&displacement[2], "uz", deepest),
                 (&displacement[0], "ur", deepest),
             ] {

@@ -37,11 +37,11 @@ fn field(case: &Value, friction: f64) -> Result<Stress> {
             Side::Below
         },
         friction,
-        direction: if case["load"] == "qy" {
+        direction: Some(if case["load"] == "qy" {
             [0.0, 1.0]
         } else {
             [1.0, 0.0]
-        },
+        }),
         displacement: true,
         ..StressOptions::default()
     };

@@ -21,7 +21,7 @@ fn solution() -> Result<Solution> {
 fn options(threads: usize) -> StressOptions {
     StressOptions {
         friction: 0.3,
-        direction: [1.0, 2.0],
+        direction: Some([1.0, 2.0]),
         displacement: true,
         threads: Some(threads),
         ..StressOptions::default()

@@ -62,7 +62,7 @@ def interface_map(
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
     >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
-    >>> plot.interface_map(solution, friction=0.1).get_xlabel()
+    >>> plot.interface_map(solution, friction=0.1, direction=(1, 0)).get_xlabel()
     'x [µm]'
     """
     grid = solution.report.grid

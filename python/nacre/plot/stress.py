@@ -86,7 +86,7 @@ def stress_section(
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
     >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
-    >>> plot.stress_section(solution, friction=0.2, rows=8).get_ylabel()
+    >>> plot.stress_section(solution, friction=0.2, direction=(1, 0), rows=8).get_ylabel()
     'z [µm]'
     """
     _check(quantity)
@@ -197,10 +197,10 @@ def stress_depth(
     planned = {name: options.pop(name) for name in ("body", "threads") if name in options}
     plan = solution.stress_plan(**planned)
     above = plan.stress(edges, x=at[0], y=at[1], side="above", **options)
-    # A rigid base has no side below; there the curve ends.
-    inner = edges[:-1] if bottom in body.interfaces else edges
+    # The sides differ at interfaces alone; the curve ends above its bottom.
+    inner = [z for z in body.interfaces if z < bottom]
     below = plan.stress(inner, x=at[0], y=at[1], **options)
-    z = np.concatenate([edges, inner])
+    z = np.concatenate([above.z, below.z])
     order = np.argsort(z, kind="stable")
     drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
     length = Scale.of(bottom, "m")

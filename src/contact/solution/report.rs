@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::grid::Grid;
 use crate::influence::Method;
 use crate::response::Body;
+use crate::surface::Surface;
 
 /// Course of a solve and quality of its solution. All numbers are computed afresh at the end.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +52,10 @@ pub struct Report {
     pub method: Method,
     /// Load or approach and tilts that were asked for.
     pub motion: Motion,
+    /// Unit vector along which the shape rolls, and friction acts where no other direction is given: y in
+    /// line contact. `None` where the shape has no such direction, or it is not known, as in files of
+    /// earlier versions.
+    pub rolling_direction: Option<[f64; 2]>,
     /// The tolerance that was asked for.
     pub tolerance: f64,
     /// Seconds that the solve took, without planning.
@@ -79,7 +84,12 @@ impl Report {
     }
 
     /// A report with nothing iterated yet.
-    pub(in crate::contact) fn planned(plan: &Plan, motion: &Motion, tolerance: f64) -> Self {
+    pub(in crate::contact) fn planned(
+        plan: &Plan,
+        shape: &dyn Surface,
+        motion: &Motion,
+        tolerance: f64,
+    ) -> Self {
         Self {
             termination: Termination::Running,
             solver: None,
@@ -95,6 +105,10 @@ impl Report {
             counterbody: plan.setup.counterbody.clone(),
             method: plan.setup.method,
             motion: *motion,
+            rolling_direction: plan
+                .grid
+                .rolling_direction()
+                .or_else(|| shape.rolling_direction()),
             tolerance,
             seconds: 0.0,
         }

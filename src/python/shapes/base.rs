@@ -178,6 +178,9 @@ impl Surface for Shape {
     fn grid(&self) -> Option<Grid> {
         self.with(|shape| shape.grid())
     }
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        self.with(|shape| shape.rolling_direction())
+    }
 }
 
 /// An undeformed shape: the gap h(x, y) to the plane z = 0.
@@ -220,6 +223,16 @@ impl PyShape {
     ///        [0.25, 0.25]])
     fn gaps<'py>(&self, py: Python<'py>, grid: PyGrid) -> PyResult<Bound<'py, PyArray2<f64>>> {
         Ok(self.0.gaps(&grid.0)?.into_pyarray(py))
+    }
+
+    /// Unit vector ``(x, y)`` along which the shape rolls: across the axis of a roller or cylinder.
+    ///
+    /// `None` for shapes that roll in any direction, or in none. The sum of a shape that has one and a
+    /// shape that has none, such as a roller with roughness, has that of its part. Friction acts along
+    /// it where no `direction` is given.
+    #[getter]
+    fn rolling_direction(&self) -> Option<(f64, f64)> {
+        Surface::rolling_direction(&self.0).map(Into::into)
     }
 
     /// Shape that is moved along x and y.

@@ -66,6 +66,7 @@ impl State for PyReport {
             motion.set("moment", report.motion.moment)?;
             motion.set("tilt", report.motion.tilt)
         })?;
+        fields.set("rolling_direction", report.rolling_direction)?;
         fields.set("tolerance", report.tolerance)?;
         fields.set("seconds", report.seconds)
     }
@@ -115,6 +116,7 @@ impl State for PyReport {
                     tilt: motion.get("tilt")?,
                 })
             })?,
+            rolling_direction: fields.get_newer("rolling_direction")?,
             tolerance: fields.get("tolerance")?,
             seconds: fields.get("seconds")?,
         })
@@ -299,6 +301,15 @@ impl PyReport {
             }
         }
         Ok(keywords)
+    }
+
+    /// Unit vector ``(x, y)`` along which the shape rolls: across the axis of a roller, y in line contact.
+    ///
+    /// Friction acts along it where no `direction` is given. `None` where the shape has no such direction,
+    /// or it is not known, as in files of earlier versions.
+    #[getter]
+    fn rolling_direction(&self) -> Option<(f64, f64)> {
+        self.0.rolling_direction.map(Into::into)
     }
 
     /// Tolerance that was asked.

@@ -1,5 +1,7 @@
 //! Keyword arguments of the evaluations of stress: signature, documentation and meaning of each.
 
+use std::ffi::CString;
+
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -8,6 +10,7 @@ use crate::body::{HalfSpace, Layer, Substrate};
 use crate::python::arguments::keywords::Keywords;
 use crate::python::arguments::{Repr, real_array};
 use crate::python::background;
+use crate::python::errors::NacreWarning;
 use crate::stress::{Section, Strengths, StressOptions, StressProgress};
 
 /// Signature of the keywords that say which fields are evaluated, and where.
@@ -46,8 +49,10 @@ macro_rules! traction_docs {
 friction : float, optional
     Coefficient of friction: adds the traction ``friction * pressure``.
 direction : tuple of float, optional
-    Direction of the traction on the body, of any length, along x by default; the traction on the
-    counterbody is opposite.
+    Direction ``(x, y)`` of the traction on the body, of any length; the traction on the counterbody is
+    opposite. By default the direction in which the shape rolls, `Report.rolling_direction`: across
+    the axis of a roller or cylinder, and across the strips of a line contact. For other shapes it
+    must be given where `friction` is above 0.
 residual : dict or sequence, optional
     Residual stress [Pa], equal along x and y, that is added in a layer. A dict maps layers to
     it, by number (0 at the surface) or name, and ``\"substrate\"``; a sequence holds it from the
@@ -124,17 +129,16 @@ pub(in crate::python) fn section(
 
 /// Options with friction and residual stress.
 pub(in crate::python) fn options(keywords: &Keywords, body: &HalfSpace) -> PyResult<StressOptions> {
-    let direction = match keywords.given("direction")? {
-        None => [1.0, 0.0],
-        Some(value) => value.extract().map_err(|_| {
+    let direction = keywords.given("direction")?.map(|value| {
+        value.extract().map_err(|_| {
             let got = Repr(&value);
             PyTypeError::new_err(format!("direction must be a pair of numbers, got {got}"))
-        })?,
-    };
+        })
+    });
     let residual = by_layer(keywords, "residual", body)?;
     Ok(StressOptions {
         friction: keywords.real("friction", 0.0)?,
-        direction,
+        direction: direction.transpose()?,
         residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
         ..StressOptions::default()
     })
@@ -237,4 +241,14 @@ pub(in crate::python) fn watched<R: Send + 'static>(
         work(&mut |part: f64| caller.ask(|| (part,)))
     })?;
     Ok(result?)
+}
+
+/// Issues each message as a `nacre.NacreWarning`.
+pub(in crate::python) fn issue_warnings(py: Python<'_>, messages: Vec<String>) -> PyResult<()> {
+    let category = py.get_type::<NacreWarning>();
+    let issue = |text: String| {
+        let text = CString::new(text).unwrap_or_default();
+        PyErr::warn(py, &category, &text, 1)
+    };
+    messages.into_iter().try_for_each(issue)
 }

@@ -7,8 +7,8 @@ use pyo3::types::PyDict;
 
 use super::field::PyStress;
 use super::keywords::{
-    depths, options, progress_docs, section, section_docs, section_signature, strength_docs,
-    strength_signature, strengths, traction_docs, traction_signature, watched,
+    depths, issue_warnings, options, progress_docs, section, section_docs, section_signature,
+    strength_docs, strength_signature, strengths, traction_docs, traction_signature, watched,
 };
 use super::summary::PyStressSummary;
 use crate::python::arguments::keywords::Keywords;
@@ -26,7 +26,9 @@ use crate::stress::{Member, StressPlan};
 /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
 /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
 /// >>> plan = solution.stress_plan()
-/// >>> peaks = [plan.stress(10e-6, friction=mu).peak()[0] for mu in (0.0, 0.3)]
+/// >>> peaks = [
+/// ...     plan.stress(10e-6, friction=mu, direction=(1, 0)).peak()[0] for mu in (0.0, 0.3)
+/// ... ]
 /// >>> peaks[0] < peaks[1]
 /// True
 #[pyclass(name = "StressPlan", module = "nacre", frozen)]
@@ -104,6 +106,7 @@ impl PyStressPlan {
         let evaluated = watched(py, progress, move |progress| {
             plan.stress_watched(&depths, &options, progress)
         })?;
+        issue_warnings(py, evaluated.warnings())?;
         Ok(PyStress::new(evaluated, one, lines))
     }
 
@@ -151,6 +154,7 @@ impl PyStressPlan {
         let summary = watched(py, progress, move |progress| {
             plan.summary(&strengths, &options, progress)
         })?;
+        issue_warnings(py, summary.warnings())?;
         Ok(PyStressSummary(summary))
     }
 

@@ -4,8 +4,10 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
+use crate::python::state::{self as named, Reduced, from_dict_docs, to_dict_docs};
 use crate::stress::{InterfaceSummary, LayerSummary, Peak, StressSummary};
+
+mod state;
 
 /// Value, and point (x, y, z) where it occurs.
 type PyPeak = (f64, (f64, f64, f64));
@@ -59,6 +61,12 @@ impl PyStressSummary {
         self.0.finished
     }
 
+    /// Warnings about extremes that the cells do not resolve, each also issued as `nacre.NacreWarning`.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings()
+    }
+
     fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         displayed(slf, "stresses")
     }
@@ -75,7 +83,7 @@ impl PyStressSummary {
     /// >>> summary.to_dict()["finished"]
     /// True
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        state::to_dict(py, self)
+        named::to_dict(py, self)
     }
 
     #[doc = from_dict_docs!()]
@@ -87,11 +95,11 @@ impl PyStressSummary {
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
-        state::from_dict(data)
+        named::from_dict(data)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        state::reduce(py, self)
+        named::reduce(py, self)
     }
 
     fn __repr__(&self) -> String {
@@ -156,6 +164,20 @@ impl PyLayerStress {
         peak(&self.0.shear)
     }
 
+    /// Estimated errors of the values [Pa], by name, due to the size of the cells; see `Stress.uncertainty`.
+    ///
+    /// Where one is not small compared with its value, the cells do not resolve it: take smaller cells.
+    #[getter]
+    fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let layer = &self.0;
+        let peaks = [
+            ("von_mises", Some(&layer.von_mises)),
+            ("tension", Some(&layer.tension)),
+            ("max_shear", Some(&layer.shear)),
+        ];
+        uncertainties(py, peaks)
+    }
+
     /// Yield stress divided by the largest von Mises stress; None where no yield stress was given.
     #[getter]
     fn yield_safety_factor(&self) -> Option<f64> {
@@ -176,7 +198,7 @@ impl PyLayerStress {
     /// >>> layer.to_dict()["layer"]
     /// 0
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        state::to_dict(py, self)
+        named::to_dict(py, self)
     }
 
     #[doc = from_dict_docs!()]
@@ -188,11 +210,11 @@ impl PyLayerStress {
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
-        state::from_dict(data)
+        named::from_dict(data)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        state::reduce(py, self)
+        named::reduce(py, self)
     }
 
     fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -247,6 +269,21 @@ impl PyInterfaceStress {
         peak(&self.0.shear)
     }
 
+    /// Estimated errors of the values [Pa], by name, due to the size of the cells; see `Stress.uncertainty`.
+    ///
+    /// Where one is not small compared with its value, the cells do not resolve it: take smaller cells.
+    #[getter]
+    fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let interface = &self.0;
+        let peaks = [
+            ("tension", Some(&interface.tension)),
+            ("compression", Some(&interface.compression)),
+            ("shear", Some(&interface.shear)),
+            ("jump", interface.jump.as_ref()),
+        ];
+        uncertainties(py, peaks)
+    }
+
     /// Largest jump of the in-plane stress [Pa], and its point [m]; None on a rigid base.
     #[getter]
     fn jump(&self) -> Option<PyPeak> {
@@ -262,7 +299,7 @@ impl PyInterfaceStress {
     /// >>> interface.to_dict()["depth"]
     /// 2e-05
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        state::to_dict(py, self)
+        named::to_dict(py, self)
     }
 
     #[doc = from_dict_docs!()]
@@ -275,11 +312,11 @@ impl PyInterfaceStress {
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
-        state::from_dict(data)
+        named::from_dict(data)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        state::reduce(py, self)
+        named::reduce(py, self)
     }
 
     fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -287,96 +324,16 @@ impl PyInterfaceStress {
     }
 }
 
-fn write_peak(fields: &Fields, name: &str, peak: &Peak) -> PyResult<()> {
-    fields.set_fields(name, |fields| {
-        fields.set("value", peak.value)?;
-        fields.set("at", peak.position)
-    })
-}
-
-fn read_peak(fields: &Fields) -> PyResult<Peak> {
-    fields.read(|fields| {
-        Ok(Peak {
-            value: fields.get("value")?,
-            position: fields.get("at")?,
-        })
-    })
-}
-
-impl State for PyStressSummary {
-    const KIND: &'static str = "StressSummary";
-
-    fn write(&self, fields: &Fields) -> PyResult<()> {
-        fields.set_list("layers", &self.layers(), State::write)?;
-        fields.set_list("interfaces", &self.interfaces(), State::write)?;
-        fields.set("finished", self.0.finished)
-    }
-
-    fn read(fields: &Fields) -> PyResult<Self> {
-        Ok(Self(StressSummary {
-            layers: fields.get_list("layers", |fields| Ok(PyLayerStress::read(fields)?.0))?,
-            interfaces: fields.get_list("interfaces", |fields| {
-                Ok(PyInterfaceStress::read(fields)?.0)
-            })?,
-            finished: fields.get("finished")?,
-        }))
-    }
-}
-
-impl State for PyLayerStress {
-    const KIND: &'static str = "LayerStress";
-
-    fn write(&self, fields: &Fields) -> PyResult<()> {
-        let layer = &self.0;
-        fields.set("layer", layer.layer)?;
-        fields.set("name", &layer.name)?;
-        fields.set("depths", layer.depths)?;
-        write_peak(fields, "von_mises", &layer.von_mises)?;
-        write_peak(fields, "tension", &layer.tension)?;
-        write_peak(fields, "max_shear", &layer.shear)?;
-        fields.set("yield_safety_factor", layer.yield_safety_factor)?;
-        fields.set("strength_safety_factor", layer.strength_safety_factor)
-    }
-
-    fn read(fields: &Fields) -> PyResult<Self> {
-        Ok(Self(LayerSummary {
-            layer: fields.get("layer")?,
-            name: fields.get("name")?,
-            depths: fields.get("depths")?,
-            von_mises: read_peak(&fields.get_fields("von_mises")?)?,
-            tension: read_peak(&fields.get_fields("tension")?)?,
-            shear: read_peak(&fields.get_fields("max_shear")?)?,
-            yield_safety_factor: fields.get("yield_safety_factor")?,
-            strength_safety_factor: fields.get("strength_safety_factor")?,
-        }))
-    }
-}
-
-impl State for PyInterfaceStress {
-    const KIND: &'static str = "InterfaceStress";
-
-    fn write(&self, fields: &Fields) -> PyResult<()> {
-        let interface = &self.0;
-        fields.set("interface", interface.interface)?;
-        fields.set("depth", interface.depth)?;
-        write_peak(fields, "tension", &interface.tension)?;
-        write_peak(fields, "compression", &interface.compression)?;
-        write_peak(fields, "shear", &interface.shear)?;
-        match &interface.jump {
-            None => fields.set("jump", None::<f64>),
-            Some(jump) => write_peak(fields, "jump", jump),
+/// Estimated errors of peaks, by name, as far as they are known.
+fn uncertainties<'py, const N: usize>(
+    py: Python<'py>,
+    peaks: [(&str, Option<&Peak>); N],
+) -> PyResult<Bound<'py, PyDict>> {
+    let known = PyDict::new(py);
+    for (name, peak) in peaks {
+        if let Some(error) = peak.and_then(|peak| peak.uncertainty) {
+            known.set_item(name, error)?;
         }
     }
-
-    fn read(fields: &Fields) -> PyResult<Self> {
-        let jump = fields.get_optional("jump")?;
-        Ok(Self(InterfaceSummary {
-            interface: fields.get("interface")?,
-            depth: fields.get("depth")?,
-            tension: read_peak(&fields.get_fields("tension")?)?,
-            compression: read_peak(&fields.get_fields("compression")?)?,
-            shear: read_peak(&fields.get_fields("shear")?)?,
-            jump: jump.as_ref().map(read_peak).transpose()?,
-        }))
-    }
+    Ok(known)
 }

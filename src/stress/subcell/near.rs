@@ -82,6 +82,18 @@ impl Offset {
     fn feels_interior(&self) -> bool {
         self.by.iter().all(|by| by.unsigned_abs() <= INTERIOR_REACH)
     }
+
+    /// Stress of a cell near the edge, from the `pressures` on its pieces.
+    fn root_stress(&self, cell: &RootCell, pressures: &[f64]) -> Components {
+        let ([mx, my], [along, across]) = (cell.moments, &self.shares);
+        let mut sum = std::array::from_fn(|k| -mx * along[k] - my * across[k]);
+        for (coefficients, pressure) in self.pieces.iter().zip(pressures) {
+            for (sum, coefficient) in sum.iter_mut().zip(coefficients) {
+                *sum += coefficient * pressure;
+            }
+        }
+        sum
+    }
 }
 
 /// Stresses of the parts of a cell's load at one depth; empty where none are felt.
@@ -105,6 +117,7 @@ impl NearPlan {
     pub(super) fn new(
         pressure: &[f64],
         grid: &Grid,
+        edges: bool,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -117,7 +130,7 @@ impl NearPlan {
         let longer = sides[0].max(sides[1]);
         let reach = |side: f64| ((REACH * longer / side).ceil() as usize).min(REACH_LIMIT);
         ControlFlow::Continue(Self {
-            reconstruction: Reconstruction::new(pressure, shape, threads, progress)?,
+            reconstruction: Reconstruction::new(pressure, shape, edges, threads, progress)?,
             shape,
             sides,
             line,
@@ -241,8 +254,8 @@ impl NearPlan {
             outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
                 for (cell, stresses) in block.iter().zip(&stresses) {
                     for (offset, stress) in near.offsets.iter().zip(stresses) {
-                        if let Some(target) = self.target(cell, offset) {
-                            output[target] += stress[k];
+                        if let Some(target) = self.cell_at(cell.cell, offset.by) {
+                            output[self.number(target)] += stress[k];
                         }
                     }
                 }
@@ -285,26 +298,51 @@ impl NearPlan {
                 self.piece_pressures(cell, cut)
             }
         });
-        let [mx, my] = cell.moments;
-        let stress = |offset: &Offset| {
-            let [along, across] = &offset.shares;
-            let mut sum = std::array::from_fn(|k| -mx * along[k] - my * across[k]);
-            for (coefficients, pressure) in offset.pieces.iter().zip(&pressures[offset.cut]) {
-                for (sum, coefficient) in sum.iter_mut().zip(coefficients) {
-                    *sum += coefficient * pressure;
-                }
-            }
-            sum
-        };
+        let stress = |offset: &Offset| offset.root_stress(cell, &pressures[offset.cut]);
         near.offsets.iter().map(stress).collect()
     }
 
+    /// What [`NearPlan::add`] adds in one cell.
+    pub(super) fn sum_at(&self, near: &NearTable, target: [usize; 2]) -> Components {
+        let mut sum = [0.0; STRESSES];
+        let Reconstruction {
+            interior, roots, ..
+        } = &self.reconstruction;
+        for offset in &near.offsets {
+            let Some(cell) = self.cell_at(target, offset.by.map(|by| -by)) else {
+                continue;
+            };
+            if near.feels_interior && offset.feels_interior() {
+                let number = self.number(cell);
+                for axis in 0..2 {
+                    let slope = interior.slopes[axis][number];
+                    let curvature = interior.curvatures[axis][number];
+                    for (k, sum) in sum.iter_mut().enumerate() {
+                        *sum += offset.slopes[axis][k] * slope;
+                        *sum += offset.curvatures[axis][k] * curvature;
+                    }
+                }
+            }
+            // Roots are in the order of the grid.
+            if let Ok(found) = roots.binary_search_by_key(&cell, |root| root.cell) {
+                let pressures = self.piece_pressures(&roots[found], offset.cut);
+                let stress = offset.root_stress(&roots[found], &pressures);
+                sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += s);
+            }
+        }
+        sum
+    }
+
+    /// Number of a cell in the order of the grid.
+    pub(super) fn number(&self, [i, j]: [usize; 2]) -> usize {
+        i * self.shape[1] + j
+    }
+
     /// The cell at an offset from another, if it is on the grid.
-    fn target(&self, cell: &RootCell, offset: &Offset) -> Option<usize> {
+    fn cell_at(&self, cell: [usize; 2], by: [isize; 2]) -> Option<[usize; 2]> {
         let [nx, ny] = self.shape;
-        let [i, j] = [0, 1].map(|axis| cell.cell[axis].checked_add_signed(offset.by[axis]));
-        let (i, j) = (i.filter(|i| *i < nx)?, j.filter(|j| *j < ny)?);
-        Some(i * ny + j)
+        let [i, j] = [0, 1].map(|axis| cell[axis].checked_add_signed(by[axis]));
+        Some([i.filter(|i| *i < nx)?, j.filter(|j| *j < ny)?])
     }
 
     /// Adds component `k` of the parabolas of the interior.

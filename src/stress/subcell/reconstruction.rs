@@ -77,10 +77,11 @@ const SHIFT_LIMIT: f64 = 0.1;
 const RATE_STEP: f64 = 0.01;
 
 impl Reconstruction {
-    /// The reconstruction of `pressure`. `progress` is asked many times, with 0.
+    /// The reconstruction of `pressure`, near the edge if `edges`. `progress` is asked many times, with 0.
     pub(super) fn new(
         pressure: &[f64],
         shape: [usize; 2],
+        edges: bool,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
@@ -89,7 +90,10 @@ impl Reconstruction {
         progress(0.0)?;
         let interior = Interior::new(pressure, &distances, shape);
         progress(0.0)?;
-        let edges = edge_cells(pressure, &distances, shape, threads, progress)?;
+        let edges = match edges {
+            true => edge_cells(pressure, &distances, shape, threads, progress)?,
+            false => Vec::new(),
+        };
         let divisions = pieces(Piece::CELL, MEAN_DIVISIONS, line);
         let root = |edge| RootCell::new(edge, &divisions, line);
         let mut roots: Vec<RootCell> = threads.run(|| edges.into_par_iter().map(root).collect());
@@ -290,7 +294,7 @@ mod tests {
     fn reconstructed(pressure: &[f64], shape: [usize; 2]) -> Result<Reconstruction> {
         let threads = Threads::new(Some(2))?;
         let mut progress = |_| ControlFlow::Continue(());
-        match Reconstruction::new(pressure, shape, &threads, &mut progress) {
+        match Reconstruction::new(pressure, shape, true, &threads, &mut progress) {
             ControlFlow::Continue(reconstruction) => Ok(reconstruction),
             ControlFlow::Break(()) => panic!("nothing stops it"),
         }

@@ -4,8 +4,10 @@ use std::ops::ControlFlow;
 
 use super::cut::Cuts;
 use super::near::{Components, NearPlan, NearTable};
+use super::scale::Pair;
+use super::uncertainty::{LocalSteps, Uncertainty};
 use crate::body::HalfSpace;
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::kernel::loads::{COMPONENTS, EXCHANGED, PressureStress, TractionStress};
 use crate::kernel::plane::Kernel;
 use crate::kernel::plans::Kernels;
@@ -20,28 +22,51 @@ use crate::stress::options::StressProgress;
 pub(in crate::stress) struct SubcellStress {
     kernels: Kernels,
     near: NearPlan,
+    uncertainty: Uncertainty,
     /// The solver's pressure: tractions at the surface are those of it.
     given: Vec<f64>,
 }
 
 impl SubcellStress {
-    /// Reconstructs `pressure` within cells. `progress` is asked many times, with 0.
+    /// Reconstructs `pressure` within cells, for one body of a contact of the `pair`. `progress` is asked many times, with 0.
     pub(in crate::stress) fn plan(
-        body: &HalfSpace,
+        (body, pair): (&HalfSpace, &Pair),
         grid: &Grid,
         pressure: &[f64],
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
-        let near = NearPlan::new(pressure, grid, threads, progress)?;
+        let [dx, dy] = grid.spacing();
+        let side = if grid.is_line() { dy } else { dx.min(dy) };
+        let edges = pair.root_law_holds(side);
+        let near = NearPlan::new(pressure, grid, edges, threads, progress)?;
         let reach = near.farthest();
         let kernels =
             threads.run(|| Kernels::new::<4, PressureStress>(body, grid, Cuts::SMALLEST, reach));
+        let uncertainty = Uncertainty::new((body, pair), grid, pressure, &near.reconstruction);
         ControlFlow::Continue(Self {
             kernels,
+            uncertainty,
             near,
             given: pressure.to_vec(),
         })
+    }
+
+    /// Largest steps of the pressure that are felt in the cells of `window`.
+    pub(in crate::stress) fn steps(&self, window: &Window) -> LocalSteps {
+        self.uncertainty.steps(&self.given, window)
+    }
+
+    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells, where the
+    /// pressure has these steps.
+    pub(in crate::stress) fn uncertainty(
+        &self,
+        body: &HalfSpace,
+        place: &Place,
+        friction: [f64; 2],
+        steps: LocalSteps,
+    ) -> f64 {
+        self.uncertainty.at(body, place, friction, steps)
     }
 
     /// Pressure that is taken as uniform over cells.
@@ -109,11 +134,33 @@ impl SubcellStress {
     ) {
         self.near.add(near, stresses);
         if near.at_surface() {
-            let [fx, fy] = friction;
-            for (k, factor) in [(2, 1.0), (4, fy), (5, fx)] {
+            for (k, factor) in tractions(friction) {
                 let tractions = stresses[k].iter_mut().zip(&self.given);
                 tractions.for_each(|(stress, p)| *stress = -factor * p);
             }
         }
     }
+
+    /// What [`SubcellStress::add`] does, for the `stresses` of one cell.
+    pub(in crate::stress) fn add_at(
+        &self,
+        near: &NearTable,
+        friction: [f64; 2],
+        cell: [usize; 2],
+        stresses: &mut [f64],
+    ) {
+        let added = self.near.sum_at(near, cell);
+        stresses.iter_mut().zip(added).for_each(|(s, d)| *s += d);
+        if near.at_surface() {
+            let p = self.given[self.near.number(cell)];
+            for (k, factor) in tractions(friction) {
+                stresses[k] = -factor * p;
+            }
+        }
+    }
+}
+
+/// Components of the traction at the surface, σ_zz, σ_yz and σ_xz, and their ratios to minus the pressure.
+fn tractions([fx, fy]: [f64; 2]) -> [(usize, f64); 3] {
+    [(2, 1.0), (4, fy), (5, fx)]
 }

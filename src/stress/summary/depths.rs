@@ -15,6 +15,9 @@ const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 /// Depth, in a layer's thickness, below which its bottom face stands for the depths of [`DEPTHS`].
 const BOTTOM: f64 = 0.999;
 
+/// Distance, in a layer's thickness, below which two depths are one.
+const NEAREST: f64 = 1e-6;
+
 /// Places in each layer and in the substrate, from the surface down.
 pub(super) fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
     let mut top = 0.0;
@@ -32,6 +35,8 @@ pub(super) fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
         depths.retain(|z| *z < BOTTOM * h);
         depths.extend([0.0, h]);
         depths.sort_by(f64::total_cmp);
+        // Refinement divides by the distances between depths.
+        depths.dedup_by(|next, before| *next - *before < NEAREST * h);
         let place = |z: &f64| at(count, top, *z, layer.material());
         regions.push(depths.iter().map(place).collect());
         top += h;
@@ -86,8 +91,24 @@ pub(super) fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Layer;
     use crate::error::Result;
     use crate::material::Elastic;
+
+    /// Where the thickness is the half-width, some depths come from both lists: each is a place once.
+    #[test]
+    fn depths_increase() -> Result<()> {
+        let material = Elastic::new(1.0, 0.3)?;
+        for thickness in [1e-18, 0.1, 1.0, 1.0 + 1e-12, 4.0] {
+            let layers = [1e3, thickness].map(|h| Layer::new(material, h));
+            let [upper, lower] = layers;
+            let body = HalfSpace::new(material, [upper?, lower?])?;
+            for region in regions(&body, 1.0) {
+                assert!(region.is_sorted_by(|a, b| a.below_top < b.below_top));
+            }
+        }
+        Ok(())
+    }
 
     /// On a parabola its vertex is found exactly; evaluated there, nothing is left to find.
     #[test]

@@ -2,7 +2,6 @@
 
 use std::ops::ControlFlow;
 
-use crate::grid::Grid;
 use crate::response::interior::Place;
 use crate::stress::derived::{Peak, Tensor};
 use crate::stress::options::StressProgress;
@@ -11,7 +10,8 @@ use crate::stress::plane::PlaneEvaluator;
 
 /// The plane of stress that was evaluated last, and what evaluates the next.
 pub(super) struct Planes<'a, 'b> {
-    grid: &'a Grid,
+    plan: &'a StressPlan,
+    friction: [f64; 2],
     residual: &'a [f64],
     evaluator: PlaneEvaluator<'a>,
     /// The six components at the cells.
@@ -80,7 +80,8 @@ impl<'a, 'b> Planes<'a, 'b> {
     ) -> Self {
         let cells = plan.grid.shape().iter().product();
         Self {
-            grid: &plan.grid,
+            plan,
+            friction,
             residual,
             evaluator: PlaneEvaluator::new(plan, friction, false),
             fields: std::array::from_fn(|_| vec![0.0; cells]),
@@ -116,13 +117,17 @@ impl<'a, 'b> Planes<'a, 'b> {
         Tensor::new(self.fields.each_ref().map(|field| field[cell]))
     }
 
-    fn peak(&self, largest: Largest, depth: f64) -> Peak {
-        let ny = self.grid.shape()[1];
+    fn peak(&self, largest: Largest, place: &Place) -> Peak {
+        let ny = self.plan.grid.shape()[1];
         let Largest { value, cell } = largest;
-        let (x, y) = (self.grid.x()[cell / ny], self.grid.y()[cell % ny]);
+        let [i, j] = [cell / ny, cell % ny];
+        let window = [i..i + 1, j..j + 1];
+        let places = std::slice::from_ref(place);
+        let error = self.plan.uncertainties(places, self.friction, &window);
         Peak {
             value,
-            position: [x, y, depth],
+            position: [self.plan.grid.x()[i], self.plan.grid.y()[j], place.depth],
+            uncertainty: error.map(|errors| errors[0]),
         }
     }
 
@@ -143,9 +148,9 @@ impl<'a, 'b> Planes<'a, 'b> {
             }
         }
         ControlFlow::Continue(Extremes {
-            von_mises: self.peak(von_mises, place.depth),
-            tension: self.peak(tension, place.depth),
-            shear: self.peak(shear, place.depth),
+            von_mises: self.peak(von_mises, place),
+            tension: self.peak(tension, place),
+            shear: self.peak(shear, place),
         })
     }
 
@@ -161,9 +166,9 @@ impl<'a, 'b> Planes<'a, 'b> {
         }
         compression.value = -compression.value;
         ControlFlow::Continue(Tractions {
-            tension: self.peak(tension, place.depth),
-            compression: self.peak(compression, place.depth),
-            shear: self.peak(shear, place.depth),
+            tension: self.peak(tension, place),
+            compression: self.peak(compression, place),
+            shear: self.peak(shear, place),
         })
     }
 
@@ -183,6 +188,6 @@ impl<'a, 'b> Planes<'a, 'b> {
             let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
             largest.offer(mean.abs() + half.hypot(xy), cell);
         }
-        ControlFlow::Continue(self.peak(largest, below.depth))
+        ControlFlow::Continue(self.peak(largest, below))
     }
 }

@@ -1,0 +1,184 @@
+//! Estimate of the error that stress below a solved contact has from the size of its cells.
+//!
+//! Within a cell the pressure is known up to a part of the step to the next cell: a quarter where it is
+//! taken as uniform. Where an edge is reconstructed it is a thirtieth, and as much more as the bodies
+//! respond otherwise to a wave than to waves of a cell, from which the edge was found; a hundredth in the
+//! interior, where it is parabolic. A step on cells of
+//! side d holds wavelengths of about 4 d and less, shorter ones in proportion to their length, and each
+//! reaches a depth z with the transfer of the layered body, (1 + αz) e^{−αz} and the like:
+//!
+//! ```text
+//! max over axes, α ≥ 1.5/d, components:   share · step · |D(α; z)| · 1.5/(α d)
+//! ```
+//!
+//! D is the stress under a unit pressure of wavenumber α, and under the friction in proportion to it. On
+//! hard coatings it is large at wavelengths of a few thicknesses.
+
+use crate::body::HalfSpace;
+use crate::grid::{Grid, Window};
+use crate::response::interior::{Column, Place};
+
+use super::edge::BAND;
+use super::neighbours::edge_distances;
+use super::reconstruction::Reconstruction;
+use super::scale::Pair;
+
+/// Share of a step that is not known where pressure is uniform over cells. Chosen by trial.
+const UNIFORM_SHARE: f64 = 0.25;
+
+/// Share of a step that is not known where an edge is reconstructed. Chosen by trial.
+const EDGE_SHARE: f64 = 0.03;
+
+/// Share of a step that is not known in the interior. Below Hertz' contact of 128 cells to the half-width,
+/// stresses there err by 3.3e-4 of the peak pressure (`tests/stress/edge.rs`), and a step is a 34th of it.
+const INTERIOR_SHARE: f64 = 0.01;
+
+/// Share of a step that is not known where an edge is reconstructed, per relative change of the response.
+/// Chosen by trial.
+const SHARE_OF_CHANGE: f64 = 2.0;
+
+/// Wavenumber of the longest waves of a step, times the side of a cell. Chosen by trial.
+const LONGEST: f64 = 1.5;
+
+/// Wavenumbers that are looked at, over that of the longest waves.
+const RATIO: f64 = 100.0;
+
+/// Number of those wavenumbers, even in their logarithm: four to an octave.
+const COUNT: u32 = 27;
+
+/// Distance in cells to which a step is felt near the surface.
+const REACH: usize = 6;
+
+/// What is not known of the pressure of a solved contact, at the wavenumbers that matter.
+#[derive(Debug)]
+pub(super) struct Uncertainty {
+    shape: [usize; 2],
+    known: Vec<Known>,
+    /// Waves along x and along y.
+    waves: [Vec<Wave>; 2],
+}
+
+/// One wave of a step of the pressure.
+#[derive(Debug)]
+struct Wave {
+    /// Its pressure over the step, by how well the pressure is known.
+    shares: [f64; 3],
+    /// The body at its wavenumber.
+    column: Column,
+}
+
+/// Largest steps of the pressure from cell to cell along one axis \[Pa\], by how well the pressure is known
+/// in the worse of the two cells.
+type Steps = [f64; 3];
+
+/// Largest steps along x and along y in a part of the grid.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::stress) struct LocalSteps([Steps; 2]);
+
+impl Uncertainty {
+    pub(super) fn new(
+        (body, pair): (&HalfSpace, &Pair),
+        grid: &Grid,
+        pressure: &[f64],
+        reconstruction: &Reconstruction,
+    ) -> Self {
+        let shape = grid.shape();
+        let distances = edge_distances(pressure, shape, BAND + 1);
+        let state = |distance: &u8| match *distance {
+            1..=BAND => Known::Mean,
+            _ => Known::Well,
+        };
+        let mut known: Vec<Known> = distances.iter().map(state).collect();
+        for root in &reconstruction.roots {
+            known[root.cell[0] * shape[1] + root.cell[1]] = Known::Edge;
+        }
+        let waves = |spacing: f64| {
+            let of_cell = pair.response(1.0 / spacing);
+            let wave = |k: u32| {
+                let ratio = RATIO.powf(f64::from(k) / f64::from(COUNT - 1));
+                let alpha = ratio * LONGEST / spacing;
+                let change = (pair.response(alpha) / of_cell - 1.0).abs();
+                let share = (SHARE_OF_CHANGE * change).clamp(EDGE_SHARE, UNIFORM_SHARE);
+                Wave {
+                    shares: [INTERIOR_SHARE, share, UNIFORM_SHARE].map(|share| share / ratio),
+                    column: Column::new(body, alpha),
+                }
+            };
+            (0..COUNT).map(wave).collect()
+        };
+        Self {
+            shape,
+            known,
+            waves: grid.spacing().map(waves),
+        }
+    }
+
+    /// Largest steps of `pressure` that are felt in the cells of `window`.
+    pub(super) fn steps(&self, pressure: &[f64], window: &Window) -> LocalSteps {
+        let [nx, ny] = self.shape;
+        let rows = window[0].start.saturating_sub(REACH)..(window[0].end + REACH).min(nx);
+        let columns = window[1].start.saturating_sub(REACH)..(window[1].end + REACH).min(ny);
+        let count = |steps: &mut Steps, a: usize, b: usize| {
+            let step = (pressure[a] - pressure[b]).abs();
+            let largest = &mut steps[self.known[a].max(self.known[b]) as usize];
+            *largest = largest.max(step);
+        };
+        let [mut along, mut across] = [Steps::default(); 2];
+        for i in rows.clone() {
+            for j in columns.clone() {
+                let cell = i * ny + j;
+                if i + 1 < rows.end {
+                    count(&mut along, cell, cell + ny);
+                }
+                if j + 1 < columns.end {
+                    count(&mut across, cell, cell + 1);
+                }
+            }
+        }
+        LocalSteps([along, across])
+    }
+
+    /// Estimated error \[Pa\] of the components of the stress at `place`, under pressure and `friction` times
+    /// it, where the pressure has these steps.
+    pub(super) fn at(
+        &self,
+        body: &HalfSpace,
+        place: &Place,
+        friction: [f64; 2],
+        LocalSteps(steps): LocalSteps,
+    ) -> f64 {
+        let friction = friction[0].hypot(friction[1]);
+        let material = place.material;
+        let error = |(steps, wave): (Steps, &Wave)| {
+            let parts = wave.shares.iter().zip(steps);
+            let pressure = parts.map(|(share, step)| share * step).fold(0.0, f64::max);
+            if pressure <= 0.0 {
+                return 0.0;
+            }
+            let fields = wave.column.at(body, place);
+            let [pressed, sheared] = [&fields.pressure, &fields.shear].map(|state| {
+                let (along, across) = state.lateral_stress(material);
+                [state.p, state.tau, along, across].map(f64::abs)
+            });
+            let (q, u) = fields.twist;
+            let twisted = q.abs().max((material.shear() * u).abs());
+            let pairs = pressed.into_iter().zip(sheared);
+            let in_plane = pairs.map(|(pressed, sheared)| pressed + friction * sheared);
+            pressure * in_plane.fold(friction * twisted, f64::max)
+        };
+        let waves = self.waves.iter().zip(steps);
+        let waves = waves.flat_map(|(waves, steps)| waves.iter().map(move |wave| (steps, wave)));
+        waves.map(error).fold(0.0, f64::max)
+    }
+}
+
+/// How well the pressure within a cell is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Known {
+    /// Parabolic, or without pressure.
+    Well,
+    /// A root near a smooth edge.
+    Edge,
+    /// Uniform.
+    Mean,
+}
