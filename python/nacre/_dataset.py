@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._journal import Record
 from nacre._outputs import AXES, ERROR, Output, errors
-from nacre.units import UNITS, symbol, system
+from nacre.units import LINE_UNITS, UNITS, symbol, system
 
 if TYPE_CHECKING:
     import xarray
@@ -69,6 +69,7 @@ def assembled(
     """Return the Dataset of all cases."""
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
+    units = LINE_UNITS if any(record.get("line") for record in records) else UNITS
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
         found = [a.shape for a in arrays if a is not None]
@@ -86,14 +87,14 @@ def assembled(
             if rank == 0:  # every case failed
                 data = np.full((len(records), 2), np.nan)
                 inner = (2,)
-        dataset[name] = ((*dims, *extra_dims), data.reshape(*shape, *inner))
-        if isinstance(output, str) and output in UNITS:
-            dataset[name].attrs["units"] = symbol(UNITS[output])
+        dataset[name] = ((*dims, *extra_dims), data.reshape((*shape, *inner)))
+        if isinstance(output, str) and output in units:
+            dataset[name].attrs["units"] = symbol(units[output])
     for name, quantity in errors(outputs, {*outputs, *map(str, dataset.coords)}).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"
-        dataset[name].attrs = {"units": symbol(UNITS[quantity]), "long_name": words}
+        dataset[name].attrs = {"units": symbol(units[quantity]), "long_name": words}
     for name, texts in {
         "error": [r.get("error", "") for r in records],
         "warnings": ["\n".join(r.get("warnings", [])) for r in records],

@@ -152,8 +152,9 @@ def load_curve(
     }
     case = {"shape": shape, "body": body, **asked}
     dataset = sweep(case, {"load": load}, outputs=outputs, **study)
-    dataset["load"].attrs["units"] = symbol("N")
-    dataset["stiffness"].attrs["units"] = symbol("N/m")
+    line = isinstance(asked.get("grid"), core.Grid) and asked["grid"].is_line
+    dataset["load"].attrs["units"] = symbol("N/m" if line else "N")
+    dataset["stiffness"].attrs["units"] = symbol("Pa" if line else "N/m")
     return dataset
 
 

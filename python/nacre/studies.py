@@ -284,11 +284,12 @@ def _solve(
         threads = {"threads": arguments["threads"]}
         values = evaluated(solution, outputs, threads | stress, unresolved)
         kinds = [warning["kind"] for warning in solution.report.to_dict()["warnings"]]
-        return {
+        record = {
             "values": values,
             "warnings": solution.report.warnings + unresolved,
             "kinds": kinds + ["unresolved stress"] * len(unresolved),
         }
+        return record | ({"line": True} if solution.report.grid.is_line else {})
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
 

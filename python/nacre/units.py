@@ -30,6 +30,8 @@ UNITS = {
     "interface_tension": "Pa",
 }
 """SI units of a solution's quantities, and of the stresses that studies keep."""
+LINE_UNITS = UNITS | {"load": "N/m", "moment": "N", "contact_area": "m"}
+"""SI units of the same quantities of a line contact, whose loads and areas are per length."""
 PARAMETERS = {
     "load": "N",
     "approach": "m",

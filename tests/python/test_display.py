@@ -247,3 +247,17 @@ def test_units_that_are_set_are_in_tables_and_files(tmp_path: Path) -> None:
     heading = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0]
     assert heading == "along,x [mm],y [mm],pressure [MPa],gap [mm],displacement [mm]"
     assert nacre.load(tmp_path / "ball.nc") == BALL
+
+
+def test_a_study_of_lines_has_loads_and_areas_per_length() -> None:
+    grid = nacre.Grid.line(64, 4e-4)
+    case = {"shape": nacre.Cylinder(5e-3), "body": STEEL, "grid": grid, "load": 5e4}
+    outputs = ["load", "moment", "contact_area", "peak_pressure"]
+    study = nacre.sweep(case, {}, outputs=outputs, progress=False)
+    units = [study[name].attrs["units"] for name in outputs]
+    assert units == ["N/m", "N", "m", "Pa"]
+    steel, grid = nacre.Elastic(210e3, 0.3), nacre.Grid.line(64, 0.4)
+    with nacre.display_units("N-mm-MPa"):
+        curve = design.load_curve(nacre.Cylinder(5.0), steel, [50.0], grid=grid)
+    assert curve["load"].attrs["units"] == "N/mm"
+    assert curve.stiffness.attrs["units"] == "MPa"
