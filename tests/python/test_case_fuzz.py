@@ -15,7 +15,7 @@ import pytest
 from nacre.case import Case, CaseError
 
 MATERIAL = {"young": 210e9, "poisson": 0.3, "yield_stress": 1e9, "strength": 2e9}
-LAYER = {"material": "steel", "thickness": 1e-5, "interface": "bonded"}
+LAYER = {"material": "steel", "thickness": 1e-5, "interface": "bonded", "name": "DLC"}
 SHAPES: list[dict[str, Any]] = [
     {"kind": "sphere", "radius": 5e-3, "shift": [0.0, 1e-6]},
     {"kind": "roller", "radius": 5e-3, "flat_length": 1e-3, "crown_radius": 1.0, "length": 2e-3},
