@@ -105,7 +105,7 @@ STRESSES = [
 ]
 
 
-@pytest.mark.filterwarnings("ignore:2 of 2 cases have warnings: unresolved stress")
+@pytest.mark.filterwarnings("ignore:2 of 2 cases have warnings")
 def test_stresses_are_outputs_by_name_and_by_function(tmp_path: Path) -> None:
     outputs: list[Output] = [*STRESSES, shear_of_summary]
     case = {"thickness": [2e-5], "young": YOUNG}
