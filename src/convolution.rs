@@ -14,6 +14,7 @@ use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
 use crate::parallel::Threads;
 use crate::parallel::{Lease, Pool};
 
+mod periodic;
 mod stages;
 
 /// The convolution of a pressure with influence coefficients, planned once and applied many times.
@@ -162,38 +163,6 @@ impl Convolution {
             self.idle.clone(),
             Arc::clone(&self.clock),
         )
-    }
-
-    /// The periodic convolution with `coefficients`, and its inverse, which is symmetric and positive
-    /// definite and preconditions the exact convolution. The mesh is not padded, and each of them costs
-    /// a fifth of an exact convolution.
-    ///
-    /// Vollebregt, J. Comput. Phys. 257 (2014) 333, doi:10.1016/j.jcp.2013.10.005.
-    pub(crate) fn preconditioner(&self, coefficients: &ArrayRef2<f64>) -> [Self; 2] {
-        // Bound on the smallest entry of the spectrum, as a share of the largest, so that the inverse
-        // is positive for any coefficients. Exact coefficients have larger entries.
-        const FLOOR: f64 = 1e-6;
-        let shape = [coefficients.nrows(), coefficients.ncols()];
-        let transform = PaddedTransform::plan_periodic(shape, &self.threads);
-        let idle = self.idle.clone();
-        let periodic = Self::with(
-            coefficients,
-            transform,
-            &self.threads,
-            idle,
-            Arc::clone(&self.clock),
-        );
-        let inverse = || (periodic.transform).inverse_spectrum(&periodic.spectrum, FLOOR);
-        let inverse = periodic.clock.during(inverse);
-        let inverse = Self {
-            spectrum: Arc::new(inverse),
-            transform: periodic.transform.clone(),
-            threads: Arc::clone(&self.threads),
-            idle: periodic.idle.clone(),
-            clock: Arc::clone(&periodic.clock),
-            ..periodic
-        };
-        [periodic, inverse]
     }
 
     /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.

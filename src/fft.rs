@@ -162,6 +162,16 @@ impl PaddedTransform {
         block_rows(shape[0]) as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
     }
 
+    /// Periods of the mesh, in cells.
+    pub(crate) fn periods(&self) -> [usize; 2] {
+        self.padded
+    }
+
+    /// Points of the mesh.
+    pub(crate) fn points(&self) -> f64 {
+        self.padded[0] as f64 * self.padded[1] as f64
+    }
+
     /// Number of stored columns of the half spectrum.
     fn columns(&self) -> usize {
         self.padded[1] / 2 + 1

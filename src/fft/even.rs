@@ -61,12 +61,27 @@ impl PaddedTransform {
         EvenSpectrum(spectrum)
     }
 
-    /// Spectrum of the inverse kernel. Entries of `spectrum` below `floor` times the largest entry are
-    /// raised to this bound, so that the inverse is positive and finite.
-    pub(crate) fn inverse_spectrum(&self, spectrum: &EvenSpectrum, floor: f64) -> EvenSpectrum {
+    /// Smallest and largest entry of `spectrum`.
+    pub(crate) fn extremes(&self, spectrum: &EvenSpectrum) -> [f64; 2] {
+        let (columns, rows) = (self.columns(), self.quarter_rows());
+        let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
+        for (block, values) in spectrum.0.chunks_exact(rows * BLOCK).enumerate() {
+            // The last block may have columns that are not used.
+            let width = BLOCK.min(columns - block * BLOCK);
+            for row in values.chunks_exact(BLOCK) {
+                for &c in &row[..width] {
+                    extremes = [extremes[0].min(c), extremes[1].max(c)];
+                }
+            }
+        }
+        extremes
+    }
+
+    /// Spectrum of the inverse kernel. Entries of `spectrum` below `bound` are raised to it, so that the
+    /// inverse is positive and finite.
+    pub(crate) fn inverse_spectrum(&self, spectrum: &EvenSpectrum, bound: f64) -> EvenSpectrum {
         let points = self.padded[0] as f64 * self.padded[1] as f64;
-        let largest = spectrum.0.iter().fold(0.0, |a: f64, &b| a.max(b));
-        let inverse = |c: &f64| 1.0 / (c.max(floor * largest) * points * points);
+        let inverse = |c: &f64| 1.0 / (c.max(bound) * points * points);
         let values = spectrum.0.iter().map(inverse).collect();
         EvenSpectrum(values)
     }
