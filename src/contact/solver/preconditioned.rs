@@ -17,6 +17,7 @@
 mod arrays;
 #[cfg(test)]
 mod comparison;
+mod course;
 mod deflation;
 mod steps;
 #[cfg(test)]
@@ -36,6 +37,7 @@ use crate::parallel::{
 };
 use arrays::Arrays;
 pub(crate) use arrays::Memory;
+use course::Course;
 
 /// Approximations of the convolution, periodic on the window.
 pub(crate) struct Approximation {
@@ -64,8 +66,8 @@ pub(crate) struct Preconditioned<'a> {
     pub(crate) work: f64,
 }
 
-/// Iterations after which a contact of a few cells is left to [`active_set`]. By then most contacts have
-/// converged; chosen by trial.
+/// Iterations by which most contacts have converged. After them a contact of a few cells is left to
+/// [`active_set`], and images do not grow old; chosen by trial.
 const PATIENCE: usize = 20;
 
 /// What the last step left to do before the displacement u is that of the pressure.
@@ -84,8 +86,8 @@ enum Displacement {
 enum Images {
     /// The images belong to the contact as it was last seen.
     Current,
-    /// The images belong to an earlier contact.
-    Stale,
+    /// The contact has changed this many times since the images were computed.
+    Stale(usize),
 }
 
 /// Outcome of a step.
@@ -129,8 +131,9 @@ impl<'a> Preconditioned<'a> {
     }
 
     /// Solves from the balanced pressure `p`, which becomes the solution. It ends early with
-    /// [`Termination::IterationLimit`] where [`active_set`] can go on. Displacements are sums over the
-    /// steps and carry their rounding: a caller that needs them computes them afresh.
+    /// [`Termination::IterationLimit`] where [`active_set`] can go on, and with the best pressure where it
+    /// stagnates. Displacements are sums over the steps and carry their rounding: a caller that needs them
+    /// computes them afresh.
     pub(crate) fn solve(
         &mut self,
         p: &mut [f64],
@@ -138,6 +141,7 @@ impl<'a> Preconditioned<'a> {
         watch: &mut Watch,
     ) -> Outcome {
         let mut last = Step::Truncated;
+        let mut course = Course::new();
         self.start(p);
         for iterations in 0.. {
             let Assessment {
@@ -163,7 +167,11 @@ impl<'a> Preconditioned<'a> {
             if limited || (iterations >= PATIENCE && active_set::is_small(p)) {
                 return end(Termination::IterationLimit);
             }
-            self.prepare_images(p, contact_changed);
+            if course.stagnates(iterations, quality, p) {
+                course.restore(p);
+                return end(Termination::IterationLimit);
+            }
+            self.prepare_images(p, contact_changed, iterations);
             last = self.step(p, last);
             if last == Step::Stalled {
                 return end(Termination::IterationLimit);

@@ -1,7 +1,7 @@
 //! Search directions that leave force and moments as they are.
 
 use super::arrays::Arrays;
-use super::{Images, Preconditioned};
+use super::{Images, PATIENCE, Preconditioned};
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fit::Products;
 use crate::convolution::Convolution;
@@ -20,15 +20,25 @@ impl Preconditioned<'_> {
     /// Computes the images M B of the loaded degrees of freedom anew where they must belong to the contact.
     ///
     /// The projection is symmetric only if the images belong to the contact. While the contact changes
-    /// they need not; once it stays, they must.
-    pub(super) fn prepare_images(&mut self, p: &[f64], contact_changed: bool) {
-        if contact_changed {
-            self.images = Images::Stale;
-        } else if self.images == Images::Stale {
-            self.invert_freedoms(p);
-            self.images = Images::Current;
-            self.conjugacy.restart();
-        }
+    /// they need not; once it stays, they must. Where it still changes after so many `iterations` that most
+    /// contacts have converged, old images may be the reason: they grow old no more.
+    pub(super) fn prepare_images(&mut self, p: &[f64], contact_changed: bool, iterations: usize) {
+        // Age of the oldest images after [`PATIENCE`] iterations; chosen by trial.
+        const OLDEST: usize = 3;
+        self.images = match self.images {
+            Images::Current if !contact_changed => return,
+            Images::Current => Images::Stale(1),
+            Images::Stale(age) if contact_changed && (age < OLDEST || iterations < PATIENCE) => {
+                Images::Stale(age + 1)
+            }
+            Images::Stale(_) => {
+                self.invert_freedoms(p);
+                if !contact_changed {
+                    self.conjugacy.restart();
+                }
+                Images::Current
+            }
+        };
     }
 
     /// Applies M to the loaded degrees of freedom, restricted to the contact.

@@ -22,6 +22,8 @@ pub(super) enum Branch {
     ManyJoined,
     /// Images were renewed, since the contact stayed.
     Renewed,
+    /// Images were renewed, since they were old and the iteration was long.
+    TooOld,
     /// The oblique projection did not descend.
     Orthogonal,
     /// The conjugate direction did not descend.
@@ -48,9 +50,10 @@ pub(super) struct Textbook<'a> {
     direction: Field,
     /// MB_C, with the contact C of the time when the images were made.
     images: [Field; 3],
-    /// Whether the contact changed in the last assessment, and in the one before.
+    /// Whether the contact changed in the last assessment.
     changed: bool,
-    stale: bool,
+    /// Changes of the contact since the images were made.
+    age: usize,
     /// Whether the next direction is conjugate to the last.
     conjugate: bool,
     /// r · z of the last direction.
@@ -115,7 +118,7 @@ impl<'a> Textbook<'a> {
             direction: zeros,
             images: array::from_fn(|_| Vec::new()),
             changed: false,
-            stale: false,
+            age: 0,
             conjugate: false,
             descent: 0.0,
             curvature_ratio: 1.0,
@@ -195,13 +198,19 @@ impl<'a> Textbook<'a> {
     }
 
     /// d ← z + βd on C, β = max(0, z·(r − r_before) / z_before·r_before); returns d·r.
-    fn turn(&mut self) -> f64 {
-        if self.stale && !self.changed {
+    fn turn(&mut self, iterations: usize) -> f64 {
+        if self.age > 0 && !self.changed {
             self.invert_freedoms();
             self.conjugate = false;
+            self.age = 0;
             self.seen.insert(Branch::Renewed);
+        } else if self.age >= 3 && iterations >= 20 {
+            self.invert_freedoms();
+            self.age = 0;
+            self.seen.insert(Branch::TooOld);
+        } else if self.changed {
+            self.age += 1;
         }
-        self.stale = std::mem::take(&mut self.changed);
         let z = self.deflated();
         let descent = dot(&self.r, &z);
         let beta = ((descent - dot(&self.r_before, &z)) / self.descent).max(0.0);
@@ -216,8 +225,8 @@ impl<'a> Textbook<'a> {
     }
 
     /// An exact step; after a step that lost cells, one with losses first.
-    pub(super) fn step(&mut self, p: &mut Field, last: Step) -> Step {
-        let slope = self.turn();
+    pub(super) fn step(&mut self, p: &mut Field, last: Step, iterations: usize) -> Step {
+        let slope = self.turn(iterations);
         if last == Step::Truncated {
             let step = self.step_with_losses(p, slope);
             if step != Step::Stalled {
