@@ -20,7 +20,7 @@ mod solution;
 mod solver;
 mod start;
 
-pub use automatic::{choose_grid, solve};
+pub use automatic::{choose_grid, solve, solve_watched};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
 pub use motion::Motion;

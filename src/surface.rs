@@ -104,6 +104,14 @@ pub trait Surface: fmt::Debug + Send + Sync {
         [Extent::Rising; 2]
     }
 
+    /// Coordinates along x and along y \[m\] through which the search for a grid looks at the shape,
+    /// beside lines that it chooses itself: those of corners, steps and separate high places, such as
+    /// the ends of lands. Between neighbouring coordinates the gap along the axis should have one
+    /// lowest place at most. None by default; a shape whose contact has several parts should have them.
+    fn marks(&self) -> [Vec<f64>; 2] {
+        [Vec::new(), Vec::new()]
+    }
+
     /// Smallest radii of curvature along x and along y \[m\]. nacre warns where the contact is not
     /// small compared with them. ∞ means that there is no such limit.
     fn radii(&self) -> [f64; 2] {
@@ -156,6 +164,9 @@ macro_rules! forward_surface {
             fn extent(&self) -> [Extent; 2] {
                 (**self).extent()
             }
+            fn marks(&self) -> [Vec<f64>; 2] {
+                (**self).marks()
+            }
             fn radii(&self) -> [f64; 2] {
                 (**self).radii()
             }
@@ -195,6 +206,14 @@ impl<S: Surface> Surface for Shifted<S> {
         [x.shifted(self.by[0]), y.shifted(self.by[1])]
     }
 
+    fn marks(&self) -> [Vec<f64>; 2] {
+        let mut marks = self.shape.marks();
+        for (marks, by) in marks.iter_mut().zip(self.by) {
+            marks.iter_mut().for_each(|mark| *mark += by);
+        }
+        marks
+    }
+
     fn radii(&self) -> [f64; 2] {
         self.shape.radii()
     }
@@ -226,6 +245,11 @@ impl<A: Surface, B: Surface> Surface for Sum<A, B> {
     fn extent(&self) -> [Extent; 2] {
         let ([ax, ay], [bx, by]) = (self.0.extent(), self.1.extent());
         [ax.and(bx), ay.and(by)]
+    }
+
+    fn marks(&self) -> [Vec<f64>; 2] {
+        let ([ax, ay], [bx, by]) = (self.0.marks(), self.1.marks());
+        [[ax, bx].concat(), [ay, by].concat()]
     }
 
     fn radii(&self) -> [f64; 2] {

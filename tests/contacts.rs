@@ -11,6 +11,7 @@ mod support {
 
 mod contact {
     mod algorithms;
+    mod automatic;
     mod batch;
     mod discretisation;
     mod errors;

@@ -153,6 +153,8 @@ pub(super) fn warning_words(warning: &Warning) -> (&'static str, usize, f64) {
         Warning::Coarse { axis, cells } => (axis, cells as f64),
         Warning::CoarseSpots { axis, cells } => (axis, cells),
         Warning::LargeContact { axis, ratio } => (axis, ratio),
+        Warning::OutsideGrid { depth } => (0, depth),
+        Warning::PeakError { error } => (0, error),
     };
     (warning.kind(), axis, figure)
 }
@@ -171,6 +173,8 @@ pub(super) fn warning(kind: &str, axis: usize, figure: f64) -> PyResult<Warning>
             cells: figure,
         },
         Warning::LargeContact { axis, ratio },
+        Warning::OutsideGrid { depth: figure },
+        Warning::PeakError { error: figure },
     ];
     let found = warnings.iter().find(|warning| warning.kind() == kind);
     found.copied().ok_or_else(|| {

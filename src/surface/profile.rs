@@ -7,6 +7,10 @@ use super::quadric::sagitta;
 use crate::error::{Error, Result, positive};
 use crate::hertz::Line;
 
+/// Largest number of coordinates at which a search for the contact looks at a profile: within a thousandth of
+/// its length a tilt changes little.
+const MARKS: usize = 1024;
+
 /// An axial profile of a roller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
@@ -79,6 +83,14 @@ impl Profile {
         match self {
             Self::Crowned(_) => false,
             Self::Logarithmic(_) | Self::Sampled(_) => true,
+        }
+    }
+
+    /// Coordinates of the corners \[m\], [`MARKS`] at most; the others are convex.
+    pub(super) fn marks(&self) -> Vec<f64> {
+        match self {
+            Self::Crowned(_) | Self::Logarithmic(_) => Vec::new(),
+            Self::Sampled(profile) => profile.marks(),
         }
     }
 
@@ -331,6 +343,16 @@ impl SampledProfile {
     /// Position and drop of each sample \[m\].
     pub fn samples(&self) -> impl Iterator<Item = [f64; 2]> {
         self.samples.iter().map(|&[x, drop, _]| [x, drop])
+    }
+
+    /// Positions of the samples; of very many samples, the highest of each of [`MARKS`] groups.
+    fn marks(&self) -> Vec<f64> {
+        let highest = |group: &[[f64; 3]]| {
+            let by_drop = |a: &&[f64; 3], b: &&[f64; 3]| a[1].total_cmp(&b[1]);
+            group.iter().min_by(by_drop).map(|sample| sample[0])
+        };
+        let groups = self.samples.chunks(self.samples.len().div_ceil(MARKS));
+        groups.filter_map(highest).collect()
     }
 
     fn ends(&self) -> [f64; 2] {

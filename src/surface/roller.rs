@@ -156,6 +156,10 @@ impl Surface for Roller {
         [x, Extent::Within([-self.radius, self.radius])]
     }
 
+    fn marks(&self) -> [Vec<f64>; 2] {
+        [self.profile.marks(), Vec::new()]
+    }
+
     fn radii(&self) -> [f64; 2] {
         [self.profile.radius(), self.radius]
     }

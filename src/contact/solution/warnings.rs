@@ -48,6 +48,16 @@ pub enum Warning {
         /// Half-width over radius.
         ratio: f64,
     },
+    /// Outside the grid that was chosen, the shape overlaps the deformed surface.
+    OutsideGrid {
+        /// Deepest overlap \[m\].
+        depth: f64,
+    },
+    /// The peak pressure on the grid that was chosen has an estimated error above 1 %.
+    PeakError {
+        /// Estimated error, relative to the peak.
+        error: f64,
+    },
 }
 
 /// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
@@ -78,6 +88,8 @@ impl Warning {
             Self::Coarse { .. } => "coarse",
             Self::CoarseSpots { .. } => "coarse spots",
             Self::LargeContact { .. } => "large contact",
+            Self::OutsideGrid { .. } => "outside grid",
+            Self::PeakError { .. } => "peak error",
         }
     }
 
@@ -134,6 +146,18 @@ impl fmt::Display for Warning {
                 "the contact is not small compared with the radius along {}: half-width/radius = \
                  {ratio:.2}; the bodies are taken as half-spaces",
                 along(axis)
+            ),
+            Self::OutsideGrid { depth } => write!(
+                f,
+                "outside the grid that was chosen, the shape overlaps the deformed surface by {depth:.3e}: \
+                 part of the contact is missing; give a grid that holds the whole contact"
+            ),
+            Self::PeakError { error } => write!(
+                f,
+                "the peak pressure has an estimated error of {:.1} %: dividing the cells further does \
+                 not lower it, or needs too many cells; give a finer grid around the peak, or round \
+                 edges and corners of the shape",
+                100.0 * error
             ),
         }
     }

@@ -172,6 +172,9 @@ impl Surface for Shape {
     fn extent(&self) -> [Extent; 2] {
         self.with(|shape| shape.extent())
     }
+    fn marks(&self) -> [Vec<f64>; 2] {
+        self.with(|shape| shape.marks())
+    }
     fn radii(&self) -> [f64; 2] {
         self.with(|shape| shape.radii())
     }

@@ -1,0 +1,375 @@
+//! The search for the rectangle of a contact, on a coarse grid that is enlarged and reduced until it fits.
+
+use super::outside::{Overlap, overlap};
+use super::relief::{Low, Relief, limited};
+use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of, grid_over};
+use crate::contact::options::{Algorithm, Options};
+use crate::contact::solution::Solution;
+use crate::contact::solution::report::Progress;
+use crate::contact::solver::Termination;
+use crate::error::{Error, Result};
+use crate::grid::{Grid, Window};
+use crate::surface::Extent;
+
+/// Cells across the narrower width of the contact. The 64 that are promised are raised by 7 %, because the
+/// contact on the coarse grid is up to 6 % too wide.
+const ACROSS: f64 = 64.0 * 1.07;
+
+/// Free width on either side of the contact, relative to the width of the contact; chosen by trial.
+const FRAME_MARGIN: f64 = 0.25;
+
+/// Cells of the coarse grid in each direction; chosen by trial.
+const COARSE_CELLS: usize = 48;
+
+/// Cells of the coarse grid in each direction where it holds places that lie apart; chosen by trial.
+const HELD_CELLS: usize = 192;
+
+/// Tolerance on the coarse grid; chosen by trial.
+const FRAME_TOLERANCE: f64 = 1e-4;
+
+/// Largest ratio of a cell's sides; chosen by trial.
+const ASPECT_RATIO: f64 = 16.0;
+
+/// Smallest number of cells along a contact whose cells are oblong; chosen by trial.
+const LONG_CONTACT: f64 = 1024.0;
+
+/// Enlargements of the coarse grid by a factor of up to 3: 3¹⁰ in all.
+const ENLARGEMENTS: usize = 10;
+
+/// Reductions of the coarse grid around a contact that is small on it, by a factor of 4/3 at least.
+const REDUCTIONS: usize = 40;
+
+/// Searches that begin anew from places that the coarse grid missed.
+const RESTARTS: usize = 10;
+
+/// The search for the grid of one task. It remembers the places that the grid must hold.
+pub(super) struct Search<'a> {
+    task: Task<'a>,
+    options: Options,
+    extent: [Extent; 2],
+    held: Option<Frame>,
+    restarts: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(task: Task<'a>, options: &Options) -> Result<Self> {
+        let extent = task.shape.extent();
+        if extent.contains(&Extent::Endless) {
+            return Err(Error::Inconsistent(
+                "grid must be given for a shape without end: its contact is as long as the grid",
+            ));
+        }
+        // Options that only the real grid can meet are checked here and left out.
+        options.stop_criteria()?;
+        Ok(Self {
+            task,
+            options: Options {
+                tolerance: FRAME_TOLERANCE,
+                initial: None,
+                algorithm: Algorithm::default(),
+                ..options.clone()
+            },
+            extent,
+            held: None,
+            restarts: 0,
+        })
+    }
+
+    /// The grid that is found from the shape alone.
+    pub(super) fn grid(&mut self, progress: &mut Progress) -> Result<Grid> {
+        let frame = first_frame(&self.task)?;
+        self.fit(frame, progress)
+    }
+
+    /// The grid that also holds the place of an `overlap` outside the grid of `solution`.
+    pub(super) fn holding(
+        &mut self,
+        overlap: Overlap,
+        solution: &Solution,
+        progress: &mut Progress,
+    ) -> Result<Grid> {
+        let frame = self.hold(overlap, solution);
+        self.fit(frame, progress)
+    }
+
+    /// Enlarges and reduces a coarse grid over `frame` until it fits the contact.
+    fn fit(&mut self, mut frame: Frame, progress: &mut Progress) -> Result<Grid> {
+        let (mut enlargements, mut reductions) = (0, 0);
+        loop {
+            let cells = if self.held.is_some() {
+                HELD_CELLS
+            } else {
+                COARSE_CELLS
+            };
+            let grid = grid_over(frame, [cells; 2])?;
+            let solution = self.task.solve(grid, &self.options, progress)?;
+            let Some(contact) = cells_in_contact(&solution) else {
+                // Nothing touches there: where nothing overlaps anywhere, any grid shows that.
+                match self.deepest() {
+                    Some(place) if self.restarts < RESTARTS => {
+                        self.restarts += 1;
+                        frame = place;
+                        continue;
+                    }
+                    _ => return Ok(grid),
+                }
+            };
+            if solution.report.termination == Termination::Stopped {
+                return Ok(grid);
+            }
+            let touched = touched_sides(&contact, &grid, self.extent);
+            let contact = self.with_held(contact, &grid);
+            let mut next = frame;
+            let (mut grown, mut shrunk) = (false, false);
+            for axis in [0, 1] {
+                let [low, high] = frame[axis];
+                let width = high - low;
+                let spacing = grid.spacing()[axis];
+                let cells_across = contact[axis].len();
+                // An edge that is touched moves out by the width, as far as the shape goes.
+                if touched[axis] != [false; 2] {
+                    grown = true;
+                    next[axis] = moved_out(frame[axis], touched[axis], width);
+                } else if cells_across < cells / 4 {
+                    shrunk = true;
+                    let contact = [
+                        low + contact[axis].start as f64 * spacing,
+                        low + contact[axis].end as f64 * spacing,
+                    ];
+                    let margin = contact[1] - contact[0];
+                    next[axis] = [contact[0] - margin, contact[1] + margin];
+                }
+            }
+            if grown {
+                if enlargements == ENLARGEMENTS {
+                    return Err(Error::NoGrid {
+                        enlargements,
+                        size: grid.size(),
+                    });
+                }
+                enlargements += 1;
+            } else if shrunk && reductions < REDUCTIONS {
+                reductions += 1;
+            } else {
+                let grid = self.final_grid(&solution)?;
+                if self.restarts == RESTARTS {
+                    return Ok(grid);
+                }
+                let Some(missed) = overlap(&self.task, &solution, frame_of(&grid))? else {
+                    return Ok(grid);
+                };
+                self.restarts += 1;
+                next = self.hold(missed, &solution);
+            }
+            frame = next;
+        }
+    }
+
+    /// Remembers the place of an overlap. Returns a rectangle with a margin around this place and the contact.
+    fn hold(&mut self, overlap: Overlap, solution: &Solution) -> Frame {
+        let held = self
+            .held
+            .map_or(overlap.frame, |held| enclosing(held, overlap.frame));
+        self.held = Some(held);
+        let frame = enclosing(solution.contact_extent(), held);
+        let wider = frame.map(|[low, high]| {
+            let margin = FRAME_MARGIN * (high - low);
+            [low - margin, high + margin]
+        });
+        limited(wider, self.extent)
+    }
+
+    /// The cells of a contact and of the places that the grid must hold.
+    fn with_held(&self, contact: Window, grid: &Grid) -> Window {
+        let Some(held) = self.held else {
+            return contact;
+        };
+        let (frame, spacing, shape) = (frame_of(grid), grid.spacing(), grid.shape());
+        [0, 1].map(|k| {
+            let cell = |at: f64| (((at - frame[k][0]) / spacing[k]) as usize).min(shape[k] - 1);
+            let held = held[k].map(cell);
+            contact[k].start.min(held[0])..contact[k].end.max(held[1] + 1)
+        })
+    }
+
+    /// A rectangle around the place where the shape overlaps the undeformed surface most; `None` where it overlaps
+    /// nowhere, or where the motion is not prescribed.
+    fn deepest(&self) -> Option<Frame> {
+        let (approach, tilt) = self.task.prescribed()?;
+        let (relief, region, lows) = survey(&self.task, tilt);
+        let deepest = lows.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let frame = relief.below(&[deepest], approach, region)?;
+        Some(limited(frame, self.extent))
+    }
+
+    /// The final grid: the contact of the coarse `solution` and a margin around it, in fine cells.
+    fn final_grid(&self, solution: &Solution) -> Result<Grid> {
+        let contact = solution.contact_extent();
+        let contact = self.held.map_or(contact, |held| enclosing(contact, held));
+        let widths = contact.map(|[low, high]| high - low);
+        let finest = widths[0].min(widths[1]) / ACROSS;
+        let frame: Frame = std::array::from_fn(|axis| {
+            let margin = FRAME_MARGIN * widths[axis];
+            let [low, high] = self.extent[axis].range();
+            // A shape that ends needs no more than a cell beyond its end.
+            let low = (contact[axis][0] - margin).max(low - 2.0 * finest);
+            let high = (contact[axis][1] + margin).min(high + 2.0 * finest);
+            [low, high]
+        });
+        let shape = std::array::from_fn(|axis| {
+            let cells = (widths[axis] / finest)
+                .min((widths[axis] / (ASPECT_RATIO * finest)).max(LONG_CONTACT));
+            let cell = widths[axis] / cells.max(ACROSS);
+            // Rounding must not add a cell where the frame is a whole number of them.
+            let count = ((frame[axis][1] - frame[axis][0]) / cell * (1.0 - 1e-9)).ceil();
+            // Even, so that the middle of a symmetric contact lies between cells.
+            2 * (0.5 * count).ceil() as usize
+        });
+        grid_over(frame, shape)
+    }
+}
+
+/// Lower and upper sides of a grid that the `contact` touches although the shape goes on there.
+pub(super) fn touched_sides(contact: &Window, grid: &Grid, extent: [Extent; 2]) -> [[bool; 2]; 2] {
+    let frame = frame_of(grid);
+    [0, 1].map(|k| {
+        let [low, high] = extent[k].range();
+        [
+            contact[k].start == 0 && frame[k][0] > low,
+            contact[k].end == grid.shape()[k] && frame[k][1] < high,
+        ]
+    })
+}
+
+/// A range whose `sides` are moved out by `distance`.
+pub(super) fn moved_out([low, high]: [f64; 2], sides: [bool; 2], distance: f64) -> [f64; 2] {
+    [
+        if sides[0] { low - distance } else { low },
+        if sides[1] { high + distance } else { high },
+    ]
+}
+
+/// The middle of the shape, or the point where the load acts, where it lies on the shape.
+fn middle(task: &Task) -> [f64; 2] {
+    let extent = task.shape.extent();
+    std::array::from_fn(|axis| {
+        let [low, high] = extent[axis].range();
+        let middle = if low.is_finite() && high.is_finite() {
+            0.5 * (low + high)
+        } else {
+            0.0
+        };
+        task.motion.eccentricity[axis]
+            .filter(|e| *e > low && *e < high)
+            .unwrap_or(middle)
+    })
+}
+
+/// The low places of the whole shape with a given tilt, and the rectangle in which they were looked for.
+fn survey<'a>(task: &Task<'a>, tilt: [f64; 2]) -> (Relief<'a>, Frame, Vec<Low>) {
+    let relief = Relief::new(task.shape, tilt);
+    let middle = middle(task);
+    let radii = task.shape.radii().into_iter().filter(|r| r.is_finite());
+    let region = relief.region(middle, radii.reduce(f64::max).unwrap_or(1.0));
+    let lows = relief.lows(region, middle);
+    (relief, region, lows)
+}
+
+/// The rectangle around the load point in which the undeformed shape overlaps, at the approach that carries
+/// the load by the estimate W = 2 E* δ √(a b), which holds for a flat square punch within 10 %. Where a motion
+/// is prescribed with which nothing overlaps in the middle of the shape: the rectangle around all places that
+/// overlap.
+fn first_frame(task: &Task) -> Result<Frame> {
+    let (extent, radii) = (task.shape.extent(), task.shape.radii());
+    // α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the
+    // response itself, and the local compliance.
+    let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
+    let compliance = |alpha: f64| -> f64 {
+        let bodies = bodies.iter().flatten();
+        bodies
+            .map(|body| {
+                let limits = body.asymptotes();
+                let larger = match limits.short.max(limits.long) {
+                    0.0 => body.normal(alpha),
+                    larger => larger,
+                };
+                larger + alpha * body.local()
+            })
+            .sum()
+    };
+    let center = middle(task);
+    let relief = Relief::new(task.shape, task.tilt());
+    let base = relief.gap(center);
+    if let Some((approach, tilt)) = task.prescribed()
+        && base >= approach
+    {
+        let (relief, region, lows) = survey(task, tilt);
+        if let Some(frame) = relief.below(&lows, approach, region) {
+            return Ok(limited(frame, extent));
+        }
+    }
+    let base = if base.is_finite() { base } else { 0.0 };
+    // Half-widths of the overlap at approach δ, along both axes.
+    let widths = |approach: f64| -> [f64; 2] {
+        std::array::from_fn(|axis| {
+            let inside = |d: f64| {
+                [-d, d].into_iter().any(|d| {
+                    let mut at = center;
+                    at[axis] += d;
+                    relief.gap(at) < base + approach
+                })
+            };
+            // By powers of √2 from far below any contact to far above.
+            let mut width = f64::MIN_POSITIVE.sqrt();
+            while width < 1e12 && inside(width) {
+                width *= std::f64::consts::SQRT_2;
+            }
+            width
+        })
+    };
+    let approach = match (task.motion.load, task.motion.approach) {
+        (Some(load), _) => {
+            let carries = |approach: f64| {
+                let [a, b] = widths(approach);
+                let half = (a * b).sqrt();
+                4.0 * approach * half / compliance(1.0 / half)
+            };
+            let mut approach = 1.0;
+            while approach > 1e-30 && carries(approach) > load {
+                approach *= 0.5;
+            }
+            while approach < 1e12 && carries(approach) < load {
+                approach *= 2.0;
+            }
+            approach
+        }
+        (None, Some(approach)) => (approach - base).max(0.0),
+        (None, None) => 0.0,
+    };
+    let halves = widths(approach);
+    let frame = limited(
+        [0, 1].map(|axis| {
+            let half = 1.5 * halves[axis];
+            [center[axis] - half, center[axis] + half]
+        }),
+        extent,
+    );
+    for [low, high] in &frame {
+        if high - low <= 1e-100 || !(high - low).is_finite() {
+            // Nothing overlaps: a grid around the middle shows that nothing touches.
+            let sizes = [
+                extent[0].range()[1],
+                extent[1].range()[1],
+                radii[0],
+                radii[1],
+            ];
+            let size = sizes
+                .into_iter()
+                .map(f64::abs)
+                .filter(|s| s.is_finite() && *s > 0.0);
+            let half = 0.01 * size.reduce(f64::min).unwrap_or(1.0);
+            return Ok(center.map(|c| [c - half, c + half]));
+        }
+    }
+    Ok(frame)
+}

@@ -1,0 +1,80 @@
+//! The contact that is solved on one grid after another, and rectangles.
+
+use crate::contact::motion::Motion;
+use crate::contact::options::{Options, Setup};
+use crate::contact::plan::Plan;
+use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::patch::bounds;
+use crate::contact::solution::Solution;
+use crate::contact::solution::report::Progress;
+use crate::contact::start::Sampled;
+use crate::error::Result;
+use crate::grid::{Grid, Window, full_window};
+use crate::response::Body;
+use crate::surface::Surface;
+
+/// Ends of a rectangle along x and along y.
+pub(super) type Frame = [[f64; 2]; 2];
+
+/// The smallest rectangle that holds both.
+pub(super) fn enclosing(a: Frame, b: Frame) -> Frame {
+    [0, 1].map(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])])
+}
+
+/// The rectangle of a grid.
+pub(super) fn frame_of(grid: &Grid) -> Frame {
+    [0, 1].map(|k| {
+        let half = 0.5 * grid.size()[k];
+        [grid.center()[k] - half, grid.center()[k] + half]
+    })
+}
+
+/// A grid over a rectangle.
+pub(super) fn grid_over(frame: Frame, shape: [usize; 2]) -> Result<Grid> {
+    Grid::new(shape, frame.map(|[low, high]| high - low))?
+        .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
+}
+
+/// The smallest window that holds all cells in contact; `None` where nothing touches.
+pub(super) fn cells_in_contact(solution: &Solution) -> Option<Window> {
+    let touches = |i: usize, j: usize| NonNegative.is_free(solution.pressure[[i, j]]);
+    bounds(&full_window(solution.grid().shape()), touches)
+}
+
+/// A shape that is pressed into a body.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub(super) shape: &'a dyn Surface,
+    pub(super) body: &'a Body,
+    pub(super) setup: &'a Setup,
+    pub(super) motion: &'a Motion,
+}
+
+impl Task<'_> {
+    /// Plans one grid, and solves on it.
+    pub(super) fn solve(
+        &self,
+        grid: Grid,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        let plan = Plan::new(self.body.clone(), grid, self.setup.clone())?;
+        let (shape, motion) = (self.shape, self.motion);
+        plan.run(|| plan.solve(shape, &mut Sampled::default(), motion, options, progress))
+    }
+
+    /// The approach and the tilts, where all three are prescribed; a direction without any condition
+    /// has a tilt of 0.
+    pub(super) fn prescribed(&self) -> Option<(f64, [f64; 2])> {
+        let loaded =
+            |k: usize| self.motion.eccentricity[k].is_some() || self.motion.moment[k].is_some();
+        let free = self.motion.load.is_some() || loaded(0) || loaded(1);
+        let approach = self.motion.approach.filter(|_| !free)?;
+        Some((approach, self.tilt()))
+    }
+
+    /// The prescribed tilts; 0 where a tilt is free.
+    pub(super) fn tilt(&self) -> [f64; 2] {
+        self.motion.tilt.map(|tilt| tilt.unwrap_or(0.0))
+    }
+}

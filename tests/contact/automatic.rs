@@ -1,0 +1,287 @@
+//! The grid that is chosen holds every part of the contact, and its cells resolve the peak pressure.
+
+use std::ops::ControlFlow;
+
+use nacre::contact::{choose_grid, solve_watched};
+use nacre::response::Body;
+use nacre::{
+    Algorithm, Contact, Discretisation, Elastic, Error, FlatPunch, Grid, HalfSpace, Layer,
+    LogarithmicProfile, Motion, Options, Paraboloid, Result, Roller, SampledProfile, Setup,
+    Solution, Sphere, Surface, Warning, hertz, solve,
+};
+use ndarray::Array2;
+
+use crate::support::random::uniform;
+
+/// Estimated errors are of the size of true errors: few of these are three times as large.
+const ESTIMATES: f64 = 3.0;
+
+/// Smallest permitted difference between two grids, relative, for estimates that are small by chance: far below the
+/// change by a part of the contact that is missing.
+const SMALL: f64 = 1e-3;
+
+fn steel() -> Result<Elastic> {
+    Elastic::new(210e9, 0.3)
+}
+
+fn on_grid(shape: &dyn Surface, body: Elastic, motion: &Motion, grid: Grid) -> Result<Solution> {
+    let contact = Contact::plan(body, grid, Setup::default())?;
+    let options = Options::default();
+    contact
+        .solve(shape, motion, &options)?
+        .require_converged(options.tolerance)
+}
+
+fn estimate(solution: &Solution) -> Result<Discretisation> {
+    let found = solution.report.discretisation;
+    found.ok_or(Error::Inconsistent("coarser grids were solved"))
+}
+
+/// Asserts that a solution on the grid that is chosen agrees with one on a `whole` grid, which holds
+/// everything, within the estimated errors of both.
+fn assert_whole(name: &str, shape: &dyn Surface, motion: &Motion, whole: Grid) -> Result<()> {
+    let found = solve(shape, steel()?, motion)?;
+    let expected = on_grid(shape, steel()?, motion, whole)?;
+    let (a, b) = (estimate(&found)?, estimate(&expected)?);
+    let (found, expected, error) = match motion.load {
+        Some(_) => (found.approach, expected.approach, a.approach + b.approach),
+        None => (found.load(), expected.load(), a.load + b.load),
+    };
+    println!("{name}: {found:.4e}, whole {expected:.4e}, estimated errors {error:.1e}");
+    assert!(
+        (found - expected).abs() <= (ESTIMATES * error).max(SMALL * expected),
+        "{name}: {found} {expected} {error}"
+    );
+    Ok(())
+}
+
+/// A roller of 10 mm with flat lands at these drops, 10 µm high.
+fn lands(ends: &[[f64; 2]], drops: &[f64]) -> Result<Roller> {
+    let (mut x, mut drop) = (Vec::new(), Vec::new());
+    for ([low, high], &d) in ends.iter().zip(drops) {
+        let slope = 1e-4;
+        x.extend([low - slope, *low, *high, high + slope]);
+        drop.extend([1e-5, d, d, 1e-5]);
+    }
+    let inner = 1..x.len() - 1;
+    Roller::with_profile(5e-3, SampledProfile::new(&x[inner.clone()], &drop[inner])?)
+}
+
+#[test]
+fn contacts_away_from_the_middle_of_the_shape_are_found() -> Result<()> {
+    let tilted = |approach| Motion {
+        tilt: [Some(1e-3), None],
+        ..Motion::approach(approach)
+    };
+    let crowned = Roller::new(5e-3, 10e-3, 1.0)?;
+    // The contact ends 2.6 mm on either side of x = 6 mm.
+    let grid = Grid::new([640, 64], [2e-2, 4e-4])?;
+    assert_whole("tilted roller", &crowned, &tilted(-2e-6), grid)?;
+    let grid = Grid::new([128, 128], [2.2e-3, 2.2e-3])?;
+    assert_whole("tilted punch", &FlatPunch::new(1e-3)?, &tilted(-1e-7), grid)?;
+    let sum = Sphere::new(1e-2)?.plus(Paraboloid::new(3e-2, 5e-3)?.shifted(1e-3, 0.0)?);
+    let grid = Grid::new([128, 128], [2e-3, 2e-3])?;
+    assert_whole("sum", &sum, &Motion::approach(1.4e-5), grid)?;
+    let hollow = lands(&[[-5e-3, -3e-3], [3e-3, 5e-3]], &[0.0; 2])?;
+    let grid = Grid::new([256, 64], [1.1e-2, 8e-4])?;
+    assert_whole("two lands", &hollow, &Motion::approach(5e-6), grid)?;
+    Ok(())
+}
+
+#[test]
+fn lands_that_touch_later_are_found() -> Result<()> {
+    let shape = lands(
+        &[[-5e-3, -4e-3], [-0.9e-3, 0.9e-3], [4e-3, 5e-3]],
+        &[5e-7, 0.0, 5e-7],
+    )?;
+    let grid = Grid::new([512, 128], [1.02e-2, 6e-4])?;
+    assert_whole("under a load", &shape, &Motion::load(1000.0), grid)?;
+    assert_whole("at an approach", &shape, &Motion::approach(3.05e-6), grid)?;
+    // Free to tilt, the load acts on the land at the right.
+    let motion = Motion {
+        eccentricity: [Some(4e-3), None],
+        ..Motion::load(1000.0)
+    };
+    assert_whole("off-centre", &shape, &motion, grid)
+}
+
+#[test]
+fn a_thin_incompressible_layer_gets_a_grid_that_holds_the_contact() -> Result<()> {
+    let rubber = Layer::new(Elastic::new(2e6, 0.5)?, 3e-6)?;
+    let body = HalfSpace::new(nacre::Substrate::Rigid, [rubber])?;
+    let solution = solve(&Sphere::new(0.5)?, &body, &Motion::load(1000.0))?;
+    assert!(!solution.report.warnings.contains(&Warning::GridEdge));
+    Ok(())
+}
+
+#[test]
+fn nothing_is_found_where_nothing_touches() -> Result<()> {
+    let roller = Roller::new(5e-3, 10e-3, 1.0)?;
+    // At the end of the straight part the tilt of 1 mrad lowers the roller by 5 µm; the crown falls from
+    // there on, by 0.5 µm where it is lowest, 1 mm further.
+    for (approach, touches) in [(-5.6e-6, false), (-5.4e-6, true)] {
+        let motion = Motion {
+            tilt: [Some(1e-3), None],
+            ..Motion::approach(approach)
+        };
+        let solution = solve(&roller, steel()?, &motion)?;
+        assert_eq!(solution.load() > 0.0, touches, "{approach}");
+        assert!(solution.report.warnings.is_empty());
+    }
+    Ok(())
+}
+
+/// Cells of a grid that closes in on a place; odd, so that the axis of a roller is a line of centres.
+const LOOKED_AT: [usize; 2] = [481, 481];
+
+/// Least gap of a tilted shape, by a grid that closes in on it.
+fn lowest(shape: &dyn Surface, tilt: [f64; 2]) -> Result<f64> {
+    let mut grid = Grid::new(LOOKED_AT, [0.012, 0.012])?;
+    let mut least = f64::INFINITY;
+    for _ in 0..10 {
+        let (gaps, x, y) = (shape.gaps(&grid)?, grid.x(), grid.y());
+        let mut center = grid.center();
+        for ((i, j), h) in gaps.indexed_iter() {
+            let gap = h - tilt[0] * x[i] - tilt[1] * y[j];
+            if gap < least {
+                (least, center) = (gap, [x[i], y[j]]);
+            }
+        }
+        grid = Grid::new(LOOKED_AT, grid.size().map(|side| 0.3 * side))?.centered_at(center)?;
+    }
+    Ok(least)
+}
+
+/// A rectangle around everything below `level`, with a margin, by a grid that closes in on it; `None` where
+/// nothing is.
+fn rectangle_below(shape: &dyn Surface, tilt: [f64; 2], level: f64) -> Result<Option<Grid>> {
+    let mut grid = Grid::new(LOOKED_AT, [0.012, 0.012])?;
+    for _ in 0..8 {
+        let (gaps, x, y) = (shape.gaps(&grid)?, grid.x(), grid.y());
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for ((i, j), h) in gaps.indexed_iter() {
+            if h - tilt[0] * x[i] - tilt[1] * y[j] < level {
+                let at = [x[i], y[j]];
+                low = [0, 1].map(|k| low[k].min(at[k]));
+                high = [0, 1].map(|k| high[k].max(at[k]));
+            }
+        }
+        if low[0] > high[0] {
+            return Ok(None);
+        }
+        let size = [0, 1].map(|k| high[k] - low[k] + 4.0 * grid.spacing()[k]);
+        let center = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
+        grid = Grid::new(LOOKED_AT, size)?.centered_at(center)?;
+    }
+    Ok(Some(grid))
+}
+
+/// Rollers with two to four rounded lands of random places and heights, tilted, and sums of a roller or a sphere and
+/// a paraboloid elsewhere, under loads and prescribed approaches.
+#[test]
+fn random_shapes_are_held_as_a_whole() -> Result<()> {
+    let numbers = uniform([9, 16], 22);
+    for (case, r) in numbers.outer_iter().enumerate() {
+        let n = 2 + (3.0 * r[0]) as usize;
+        let pitch = 10e-3 / n as f64;
+        let (mut x, mut drop) = (Vec::new(), Vec::new());
+        for k in 0..n {
+            let middle = -5e-3 + pitch * (k as f64 + 0.4 + 0.2 * r[1 + k]);
+            for u in (-100..=100).map(|u| f64::from(u) / 100.0) {
+                x.push(middle + 0.35 * pitch * u);
+                drop.push(1e-6 * r[5 + k] + 1e-5 * u * u);
+            }
+        }
+        let lands = || Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?);
+        let away = Paraboloid::new(1e-2, 5e-3)?.shifted(1e-3 * r[9], 1e-3 * r[10] - 5e-4)?;
+        let shape: Box<dyn Surface> = match case % 3 {
+            0 => Box::new(Sphere::new(1e-2)?.plus(away)),
+            1 => Box::new(lands()?),
+            _ => Box::new(lands()?.plus(Paraboloid::new(1.0, 1.0)?)),
+        };
+        let tilt = [5e-4 * (r[11] - 0.5), 0.0];
+        let motion = Motion {
+            tilt: [Some(tilt[0]), None],
+            ..if r[12] < 0.5 {
+                Motion::load(20.0 + 500.0 * r[13])
+            } else {
+                Motion::approach(lowest(&shape, tilt)? + 1e-7 + 5e-6 * r[13])
+            }
+        };
+        let found = solve(&shape, steel()?, &motion)?;
+        let Some(whole) = rectangle_below(&shape, tilt, found.approach)? else {
+            assert!(found.load() <= 0.0);
+            continue;
+        };
+        let cells = if case % 3 == 0 { [160, 160] } else { [512, 96] };
+        let whole = Grid::new(cells, whole.size())?.centered_at(whole.center())?;
+        assert_whole(&format!("case {case}"), &shape, &motion, whole)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn cells_are_divided_until_the_peak_is_resolved() -> Result<()> {
+    // A logarithmic profile whose contact nearly reaches the ends, with narrow peaks there.
+    let profile = LogarithmicProfile::new(2.2336e-7, 6.5038e-3, 0.0, 1.0)?;
+    let roller = Roller::with_profile(3.4312e-3, profile)?;
+    let motion = Motion::load(1053.0);
+    let solution = solve(&roller, steel()?, &motion)?;
+    let (peak, grid) = (solution.peak_pressure(), solution.grid());
+    let error = estimate(&solution)?.peak_pressure.unwrap_or(peak);
+    assert!(error < 0.01 * peak && solution.report.warnings.is_empty());
+    let [nx, ny] = grid.shape();
+    assert!(nx > 1400, "{nx} cells");
+    let finer = Grid::new([4 * nx, ny], grid.size())?.centered_at(grid.center())?;
+    let finer = on_grid(&roller, steel()?, &motion, finer)?.peak_pressure();
+    println!("{nx} x {ny}: peak {peak:.4e}, finer {finer:.4e}, estimated error {error:.1e}");
+    assert!((peak - finer).abs() < ESTIMATES * error);
+    Ok(())
+}
+
+#[test]
+fn simple_contacts_keep_their_grids() -> Result<()> {
+    let solution = solve(&Sphere::new(5e-3)?, steel()?, &Motion::load(10.0))?;
+    assert_eq!(solution.grid().shape(), [104, 104]);
+    assert!(solution.report.warnings.is_empty());
+    let exact = hertz::Point::new(5e-3, steel()?.plane_strain_modulus(), 10.0)?;
+    assert!((solution.approach / exact.approach - 1.0).abs() < 1e-3);
+    let body = HalfSpace::new(steel()?, [Layer::new(Elastic::new(420e9, 0.3)?, 40e-6)?])?;
+    let roller = Roller::new(5e-3, 1e-3, 1.0)?;
+    let solution = solve(&roller, &body, &Motion::load(20.0))?;
+    assert_eq!(solution.grid().shape(), [1536, 104]);
+    assert!(solution.report.warnings.is_empty());
+    Ok(())
+}
+
+#[test]
+fn other_options_solve_on_the_grid_of_the_default_ones() -> Result<()> {
+    let (shape, body) = (Sphere::new(5e-3)?, Body::from(HalfSpace::from(steel()?)));
+    let (setup, motion) = (Setup::default(), Motion::load(10.0));
+    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let default = Options::default();
+    let grid = choose_grid(&shape, &body, &setup, &motion, &default, &mut go_on)?;
+    let mut solve =
+        |options: &Options| solve_watched(&shape, &body, &setup, &motion, options, &mut go_on);
+    let found = solve(&default)?;
+    assert_eq!(*found.grid(), grid);
+    let reference = Options {
+        algorithm: Algorithm::PolonskyKeer,
+        ..Options::default()
+    };
+    let started = Options {
+        initial: Some(found.pressure.clone()),
+        ..Options::default()
+    };
+    for options in [reference, started] {
+        let other = solve(&options)?;
+        assert_eq!(*other.grid(), grid);
+        assert!((other.approach / found.approach - 1.0).abs() < 1e-6);
+    }
+    let wrong = Options {
+        initial: Some(Array2::zeros((3, 4))),
+        ..Options::default()
+    };
+    assert!(solve(&wrong).is_err());
+    Ok(())
+}
