@@ -244,8 +244,8 @@ impl PyReport {
 
     /// Kinds of the warnings, without their numbers: words by which warnings are counted.
     ///
-    /// They are "grid edge", "sharp end", "sharp edge", "map rim", "coarse", "coarse spots" and "large
-    /// contact".
+    /// They are "grid edge", "sharp end", "sharp edge", "map rim", "coarse", "coarse spots", "large
+    /// contact", "outside grid" and "peak error".
     #[getter]
     fn warning_kinds(&self) -> Vec<&'static str> {
         self.0.warnings.iter().map(Warning::kind).collect()
