@@ -4,6 +4,7 @@
 PYTHON ?= python3
 OPTIONS ?=
 BASELINE ?= last
+CASES ?= 1000
 
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := .venv
@@ -21,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test check bench peers develop stubs docs publishable
+.PHONY: help demo test check bench fuzz peers develop stubs docs publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -54,6 +55,10 @@ bench: ## time the Rust benchmarks, print the change since the last run, append 
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true
 	cargo bench --bench '*' -- --save-baseline $(BASELINE)
 	$(PYTHON) benches/track.py $(TARGET)/criterion benches/history.csv
+
+fuzz: $(WHEEL) $(DEV) ## random contacts and calls, ten thousand in all: CASES=1000 of each of ten kinds
+	NACRE_FUZZ=$(CASES) cargo test --test contacts fuzz
+	NACRE_FUZZ=$(CASES) $(BIN)/pytest tests/python/test_fuzz.py
 
 # The other solvers are installed into a separate environment under target/peers.
 peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes

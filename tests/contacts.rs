@@ -17,6 +17,7 @@ mod contact {
     mod errors;
     mod few_cells;
     mod foundation;
+    mod fuzz;
     mod invariants;
     mod line;
     mod stiffness;

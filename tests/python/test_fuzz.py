@@ -1,0 +1,196 @@
+"""Random calls: every answer is finite and consistent, every refusal a clear error.
+
+A hundred calls that are the same in every run; ``make fuzz`` tries many others.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import pickle
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import nacre
+
+ASKED = os.environ.get("NACRE_FUZZ")
+fuzz = settings(
+    max_examples=int(ASKED) if ASKED else 25,
+    derandomize=ASKED is None,
+    deadline=None,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+REFUSALS = (ValueError, TypeError, nacre.ConvergenceError)
+
+# Anything that a user may pass by mistake.
+wrong = st.one_of(
+    st.sampled_from([math.nan, math.inf, -math.inf, 0.0, -1.0, 5e-324, 1e308, 10**400, 1e-300]),
+    st.sampled_from(["steel", None, True, 1 + 2j, [], (), {}, [1.0], (1.0, None, 2.0), object()]),
+    st.floats(),
+)
+
+
+def powers(low: float, high: float) -> st.SearchStrategy[float]:
+    """Return numbers between powers of ten."""
+    return st.floats(low, high).map(lambda power: 10.0**power)
+
+
+materials = st.builds(nacre.Elastic, powers(8, 12), st.floats(0.0, 0.5))
+layers = st.builds(nacre.Layer, materials, powers(-7, -3))
+bodies = st.builds(nacre.HalfSpace, materials, st.lists(layers, max_size=2))
+radii = powers(-3, 0)
+simple = st.one_of(
+    st.builds(nacre.Sphere, radii),
+    st.builds(nacre.Paraboloid, radii, radii),
+    st.builds(nacre.FlatPunch, powers(-4.5, -3)),
+    st.builds(nacre.Roller, radii, powers(-3, -2), powers(-1, 1)),
+)
+shapes = st.one_of(
+    simple,
+    st.builds(lambda a, b: a + b, simple, simple),
+    st.builds(lambda a, x, y: a.shifted(x, y), simple, *[st.floats(-1e-3, 1e-3)] * 2),
+)
+grids = st.builds(
+    nacre.Grid, st.tuples(*[st.integers(3, 33)] * 2), st.tuples(*[powers(-4.3, -2.5)] * 2)
+)
+depths = powers(-7, -4.5)
+
+
+def pressed(shape: nacre.Shape, body: nacre.HalfSpace, **keywords: Any) -> nacre.Solution | None:
+    """Return a converged solution that is in order, or None where nacre refuses with a reason."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)
+        try:
+            solution = nacre.solve(shape, body, threads=1, **keywords)
+        except REFUSALS as refusal:
+            assert len(str(refusal)) > 10, refusal
+            return None
+    assert solution.report.converged
+    assert np.isfinite(solution.pressure).all()
+    assert (solution.pressure >= 0).all()
+    assert np.isfinite(solution.displacement).all()
+    numbers = [solution.load, solution.approach, *solution.tilt, *solution.moment]
+    assert np.isfinite(numbers).all()
+    return solution
+
+
+@fuzz
+@given(shapes, bodies, grids, depths, st.tuples(*[st.floats(-1e-2, 1e-2)] * 2))
+def test_given_grid(
+    shape: nacre.Shape,
+    body: nacre.HalfSpace,
+    grid: nacre.Grid,
+    depth: float,
+    tilt: tuple[float, float],
+) -> None:
+    solution = pressed(shape, body, grid=grid, approach=depth, tilt=tilt)
+    assert solution is not None
+    # The displacement from the coefficients of the same body, and the gap from the definition.
+    displacement = nacre.Convolution(nacre.influence_coefficients(body, grid)).apply(
+        solution.pressure
+    )
+    largest = max(np.abs(displacement).max(), depth)
+    np.testing.assert_allclose(solution.displacement, displacement, rtol=0, atol=1e-10 * largest)
+    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
+    gap = shape.gaps(grid) + displacement - depth - tilt[0] * x - tilt[1] * y
+    touching = np.isfinite(gap)
+    assert (gap[touching] >= -1e-7 * largest).all()
+    assert (solution.pressure[~touching] == 0).all()
+    mismatch = (solution.pressure * np.abs(gap))[touching].sum()
+    assert mismatch <= 1e-7 * (solution.pressure * np.abs(displacement))[touching].sum()
+
+
+@fuzz
+@given(shapes, bodies, grids, depths, st.floats(0.0, 0.5), powers(-6, -3))
+def test_stresses_are_finite_and_linear_in_friction(
+    shape: nacre.Shape,
+    body: nacre.HalfSpace,
+    grid: nacre.Grid,
+    depth: float,
+    friction: float,
+    z: float,
+) -> None:
+    solution = pressed(shape, body, grid=grid, approach=depth)
+    assert solution is not None
+    way = {"direction": (0.6, 0.8), "threads": 1}
+    none, some, full = (solution.stress(z, friction=f, **way) for f in (0.0, friction, 1.0))
+    for name in ("xx", "yy", "zz", "xy", "yz", "xz"):
+        a, b, c = (np.asarray(getattr(field, name)) for field in (none, some, full))
+        assert np.isfinite(b).all()
+        size = max(np.abs(a).max(), np.abs(c).max())
+        np.testing.assert_allclose(b, a + friction * (c - a), rtol=0, atol=1e-10 * size)
+
+
+@fuzz
+@given(shapes, bodies, grids, depths)
+def test_files_and_pickles_keep_every_bit(
+    tmp_path_factory: pytest.TempPathFactory,
+    shape: nacre.Shape,
+    body: nacre.HalfSpace,
+    grid: nacre.Grid,
+    depth: float,
+) -> None:
+    solution = pressed(shape, body, grid=grid, approach=depth)
+    assert solution is not None
+    path: Path = tmp_path_factory.mktemp("fuzz") / "a.nc"
+    solution.save(path)
+    for again in (nacre.load(path), pickle.loads(pickle.dumps(solution))):
+        assert again.report.body == body
+        assert again.pressure.tobytes() == solution.pressure.tobytes()
+        assert again.gap.tobytes() == solution.gap.tobytes()
+        assert again.approach == solution.approach
+
+
+@fuzz
+@given(st.data())
+def test_wrong_arguments_are_refused_or_answered(data: st.DataObject) -> None:
+    calls: dict[Any, int] = {
+        nacre.Elastic: 2,
+        nacre.Sphere: 1,
+        nacre.Paraboloid: 2,
+        nacre.Cylinder: 1,
+        nacre.FlatPunch: 1,
+        nacre.Roller: 3,
+        nacre.Layer: 2,
+        nacre.HalfSpace: 2,
+        nacre.Grid: 2,
+        nacre.HeightMap: 2,
+        nacre.LogarithmicProfile: 4,
+        nacre.SampledProfile: 2,
+        nacre.frequency_response: 2,
+    }
+    call = data.draw(st.sampled_from(list(calls)))
+    steel = nacre.Elastic(210e9, 0.3)
+    good = st.one_of(st.just(steel), powers(-3, 0), st.just([1.0, 2.0]), st.just((4, 4)))
+    arguments = data.draw(st.lists(st.one_of(wrong, good), max_size=calls[call] + 1))
+    try:
+        made = call(*arguments)
+    except REFUSALS as refusal:
+        assert str(refusal)
+    else:
+        assert "nan" not in repr(made).lower()
+
+
+@fuzz
+@given(
+    shapes,
+    bodies,
+    st.dictionaries(
+        st.sampled_from(
+            ["load", "approach", "eccentricity", "moment", "tilt", "tolerance", "grid", "method"]
+        ),
+        wrong,
+        max_size=3,
+    ),
+)
+def test_wrong_keywords_are_refused_or_answered(
+    shape: nacre.Shape, body: nacre.HalfSpace, keywords: dict[str, Any]
+) -> None:
+    pressed(shape, body, **({"grid": nacre.Grid((8, 8), (1e-3, 1e-3)), "load": 1.0} | keywords))
