@@ -228,7 +228,7 @@ fn height_maps() -> Result<()> {
         ),
         (
             HeightMap::new(array![[1.0]], [1.0; 2]),
-            "heights: expected shape [2, 2], got [1, 1]",
+            "number of heights along x and along y must be at least 2, got 1",
         ),
         (
             HeightMap::new(flat(), [0.0, 1.0]),

@@ -55,9 +55,18 @@ pub(crate) fn solve(
     let mut work = 0.0;
 
     for iterations in 0.. {
-        let near = multipliers.lambda();
+        let mut near = multipliers.lambda();
         let (mut found, mut now) = problem.judge(p, &window, u, near, workspace);
         work += problem.convolution.work();
+        // A tilt that the contact does not determine is 0, and not what it was before.
+        let stale = [1, 2].map(|k| near[k].abs() > 0.0 && found.change[k].abs() <= 0.0);
+        if stale[0] || stale[1] {
+            for k in [1, 2] {
+                near[k] *= f64::from(!stale[k - 1]);
+            }
+            (found, now) = problem.judge(p, &window, u, near, workspace);
+            work += problem.convolution.work();
+        }
         if now.meets(criteria.tolerance) {
             // Gaps are exact only near the multipliers that they are counted from.
             (found, now) = problem.judge(p, &window, u, found.lambda(), workspace);
