@@ -33,8 +33,8 @@ demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under o
 # With PYO3_PYTHON=none, the crate that depends on nacre builds only if nacre needs no Python.
 test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre, pytest on the wheel
 	@if cargo nextest --version >/dev/null 2>&1; \
-	then echo cargo nextest run; cargo nextest run; \
-	else echo cargo test --tests --examples; cargo test --tests --examples; fi
+	then echo cargo nextest run --features serde; cargo nextest run --features serde; \
+	else echo cargo test --tests --examples --features serde; cargo test --tests --examples --features serde; fi
 	cargo test --doc
 	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
 	$(BIN)/pytest
@@ -43,7 +43,7 @@ check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation l
 	cargo fmt --check
 	cargo fmt --check --manifest-path tests/dependent/Cargo.toml
 	cargo clippy --all-targets -- -D warnings
-	cargo clippy --all-targets --features python -- -D warnings
+	cargo clippy --all-targets --features python,serde -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check

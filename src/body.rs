@@ -5,6 +5,8 @@ use crate::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Interface {
     /// Displacements and tractions are continuous.
     #[default]
@@ -93,6 +95,8 @@ impl Layer {
 
 /// The body below all layers.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Substrate {
     /// An elastic half-space.
     Elastic(Elastic),

@@ -14,6 +14,8 @@
 /// assert_eq!(motion.load, Some(1e3));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Motion {
     /// Force Σ p dA \[N\], above 0.
     pub load: Option<f64>,

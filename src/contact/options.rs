@@ -19,6 +19,8 @@ pub struct Setup {
 
 /// Algorithm that a solve starts with; [`Report::solver`](super::Report::solver) says which one ended it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Algorithm {
     /// Preconditioned conjugate gradients on nested grids, in a window around the contact.

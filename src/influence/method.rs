@@ -7,6 +7,8 @@ use crate::grid::Grid;
 /// Two relative errors are given for each, at the loaded cell and the largest at any offset, for
 /// E1/E2 = 4, h = 8 dx on a square of 64² cells and χ = 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Method {
     /// Closed forms, and radial tables of what they leave: no aliasing, for any thickness of layer
