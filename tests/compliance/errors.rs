@@ -75,7 +75,8 @@ fn materials_and_bodies() -> Result<()> {
         HalfSpace::new(Substrate::Rigid, []),
         "layers must hold at least one layer where the substrate is rigid",
     )]);
-    let graded = |thickness, tolerance| graded_layers(steel()?, thickness, tolerance, |_| steel());
+    let graded =
+        |thickness, tolerance| graded_layers(steel()?, thickness, tolerance, &[], |_| steel());
     check([
         (
             graded(0.0, 1e-3),
@@ -87,7 +88,7 @@ fn materials_and_bodies() -> Result<()> {
         ),
     ]);
     // An error of the caller's own function is kept.
-    let wrong = graded_layers(steel()?, 1.0, 1e-3, |_| Elastic::new(-1.0, 0.3));
+    let wrong = graded_layers(steel()?, 1.0, 1e-3, &[], |_| Elastic::new(-1.0, 0.3));
     check([(wrong, "young must be finite and above 0, got -1")]);
     Ok(())
 }
@@ -150,7 +151,8 @@ fn shapes() -> Result<()> {
         ),
         (
             Paraboloid::new(1.0, -1.0).map(drop),
-            "radius_y must be finite and above 0, got -1",
+            "radius_y must be that of a convex shape (for a concave raceway or groove use \
+             counter_radius), finite and above 0, got -1",
         ),
         (
             Paraboloid::new(NAN, 1.0).map(drop),
@@ -158,7 +160,8 @@ fn shapes() -> Result<()> {
         ),
         (
             Cylinder::new(-5.0).map(drop),
-            "radius must be finite and above 0, got -5",
+            "radius must be that of a convex shape (for a concave raceway or groove use \
+             counter_radius), finite and above 0, got -5",
         ),
         (
             FlatPunch::new(INFINITY).map(drop),

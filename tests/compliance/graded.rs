@@ -86,7 +86,7 @@ fn tolerance_is_met_at_every_wavelength_promised() -> Result<()> {
         for substrate in [steel()?.into(), Substrate::Rigid] {
             let limit = cut(substrate, 4096, material)?;
             for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
-                let layers = graded_layers(substrate, THICKNESS, tolerance, material)?;
+                let layers = graded_layers(substrate, THICKNESS, tolerance, &[], material)?;
                 let count = layers.len();
                 let error = difference(&HalfSpace::new(substrate, layers)?, &limit)?;
                 println!("tolerance {tolerance:e}: {count} layers, error {error:.1e}");
@@ -105,7 +105,7 @@ fn tolerance_is_met_at_every_wavelength_promised() -> Result<()> {
 
 #[test]
 fn layers_fill_the_thickness_and_take_the_material_at_their_middle() -> Result<()> {
-    let layers = graded_layers(steel()?, THICKNESS, 1e-3, sandwich)?;
+    let layers = graded_layers(steel()?, THICKNESS, 1e-3, &[], sandwich)?;
     let mut depth = 0.0;
     for layer in &layers {
         let material = sandwich(depth + 0.5 * layer.thickness())?;
@@ -128,7 +128,7 @@ fn layers_fill_the_thickness_and_take_the_material_at_their_middle() -> Result<(
 #[test]
 fn constant_properties_are_the_plain_layer() -> Result<()> {
     let coating = Elastic::new(420e9, 0.2)?;
-    let layers = graded_layers(steel()?, THICKNESS, 1e-6, |_| Ok(coating))?;
+    let layers = graded_layers(steel()?, THICKNESS, 1e-6, &[], |_| Ok(coating))?;
     let graded = HalfSpace::new(steel()?, layers)?;
     let plain = HalfSpace::new(steel()?, [Layer::new(coating, THICKNESS)?])?;
     let worst = difference(&graded, &plain)?;
@@ -144,26 +144,151 @@ fn errors_name_what_is_wrong() -> Result<()> {
     };
     let steel = steel()?;
     for tolerance in [0.0, -1e-3, 1.0, f64::NAN, f64::INFINITY] {
-        let made = graded_layers(steel, THICKNESS, tolerance, exponential);
+        let made = graded_layers(steel, THICKNESS, tolerance, &[], exponential);
         assert_eq!(name(made), Some("tolerance"), "{tolerance}");
     }
     for thickness in [0.0, -1e-6, f64::NAN, f64::INFINITY] {
-        let made = graded_layers(steel, thickness, 1e-3, exponential);
+        let made = graded_layers(steel, thickness, 1e-3, &[], exponential);
         assert_eq!(name(made), Some("thickness"), "{thickness}");
     }
     // Below zero from some depth on.
     let falling = |z: f64| Elastic::new(210e9 * (1.0 - 2.0 * z / THICKNESS), 0.3);
     assert_eq!(
-        name(graded_layers(steel, THICKNESS, 1e-3, falling)),
+        name(graded_layers(steel, THICKNESS, 1e-3, &[], falling)),
         Some("young")
     );
     let rising = |z: f64| Elastic::new(210e9, 0.3 + 0.4 * z / THICKNESS);
     assert_eq!(
-        name(graded_layers(steel, THICKNESS, 1e-3, rising)),
+        name(graded_layers(steel, THICKNESS, 1e-3, &[], rising)),
         Some("poisson")
     );
     // 4096 layers err by 1e-7.
-    let made = graded_layers(steel, THICKNESS, 1e-9, exponential);
+    let made = graded_layers(steel, THICKNESS, 1e-9, &[], exponential);
     assert_eq!(name(made), Some("tolerance"));
+    Ok(())
+}
+
+/// A stack of uniform layers, as pairs of thickness and Young's modulus relative to the thickness and
+/// to 210 GPa.
+fn stack(parts: &[[f64; 2]]) -> Result<HalfSpace> {
+    let layers: Result<Vec<Layer>> = parts
+        .iter()
+        .map(|[h, e]| Layer::new(Elastic::new(210e9 * e, 0.3)?, h * THICKNESS))
+        .collect();
+    HalfSpace::new(steel()?, layers?)
+}
+
+/// Young's modulus at a depth of such a stack.
+fn young(parts: &[[f64; 2]], z: f64) -> f64 {
+    let mut bottom = 0.0;
+    for [h, e] in parts {
+        bottom += h * THICKNESS;
+        if z < bottom {
+            return 210e9 * e;
+        }
+    }
+    210e9 * parts[parts.len() - 1][1]
+}
+
+/// Location of a jump: 1e-13 of the thickness, times the contrast of the compliances.
+const LOCATED: f64 = 1e-8;
+
+#[test]
+fn jumps_and_thin_layers_are_found() -> Result<()> {
+    let bilayers: Vec<[f64; 2]> = (0..200).map(|k| [0.005, [2.0, 0.5][k % 2]]).collect();
+    let stacks: [(&str, Vec<[f64; 2]>); 6] = [
+        // The adhesive of 60 µm in 1 mm, 20 000 times softer, that equal layers missed.
+        ("adhesive", vec![[0.47, 1.0], [0.06, 5e-5], [0.47, 1.0]]),
+        ("jump", vec![[0.26, 0.005], [0.74, 5.0]]),
+        // A thousandth of the thickness, the finest that is promised without breakpoints.
+        ("thin", vec![[0.3141, 1.0], [0.001, 1e-3], [0.6849, 1.0]]),
+        // Next to the surface and to the substrate, far thinner.
+        ("oxide", vec![[1e-6, 0.01], [1.0 - 2e-6, 1.0], [1e-6, 0.01]]),
+        ("bilayers", bilayers),
+        ("small jump", vec![[0.4321, 1.0], [0.5679, 1.001]]),
+    ];
+    for (name, parts) in &stacks {
+        let material = |z: f64| Elastic::new(young(parts, z), 0.3);
+        let layers = graded_layers(steel()?, THICKNESS, 1e-6, &[], material)?;
+        let count = layers.len();
+        let error = difference(&HalfSpace::new(steel()?, layers)?, &stack(parts)?)?;
+        println!("{name}: {count} layers, error {error:.1e}");
+        assert_eq!(count, parts.len(), "{name}");
+        assert!(error < LOCATED, "{name}: {error:e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn breakpoints_tell_of_what_is_thinner_than_the_search() -> Result<()> {
+    // A tenth of a millionth of the thickness, soft enough to matter.
+    let (at, width) = (0.271_828, 1e-7);
+    let parts = [[at, 1.0], [width, 1e-8], [1.0 - at - width, 1.0]];
+    let material = |z: f64| Elastic::new(young(&parts, z), 0.3);
+    let exact = stack(&parts)?;
+    for breakpoint in [at, at + 0.3 * width, at + width] {
+        let breakpoints = [breakpoint * THICKNESS];
+        let layers = graded_layers(steel()?, THICKNESS, 1e-3, &breakpoints, material)?;
+        let count = layers.len();
+        let error = difference(&HalfSpace::new(steel()?, layers)?, &exact)?;
+        println!("breakpoint at {breakpoint}: {count} layers, error {error:.1e}");
+        // The jumps are located to 1e-13 of the thickness, 1e-6 of the width.
+        assert!(count == 3 && error < 1e-5, "{count} {error:e}");
+    }
+    let wrong = |breakpoint: f64| graded_layers(steel()?, THICKNESS, 1e-3, &[breakpoint], material);
+    for breakpoint in [0.0, THICKNESS, -1e-9, f64::NAN] {
+        let message = wrong(breakpoint).err().map(|error| error.to_string());
+        assert!(message.is_some_and(|text| text.contains("breakpoints must be above 0")));
+    }
+    Ok(())
+}
+
+#[test]
+fn what_waves_between_the_samples_is_resolved() -> Result<()> {
+    // Periods that divide the thickness, which halves of the coating do not see: 128 periods of the sine
+    // are 0 at the middle of 2, 4, … 64 equal layers. And a smooth dip and a ramp, thin and deep.
+    let wave = |z: f64| (2.0 * std::f64::consts::PI * 128.0 * z / THICKNESS).sin();
+    let dip = |z: f64| -6.0 * (-((z / THICKNESS - 0.4) / 0.004).powi(2)).exp();
+    let ramp = |z: f64| 3.0 * ((z / THICKNESS - 0.6) / 1e-5).tanh();
+    let materials: [(&str, &dyn Fn(f64) -> f64); 3] = [
+        ("wave", &|z| (0.9 * wave(z)).exp()),
+        ("dip", &|z| dip(z).exp()),
+        ("ramp", &|z| ramp(z).exp()),
+    ];
+    for (name, relative) in materials {
+        let material = |z: f64| Elastic::new(210e9 * relative(z), 0.3);
+        let tolerance = 1e-3;
+        let layers = graded_layers(steel()?, THICKNESS, tolerance, &[], material)?;
+        let count = layers.len();
+        let fine = 100_000;
+        let each = THICKNESS / f64::from(fine);
+        // Layers of the mean compliance, which the exact limit has wherever waves are long.
+        let exact: Result<Vec<Layer>> = (0..fine)
+            .map(|k| Layer::new(material((f64::from(k) + 0.5) * each)?, each))
+            .collect();
+        let exact = HalfSpace::new(steel()?, exact?)?;
+        let found = HalfSpace::new(steel()?, layers)?;
+        let mut worst = 0.0_f64;
+        for x in [0.01, 0.3, 1.0, 3.0, 10.0, 30.0] {
+            let ratio = frequency_response(&found, x / THICKNESS)?
+                / frequency_response(&exact, x / THICKNESS)?;
+            worst = worst.max((ratio - 1.0).abs());
+        }
+        println!("{name}: {count} layers, error {worst:.1e}");
+        assert!(worst < tolerance, "{name}: {worst:e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn noise_is_refused() -> Result<()> {
+    // Another number for each depth, however near: the bits of the depth, multiplied and folded.
+    let noise = |z: f64| {
+        let bits = z.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        (bits ^ (bits >> 29)) as f64 / u64::MAX as f64
+    };
+    let material = |z: f64| Elastic::new(1e9 + 1e11 * noise(z), 0.3);
+    let made = graded_layers(steel()?, THICKNESS, 1e-3, &[], material);
+    assert!(made.is_err_and(|error| error.to_string().contains("vary at every scale")));
     Ok(())
 }
