@@ -5,7 +5,76 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Result, positive};
+use crate::error::{Error, Result, finite, positive};
+use crate::material::Elastic;
+
+mod ellipse;
+mod shear;
+
+pub use ellipse::Ellipse;
+pub use shear::Shear;
+
+/// Equivalent radius R \[m\] of two surfaces in contact, in one direction.
+///
+/// ```text
+/// 1/R = 1/R_1 + 1/R_2
+/// ```
+///
+/// `radius` and `counter_radius` \[m\] are above 0 where the surface is convex, below 0 where it is
+/// concave (a raceway, a groove), and `None` where it is straight.
+///
+/// # Errors
+/// Unless each radius is finite and not 0, and 1/R is above 0.
+///
+/// ```
+/// use nacre::hertz::equivalent_radius;
+/// // A roller of 5 mm in a raceway of 30 mm.
+/// assert!((equivalent_radius(Some(5e-3), Some(-30e-3))? / 6e-3 - 1.0).abs() < 1e-14);
+/// assert_eq!(equivalent_radius(Some(5e-3), None)?, 5e-3);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+pub fn equivalent_radius(radius: Option<f64>, counter_radius: Option<f64>) -> Result<f64> {
+    for (name, given) in [("radius", radius), ("counter_radius", counter_radius)] {
+        if let Some(value) = given
+            && finite(name, value)?.abs() <= 0.0
+        {
+            return Err(Error::Parameter {
+                name,
+                requirement: "other than 0 (None for a straight surface)",
+                value,
+            });
+        }
+    }
+    let equivalent = match (radius, counter_radius) {
+        // Below 0 where both are concave, or the wider one is the convex one.
+        (Some(one), Some(two)) => one * (two / (one + two)),
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => f64::INFINITY,
+    };
+    if equivalent > 0.0 && equivalent.is_finite() {
+        return Ok(equivalent);
+    }
+    Err(Error::Inconsistent(
+        "radius and counter_radius must be convex together: 1/radius + 1/counter_radius must be above 0",
+    ))
+}
+
+/// Contact modulus E* \[Pa\] of two bodies; without a counterbody that of `body` on a rigid one.
+///
+/// ```text
+/// 1/E* = (1 − ν_1²)/E_1 + (1 − ν_2²)/E_2
+/// ```
+///
+/// ```
+/// let steel = nacre::Elastic::new(210e9, 0.3)?;
+/// let both = nacre::hertz::contact_modulus(&steel, Some(&steel));
+/// assert!((both / 115.385e9 - 1.0).abs() < 1e-5);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+pub fn contact_modulus(body: &Elastic, counterbody: Option<&Elastic>) -> f64 {
+    let counter = counterbody.map_or(0.0, |other| 1.0 / other.plane_strain_modulus());
+    1.0 / (1.0 / body.plane_strain_modulus() + counter)
+}
 
 /// Contact of a paraboloid of revolution. Johnson (1985), eqs (4.22)–(4.24).
 ///
@@ -17,6 +86,7 @@ use crate::error::{Result, positive};
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Point {
     /// Contact radius a = (3WR/4E*)^{1/3} \[m\].
     pub radius: f64,
@@ -48,6 +118,15 @@ impl Point {
     pub fn pressure(&self, r: f64) -> f64 {
         self.peak_pressure * (1.0 - (r / self.radius).powi(2)).max(0.0).sqrt()
     }
+
+    /// Largest shear stress on the axis of a body of Poisson's ratio `poisson`: for 0.3 it is 0.310 p0 at
+    /// the depth 0.48 a.
+    ///
+    /// # Errors
+    /// Unless −1 < `poisson` ≤ 0.5.
+    pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
+        shear::below_ellipse([self.radius; 2], self.peak_pressure, poisson)
+    }
 }
 
 /// Contact of a cylinder, per unit length. Johnson (1985), eqs (4.43)–(4.45).
@@ -60,6 +139,7 @@ impl Point {
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Line {
     /// Half-width b = √(4W'R/πE*) \[m\].
     pub half_width: f64,
@@ -82,6 +162,20 @@ impl Line {
             half_width: b,
             peak_pressure: 2.0 * line_load / (PI * b),
         })
+    }
+
+    /// Pressure at distance `y` from the middle \[Pa\]: p0 √(1 − y²/b²), 0 outside.
+    pub fn pressure(&self, y: f64) -> f64 {
+        self.peak_pressure * (1.0 - (y / self.half_width).powi(2)).max(0.0).sqrt()
+    }
+
+    /// Largest shear stress below the middle, in a body of Poisson's ratio `poisson`: 0.300 p0 at the
+    /// depth 0.786 b, unless `poisson` is below 0.2.
+    ///
+    /// # Errors
+    /// Unless −1 < `poisson` ≤ 0.5.
+    pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
+        shear::below_line(self.half_width, self.peak_pressure, poisson)
     }
 }
 

@@ -27,13 +27,18 @@
 //! |---|---|
 //! | [`mod@error`] | the error type |
 //! | [`material`], [`body`] | elastic materials, layers, half-spaces |
-//! | [`hertz`] | closed forms for scales and comparison |
+//! | [`hertz`] | closed forms for points, lines and ellipses, equivalent radii |
 //! | [`grid`], [`surface`] | cells of uniform pressure, undeformed shapes |
 //! | [`response`] | frequency response û(α)/p̂(α) of a body |
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
 //! | [`mod@stress`] | stress and displacement below the surface |
+//!
+//! # Features
+//!
+//! `serde` reads and writes materials, bodies, grids, profiles, shapes and what is asked of the motion; values
+//! are checked when they are read.
 //!
 //! # Conventions
 //!
@@ -75,6 +80,9 @@ pub mod contact;
 
 pub mod stress;
 
+#[cfg(feature = "serde")]
+mod serial;
+
 #[cfg(feature = "python")]
 mod python;
 
@@ -93,7 +101,7 @@ pub use response::{Body, Response};
 pub use stress::{Member, Section, Side, Stress, StressOptions, StressPlan, stress};
 pub use surface::{
     Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
-    Surface,
+    Superposition, Surface,
 };
 
 /// The Rust program of the README, which runs as a test.

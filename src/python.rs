@@ -33,6 +33,7 @@ mod core {
     use super::errors::{ConvergenceError, NacreWarning};
     #[pymodule_export]
     use super::grid::PyGrid;
+    use super::shapes::hertz::{PyEllipse, PyLine, PyPoint, contact_modulus, equivalent_radius};
     #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
@@ -52,6 +53,18 @@ mod core {
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
         module.setattr("_FORMAT", state::FORMAT)?;
+        // The names of `nacre.hertz`.
+        module.setattr("Point", module.py().get_type::<PyPoint>())?;
+        module.setattr("Line", module.py().get_type::<PyLine>())?;
+        module.setattr("Ellipse", module.py().get_type::<PyEllipse>())?;
+        module.setattr(
+            "equivalent_radius",
+            wrap_pyfunction!(equivalent_radius, module)?,
+        )?;
+        module.setattr(
+            "contact_modulus",
+            wrap_pyfunction!(contact_modulus, module)?,
+        )?;
         state::add_restorers(module)
     }
 }

@@ -14,7 +14,7 @@
 //! accurate to a few units in the last place for any thickness, contrast and Poisson's ratio up to 0.5.
 
 use crate::body::{HalfSpace, Interface, Substrate};
-use crate::error::{Result, positive};
+use crate::error::{Error, Result, positive};
 
 mod body;
 mod compliance;
@@ -41,7 +41,7 @@ use layer::Slab;
 /// at small αh.
 ///
 /// # Errors
-/// Unless `wavenumber` is finite and above 0.
+/// Unless `wavenumber` is finite and above 0, and the response is a number of the machine.
 ///
 /// ```
 /// let steel = nacre::Elastic::new(210e9, 0.3)?;
@@ -56,10 +56,19 @@ pub fn frequency_response(body: &HalfSpace, wavenumber: f64) -> Result<f64> {
 /// All four surface compliances \[m/Pa\] at `wavenumber` α > 0 \[1/m\].
 ///
 /// # Errors
-/// Unless `wavenumber` is finite and above 0.
+/// Unless `wavenumber` is finite and above 0, and the compliances are numbers of the machine.
 pub fn surface_compliance(body: &HalfSpace, wavenumber: f64) -> Result<Compliance> {
     positive("wavenumber", wavenumber)?;
-    Ok(alpha_compliance(body, wavenumber).scaled(1.0 / wavenumber))
+    let compliance = alpha_compliance(body, wavenumber).scaled(1.0 / wavenumber);
+    let Compliance { c11, c12, c22, ct } = compliance;
+    if [c11, c12, c22, ct].iter().all(|c| c.is_finite()) {
+        return Ok(compliance);
+    }
+    Err(Error::Parameter {
+        name: "wavenumber",
+        requirement: "such that the response is finite: neither that small nor that large",
+        value: wavenumber,
+    })
 }
 
 /// α times the surface compliance \[1/Pa\], α > 0.

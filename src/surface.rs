@@ -11,15 +11,18 @@ use crate::error::{Result, finite};
 use crate::grid::Grid;
 use crate::parallel::each_row;
 
+mod counterpart;
 mod height_map;
 mod profile;
 mod quadric;
 mod roller;
+mod superposition;
 
 pub use height_map::HeightMap;
-pub use profile::{CrownedProfile, LogarithmicProfile, Profile, SampledProfile};
+pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
 pub use roller::Roller;
+pub use superposition::Superposition;
 
 /// The extent of a shape along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -137,13 +140,14 @@ pub trait Surface: fmt::Debug + Send + Sync {
     where
         Self: Sized,
     {
-        Ok(Shifted {
-            shape: self,
-            by: [finite("x", x)? + 0.0, finite("y", y)? + 0.0],
-        })
+        Ok(Shifted::by(
+            self,
+            [finite("x", x)? + 0.0, finite("y", y)? + 0.0],
+        ))
     }
 
-    /// The sum of this shape and `other`, for example of a sphere and a rough surface.
+    /// The sum of this shape and `other`, for example of a sphere and a rough surface. Sums within sums
+    /// are evaluated one within the other: for a long list of shapes, make a [`Superposition`].
     fn plus<S: Surface>(self, other: S) -> Sum<Self, S>
     where
         Self: Sized,
@@ -188,6 +192,23 @@ forward_surface!(Arc<S>);
 pub struct Shifted<S> {
     shape: S,
     by: [f64; 2],
+}
+
+impl<S> Shifted<S> {
+    /// A shape that is moved by `by` \[m\].
+    pub(crate) fn by(shape: S, by: [f64; 2]) -> Self {
+        Self { shape, by }
+    }
+
+    /// The shape, not moved.
+    pub fn shape(&self) -> &S {
+        &self.shape
+    }
+
+    /// Distances along x and y by which it is moved \[m\].
+    pub fn shift(&self) -> [f64; 2] {
+        self.by
+    }
 }
 
 impl<S: Surface> Surface for Shifted<S> {

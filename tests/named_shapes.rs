@@ -7,7 +7,9 @@ mod support {
 
 mod shapes {
     mod coated_sphere;
+    mod counterparts;
     mod hertz;
     mod roller;
     mod roller_profiles;
+    mod sums;
 }

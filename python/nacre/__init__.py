@@ -28,13 +28,14 @@ from nacre.units import display_units
 if TYPE_CHECKING:
     from nacre import case as case
     from nacre import design as design
+    from nacre import hertz as hertz
     from nacre import paper as paper
     from nacre import plot as plot
 
 __all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
 
-LAZY = ("case", "design", "paper", "plot")
+LAZY = ("case", "design", "hertz", "paper", "plot")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

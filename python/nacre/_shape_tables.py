@@ -18,6 +18,7 @@ PROFILES: dict[str, Any] = {
     "logarithmic": nacre.LogarithmicProfile,
     "lundberg": nacre.LogarithmicProfile.lundberg,
     "johns_gohar": nacre.LogarithmicProfile.johns_gohar,
+    "fujiwara_kawase": nacre.LogarithmicProfile.fujiwara_kawase,
     "iso16281": nacre.LogarithmicProfile.iso16281,
     "sampled": nacre.SampledProfile,
 }

@@ -7,6 +7,7 @@ dictionary that its `to_dict` returns.
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import inspect
 import operator
@@ -37,7 +38,7 @@ FIELDS: dict[type, tuple[str, ...]] = {
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
 KINDS = {kind.__name__: kind for kind in FIELDS}
-LATER = {"name"}
+LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y"}
 """Arguments that format 1 had not at first. Where they are None they are left out: older data are
 still read, and older studies found again."""
 RESULTS = (
@@ -98,8 +99,8 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {type(value).__name__: kept}
         if isinstance(value, core.Shape):
             make, arguments = reduced(value)
-            if make is operator.add:
-                return {"sum": of(arguments)}
+            if make is functools.reduce:
+                return {"sum": of(arguments[1])}
             return {"shifted": [of(arguments[0]), *of(reduced(make)[1][1:])]}
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
@@ -135,13 +136,12 @@ def _decoded(data: Any) -> Any:
     if len(data) == 1:
         ((name, content),) = data.items()
         if name == "sum":
-            first, second = _listed(name, content, 2)
-            return first + second
+            return functools.reduce(operator.add, _sum(content))
         if name == "shifted":
-            shape, x, y = _listed(name, content, 3)
+            shape, x, y = _shifted(content)
             try:
                 return shape.shifted(x, y)
-            except (TypeError, OverflowError) as error:
+            except TypeError as error:
                 raise ValueError(f"{name}: {error}") from error
         if name == "Grid.line":
             return _made(name, core.Grid.line, ("cells", "width", "center"), content)
@@ -175,11 +175,22 @@ def _made(name: str, make: Any, expected: tuple[str, ...], content: Any) -> Any:
         raise ValueError(f"{name}: {error}") from error
 
 
-def _listed(name: str, content: Any, length: int) -> Any:
-    if not isinstance(content, list) or len(content) != length:
-        raise ValueError(f"{name} must be a list of {length} items, got {content!r}")
-    first, *others = _decoded(content)
-    shapes = [first, *others] if name == "sum" else [first]
-    if not all(isinstance(shape, core.Shape) for shape in shapes):
-        raise ValueError(f"{name} must hold shapes, got {content!r}")
-    return first, *others
+def _sum(content: Any) -> tuple[core.Shape, ...]:
+    """Return the shapes of a sum, one at least."""
+    if not isinstance(content, list) or not content:
+        raise ValueError(f"sum must be a list of one shape or more, got {content!r}")
+    shapes: tuple[Any, ...] = _decoded(content)
+    for shape in shapes:
+        if not isinstance(shape, core.Shape):
+            raise ValueError(f"sum must hold shapes, got {shape!r}")
+    return shapes
+
+
+def _shifted(content: Any) -> tuple[Any, ...]:
+    """Return a shape and its shifts along x and y."""
+    if not isinstance(content, list) or len(content) != 3:
+        raise ValueError(f"shifted must be a list of a shape and two numbers, got {content!r}")
+    shape, x, y = _decoded(content)
+    if not isinstance(shape, core.Shape):
+        raise ValueError(f"shifted must hold a shape, got {shape!r}")
+    return shape, x, y

@@ -3,7 +3,7 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use ndarray::{Array2, ArrayD, Ix2};
-use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -122,6 +122,19 @@ pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Arra
     Ok(array.as_array().to_owned())
 }
 
+/// Values of a function at the numbers of `object`, in their shape: a number or an array.
+pub(super) fn mapped<'py>(
+    name: &str,
+    object: &Bound<'py, PyAny>,
+    value: impl Fn(f64) -> f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let values = real_array(name, object)?.mapv(value);
+    if values.ndim() == 0 {
+        return Ok(values.sum().into_pyobject(object.py())?.into_any());
+    }
+    Ok(values.into_pyarray(object.py()).into_any())
+}
+
 /// Array (nx, ny) of f64 with the numbers of `object`.
 pub(super) fn real_matrix(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Array2<f64>> {
     let array = real_array(name, object)?;
@@ -236,4 +249,18 @@ pub(super) fn array_repr<D: ndarray::Dimension>(
         array.repr()?
     };
     Ok(text.to_string())
+}
+
+/// Arguments of a constructor whose values are numbers; one that is `None` is left out.
+pub(super) fn numbers<'py>(
+    py: Python<'py>,
+    arguments: impl IntoIterator<Item = (&'static str, Option<f64>)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = PyDict::new(py);
+    for (name, value) in arguments {
+        if let Some(value) = value {
+            given.set_item(name, value)?;
+        }
+    }
+    Ok(given)
 }

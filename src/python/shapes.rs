@@ -1,10 +1,13 @@
-//! Shapes: `nacre.Shape`, its kinds, and the profiles of rollers.
+//! Shapes: `nacre.Shape`, its kinds, the profiles of rollers, and closed forms for their contact.
 
 mod base;
 mod height_map;
+pub(super) mod hertz;
+mod logarithmic;
 mod profiles;
 mod quadric;
 mod roller;
 
 pub(super) use base::{PyShape, Shape, register, shape};
-pub(super) use profiles::{PyLogarithmicProfile, PySampledProfile};
+pub(super) use logarithmic::PyLogarithmicProfile;
+pub(super) use profiles::PySampledProfile;

@@ -1,11 +1,13 @@
 //! Axial profiles of rollers: the drop d(x) of the generatrix relative to the middle of the roller.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::quadric::sagitta;
+use super::counterpart::sagitta;
 use crate::error::{Error, Result, positive};
-use crate::hertz::Line;
+
+mod logarithmic;
+
+pub use logarithmic::{FujiwaraKawase, LogarithmicProfile};
 
 /// Largest number of coordinates at which a search for the contact looks at a profile: within a thousandth of
 /// its length a tilt changes little.
@@ -13,6 +15,8 @@ const MARKS: usize = 1024;
 
 /// An axial profile of a roller.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Profile {
     /// A straight profile with rounded ends.
     Crowned(CrownedProfile),
@@ -62,10 +66,8 @@ impl Profile {
         }
         match self {
             Self::Crowned(profile) => profile.drop(0.5 * (a + b)),
-            Self::Logarithmic(profile) => {
-                (profile.integral(to) - profile.integral(from)) / (to - from)
-            }
-            Self::Sampled(profile) => (profile.integral(to) - profile.integral(from)) / (to - from),
+            Self::Logarithmic(profile) => profile.integral(from, to) / (to - from),
+            Self::Sampled(profile) => profile.integral(from, to) / (to - from),
         }
     }
 
@@ -73,7 +75,7 @@ impl Profile {
     pub(super) fn ends(&self) -> [f64; 2] {
         match self {
             Self::Crowned(_) => [f64::NEG_INFINITY, f64::INFINITY],
-            Self::Logarithmic(profile) => [-0.5 * profile.length, 0.5 * profile.length],
+            Self::Logarithmic(profile) => [-0.5 * profile.length(), 0.5 * profile.length()],
             Self::Sampled(profile) => profile.ends(),
         }
     }
@@ -151,152 +153,11 @@ impl CrownedProfile {
     }
 }
 
-/// A logarithmic profile, which has a straight middle where `flat_length` > 0.
-///
-/// ```text
-/// d(x) = A ln 1/(1 − f u²)      u = max(2|x| − flat_length, 0) / (length − flat_length)
-/// ```
-///
-/// The drop is +∞ beyond |x| = `length` / 2. The amplitude A and the end factor f ≤ 1 are, after
-///
-/// - Lundberg (Forsch. Ing.-Wes. 10 (1939) 201): A = W/(π L E*), f = 1, for which the load W causes
-///   the same peak pressure at every x;
-/// - Johns & Gohar (Tribol. Int. 14 (1981) 131): Lundberg's amplitude and f = 1 − 0.3033 b/a, with
-///   the half-width b and the half-length a of the contact, for a finite drop at the ends;
-/// - ISO/TS 16281: A = 0.00035 D and f = 1 for L ≤ 2.5 D; for longer rollers A = 0.0005 D and f = 1
-///   over the last 1.25 D at each end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LogarithmicProfile {
-    amplitude: f64,
-    length: f64,
-    flat_length: f64,
-    end_factor: f64,
-}
-
-impl LogarithmicProfile {
-    /// A profile of `amplitude` A \[m\] and `length` \[m\] with `end_factor` f, straight over
-    /// `flat_length` \[m\].
-    ///
-    /// # Errors
-    /// Unless amplitude and length are finite and above 0, 0 ≤ `flat_length` < `length` and
-    /// 0 < f ≤ 1.
-    pub fn new(amplitude: f64, length: f64, flat_length: f64, end_factor: f64) -> Result<Self> {
-        positive("amplitude", amplitude)?;
-        positive("length", length)?;
-        if !(0.0..length).contains(&flat_length) {
-            return Err(Error::Parameter {
-                name: "flat_length",
-                requirement: "at least 0 and below the length",
-                value: flat_length,
-            });
-        }
-        if !(end_factor > 0.0 && end_factor <= 1.0) {
-            return Err(Error::Parameter {
-                name: "end_factor",
-                requirement: "above 0 and at most 1",
-                value: end_factor,
-            });
-        }
-        Ok(Self {
-            amplitude,
-            length,
-            flat_length: flat_length + 0.0,
-            end_factor,
-        })
-    }
-
-    /// Lundberg's profile for a `load` W \[N\] and a `contact_modulus` E* \[Pa\].
-    ///
-    /// # Errors
-    /// Unless all are finite and above 0.
-    pub fn lundberg(length: f64, load: f64, contact_modulus: f64) -> Result<Self> {
-        positive("length", length)?;
-        positive("load", load)?;
-        positive("contact_modulus", contact_modulus)?;
-        Self::new(load / (PI * length * contact_modulus), length, 0.0, 1.0)
-    }
-
-    /// Johns & Gohar's profile for a `load` W \[N\], a `contact_modulus` E* \[Pa\] and the `radius`
-    /// \[m\], from which the Hertzian half-width follows.
-    ///
-    /// # Errors
-    /// Unless all are finite and above 0, and the contact is longer than wide.
-    pub fn johns_gohar(length: f64, load: f64, contact_modulus: f64, radius: f64) -> Result<Self> {
-        let lundberg = Self::lundberg(length, load, contact_modulus)?;
-        let b = Line::new(radius, contact_modulus, load / length)?.half_width;
-        Self::new(
-            lundberg.amplitude,
-            length,
-            0.0,
-            1.0 - 0.3033 * b / (0.5 * length),
-        )
-    }
-
-    /// The profile of ISO/TS 16281 for a roller of `diameter` D \[m\] and effective `length` \[m\].
-    ///
-    /// # Errors
-    /// Unless both are finite and above 0.
-    pub fn iso16281(diameter: f64, length: f64) -> Result<Self> {
-        positive("diameter", diameter)?;
-        positive("length", length)?;
-        let rounded = 2.5 * diameter;
-        if length <= rounded {
-            Self::new(0.00035 * diameter, length, 0.0, 1.0)
-        } else {
-            Self::new(0.0005 * diameter, length, length - rounded, 1.0)
-        }
-    }
-
-    /// Amplitude A of the profile \[m\].
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
-    /// Length of the roller \[m\].
-    pub fn length(&self) -> f64 {
-        self.length
-    }
-
-    /// Length of the straight part \[m\].
-    pub fn flat_length(&self) -> f64 {
-        self.flat_length
-    }
-
-    /// End factor f.
-    pub fn end_factor(&self) -> f64 {
-        self.end_factor
-    }
-
-    fn drop(&self, x: f64) -> f64 {
-        if x.abs() > 0.5 * self.length {
-            return f64::INFINITY;
-        }
-        let beyond = (2.0 * x.abs() - self.flat_length).max(0.0);
-        let u = beyond / (self.length - self.flat_length);
-        -self.amplitude * (-self.end_factor * u * u).ln_1p()
-    }
-
-    /// Integral of the drop from 0 to x \[m²\]. With v² = f u²,
-    ///
-    /// ```text
-    /// ∫ −ln(1 − v²) dv = (1 − v) ln(1 − v) − (1 + v) ln(1 + v) + 2v
-    /// ```
-    fn integral(&self, x: f64) -> f64 {
-        let beyond = (2.0 * x.abs() - self.flat_length).max(0.0);
-        let root = self.end_factor.sqrt();
-        let v = (root * beyond / (self.length - self.flat_length)).min(1.0);
-        let xlnx = |x: f64| if x > 0.0 { x * x.ln() } else { 0.0 };
-        let sum = xlnx(1.0 - v) - xlnx(1.0 + v) + 2.0 * v;
-        let scale = 0.5 * (self.length - self.flat_length) / root;
-        x.signum() * self.amplitude * scale * sum
-    }
-}
-
 /// A measured profile: drops at increasing positions, with linear interpolation, and +∞ beyond.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledProfile {
-    /// Position, drop, and integral of the drop from the first position to this one, per sample.
-    samples: Arc<[[f64; 3]]>,
+    /// Position and drop of each sample.
+    samples: Arc<[[f64; 2]]>,
 }
 
 impl SampledProfile {
@@ -328,13 +189,7 @@ impl SampledProfile {
                 value: pair[1],
             });
         }
-        let mut integral = 0.0;
-        let samples = (0..x.len()).map(|k| {
-            if k > 0 {
-                integral += 0.5 * (drop[k] + drop[k - 1]) * (x[k] - x[k - 1]);
-            }
-            [x[k], drop[k], integral]
-        });
+        let samples = x.iter().zip(drop).map(|(x, drop)| [*x, *drop]);
         Ok(Self {
             samples: samples.collect(),
         })
@@ -342,13 +197,13 @@ impl SampledProfile {
 
     /// Position and drop of each sample \[m\].
     pub fn samples(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.samples.iter().map(|&[x, drop, _]| [x, drop])
+        self.samples.iter().copied()
     }
 
     /// Positions of the samples; of very many samples, the highest of each of [`MARKS`] groups.
     fn marks(&self) -> Vec<f64> {
-        let highest = |group: &[[f64; 3]]| {
-            let by_drop = |a: &&[f64; 3], b: &&[f64; 3]| a[1].total_cmp(&b[1]);
+        let highest = |group: &[[f64; 2]]| {
+            let by_drop = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
             group.iter().min_by(by_drop).map(|sample| sample[0])
         };
         let groups = self.samples.chunks(self.samples.len().div_ceil(MARKS));
@@ -359,28 +214,32 @@ impl SampledProfile {
         [self.samples[0][0], self.samples[self.samples.len() - 1][0]]
     }
 
-    /// The sample at or below x, the slope of the drop after it, and the distance of x from it; x is
-    /// clamped to the ends.
-    fn locate(&self, x: f64) -> ([f64; 3], f64, f64) {
-        let [low, high] = self.ends();
-        let x = x.clamp(low, high);
-        let above = self.samples.partition_point(|s| s[0] <= x);
-        let k = above.clamp(1, self.samples.len() - 1) - 1;
-        let ([x0, d0, integral], [x1, d1, _]) = (self.samples[k], self.samples[k + 1]);
-        ([x0, d0, integral], (d1 - d0) / (x1 - x0), x - x0)
-    }
-
     fn drop(&self, x: f64) -> f64 {
         let [low, high] = self.ends();
         if !(low..=high).contains(&x) {
             return f64::INFINITY;
         }
-        let ([_, d0, _], slope, along) = self.locate(x);
-        d0 + slope * along
+        let above = self.samples.partition_point(|s| s[0] <= x);
+        let k = above.clamp(1, self.samples.len() - 1) - 1;
+        line(self.samples[k], self.samples[k + 1], x)
     }
 
-    fn integral(&self, x: f64) -> f64 {
-        let ([_, d0, integral], slope, along) = self.locate(x);
-        integral + along * (d0 + 0.5 * slope * along)
+    /// Integral of the drop from a to b \[m²\], between the ends.
+    fn integral(&self, a: f64, b: f64) -> f64 {
+        let last = self.samples.len() - 1;
+        let first = self.samples.partition_point(|s| s[0] <= a).clamp(1, last) - 1;
+        let pieces = self.samples[first..].windows(2);
+        let pieces = pieces.take_while(|pair| pair[0][0] < b);
+        pieces
+            .map(|pair| {
+                let (from, to) = (pair[0][0].max(a), pair[1][0].min(b));
+                line(pair[0], pair[1], 0.5 * (from + to)) * (to - from)
+            })
+            .sum()
     }
+}
+
+/// Straight line through two points (x, drop).
+fn line([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], x: f64) -> f64 {
+    d0 + (d1 - d0) / (x1 - x0) * (x - x0)
 }

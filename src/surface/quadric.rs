@@ -1,35 +1,46 @@
 //! Spheres, paraboloids, cylinders and flat punches.
 
+use super::counterpart::{Counterpart, sagitta};
 use super::{Extent, Surface};
-use crate::error::{Result, positive};
+use crate::error::{Error, Result, positive};
 
 /// Rolling direction of a shape whose axis lies along x.
 pub(super) const ACROSS: [f64; 2] = [0.0, 1.0];
 
-/// R − √(R² − s), computed without cancellation; +∞ where s > R².
-///
-/// ```text
-/// R − √(R² − s) = s / (R + √(R² − s))
-/// ```
-pub(super) fn sagitta(radius: f64, s: f64) -> f64 {
-    let under = radius * radius - s;
-    if under < 0.0 {
-        f64::INFINITY
-    } else {
-        s / (radius + under.sqrt())
+/// Returns the radius of a convex shape; for one below 0 the error says how a concave counterpart is given.
+pub(super) fn convex(name: &'static str, radius: f64) -> Result<f64> {
+    if radius < 0.0 {
+        return Err(Error::Parameter {
+            name,
+            requirement: "that of a convex shape (for a concave raceway or groove use \
+                          counter_radius), finite and above 0",
+            value: radius,
+        });
     }
+    positive(name, radius)
 }
 
+/// Names of the radii of a counterpart along x and y.
+const COUNTER_RADII: [&str; 2] = ["counter_radius_x", "counter_radius_y"];
+
 /// A sphere: h = R − √(R² − r²), and +∞ for r > R.
+///
+/// It is pressed on a plane, or on a counterpart that is curved itself, such as a groove or a socket:
+/// [`Sphere::with_counter_radii`]. The gap to a counterpart is that of two circles in every direction.
 ///
 /// ```
 /// use nacre::{Sphere, Surface};
 /// assert_eq!(Sphere::new(5.0)?.gap(3.0, 0.0), 1.0);
+/// // A ball in a groove that is concave across (x) and convex along (y), as of an inner ring.
+/// let ball = Sphere::new(5e-3)?.with_counter_radii([Some(-5.2e-3), Some(20e-3)])?;
+/// assert!((ball.equivalent_radii()[0] / 130e-3 - 1.0).abs() < 1e-14);
+/// assert!((ball.equivalent_radii()[1] / 4e-3 - 1.0).abs() < 1e-14);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
     radius: f64,
+    counterpart: Counterpart,
 }
 
 impl Sphere {
@@ -39,7 +50,20 @@ impl Sphere {
     /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
         Ok(Self {
-            radius: positive("radius", radius)?,
+            radius: convex("radius", radius)?,
+            counterpart: Counterpart::default(),
+        })
+    }
+
+    /// This sphere on a counterpart with radii of curvature along x and y \[m\]: above 0 where it is
+    /// convex, below 0 where it is concave (a groove, a socket), `None` where it is straight.
+    ///
+    /// # Errors
+    /// Unless each radius is finite and above 0, or below minus the radius of the sphere.
+    pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
+        Ok(Self {
+            counterpart: Counterpart::new(COUNTER_RADII, radii, [self.radius; 2])?,
+            ..self
         })
     }
 
@@ -47,33 +71,51 @@ impl Sphere {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+
+    /// Radii of the counterpart along x and y \[m\]; `None` where it is straight.
+    pub fn counter_radii(&self) -> [Option<f64>; 2] {
+        self.counterpart.radii()
+    }
+
+    /// Equivalent radii along x and y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
+    pub fn equivalent_radii(&self) -> [f64; 2] {
+        self.counterpart.equivalent([self.radius; 2])
+    }
 }
 
 impl Surface for Sphere {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        sagitta(self.radius, x * x + y * y)
+        sagitta(self.radius, x * x + y * y) + self.counterpart.gap(x, y)
     }
 
     fn extent(&self) -> [Extent; 2] {
-        [Extent::Within([-self.radius, self.radius]); 2]
+        let reach = self.counterpart.reach([self.radius; 2]);
+        reach.map(|half| Extent::Within([-half, half]))
     }
 
     fn radii(&self) -> [f64; 2] {
-        [self.radius; 2]
+        self.counterpart.smaller([self.radius; 2])
     }
 }
 
 /// An elliptic paraboloid: h = x²/2R_x + y²/2R_y.
 ///
+/// On a counterpart that is curved itself, R_x and R_y are the equivalent radii of both.
+///
 /// ```
 /// use nacre::{Paraboloid, Surface};
 /// assert_eq!(Paraboloid::new(2.0, 1.0)?.gap(2.0, 1.0), 1.5);
+/// // In a trough of radius 2 along y: 1/1 − 1/2 = 1/2.
+/// let barrel = Paraboloid::new(2.0, 1.0)?.with_counter_radii([None, Some(-2.0)])?;
+/// assert_eq!(barrel.equivalent_radii(), [2.0, 2.0]);
+/// assert_eq!(barrel.gap(2.0, 1.0), 1.25);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paraboloid {
     radius_x: f64,
     radius_y: f64,
+    counterpart: Counterpart,
 }
 
 impl Paraboloid {
@@ -83,8 +125,22 @@ impl Paraboloid {
     /// Unless both radii are finite and above 0.
     pub fn new(radius_x: f64, radius_y: f64) -> Result<Self> {
         Ok(Self {
-            radius_x: positive("radius_x", radius_x)?,
-            radius_y: positive("radius_y", radius_y)?,
+            radius_x: convex("radius_x", radius_x)?,
+            radius_y: convex("radius_y", radius_y)?,
+            counterpart: Counterpart::default(),
+        })
+    }
+
+    /// This paraboloid on a counterpart with radii of curvature along x and y \[m\]: above 0 where it is
+    /// convex, below 0 where it is concave (a groove, a raceway), `None` where it is straight.
+    ///
+    /// # Errors
+    /// Unless each radius is finite and above 0, or below minus that of the paraboloid.
+    pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
+        let own = [self.radius_x, self.radius_y];
+        Ok(Self {
+            counterpart: Counterpart::new(COUNTER_RADII, radii, own)?,
+            ..self
         })
     }
 
@@ -97,28 +153,44 @@ impl Paraboloid {
     pub fn radius_y(&self) -> f64 {
         self.radius_y
     }
+
+    /// Radii of the counterpart along x and y \[m\]; `None` where it is straight.
+    pub fn counter_radii(&self) -> [Option<f64>; 2] {
+        self.counterpart.radii()
+    }
+
+    /// Equivalent radii along x and y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
+    pub fn equivalent_radii(&self) -> [f64; 2] {
+        self.counterpart.equivalent([self.radius_x, self.radius_y])
+    }
 }
 
 impl Surface for Paraboloid {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        x * x / (2.0 * self.radius_x) + y * y / (2.0 * self.radius_y)
+        let [radius_x, radius_y] = self.equivalent_radii();
+        x * x / (2.0 * radius_x) + y * y / (2.0 * radius_y)
     }
 
     fn radii(&self) -> [f64; 2] {
-        [self.radius_x, self.radius_y]
+        self.counterpart.smaller([self.radius_x, self.radius_y])
     }
 }
 
 /// A cylinder of infinite length along x: h = R − √(R² − y²), and +∞ for |y| > R.
 ///
+/// On a raceway of radius R_2, which is below 0 for a concave one, h has R_2 − √(R_2² − y²) added.
+///
 /// ```
 /// use nacre::{Cylinder, Surface};
 /// assert_eq!(Cylinder::new(5.0)?.gap(7.0, 4.0), 2.0);
+/// let in_a_raceway = Cylinder::new(5e-3)?.with_counter_radius(-30e-3)?;
+/// assert!((in_a_raceway.equivalent_radius() / 6e-3 - 1.0).abs() < 1e-14);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cylinder {
     radius: f64,
+    counterpart: Counterpart,
 }
 
 impl Cylinder {
@@ -128,7 +200,20 @@ impl Cylinder {
     /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
         Ok(Self {
-            radius: positive("radius", radius)?,
+            radius: convex("radius", radius)?,
+            counterpart: Counterpart::default(),
+        })
+    }
+
+    /// This cylinder on a raceway of radius `counter_radius` \[m\] along y: above 0 where the raceway is
+    /// convex, as of an inner ring, and below 0 where it is concave, as of an outer ring.
+    ///
+    /// # Errors
+    /// Unless `counter_radius` is finite and above 0, or below minus the radius of the cylinder.
+    pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
+        Ok(Self {
+            counterpart: Counterpart::cylindrical(counter_radius, self.radius)?,
+            ..self
         })
     }
 
@@ -136,19 +221,30 @@ impl Cylinder {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+
+    /// Radius of the raceway along y \[m\]; `None` for a plane.
+    pub fn counter_radius(&self) -> Option<f64> {
+        self.counterpart.radii()[1]
+    }
+
+    /// Equivalent radius \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
+    pub fn equivalent_radius(&self) -> f64 {
+        self.counterpart.equivalent([self.radius; 2])[1]
+    }
 }
 
 impl Surface for Cylinder {
-    fn gap(&self, _x: f64, y: f64) -> f64 {
-        sagitta(self.radius, y * y)
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        sagitta(self.radius, y * y) + self.counterpart.gap(x, y)
     }
 
     fn extent(&self) -> [Extent; 2] {
-        [Extent::Endless, Extent::Within([-self.radius, self.radius])]
+        let [_, half] = self.counterpart.reach([self.radius; 2]);
+        [Extent::Endless, Extent::Within([-half, half])]
     }
 
     fn radii(&self) -> [f64; 2] {
-        [f64::INFINITY, self.radius]
+        [f64::INFINITY, self.counterpart.smaller([self.radius; 2])[1]]
     }
 
     fn rolling_direction(&self) -> Option<[f64; 2]> {

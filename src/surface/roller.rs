@@ -2,8 +2,9 @@
 
 use ndarray::Array2;
 
+use super::counterpart::{Counterpart, sagitta};
 use super::profile::{CrownedProfile, Profile};
-use super::quadric::{ACROSS, sagitta};
+use super::quadric::{ACROSS, convex};
 use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
@@ -19,6 +20,9 @@ use crate::grid::Grid;
 /// length is given. On a grid, the drop d of a crowned profile is taken at cell centres. Other
 /// profiles are steep at the ends, and their drop is averaged over each cell.
 ///
+/// On a raceway of radius R_2, which is below 0 for a concave one, h has R_2 − √(R_2² − y²) added:
+/// [`Roller::with_counter_radius`].
+///
 /// ```
 /// use nacre::{LogarithmicProfile, Roller, Surface};
 /// let roller = Roller::new(5e-3, 19.13e-3, 7.5)?.with_length(26e-3)?;
@@ -27,6 +31,12 @@ use crate::grid::Grid;
 ///
 /// let iso = Roller::with_profile(5e-3, LogarithmicProfile::iso16281(10e-3, 20e-3)?)?;
 /// assert!((iso.gap(5e-3, 0.0) / (3.5e-6 * (4.0_f64 / 3.0).ln()) - 1.0).abs() < 1e-9);
+///
+/// // On the raceways of an inner ring (convex) and of an outer ring (concave).
+/// let inner = iso.clone().with_counter_radius(20e-3)?;
+/// let outer = iso.with_counter_radius(-30e-3)?;
+/// assert!((inner.equivalent_radius() / 4e-3 - 1.0).abs() < 1e-14);
+/// assert!((outer.equivalent_radius() / 6e-3 - 1.0).abs() < 1e-14);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +44,7 @@ pub struct Roller {
     radius: f64,
     profile: Profile,
     length: Option<f64>,
+    counterpart: Counterpart,
 }
 
 impl Roller {
@@ -52,9 +63,23 @@ impl Roller {
     /// Unless `radius` is finite and above 0.
     pub fn with_profile(radius: f64, profile: impl Into<Profile>) -> Result<Self> {
         Ok(Self {
-            radius: positive("radius", radius)?,
+            radius: convex("radius", radius)?,
             profile: profile.into(),
             length: None,
+            counterpart: Counterpart::default(),
+        })
+    }
+
+    /// This roller on a raceway of radius `counter_radius` \[m\] along y: above 0 where the raceway is
+    /// convex, as of an inner ring, and below 0 where it is concave, as of an outer ring. A crown of the
+    /// raceway is part of the profile: its drop adds to that of the roller.
+    ///
+    /// # Errors
+    /// Unless `counter_radius` is finite and above 0, or below minus the radius of the roller.
+    pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
+        Ok(Self {
+            counterpart: Counterpart::cylindrical(counter_radius, self.radius)?,
+            ..self
         })
     }
 
@@ -84,6 +109,16 @@ impl Roller {
         self.radius
     }
 
+    /// Radius of the raceway along y \[m\]; `None` for a plane.
+    pub fn counter_radius(&self) -> Option<f64> {
+        self.counterpart.radii()[1]
+    }
+
+    /// Equivalent radius along y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
+    pub fn equivalent_radius(&self) -> f64 {
+        self.counterpart.equivalent([self.radius; 2])[1]
+    }
+
     /// Axial profile of the roller.
     pub fn profile(&self) -> &Profile {
         &self.profile
@@ -99,12 +134,13 @@ impl Roller {
         self.length.is_none_or(|length| x.abs() <= 0.5 * length)
     }
 
-    /// Gap R − √((R − d)² − y²) for the drop d, computed from (R − d)² − y² = R² − (d (2R − d) + y²).
+    /// Gap R − √((R − d)² − y²) to a plane for the drop d, computed from (R − d)² − y² = R² − (d (2R − d) + y²).
     fn gap_at(&self, drop: f64, y: f64) -> f64 {
         if drop > self.radius {
             return f64::INFINITY;
         }
         sagitta(self.radius, drop * (2.0 * self.radius - drop) + y * y)
+            + self.counterpart.gap(0.0, y)
     }
 }
 
@@ -153,7 +189,8 @@ impl Surface for Roller {
         } else {
             Extent::Within(ends)
         };
-        [x, Extent::Within([-self.radius, self.radius])]
+        let [_, half] = self.counterpart.reach([self.radius; 2]);
+        [x, Extent::Within([-half, half])]
     }
 
     fn marks(&self) -> [Vec<f64>; 2] {
@@ -161,7 +198,8 @@ impl Surface for Roller {
     }
 
     fn radii(&self) -> [f64; 2] {
-        [self.profile.radius(), self.radius]
+        let [_, smaller] = self.counterpart.smaller([self.radius; 2]);
+        [self.profile.radius(), smaller]
     }
 
     fn rolling_direction(&self) -> Option<[f64; 2]> {

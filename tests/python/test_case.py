@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import json
+import operator
 import re
 import subprocess
 import sys
@@ -174,6 +176,32 @@ def test_a_solve_that_does_not_converge_is_exit_code_1(
     assert not out.exists()
 
 
+SHAPES = {
+    'kind = "roller"\nradius = 5e-3\nflat_length = 8e-3\ncrown_radius = 2\ncounter_radius = -1': (
+        nacre.Roller(5e-3, 8e-3, 2.0, counter_radius=-1)
+    ),
+    'kind = "cylinder"\nradius = 5e-3\ncounter_radius = 0.02': nacre.Cylinder(5e-3, 0.02),
+    'kind = "sphere"\nradius = 5e-3\ncounter_radius_x = -6e-3': nacre.Sphere(5e-3, -6e-3),
+    'kind = "paraboloid"\nradius_x = 1\nradius_y = 2\ncounter_radius_y = -3': (
+        nacre.Paraboloid(1, 2, counter_radius_y=-3)
+    ),
+    'kind = "roller"\nradius = 5e-3\nprofile = { kind = "fujiwara_kawase", length = 0.02, '
+    "load = 1e3, contact_modulus = 1e11, k1 = 1.5, k2 = 0.5, z_m = 1e-5 }": nacre.Roller(
+        5e-3, profile=nacre.LogarithmicProfile.fujiwara_kawase(0.02, 1e3, 1e11, 1.5, 0.5, 1e-5)
+    ),
+    'kind = "sum"\nparts = ['
+    + 5000 * '{ kind = "sphere", radius = 5e-3, shift = [1e-9, 0.0] }, '
+    + "]": functools.reduce(operator.add, [nacre.Sphere(5e-3).shifted(1e-9, 0.0)] * 5000),
+}
+
+
+@pytest.mark.parametrize("table", SHAPES, ids=range(len(SHAPES)))
+def test_shapes_of_case_files_are_those_of_python(table: str, tmp_path: Path) -> None:
+    start, end = TEXT.index("[shape]"), TEXT.index("[body]")
+    text = f"{TEXT[:start]}[shape]\n{table}\n{TEXT[end:]}"
+    assert Case.read(written(tmp_path, text)).arguments()["shape"] == SHAPES[table]
+
+
 def test_a_layer_has_the_name_of_the_case_file(tmp_path: Path) -> None:
     text = TEXT.replace("thickness = 40e-6", 'thickness = 40e-6, name = "DLC"')
     assert text != TEXT
@@ -269,7 +297,7 @@ def test_an_error_about_stresses_is_one_line(
 
 ERRORS = {
     'radius = 5e-3 -> radius = "5"': "shape.radius: must be a finite number, got '5'",
-    "radius = 5e-3 -> radius = -5": "shape: radius must be finite and above 0, got -5",
+    "radius = 5e-3 -> radius = -5": "shape: radius must be that of a convex shape",
     "radius = 5e-3 -> radius = nan": "shape.radius: must be a finite number, got nan",
     "radius = 5e-3 -> ": "shape.radius: this key is missing",
     "flat_length -> flt_length": "shape.flt_length: there is no such key; the keys here are flat_",

@@ -52,7 +52,14 @@ def run(*command: str, folder: Path) -> str:
 
 
 def test_the_pages_are_there() -> None:
-    assert {page.stem for page in programs()} >= {"start", "roller", "surface", "coating", "both"}
+    assert {page.stem for page in programs()} >= {
+        "start",
+        "roller",
+        "raceway",
+        "surface",
+        "coating",
+        "both",
+    }
 
 
 @pytest.mark.parametrize("page", programs(), ids=lambda page: page.stem)
@@ -95,7 +102,7 @@ def test_every_public_name_is_in_the_reference() -> None:
     listed = set(re.findall(r"^\.\. (?:auto|py:)\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
     public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
         f"{module.__name__}.{name}"
-        for module in (nacre.design, nacre.plot)
+        for module in (nacre.design, nacre.hertz, nacre.plot)
         for name in module.__all__
     }
     assert public - listed == set()

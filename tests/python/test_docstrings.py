@@ -20,10 +20,9 @@ FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 def public_objects() -> dict[str, Any]:
     """Return classes and functions, methods and attributes, by their full names."""
     found: dict[str, Any] = {}
-    for name in nacre.__all__:
-        thing = getattr(nacre, name)
-        if name.startswith("__"):
-            continue
+    named = {name: getattr(nacre, name) for name in nacre.__all__ if not name.startswith("__")}
+    named |= {f"hertz.{name}": getattr(nacre.hertz, name) for name in nacre.hertz.__all__}
+    for name, thing in named.items():
         found[name] = thing
         if isinstance(thing, type) and not issubclass(thing, BaseException):
             members = [member for member in vars(thing) if not member.startswith("_")]

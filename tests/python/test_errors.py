@@ -46,6 +46,20 @@ VALUE_ERRORS = {
     "Paraboloid(1.0, -2.0)": r"radius_y must be .*above 0, got -2",
     "Paraboloid(NAN, 1.0)": r"radius_x must be .*got NaN",
     "Cylinder(-1.0)": r"radius must be .*above 0, got -1",
+    "Cylinder(-30e-3)": r"radius must be .*raceway or groove use counter_radius.*got -0\.03",
+    "Roller(-1.0, 1.0, 1.0)": r"radius must be .*counter_radius.*above 0, got -1",
+    "Cylinder(5e-3, counter_radius=-4e-3)": r"counter_radius must be .*raceway.*wider.*got -0\.004",
+    "Cylinder(5e-3, counter_radius=0.0)": r"counter_radius must be finite, and above 0.*got 0",
+    "Sphere(5e-3, counter_radius_x=-5e-3)": r"counter_radius_x must be .*groove.*got -0\.005",
+    "Sphere(5e-3, counter_radius_y=NAN)": r"counter_radius_y must be finite.*got NaN",
+    "Paraboloid(1.0, 1.0, counter_radius_y=-0.5)": r"counter_radius_y must be .*got -0\.5",
+    "hertz.equivalent_radius(5e-3, -4e-3)": r"1/radius \+ 1/counter_radius must be above 0",
+    "hertz.equivalent_radius(0.0)": r"radius must be other than 0.*got 0",
+    "hertz.Point(1.0, 0.0, 1.0)": r"contact_modulus must be .*above 0, got 0",
+    "hertz.Line(1.0, 1.0, -1.0)": r"line_load must be .*above 0, got -1",
+    "hertz.Ellipse(1.0, 1.0, 1.0, 1.0, counter_radius_x=-1.0)": r"must be convex together",
+    "hertz.Ellipse(1.0, 1e300, 1.0, 1.0)": r"radii.*too different",
+    "hertz.Point(1.0, 1.0, 1.0).max_shear(0.6)": r"poisson must be .*at most 0\.5, got 0\.6",
     "FlatPunch(0.0)": r"radius must be .*above 0, got 0",
     "Roller(0.0, 1.0, 1.0)": r"radius must be .*above 0, got 0",
     "Roller(1.0, -1.0, 1.0)": r"flat_length must be .*at least 0, got -1",
@@ -61,6 +75,9 @@ VALUE_ERRORS = {
     "LogarithmicProfile(1.0, 1.0, 0.0, 1.5)": r"end_factor must be .*at most 1, got 1\.5",
     "LogarithmicProfile.lundberg(0.0, 1.0, 1.0)": r"length must be .*above 0, got 0",
     "LogarithmicProfile.iso16281(-1.0, 1.0)": r"diameter must be .*above 0, got -1",
+    "LogarithmicProfile.fujiwara_kawase(1.0, 1.0, 1.0, 0.0, 1.0, 1.0)": r"k1 must be .*above 0",
+    "LogarithmicProfile.fujiwara_kawase(1.0, 1.0, 1.0, 1.0, 1.1, 1.0)": r"k2 must be .*at most 1",
+    "LogarithmicProfile.fujiwara_kawase(1.0, 1.0, 1.0, 1.0, 1.0, -1.0)": r"z_m must be .*above 0",
     "SampledProfile([0.0, 1.0], [0.0])": r"drop.*\b2\b.*\b1\b",
     "SampledProfile([0.0], [0.0])": r"at least two",
     "SampledProfile([0.0, 0.0], [0.0, 1.0])": r"positions must be increasing, got 0",
@@ -102,6 +119,8 @@ VALUE_ERRORS = {
     # frequency response
     "frequency_response(STEEL, 0.0)": r"wavenumber must be .*above 0, got 0",
     "frequency_response(STEEL, [1.0, -2.0])": r"wavenumber must be .*above 0, got -2",
+    "frequency_response(STEEL, 5e-324)": r"wavenumber must be .*finite: neither that small",
+    "surface_compliance(STEEL, [1.0, 1e-323])": r"wavenumber must be .*neither that small",
     "frequency_response(STEEL, NAN)": r"wavenumber must be .*got NaN",
     "frequency_response(STEEL, INF)": r"wavenumber must be finite.*got inf",
     # graded coatings
@@ -109,6 +128,7 @@ VALUE_ERRORS = {
     "graded_layers(STEEL, 1.0, -1e9, 0.3)": r"young must be .*got -1000000000",
     "graded_layers(STEEL, 1.0, 1e9, lambda z: z)": r"poisson must be .*0\.5, got 0\.",
     "graded_layers(STEEL, 1.0, 1e9, 0.3, 2.0)": r"tolerance must be .*below 1, got 2",
+    "graded_layers(STEEL, 1.0, 1e9, 0.3, breakpoints=[0.5, 1.0])": r"breakpoints must be .*got 1",
     # controls
     "press()": r"exactly one of load and approach",
     "press(load=1.0, approach=1e-6)": r"exactly one of load and approach",
@@ -184,11 +204,23 @@ TYPE_ERRORS = {
     "graded_layers('steel', 1.0, 1e9, 0.3)": r"substrate must be .*steel",
     "graded_layers(STEEL, 1.0, 'hard', 0.3)": r"young must be .*hard",
     "graded_layers(STEEL, 1.0, lambda z: 'hard', 0.3)": r"young must be .*hard",
+    "graded_layers(STEEL, 1.0, 1e9, 0.3, breakpoints=0.5)": r"breakpoints must be a sequence",
+    "graded_layers(STEEL, 1.0, lambda z: 1e9 + 1j, 0.3)": r"young must be .*got \(1000000000",
     "CONTACT.solve('sphere', load=1.0)": r"shape must be a nacre\.Shape, got .*sphere",
     "solve(SPHERE, 'steel', load=1.0)": r"body.*must be a HalfSpace.*steel",
     "solve(SPHERE, STEEL, grid=(16, 20), load=1.0)": r"grid must be a nacre\.Grid, got \(16, 20\)",
     "press(load='1')": r"load must be a real number, got '1'",
     "press(load=1j)": r"load must be a real number, got 1j",
+    "press(load=np.complex128(1))": r"load must be a real number, got np.complex128",
+    "press(load=1.0, tilt=(0.0, np.complex64(1)))": r"tilt must be a pair",
+    "SPHERE.shifted(np.complex128(1), 0.0)": r"(?s)real number, got .*x",
+    "stress(STEEL, GRID, np.ones((16, 20)), 1e-5, residual=[1j])": r"residual must be .*numbers",
+    "stress(STEEL, GRID, np.ones((16, 20)), 1e-5, residual=np.array([1e6 + 5e6j]))": (
+        r"residual must be .*numbers, .*got array"
+    ),
+    "stress(STEEL, GRID, np.ones((16, 20)), 1e-5, residual={0: 1j})": r"residual must hold real",
+    "stress(STEEL, GRID, np.ones((16, 20)), 1e-5, friction=np.complex128(1))": r"friction must",
+    "stress(STEEL, GRID, np.ones((16, 20)), 1j)": r"z must be a real array",
     "press(approach=[1.0])": r"approach must be a real number, got \[1\.0\]",
     "press(load=1.0, eccentricity=1e-5)": r"eccentricity must be a pair.*got 1e-05",
     "press(load=1.0, eccentricity=(1e-5,))": r"eccentricity must be a pair.*got \(1e-05,\)",
@@ -218,6 +250,22 @@ def test_bad_types_are_refused(call: str, message: str) -> None:
     # The match searches notes, too: where pyo3 finds the type wrong, they name the argument.
     with pytest.raises(TypeError, match=message):
         eval(call, NAMES)
+
+
+@pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # few cells are enough here
+def test_a_list_or_an_array_is_as_good_as_a_tuple() -> None:
+    pair = (4e-4, 4e-4)
+    for like in (list, np.array):
+        assert nacre.Grid(like((16, 20)), like(pair)) == GRID
+        assert nacre.HeightMap(HEIGHTS, like(pair)).spacing == pair
+        assert nacre.HeightMap(HEIGHTS, pair, center=like(pair)).center == pair
+        moved = CONTACT.solve(SPHERE, load=100.0, eccentricity=like((1e-5, 0.0)))
+        assert moved.report.motion["eccentricity"] == (1e-5, 0.0)
+        field = moved.stress(1e-5, friction=0.1, direction=like((0.0, 1.0)))
+        assert field.friction == (0.0, 0.1)
+    layers = [nacre.Layer(STEEL, 1e-6), nacre.Layer(STEEL, 2e-6)]
+    for many in (tuple(layers), iter(layers), np.array(layers, dtype=object)):
+        assert nacre.HalfSpace(STEEL, many) == nacre.HalfSpace(STEEL, layers)
 
 
 def test_missing_samples_are_refused() -> None:

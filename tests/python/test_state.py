@@ -175,8 +175,10 @@ PARTS: dict[str, Any] = {
     r"Sphere must be a dict of named fields, got 3": {"Sphere": 3},
     r"Sphere: .*number": {"Sphere": {"radius": "wide"}},
     r"Grid: the key 'size' is missing": {"Grid": {"shape": [2, 2], "center": [0, 0]}},
-    r"sum must be a list of 2 items, got \[\]": {"sum": []},
-    r"sum must hold shapes, got \[1, 2\]": {"sum": [1, 2]},
+    r"sum must be a list of one shape or more, got \[\]": {"sum": []},
+    r"sum must hold shapes, got 1": {"sum": [1, 2]},
+    r"shifted must be a list of a shape and two numbers, got \[\]": {"shifted": []},
+    r"shifted must hold a shape, got 1": {"shifted": [1, 2, 3]},
 }
 
 

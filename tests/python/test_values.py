@@ -3,12 +3,15 @@
 import copy
 import itertools
 import pickle
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
 import pytest
 
 import nacre
+from nacre import values
 
 STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 DLC = nacre.Elastic(young=1e11 / 3, poisson=0.25)
@@ -47,12 +50,21 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "logarithmic roller": nacre.Roller(5e-3, profile=LOGARITHMIC),
     "sampled roller": nacre.Roller(5e-3, profile=SAMPLED, length=18e-3),
     "punch": nacre.FlatPunch(1e-3),
+    "ball in a groove": nacre.Sphere(
+        5e-3, counter_radius_x=-5e-3 * 1.04, counter_radius_y=1e-2 / 3
+    ),
+    "ball in a trough": nacre.Sphere(5e-3, counter_radius_y=-6e-3),
+    "barrel on a ring": nacre.Paraboloid(5e-3, 1.0, counter_radius_x=-1e-2 / 3 * 2),
+    "cylinder on a ring": nacre.Cylinder(5e-3, counter_radius=1e-1 / 3),
+    "roller in a raceway": nacre.Roller(5e-3, 19.13e-3, 7.5, counter_radius=-0.1 / 3),
+    "point contact": nacre.hertz.Point(5e-3, 1e11 / 3, 10.0),
+    "line contact": nacre.hertz.Line(5e-3, 1e11 / 3, 1e4 / 3),
+    "ellipse": nacre.hertz.Ellipse(5e-3, None, 1e11 / 3, 10.0, counter_radius_y=0.1 / 3),
     "height map": nacre.HeightMap(THIRDS, spacing=0.1, center=(1e-6, -2e-6)),
     "oblong height map": nacre.HeightMap(THIRDS, spacing=(1e-6, 2e-6)),
     "shifted": SPHERE.shifted(1e-3 / 3, -2e-3),
     "sum": SPHERE + nacre.FlatPunch(1e-3),
-    "sum on the left": (SPHERE + nacre.FlatPunch(1e-3)) + nacre.Cylinder(5e-3),
-    "sum on the right": SPHERE + (nacre.FlatPunch(1e-3) + nacre.Cylinder(5e-3)),
+    "sum of three": (SPHERE + nacre.FlatPunch(1e-3)) + nacre.Cylinder(5e-3),
     "shifted sum": (SPHERE + nacre.FlatPunch(1e-3)).shifted(1e-3, 0.0),
     "sum of shifted": SPHERE.shifted(1e-3, 0.0) + nacre.FlatPunch(1e-3).shifted(0.0, 1e-3),
     "contact": nacre.Contact(STEEL, GRID),
@@ -91,7 +103,7 @@ def test_every_public_class_has_a_value_here() -> None:
 
 
 @every_value
-@pytest.mark.parametrize("protocol", [2, 3, 4, 5])
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
 def test_pickle_gives_an_equal_value(value: object, protocol: int) -> None:
     back = pickle.loads(pickle.dumps(value, protocol))
     assert type(back) is type(value)
@@ -108,7 +120,7 @@ def test_copy_gives_an_equal_value(value: object, copied: Any) -> None:
 
 @pytest.mark.parametrize("value", MADE_BY_A_CALL.values(), ids=MADE_BY_A_CALL.keys())
 def test_repr_is_the_call_that_makes_it(value: object) -> None:
-    back = eval(repr(value), {"array": np.array} | vars(nacre))
+    back = eval(repr(value), {"array": np.array} | vars(nacre) | vars(nacre.hertz))
     assert back == value
 
 
@@ -169,6 +181,46 @@ def test_attributes_cannot_be_set(value: object) -> None:
     for name, attribute in attributes(value).items():
         with pytest.raises(AttributeError):
             setattr(value, name, attribute)
+
+
+def test_sums_and_shifts_are_one_list() -> None:
+    punch, cylinder = nacre.FlatPunch(1e-3), nacre.Cylinder(5e-3)
+    assert SPHERE + (punch + cylinder) == (SPHERE + punch) + cylinder
+    assert hash(SPHERE + (punch + cylinder)) == hash((SPHERE + punch) + cylinder)
+    moved = (SPHERE.shifted(1e-3, 0.0) + punch).shifted(0.0, 2e-3)
+    assert moved == SPHERE.shifted(1e-3, 2e-3) + punch.shifted(0.0, 2e-3)
+    assert SPHERE.shifted(0.0, 0.0) == SPHERE
+    assert hash(SPHERE.shifted(0.0, 0.0)) == hash(SPHERE)
+    assert SPHERE + punch != punch + SPHERE
+    # As studies and files of two parts have them.
+    assert values.decode({"sum": [values.encode(SPHERE), values.encode(punch)]}) == SPHERE + punch
+
+
+SUMS = """
+import functools, operator, pickle, nacre
+from nacre import values
+
+part = nacre.Paraboloid(1.0, 1.0)
+grid = nacre.Grid((8, 8), (1e-3, 1e-3))
+contact = nacre.Contact(nacre.Elastic(1e9, 0.3), grid)
+for make in (operator.add, lambda a, b: b + a, lambda a, b: a.shifted(1e-9, 0.0) + b):
+    many = functools.reduce(make, [part] * 100_000)
+    assert contact.solve(many, load=1.0).report.converged
+    del many
+moved = functools.reduce(lambda shape, _: shape.shifted(1e-9, 0.0), range(100_000), part)
+assert repr(moved).count("shifted") == 1
+some = functools.reduce(operator.add, [part] * 5000)
+for protocol in (0, 5):
+    assert pickle.loads(pickle.dumps(some, protocol)) == some
+assert values.decode(values.encode(some)) == some
+print(hash(some) == hash(functools.reduce(operator.add, [part] * 5000)))
+"""
+
+
+def test_a_hundred_thousand_shapes_can_be_added() -> None:
+    # In a process of its own: without lists, recursion ends the process.
+    run = subprocess.run([sys.executable, "-c", SUMS], capture_output=True, text=True, timeout=300)
+    assert (run.returncode, run.stdout) == (0, "True\n"), run.stderr
 
 
 def test_rigid_is_one_object() -> None:

@@ -1,24 +1,27 @@
 //! `nacre.Shape`, and the value that it holds.
 
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::python::arguments::{Repr, array_repr, hash};
+use crate::python::arguments::{Real, Repr, array_repr, hash, remade};
 use crate::python::grid::PyGrid;
-use crate::surface::{self, Extent, Profile, Surface};
+use crate::surface::{self, Extent, Profile, Shifted, Superposition, Surface};
 
 /// A kind of shape with a Python class of the same name. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface {
     /// Class of the objects.
     type Class: PyClass<BaseType = PyShape>;
 
-    /// Arguments of the constructor, by name and in their order.
+    /// Arguments of the constructor, by name and in their order, without those that are left out.
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>>;
 }
 
@@ -26,11 +29,10 @@ pub(super) trait Kind: Surface {
 macro_rules! kinds {
     ($($kind:ident),* $(,)?) => {
         /// Any shape that Python can name, as a value to compare, copy and print.
-        #[derive(Debug, Clone, PartialEq)]
+        #[derive(Clone)]
         pub(in crate::python) enum Shape {
             $($kind(surface::$kind),)*
-            Sum(Box<[Shape; 2]>),
-            Shifted(Box<Shape>, [f64; 2]),
+            Combined(Arc<Combined>),
         }
 
         impl Shape {
@@ -38,11 +40,7 @@ macro_rules! kinds {
             fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
                 match self {
                     $(Self::$kind(shape) => f(shape),)*
-                    Self::Sum(parts) => f(&(&parts[0]).plus(&parts[1])),
-                    Self::Shifted(shape, [x, y]) => match shape.as_ref().shifted(*x, *y) {
-                        Ok(shifted) => f(&shifted),
-                        Err(_) => unreachable!("checked when it was made"),
-                    },
+                    Self::Combined(shape) => f(shape.flat()),
                 }
             }
 
@@ -53,8 +51,28 @@ macro_rules! kinds {
             ) -> PyResult<Option<(&'static str, Bound<'py, PyDict>)>> {
                 Ok(match self {
                     $(Self::$kind(shape) => Some((stringify!($kind), shape.arguments(py)?)),)*
-                    Self::Sum(_) | Self::Shifted(..) => None,
+                    Self::Combined(_) => None,
                 })
+            }
+        }
+
+        impl PartialEq for Shape {
+            fn eq(&self, other: &Self) -> bool {
+                match (self, other) {
+                    $((Self::$kind(one), Self::$kind(two)) => one == two,)*
+                    (Self::Combined(one), Self::Combined(two)) => one.flat() == two.flat(),
+                    (Self::Combined(sum), one) | (one, Self::Combined(sum)) => sum.is_only(one),
+                    _ => false,
+                }
+            }
+        }
+
+        impl fmt::Debug for Shape {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self {
+                    $(Self::$kind(shape) => shape.fmt(f),)*
+                    Self::Combined(sum) => sum.flat().fmt(f),
+                }
             }
         }
 
@@ -107,16 +125,83 @@ where
     (&object.as_super().get().0).into()
 }
 
+/// A sum of moved shapes, which may be sums themselves. The flat list of all is made once, when it is needed.
+pub(in crate::python) struct Combined {
+    parts: Vec<(Shape, [f64; 2])>,
+    flat: OnceLock<Superposition<Shifted<Shape>>>,
+}
+
+impl Combined {
+    /// Shapes that are no sums, in their order, each with its whole shift.
+    fn flat(&self) -> &Superposition<Shifted<Shape>> {
+        self.flat.get_or_init(|| {
+            let mut found = Vec::new();
+            // Parts that are left with the shift of the sum around them, the next one last.
+            let mut left: Vec<_> = self
+                .parts
+                .iter()
+                .rev()
+                .map(|part| (part, [0.0; 2]))
+                .collect();
+            while let Some(((shape, [x, y]), [around_x, around_y])) = left.pop() {
+                let by = [x + around_x, y + around_y];
+                match shape {
+                    Shape::Combined(inner) => {
+                        left.extend(inner.parts.iter().rev().map(|part| (part, by)));
+                    }
+                    single => found.push(Shifted::by(single.clone(), by)),
+                }
+            }
+            Superposition::new(found).unwrap_or_else(|_| unreachable!("one shape at least"))
+        })
+    }
+
+    /// Whether this is `shape` alone, not moved.
+    fn is_only(&self, shape: &Shape) -> bool {
+        match self.flat().shapes() {
+            [one] => !is_moved(one) && one.shape() == shape,
+            _ => false,
+        }
+    }
+}
+
+fn is_moved(part: &Shifted<Shape>) -> bool {
+    part.shift().into_iter().any(|by| by.abs() > 0.0)
+}
+
+impl Drop for Combined {
+    /// Takes sums within sums apart one by one: to any depth on the same piece of stack.
+    fn drop(&mut self) {
+        let mut left = std::mem::take(&mut self.parts);
+        while let Some((shape, _)) = left.pop() {
+            if let Shape::Combined(inner) = shape
+                && let Some(mut inner) = Arc::into_inner(inner)
+            {
+                left.append(&mut inner.parts);
+            }
+        }
+    }
+}
+
 impl Shape {
+    /// The sum of moved shapes.
+    fn combined(parts: Vec<(Self, [f64; 2])>) -> Self {
+        let flat = OnceLock::new();
+        Self::Combined(Arc::new(Combined { parts, flat }))
+    }
+
     /// Text that equal shapes share, without the numbers of measured surfaces and profiles.
     fn key(&self) -> String {
         match self {
             Self::HeightMap(s) => format!("HeightMap {:?} {:?}", s.heights().dim(), s.spacing()),
-            Self::Roller(s) if matches!(s.profile(), Profile::Sampled(_)) => {
-                format!("Roller {:?} {:?}", s.radius(), s.length())
+            Self::Roller(s) if matches!(s.profile(), Profile::Sampled(_)) => s.radius().to_string(),
+            Self::Combined(sum) => {
+                let keys = sum.flat().shapes().iter().map(|part| match is_moved(part) {
+                    true => format!("{} {:?}", part.shape().key(), part.shift()),
+                    false => part.shape().key(),
+                });
+                keys.collect::<Vec<_>>().join(" + ")
             }
-            Self::Sum(parts) => format!("({} + {})", parts[0].key(), parts[1].key()),
-            Self::Shifted(shape, by) => format!("{} {by:?}", shape.key()),
             other => format!("{other:?}"),
         }
     }
@@ -129,36 +214,29 @@ impl Shape {
     }
 
     fn repr(&self, py: Python<'_>) -> PyResult<String> {
-        let in_brackets = |shape: &Self, nested: bool| -> PyResult<String> {
-            let text = shape.repr(py)?;
-            Ok(if nested { format!("({text})") } else { text })
-        };
-        if let Some((class, arguments)) = self.constructor(py)? {
-            let mut texts = Vec::new();
-            for (name, value) in arguments {
-                let text = match value.cast::<PyArrayDyn<f64>>() {
-                    Ok(array) => array_repr(py, array.to_owned_array())?,
-                    Err(_) => value.repr()?.to_string(),
-                };
-                texts.push(format!("{name}={text}"));
-            }
-            return Ok(format!("{class}({})", texts.join(", ")));
+        if let Self::Combined(sum) = self {
+            let texts = sum.flat().shapes().iter().map(|part| {
+                let text = part.shape().repr(py)?;
+                let [x, y] = part.shift();
+                Ok(match is_moved(part) {
+                    true => format!("{text}.shifted({x:?}, {y:?})"),
+                    false => text,
+                })
+            });
+            return Ok(texts.collect::<PyResult<Vec<_>>>()?.join(" + "));
         }
-        Ok(match self {
-            Self::Sum(parts) => {
-                let nested = matches!(parts[1], Self::Sum(_));
-                format!(
-                    "{} + {}",
-                    parts[0].repr(py)?,
-                    in_brackets(&parts[1], nested)?
-                )
-            }
-            Self::Shifted(shape, [x, y]) => {
-                let nested = matches!(**shape, Self::Sum(_));
-                format!("{}.shifted({x:?}, {y:?})", in_brackets(shape, nested)?)
-            }
-            _ => unreachable!("all others have a constructor"),
-        })
+        let Some((class, arguments)) = self.constructor(py)? else {
+            unreachable!("all others have a constructor");
+        };
+        let mut texts = Vec::new();
+        for (name, value) in arguments {
+            let text = match value.cast::<PyArrayDyn<f64>>() {
+                Ok(array) => array_repr(py, array.to_owned_array())?,
+                Err(_) => value.repr()?.to_string(),
+            };
+            texts.push(format!("{name}={text}"));
+        }
+        Ok(format!("{class}({})", texts.join(", ")))
     }
 }
 
@@ -259,16 +337,14 @@ impl PyShape {
     /// --------
     /// >>> nacre.Sphere(5e-3).shifted(1e-3, 0.0)
     /// Sphere(radius=0.005).shifted(0.001, 0.0)
-    fn shifted(&self, x: f64, y: f64) -> PyResult<Self> {
-        (&self.0).shifted(x, y)?;
-        Ok(Self(Shape::Shifted(
-            Box::new(self.0.clone()),
-            [x + 0.0, y + 0.0],
-        )))
+    fn shifted(&self, x: Real, y: Real) -> PyResult<Self> {
+        let shift = (&self.0).shifted(x.0, y.0)?.shift();
+        Ok(Self(Shape::combined(vec![(self.0.clone(), shift)])))
     }
 
     fn __add__(&self, other: &Self) -> Self {
-        Self(Shape::Sum(Box::new([self.0.clone(), other.0.clone()])))
+        let parts = [self, other].map(|shape| (shape.0.clone(), [0.0; 2]));
+        Self(Shape::combined(parts.into()))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -285,20 +361,27 @@ impl PyShape {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         if let Some((class, arguments)) = self.0.constructor(py)? {
-            return Ok((class_of(py, class)?, arguments.values().to_tuple()));
+            let class = class_of(py, class)?.cast_into()?;
+            return remade(class, PyTuple::empty(py), arguments);
         }
+        let Shape::Combined(sum) = &self.0 else {
+            unreachable!("all others have a constructor");
+        };
         let operator = py.import("operator")?;
-        Ok(match &self.0 {
-            Shape::Sum(parts) => {
-                let parts = (parts[0].to_python(py)?, parts[1].to_python(py)?);
-                (operator.getattr("add")?, parts.into_pyobject(py)?)
-            }
-            Shape::Shifted(shape, [x, y]) => {
-                let shift = operator.call_method1("methodcaller", ("shifted", *x, *y))?;
-                (shift, (shape.to_python(py)?,).into_pyobject(py)?)
-            }
-            _ => unreachable!("all others have a constructor"),
-        })
+        let moved = |shift: [f64; 2]| {
+            operator.call_method1("methodcaller", ("shifted", shift[0], shift[1]))
+        };
+        if let [part] = sum.flat().shapes() {
+            let shape = part.shape().to_python(py)?;
+            return Ok((moved(part.shift())?, (shape,).into_pyobject(py)?));
+        }
+        let parts = sum.flat().shapes().iter().map(|part| match is_moved(part) {
+            true => Shape::combined(vec![(part.shape().clone(), part.shift())]).to_python(py),
+            false => part.shape().to_python(py),
+        });
+        let parts = parts.collect::<PyResult<Vec<_>>>()?;
+        let reduce = py.import("functools")?.getattr("reduce")?;
+        Ok((reduce, (operator.getattr("add")?, parts).into_pyobject(py)?))
     }
 }
 
@@ -313,12 +396,4 @@ pub(in crate::python) fn shape<'a, 'py>(
     object.cast::<PyShape>().map_err(|_| {
         PyTypeError::new_err(format!("shape must be a nacre.Shape, got {}", Repr(object)))
     })
-}
-
-/// Arguments of a constructor whose values are numbers.
-pub(super) fn numbers<'py, const N: usize>(
-    py: Python<'py>,
-    arguments: [(&str, f64); N],
-) -> PyResult<Bound<'py, PyDict>> {
-    arguments.into_py_dict(py)
 }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::base::{Kind, PyShape, held, object};
-use crate::python::arguments::{Repr, read_only, real_matrix};
+use crate::python::arguments::{Pair, Real, Repr, read_only, real_matrix};
 use crate::surface::HeightMap;
 
 /// A measured surface: heights at cell centres, positive towards the other body.
@@ -57,17 +57,17 @@ impl Kind for HeightMap {
 impl PyHeightMap {
     #[new]
     #[pyo3(
-        signature = (heights, spacing, center=[0.0, 0.0]),
+        signature = (heights, spacing, center=Pair([0.0; 2])),
         text_signature = "(heights, spacing, center=(0.0, 0.0))"
     )]
     fn new(
         heights: &Bound<'_, PyAny>,
         spacing: &Bound<'_, PyAny>,
-        center: [f64; 2],
+        center: Pair,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let both = spacing.extract::<f64>().map(|spacing| [spacing; 2]);
+        let both = spacing.extract::<Real>().map(|spacing| [spacing.0; 2]);
         let spacing = both
-            .or_else(|_| spacing.extract::<[f64; 2]>())
+            .or_else(|_| spacing.extract::<Pair>().map(|pair| pair.0))
             .map_err(|_| {
                 PyTypeError::new_err(format!(
                     "spacing must be a number or a pair of numbers, got {}",
@@ -75,7 +75,7 @@ impl PyHeightMap {
                 ))
             })?;
         let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
-        Ok(object(Self, map.centered_at(center)?))
+        Ok(object(Self, map.centered_at(center.0)?))
     }
 
     /// Reads a measured surface from a file, or takes one from SurfaceTopography.

@@ -1,219 +1,14 @@
-//! `nacre.LogarithmicProfile` and `nacre.SampledProfile`.
+//! `nacre.SampledProfile`, and profiles of either class.
 
 use ndarray::Array1;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
-use crate::python::arguments::{Repr, array_repr, hash, read_only, real_array};
-use crate::surface::{LogarithmicProfile, Profile, SampledProfile};
-
-/// A logarithmic axial profile of a roller, straight over its middle where `flat_length` > 0.
-///
-/// ``d(x) = A ln(1/(1 - f u**2))`` with ``u = (2|x| - flat_length)/(length - flat_length)``, +inf
-/// beyond ``|x| = length/2``.
-///
-/// Parameters
-/// ----------
-/// amplitude : float
-///     A [m], above 0.
-/// length : float
-///     Whole length [m], above 0.
-/// flat_length : float, optional
-///     Length of the straight part [m], at least 0 and below `length`.
-/// end_factor : float, optional
-///     f, above 0 and at most 1; below 1 the drop at the ends is finite.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If an argument is out of range.
-///
-/// Examples
-/// --------
-/// >>> profile = nacre.LogarithmicProfile.iso16281(diameter=10e-3, length=20e-3)
-/// >>> round(profile.amplitude * 1e6, 6)
-/// 3.5
-/// >>> roller = nacre.Roller(radius=5e-3, profile=profile)
-#[pyclass(
-    name = "LogarithmicProfile",
-    module = "nacre",
-    frozen,
-    eq,
-    from_py_object
-)]
-#[derive(Clone, PartialEq)]
-pub(in crate::python) struct PyLogarithmicProfile(pub(super) LogarithmicProfile);
-
-#[pymethods]
-impl PyLogarithmicProfile {
-    #[new]
-    #[pyo3(signature = (amplitude, length, flat_length=0.0, end_factor=1.0))]
-    fn new(amplitude: f64, length: f64, flat_length: f64, end_factor: f64) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::new(
-            amplitude,
-            length,
-            flat_length,
-            end_factor,
-        )?))
-    }
-
-    /// Lundberg's profile: the pressure of this load is the same all along the roller.
-    ///
-    /// ``A = W/(pi L E*)``. Lundberg, Forsch. Ing.-Wes. 10 (1939) 201.
-    ///
-    /// Parameters
-    /// ----------
-    /// length : float
-    ///     Length L of the roller [m].
-    /// load : float
-    ///     Load W [N].
-    /// contact_modulus : float
-    ///     E* [Pa], ``1/E* = sum of (1 - nu**2)/E`` over both bodies.
-    ///
-    /// Returns
-    /// -------
-    /// LogarithmicProfile
-    ///     The profile.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is not finite and above 0.
-    ///
-    /// Examples
-    /// --------
-    /// >>> profile = nacre.LogarithmicProfile.lundberg(20e-3, load=20e3, contact_modulus=115e9)
-    /// >>> round(profile.amplitude * 1e6, 4)
-    /// 2.7679
-    #[staticmethod]
-    fn lundberg(length: f64, load: f64, contact_modulus: f64) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::lundberg(
-            length,
-            load,
-            contact_modulus,
-        )?))
-    }
-
-    /// Johns and Gohar's profile: Lundberg's, with a finite drop at the ends.
-    ///
-    /// ``f = 1 - 0.3033 b/a`` with the Hertzian half-width b and the half-length a. Johns & Gohar,
-    /// Tribol. Int. 14 (1981) 131.
-    ///
-    /// Parameters
-    /// ----------
-    /// length : float
-    ///     Length of the roller [m].
-    /// load : float
-    ///     Load [N].
-    /// contact_modulus : float
-    ///     E* [Pa], of both bodies.
-    /// radius : float
-    ///     Radius of the roller [m].
-    ///
-    /// Returns
-    /// -------
-    /// LogarithmicProfile
-    ///     The profile.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is not finite and above 0.
-    ///
-    /// Examples
-    /// --------
-    /// >>> profile = nacre.LogarithmicProfile.johns_gohar(20e-3, 20e3, 115e9, radius=5e-3)
-    /// >>> profile.end_factor < 1
-    /// True
-    #[staticmethod]
-    fn johns_gohar(length: f64, load: f64, contact_modulus: f64, radius: f64) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::johns_gohar(
-            length,
-            load,
-            contact_modulus,
-            radius,
-        )?))
-    }
-
-    /// The profile of ISO/TS 16281.
-    ///
-    /// ``0.00035 D ln(1/(1 - (2x/L)**2))`` for ``L <= 2.5 D``; for longer rollers
-    /// ``0.0005 D ln(1/(1 - u**2))`` over the last 1.25 D at each end.
-    ///
-    /// Parameters
-    /// ----------
-    /// diameter : float
-    ///     Diameter D of the roller [m].
-    /// length : float
-    ///     Effective length L [m].
-    ///
-    /// Returns
-    /// -------
-    /// LogarithmicProfile
-    ///     The profile.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is not finite and above 0.
-    ///
-    /// Examples
-    /// --------
-    /// >>> round(nacre.LogarithmicProfile.iso16281(diameter=10e-3, length=30e-3).flat_length, 9)
-    /// 0.005
-    #[staticmethod]
-    fn iso16281(diameter: f64, length: f64) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::iso16281(diameter, length)?))
-    }
-
-    /// Amplitude A [m].
-    #[getter]
-    fn amplitude(&self) -> f64 {
-        self.0.amplitude()
-    }
-
-    /// Whole length [m].
-    #[getter]
-    fn length(&self) -> f64 {
-        self.0.length()
-    }
-
-    /// Length of the straight part [m].
-    #[getter]
-    fn flat_length(&self) -> f64 {
-        self.0.flat_length()
-    }
-
-    /// End factor f.
-    #[getter]
-    fn end_factor(&self) -> f64 {
-        self.0.end_factor()
-    }
-
-    pub(super) fn __repr__(&self) -> String {
-        format!(
-            "LogarithmicProfile(amplitude={:?}, length={:?}, flat_length={:?}, end_factor={:?})",
-            self.amplitude(),
-            self.length(),
-            self.flat_length(),
-            self.end_factor()
-        )
-    }
-
-    fn __hash__(&self) -> u64 {
-        hash(&self.__repr__())
-    }
-
-    fn __getnewargs__(&self) -> (f64, f64, f64, f64) {
-        (
-            self.amplitude(),
-            self.length(),
-            self.flat_length(),
-            self.end_factor(),
-        )
-    }
-}
+use super::logarithmic::PyLogarithmicProfile;
+use crate::python::arguments::{Repr, array_repr, mapped, read_only, real_array};
+use crate::surface::{Profile, SampledProfile};
 
 /// A measured axial profile of a roller: drops at positions, linear in between, +inf beyond.
 ///
@@ -260,6 +55,32 @@ impl PySampledProfile {
         )?))
     }
 
+    /// Drops at any positions along the axis, linear between the samples.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : float or array_like
+    ///     Positions [m], of any shape.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Drops [m] in the shape of `x`; +inf beyond the ends.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     If the positions are not real numbers.
+    ///
+    /// Examples
+    /// --------
+    /// >>> nacre.SampledProfile(x=[-10e-3, 0.0, 10e-3], drop=[5e-6, 0.0, 5e-6]).drop_at(5e-3)
+    /// 2.5e-06
+    fn drop_at<'py>(&self, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let profile = Profile::from(self.0.clone());
+        mapped("x", x, |x| profile.drop(x))
+    }
+
     /// Positions ``(n,)`` [m].
     #[getter]
     fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
@@ -277,12 +98,14 @@ impl PySampledProfile {
         Ok(format!("SampledProfile(x={}, drop={})", line(0)?, line(1)?))
     }
 
-    fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<(Line<'py>, Line<'py>)> {
-        Ok((self.x(py)?, self.drop(py)?))
+    /// Callable and arguments that make the profile again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        Ok((py.get_type::<Self>(), (self.x(py)?, self.drop(py)?)))
     }
 }
 
 type Line<'py> = Bound<'py, PyArray1<f64>>;
+type Reduced<'py> = (Bound<'py, PyType>, (Line<'py>, Line<'py>));
 
 /// Profile from an argument: an object of either class, or a pair (x, drop).
 pub(super) fn profile(object: &Bound<'_, PyAny>) -> PyResult<Profile> {

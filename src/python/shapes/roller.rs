@@ -6,6 +6,7 @@ use pyo3::types::PyDict;
 use super::base::{Kind, PyShape, held, object};
 use super::profiles;
 use crate::error::Error;
+use crate::python::arguments::Real;
 use crate::surface::{CrownedProfile, Profile, Roller};
 
 /// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
@@ -13,7 +14,8 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 /// Crowned: ``d(x) = 0`` for ``|x| <= L = flat_length/2``, beyond it
 /// ``d = R_a - sqrt(R_a**2 - (|x| - L)**2)`` with ``R_a = crown_radius``. Spinu et al., The normal
 /// contact of finite length coated cylinders, eq. (3). Any other profile is averaged over each cell,
-/// so that the ends do not depend on where a cell's centre falls.
+/// so that the ends do not depend on where a cell's centre falls. On a raceway of radius ``R_2`` the gap
+/// has ``R_2 - sqrt(R_2**2 - y**2)`` added; the drop of a crowned raceway adds to that of the profile.
 ///
 /// Parameters
 /// ----------
@@ -28,16 +30,23 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 /// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
 ///     Another axial profile, in place of `flat_length` and `crown_radius`. A pair holds positions and
 ///     drops.
+/// counter_radius : float, optional
+///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
+///     where it is concave, as of an outer ring, which must be wider than the roller. A plane by default.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If a length is out of range, or there is neither a crown nor a profile, or both.
+///     If a length is out of range, there is neither a crown nor a profile, or both, or a concave raceway
+///     is not wider than the roller.
 ///
 /// Examples
 /// --------
 /// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
 /// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None, profile=None)
+/// >>> outer = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, counter_radius=-30e-3)
+/// >>> round(outer.equivalent_radius, 9)
+/// 0.006
 #[pyclass(name = "Roller", module = "nacre", frozen, extends = PyShape)]
 pub(super) struct PyRoller;
 
@@ -55,6 +64,9 @@ impl Kind for Roller {
         arguments.set_item("crown_radius", crown_radius)?;
         arguments.set_item("length", self.length())?;
         arguments.set_item("profile", profiles::to_python(py, self.profile())?)?;
+        if let Some(counter_radius) = self.counter_radius() {
+            arguments.set_item("counter_radius", counter_radius)?;
+        }
         Ok(arguments)
     }
 }
@@ -62,20 +74,23 @@ impl Kind for Roller {
 #[pymethods]
 impl PyRoller {
     #[new]
-    #[pyo3(signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None))]
+    #[pyo3(
+        signature = (radius, flat_length=None, crown_radius=None, length=None, profile=None, counter_radius=None)
+    )]
     fn new(
-        radius: f64,
-        flat_length: Option<f64>,
-        crown_radius: Option<f64>,
-        length: Option<f64>,
+        radius: Real,
+        flat_length: Option<Real>,
+        crown_radius: Option<Real>,
+        length: Option<Real>,
         profile: Option<&Bound<'_, PyAny>>,
+        counter_radius: Option<Real>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let mut roller = match (flat_length, crown_radius, profile) {
             (Some(flat_length), Some(crown_radius), None) => {
-                Roller::new(radius, flat_length, crown_radius)?
+                Roller::new(radius.0, flat_length.0, crown_radius.0)?
             }
             (None, None, Some(profile)) => {
-                Roller::with_profile(radius, profiles::profile(profile)?)?
+                Roller::with_profile(radius.0, profiles::profile(profile)?)?
             }
             _ => {
                 return Err(Error::Inconsistent(
@@ -85,7 +100,10 @@ impl PyRoller {
             }
         };
         if let Some(length) = length {
-            roller = roller.with_length(length)?;
+            roller = roller.with_length(length.0)?;
+        }
+        if let Some(counter_radius) = counter_radius {
+            roller = roller.with_counter_radius(counter_radius.0)?;
         }
         Ok(object(Self, roller))
     }
@@ -112,6 +130,18 @@ impl PyRoller {
     #[getter]
     fn length(slf: &Bound<'_, Self>) -> Option<f64> {
         held::<_, Roller>(slf).length()
+    }
+
+    /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.
+    #[getter]
+    fn counter_radius(slf: &Bound<'_, Self>) -> Option<f64> {
+        held::<_, Roller>(slf).counter_radius()
+    }
+
+    /// Equivalent radius of roller and raceway [m], ``1/(1/radius + 1/counter_radius)``.
+    #[getter]
+    fn equivalent_radius(slf: &Bound<'_, Self>) -> f64 {
+        held::<_, Roller>(slf).equivalent_radius()
     }
 
     /// Axial profile; None for a crowned roller.

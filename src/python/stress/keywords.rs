@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use crate::body::{HalfSpace, Layer, Substrate};
 use crate::python::arguments::keywords::Keywords;
-use crate::python::arguments::{Repr, real_array};
+use crate::python::arguments::{Pair, Real, Repr, real_array};
 use crate::python::background;
 use crate::python::errors::NacreWarning;
 use crate::stress::{Section, Strengths, StressOptions, StressProgress};
@@ -129,12 +129,16 @@ pub(in crate::python) fn section(
 
 /// Options with friction and residual stress.
 pub(in crate::python) fn options(keywords: &Keywords, body: &HalfSpace) -> PyResult<StressOptions> {
-    let direction = keywords.given("direction")?.map(|value| {
-        value.extract().map_err(|_| {
-            let got = Repr(&value);
-            PyTypeError::new_err(format!("direction must be a pair of numbers, got {got}"))
-        })
-    });
+    let direction = keywords
+        .given("direction")?
+        .map(|value| match value.extract::<Pair>() {
+            Ok(pair) => Ok(pair.0),
+            Err(_) => {
+                let got = Repr(&value);
+                let message = format!("direction must be a pair of numbers, got {got}");
+                Err(PyTypeError::new_err(message))
+            }
+        });
     let residual = by_layer(keywords, "residual", body)?;
     Ok(StressOptions {
         friction: keywords.real("friction", 0.0)?,
@@ -161,16 +165,15 @@ fn by_layer(keywords: &Keywords, name: &str, body: &HalfSpace) -> PyResult<Vec<O
     };
     let layers = body.layers().len();
     let count = layers + usize::from(body.substrate() != Substrate::Rigid);
-    let number = |value: &Bound<'_, PyAny>| {
-        value.extract::<f64>().map_err(|_| {
-            PyTypeError::new_err(format!(
-                "{name} must hold real numbers, got {}",
-                Repr(value)
-            ))
-        })
+    let number = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
+        Ok(number) => Ok(number.0),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "{name} must hold real numbers, got {}",
+            Repr(value)
+        ))),
     };
     let Ok(mapping) = given.cast::<PyDict>() else {
-        let values: Vec<Option<f64>> = given.extract().map_err(|_| {
+        let values: Vec<Option<Real>> = given.extract().map_err(|_| {
             PyTypeError::new_err(format!(
                 "{name} must be a dict from layers to numbers, or a sequence of them, got {}",
                 Repr(&given)
@@ -183,7 +186,7 @@ fn by_layer(keywords: &Keywords, name: &str, body: &HalfSpace) -> PyResult<Vec<O
                 values.len()
             )));
         }
-        return Ok(values);
+        return Ok(values.iter().map(|value| value.map(|v| v.0)).collect());
     };
     let mut values = vec![None; count];
     for (key, value) in mapping {
