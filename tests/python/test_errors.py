@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -255,7 +256,8 @@ def test_bad_types_are_refused(call: str, message: str) -> None:
 @pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # few cells are enough here
 def test_a_list_or_an_array_is_as_good_as_a_tuple() -> None:
     pair = (4e-4, 4e-4)
-    for like in (list, np.array):
+    kinds: tuple[Any, ...] = (list, np.array)
+    for like in kinds:
         assert nacre.Grid(like((16, 20)), like(pair)) == GRID
         assert nacre.HeightMap(HEIGHTS, like(pair)).spacing == pair
         assert nacre.HeightMap(HEIGHTS, pair, center=like(pair)).center == pair
