@@ -193,15 +193,18 @@ impl PyReport {
         self.0.convolutions
     }
 
-    /// Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch; u is replaced by the
-    /// local displacement where that is less, as on a substrate much softer than its coat.
+    /// Complementarity ``sum(p |g|) / sum(p u)`` over the cells that can touch.
+    ///
+    /// Where the local displacement is less than u, as on a substrate much softer than its coating, it
+    /// takes the place of u.
     #[getter]
     fn residual(&self) -> f64 {
         self.0.residual
     }
 
-    /// ``max(-g, 0) / max(u)`` over the cells that can touch; relative to the local displacement where
-    /// that is less.
+    /// Largest overlap ``max(-g, 0) / max(u)`` of the cells that can touch.
+    ///
+    /// Where the local displacement is less than the largest u, it takes its place.
     #[getter]
     fn overlap(&self) -> f64 {
         self.0.overlap
