@@ -30,7 +30,7 @@ def same(found: Any, name: str) -> bool:
     return bool(array.shape == expected.shape and array.tobytes() == expected.tobytes())
 
 
-def figures(solution: nacre.Solution) -> list[float]:
+def figures(solution: nacre.Solution) -> list[float | None]:
     report = solution.report
     return [
         solution.approach,

@@ -124,8 +124,10 @@ def test_stresses_are_finite_and_linear_in_friction(
     assume(np.isfinite(shape.gaps(grid)).any())
     solution = pressed(shape, body, grid=grid, approach=depth)
     assert solution is not None
-    way = {"direction": (0.6, 0.8), "threads": 1}
-    none, some, full = (solution.stress(z, friction=f, **way) for f in (0.0, friction, 1.0))
+    none, some, full = (
+        solution.stress(z, friction=f, direction=(0.6, 0.8), threads=1)
+        for f in (0.0, friction, 1.0)
+    )
     for name in ("xx", "yy", "zz", "xy", "yz", "xz"):
         a, b, c = (np.asarray(getattr(field, name)) for field in (none, some, full))
         assert np.isfinite(b).all()

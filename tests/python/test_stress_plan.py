@@ -4,6 +4,7 @@ import os
 import signal
 import threading
 import time
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -22,22 +23,24 @@ def solution() -> nacre.Solution:
 
 
 @pytest.mark.parametrize("body", ["body", "counterbody"])
-def test_it_gives_the_bits_of_the_solution(solution: nacre.Solution, body: str) -> None:
-    plan = solution.stress_plan(body, threads=1)  # type: ignore[arg-type]
+def test_it_gives_the_bits_of_the_solution(
+    solution: nacre.Solution, body: Literal["body", "counterbody"]
+) -> None:
+    plan = solution.stress_plan(body, threads=1)
     report = solution.report
     assert plan.body == (report.body if body == "body" else report.counterbody)
     for _ in range(2):
         assert plan.stress(1e-5, friction=0.2, direction=(1.0, 0.0)) == solution.stress(
             1e-5, friction=0.2, direction=(1.0, 0.0), body=body
-        )  # type: ignore[arg-type]
+        )
         section = plan.stress([0.0, 2e-5], y=0.0, side="above", displacement=True)
-        whole = solution.stress([0.0, 2e-5], y=0.0, side="above", displacement=True, body=body)  # type: ignore[arg-type]
+        whole = solution.stress([0.0, 2e-5], y=0.0, side="above", displacement=True, body=body)
         assert section == whole
         summary = plan.summary(yield_stress={"substrate": 2e9}, residual=[-1e9])
         assert summary == solution.stress_summary(
             yield_stress={"substrate": 2e9},
             residual=[-1e9],
-            body=body,  # type: ignore[arg-type]
+            body=body,
         )
 
 

@@ -34,8 +34,9 @@ axes = plot.stress_section(solution, "tension", friction=0.25, direction=(1, 0))
 # %%
 # The summary has the peaks, and safety factors against limits that are given; ``print(summary)``
 # shows the whole table, with the place of each peak.
-limits = {0: 8e9, "substrate": 2.2e9}
-summary = solution.stress_summary(friction=0.25, direction=(1, 0), yield_stress=limits)
+summary = solution.stress_summary(
+    friction=0.25, direction=(1, 0), yield_stress={0: 8e9, "substrate": 2.2e9}
+)
 for layer in summary.layers:
     mises, tension = layer.von_mises[0] / 1e9, layer.tension[0] / 1e9
     print(f"layers[{layer.layer}]: von Mises {mises:.2f} GPa, tension {tension:.2f} GPa", end=", ")
