@@ -223,7 +223,10 @@ fn a_grid_is_found_on_foundations() -> Result<()> {
         // Cells are halved where the shear layer's steep pressure at the rim asks for it.
         let halved = (cells / 69.0).log2().round();
         assert!((0.0..4.0).contains(&halved), "{load}: {cells}");
-        assert!((60.0..80.0).contains(&(cells / halved.exp2())), "{load}: {cells}");
+        assert!(
+            (60.0..80.0).contains(&(cells / halved.exp2())),
+            "{load}: {cells}"
+        );
     }
     Ok(())
 }
