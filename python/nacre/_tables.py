@@ -39,7 +39,7 @@ def write_sections(solution: core.Solution, path: Path) -> None:
 
 
 def write_cells(solution: core.Solution, path: Path) -> None:
-    """Write every cell, after a block of comments with the key figures."""
+    """Write every cell, after a block of comments with the most important numbers."""
     report, grid = solution.report, solution.report.grid
     head = {
         "source": f"nacre {core.__version__}",

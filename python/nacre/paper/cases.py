@@ -19,7 +19,7 @@ import nacre
 Array = npt.NDArray[np.float64]
 
 RATIOS = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Young's modulus of the coating over that of the substrate, E1/E2."""
+"""Ratio of Young's moduli of the coating and the substrate, E1/E2."""
 
 SUBSTRATE = nacre.Elastic(young=210e9, poisson=0.3)
 
