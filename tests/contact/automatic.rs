@@ -114,6 +114,34 @@ fn a_thin_incompressible_layer_gets_a_grid_that_holds_the_contact() -> Result<()
     Ok(())
 }
 
+/// A plate with rings at 1 mm · 100ᵏ, higher and wider each, all at the level of its middle.
+#[derive(Debug)]
+struct Rings;
+
+impl Surface for Rings {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        let decades = (x.hypot(y) / 1e-3).log10().max(0.0);
+        1e-5 * (0.5 * std::f64::consts::PI * decades).sin().powi(2)
+    }
+}
+
+/// Each grid that holds one ring more misses the next one. The search ends all the same, and says that part of
+/// the contact is missing: the missing rings overlap by the approach less the displacement there.
+#[test]
+fn a_contact_without_end_is_warned_of() -> Result<()> {
+    let approach = 1e-6;
+    let solution = solve(&Rings, steel()?, &Motion::approach(approach))?;
+    let depths: Vec<f64> = (solution.report.warnings.iter())
+        .filter_map(|warning| match warning {
+            Warning::OutsideGrid { depth } => Some(*depth),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(depths.len(), 1, "{:?}", solution.report.warnings);
+    assert!(depths[0] > 0.0 && depths[0] <= approach, "{depths:?}");
+    Ok(())
+}
+
 #[test]
 fn nothing_is_found_where_nothing_touches() -> Result<()> {
     let roller = Roller::new(5e-3, 10e-3, 1.0)?;
