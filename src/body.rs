@@ -1,6 +1,6 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite, positive};
 use crate::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
@@ -110,7 +110,7 @@ impl From<Elastic> for Substrate {
     }
 }
 
-/// A half-space: a substrate with layers on it.
+/// A half-space: a substrate with layers on it, which may end along x.
 ///
 /// ```
 /// use nacre::{Elastic, HalfSpace, Layer};
@@ -125,6 +125,7 @@ impl From<Elastic> for Substrate {
 pub struct HalfSpace {
     substrate: Substrate,
     layers: Vec<Layer>,
+    ends: [Option<f64>; 2],
 }
 
 impl HalfSpace {
@@ -143,7 +144,56 @@ impl HalfSpace {
                 "layers must hold at least one layer where the substrate is rigid",
             ));
         }
-        Ok(Self { substrate, layers })
+        Ok(Self {
+            substrate,
+            layers,
+            ends: [None; 2],
+        })
+    }
+
+    /// This body with free ends at these coordinates x \[m\]: it is cut off there, across the axis of a roller,
+    /// and nothing holds the end face. `None` where the body goes on.
+    ///
+    /// Contacts count both ends ([`crate::ends`]); frequency response, influence coefficients and the functions
+    /// that evaluate a given pressure are those of the body that goes on.
+    ///
+    /// ```
+    /// use nacre::{Elastic, HalfSpace};
+    /// // The material of a roller of 10 mm.
+    /// let roller = HalfSpace::from(Elastic::new(210e9, 0.3)?).with_ends([Some(-5e-3), Some(5e-3)])?;
+    /// assert_eq!(roller.ends(), [Some(-5e-3), Some(5e-3)]);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Unless the coordinates are finite and the first is below the second; where the substrate is rigid.
+    pub fn with_ends(self, ends: [Option<f64>; 2]) -> Result<Self> {
+        for end in ends.into_iter().flatten() {
+            finite("ends", end)?;
+        }
+        if let [Some(low), Some(high)] = ends
+            && low >= high
+        {
+            return Err(Error::Parameter {
+                name: "ends",
+                requirement: "in ascending order: the body lies between them",
+                value: high,
+            });
+        }
+        if ends != [None; 2] && self.substrate == Substrate::Rigid {
+            return Err(Error::Inconsistent(
+                "ends must not be given for a body on a rigid substrate: its face is not free there",
+            ));
+        }
+        Ok(Self {
+            ends: ends.map(|end| end.map(|x| x + 0.0)),
+            ..self
+        })
+    }
+
+    /// Coordinates x \[m\] of the free ends; `None` where the body goes on.
+    pub fn ends(&self) -> [Option<f64>; 2] {
+        self.ends
     }
 
     /// The substrate below the layers.
@@ -188,6 +238,7 @@ impl From<Elastic> for HalfSpace {
         Self {
             substrate: material.into(),
             layers: Vec::new(),
+            ends: [None; 2],
         }
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! Liu, Wang & Liu, Wear 243 (2000) 101, doi:10.1016/S0043-1648(00)00427-0.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -14,8 +15,11 @@ use crate::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
 use crate::parallel::Threads;
 use crate::parallel::{Lease, Pool};
 
+mod addition;
 mod periodic;
 mod stages;
+
+pub(crate) use addition::{Addition, RowWeights, distances, pair};
 
 /// The convolution of a pressure with influence coefficients, planned once and applied many times.
 ///
@@ -38,8 +42,10 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
+    /// Operators that are added to the convolution.
+    additions: Vec<Addition>,
     /// Memory that is not in use, shared with companions of this convolution.
-    idle: Pool<FftWorkspace>,
+    idle: Pool<Memory>,
     /// Time spent by this convolution and its companions.
     clock: Arc<Clock>,
 }
@@ -72,7 +78,14 @@ impl Clock {
 /// Memory for one application of a convolution at a time. When it is dropped, the convolution keeps the
 /// memory for the next workspace.
 #[derive(Debug)]
-pub struct Workspace(Lease<FftWorkspace>);
+pub struct Workspace(Lease<Memory>);
+
+/// Memory of the transforms, and of each operator that is added.
+#[derive(Debug, Default)]
+struct Memory {
+    fft: FftWorkspace,
+    added: Vec<addition::Memory>,
+}
 
 impl Convolution {
     /// Plans the convolution with `coefficients` (nx, ny), given at offsets ≥ 0, on `threads`
@@ -113,18 +126,19 @@ impl Convolution {
         coefficients: &ArrayRef2<f64>,
         transform: PaddedTransform,
         threads: &Arc<Threads>,
-        idle: Pool<FftWorkspace>,
+        idle: Pool<Memory>,
         clock: Arc<Clock>,
     ) -> Self {
         let mut workspace = lease(&idle, &transform);
         let spectrum =
-            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.0, threads));
+            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.0.fft, threads));
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
             transform,
             spectrum: Arc::new(spectrum),
             threads: Arc::clone(threads),
+            additions: Vec::new(),
             idle,
             clock,
         }
@@ -136,6 +150,7 @@ impl Convolution {
             transform: self.transform.on_threads(threads),
             spectrum: Arc::clone(&self.spectrum),
             threads: Arc::clone(threads),
+            additions: self.additions.clone(),
             idle: Pool::default(),
             clock: Arc::default(),
             ..*self
@@ -163,6 +178,26 @@ impl Convolution {
             self.idle.clone(),
             Arc::clone(&self.clock),
         )
+    }
+
+    /// This convolution plus `additions`, each for as many rows as the convolution has, and no shorter ones.
+    pub(crate) fn plus(self, additions: Vec<Addition>) -> Self {
+        Self { additions, ..self }
+    }
+
+    /// What the additions contribute to the displacement of a cell in one row under unit pressure on a cell in another,
+    /// at a `distance` of so many cells along y.
+    pub(crate) fn added(&self, rows: [usize; 2], distance: usize) -> f64 {
+        let additions = self.additions.iter();
+        additions.map(|added| added.entry(rows, distance)).sum()
+    }
+
+    /// [`Convolution::companion`] for a window whose first row is `first`, with the part of the additions there.
+    pub(crate) fn on_window(&self, coefficients: &ArrayRef2<f64>, first: usize) -> Self {
+        let rows = first..first + coefficients.nrows();
+        let additions = self.additions.iter();
+        let additions = additions.map(|a| a.on_rows(rows.clone())).collect();
+        self.companion(coefficients).plus(additions)
     }
 
     /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.
@@ -263,17 +298,35 @@ impl Convolution {
         workspace: &mut Workspace,
     ) {
         let memory = &mut workspace.0;
-        self.transform.reserve(memory);
+        self.transform.reserve(&mut memory.fft);
         self.clock.during(|| {
+            let (spectrum, threads) = (&self.spectrum, &self.threads);
             self.transform
-                .convolve_into(&self.spectrum, input, output, memory, &self.threads);
+                .convolve_into(spectrum, input, output, &mut memory.fft, threads);
+            self.respond(input, 0..self.shape[0], &mut memory.added);
+            self.add_rows(0, output, &memory.added);
         });
+    }
+
+    /// Computes what the additions respond to an `input` that is zero outside the rows `occupied`.
+    fn respond(&self, input: &[f64], occupied: Range<usize>, memory: &mut Vec<addition::Memory>) {
+        memory.resize_with(self.additions.len().max(memory.len()), Default::default);
+        for (addition, memory) in self.additions.iter().zip(memory) {
+            addition.respond(input, occupied.clone(), memory, &self.threads);
+        }
+    }
+
+    /// Adds what the additions responded to rows of the output, from row `first` on.
+    fn add_rows(&self, first: usize, output: &mut [f64], memory: &[addition::Memory]) {
+        for (addition, memory) in self.additions.iter().zip(memory) {
+            addition.add_rows(first, self.shape[1], output, memory);
+        }
     }
 }
 
 /// A workspace from idle memory, large enough for `transform`.
-fn lease(idle: &Pool<FftWorkspace>, transform: &PaddedTransform) -> Workspace {
+fn lease(idle: &Pool<Memory>, transform: &PaddedTransform) -> Workspace {
     let mut memory = idle.lease();
-    transform.reserve(&mut memory);
+    transform.reserve(&mut memory.fft);
     Workspace(memory)
 }

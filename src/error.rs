@@ -106,6 +106,28 @@ pub enum Error {
         /// Side lengths of the last grid.
         size: [f64; 2],
     },
+    /// A free end of a body within a cell.
+    #[error(
+        "ends must lie on edges of the grid's cells along x, or outside the grid, was {end:e} between the edges \
+         {:e} and {:e}", edges[0], edges[1]
+    )]
+    EndOffGrid {
+        /// Coordinate x of the end \[m\].
+        end: f64,
+        /// Edges of cells next to it \[m\].
+        edges: [f64; 2],
+    },
+    /// A body that ends where the shape that it carries goes on.
+    #[error(
+        "ends of the counterbody must not lie within the shape that it carries: it ends at x = {end:e}, and the shape \
+         at {shape:e}"
+    )]
+    EndWithinShape {
+        /// Coordinate x of the body's end \[m\].
+        end: f64,
+        /// Coordinate x of the shape's end \[m\].
+        shape: f64,
+    },
     /// An approach that is prescribed to a line contact whose datum lies too near.
     #[error(
         "approach cannot be prescribed on this grid: it is counted from the bare substrate's surface at \

@@ -32,6 +32,7 @@
 //! | [`response`] | frequency response û(α)/p̂(α) of a body |
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
+//! | [`ends`] | free ends of bodies |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
 //! | [`mod@stress`] | stress and displacement below the surface |
 //!
@@ -75,6 +76,8 @@ mod kernel;
 pub mod influence;
 
 pub mod convolution;
+
+pub mod ends;
 
 pub mod contact;
 

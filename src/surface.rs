@@ -55,8 +55,8 @@ impl Extent {
         }
     }
 
-    /// Extent of the sum of two shapes.
-    fn and(self, other: Self) -> Self {
+    /// Extent of the sum of two shapes, and of a shape within a range.
+    pub(crate) fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::Endless, Self::Endless) => Self::Endless,
             (Self::Rising | Self::Endless, Self::Rising | Self::Endless) => Self::Rising,

@@ -11,6 +11,7 @@ mod support {
 
 mod compliance {
     mod convolution_direct;
+    mod ends;
     mod errors;
     mod foundation;
     mod graded;

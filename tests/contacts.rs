@@ -14,6 +14,7 @@ mod contact {
     mod automatic;
     mod batch;
     mod discretisation;
+    mod ends;
     mod errors;
     mod few_cells;
     mod foundation;

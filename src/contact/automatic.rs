@@ -14,10 +14,12 @@ use std::ops::ControlFlow;
 
 use super::motion::Motion;
 use super::options::{Algorithm, Options, Setup};
+use super::plan::bodies;
 use super::solution::Solution;
 use super::solution::report::{Progress, Report};
 use super::solution::warnings::Warning;
 use super::solver::Termination;
+use crate::ends::{Ends, check_carried};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::response::Body;
@@ -25,7 +27,7 @@ use crate::surface::Surface;
 use outside::overlap;
 use refinement::{LARGEST_GRID, Next, Refinement, peak_error};
 use search::{Search, moved_out, touched_sides};
-use task::{Task, cells_in_contact, frame_of, grid_over};
+use task::{Task, cells_in_contact, frame_of};
 
 /// Enlargements of a grid on which the contact reached the edge, or the shape overlaps outside.
 const ENLARGEMENTS: usize = 10;
@@ -67,11 +69,15 @@ pub fn solve_watched(
     options: &Options,
     progress: &mut Progress,
 ) -> Result<Solution> {
+    check_carried(setup.counterbody.as_ref(), shape)?;
+    let ends = Ends::of(&bodies(body, setup));
+    let limited = ends.limit(shape);
     let task = Task {
-        shape,
+        shape: if ends.any() { &limited } else { shape },
         body,
         setup,
         motion,
+        ends: ends.range(),
     };
     if let Some(grid) = shape.grid() {
         return task.solve(grid, options, progress);
@@ -168,7 +174,7 @@ fn solve_on_fit_grid(
             (refinement, enlargements) = (Refinement::default(), enlargements + 1);
         } else if touched != [[false; 2]; 2] && enlargements < ENLARGEMENTS {
             warning = None;
-            grid = enlarged(&grid, touched)?;
+            grid = enlarged(&task, &grid, touched)?;
             (refinement, enlargements) = (Refinement::default(), enlargements + 1);
         } else {
             match refinement.next(&solution, task.shape)? {
@@ -191,7 +197,7 @@ fn solve_on_fit_grid(
 
 /// The grid whose `sides` are moved out by half its width, with cells of the same size, or larger ones where
 /// there would be too many.
-fn enlarged(grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
+fn enlarged(task: &Task, grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
     let (frame, size) = (frame_of(grid), grid.size());
     let wider = [0, 1].map(|k| moved_out(frame[k], sides[k], 0.5 * size[k]));
     let cells = [0, 1].map(|k| {
@@ -200,5 +206,5 @@ fn enlarged(grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
     });
     let most = cells[0].saturating_mul(cells[1]);
     let larger = (most as f64 / LARGEST_GRID as f64).sqrt().max(1.0);
-    grid_over(wider, cells.map(|n| (n as f64 / larger) as usize))
+    task.grid_over(wider, cells.map(|n| (n as f64 / larger) as usize))
 }

@@ -21,6 +21,7 @@ use super::solution::report::{Progress, Report};
 use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
 use super::start::{Sampled, checked_gaps, given_pressure, uniform_pressure};
+use crate::ends::check_carried;
 use crate::error::Result;
 use crate::parallel::Rows;
 use crate::surface::Surface;
@@ -41,6 +42,12 @@ impl Plan {
     ) -> Result<Solution> {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
+        check_carried(self.setup.counterbody.as_ref(), shape)?;
+        let limited = self.ends.limit(shape);
+        let (given, shape): (_, &dyn Surface) = match self.ends.any() {
+            true => (shape, &limited),
+            false => (shape, shape),
+        };
         if !freedoms.loaded[0] {
             self.datum.check_approach()?;
         }
@@ -61,7 +68,7 @@ impl Plan {
             Coarser::solve(&freedoms, gap, shape, &self.levels, criteria, &mut watch)
         };
         let (finest, ahead) = rows.both(
-            || self.finest_gap(shape, sampled, &freedoms, &rows),
+            || self.finest_gap(given, shape, sampled, &freedoms, &rows),
             || (cascades && options.initial.is_none()).then(|| coarser(None)),
         );
         let (gap, mut fields) = finest?;
@@ -101,7 +108,7 @@ impl Plan {
         let (pressure, window) = (&fields.pressure, &fields.window);
         let (carried, warnings) = rows.both(
             || Carried::by(pressure, window, &self.grid),
-            || warnings(pressure, window, &gap, &self.grid, shape),
+            || warnings(pressure, window, &gap, &self.grid, shape, &self.ends),
         );
         report.count(outcome.iterations, outcome.work / unit, quality);
         // One rule decides, on the numbers that are reported.
@@ -145,15 +152,17 @@ impl Plan {
         })
     }
 
-    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution.
+    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution. The shape
+    /// that is `given` tells whether the `limited` one was sampled before.
     fn finest_gap<'a>(
         &self,
-        shape: &'a dyn Surface,
+        given: &'a dyn Surface,
+        limited: &dyn Surface,
         sampled: &mut Sampled<'a>,
         freedoms: &Freedoms,
         rows: &Rows,
     ) -> Result<(Arc<Array2<f64>>, Fields)> {
-        let mut gap = sampled.gaps(shape, || checked_gaps(shape, &self.grid, rows))?;
+        let mut gap = sampled.gaps(given, || checked_gaps(limited, &self.grid, rows))?;
         freedoms.check_feasible(&gap)?;
         if freedoms.any_prescribed() {
             freedoms.prescribe(Arc::make_mut(&mut gap));

@@ -12,6 +12,7 @@ use super::options::Setup;
 use super::problem::INDEFINITE;
 use super::problem::scale::LocalDisplacement;
 use crate::convolution::Convolution;
+use crate::ends::Ends;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Method, coefficients_on};
@@ -34,18 +35,23 @@ pub(super) struct Plan {
     pub(super) local: LocalDisplacement,
     pub(super) datum: Datum,
     pub(super) unresolved: Unresolved,
+    pub(super) ends: Ends,
 }
 
 impl Plan {
     pub(super) fn new(body: Body, grid: Grid, setup: Setup) -> Result<Self> {
         check_memory(grid.shape(), Self::memory(&grid))?;
+        let ends = Ends::of(&bodies(&body, &setup));
+        ends.check(&grid)?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let (finest, datum) = operator(&body, &setup, &grid, &threads)?;
-        let convolution = Convolution::plan_on(&finest, Arc::clone(&threads))?;
+        let additions = ends.additions(&grid, &threads)?;
+        let convolution = Convolution::plan_on(&finest, Arc::clone(&threads))?.plus(additions);
         let levels = Levels::plan(grid, finest, &convolution, |grid| {
             let coefficients = total_coefficients(&body, &setup, grid, &threads)?;
             let local = LocalDisplacement::new(&bodies(&body, &setup), grid);
-            Ok((datum.moved(coefficients, grid), local))
+            let additions = ends.additions(grid, &threads)?;
+            Ok((datum.moved(coefficients, grid), additions, local))
         })?;
         let local = LocalDisplacement::new(&bodies(&body, &setup), &grid);
         let unresolved = Unresolved::new(&bodies(&body, &setup), &grid);
@@ -58,6 +64,7 @@ impl Plan {
             local,
             datum,
             unresolved,
+            ends,
         })
     }
 
@@ -73,6 +80,7 @@ impl Plan {
             convolution,
             local: self.local.clone(),
             datum: self.datum,
+            ends: self.ends.clone(),
         }
     }
 
@@ -90,7 +98,7 @@ impl Plan {
 }
 
 /// The two bodies, or the one that is not rigid.
-fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
+pub(super) fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
     [Some(body), setup.counterbody.as_ref()]
         .into_iter()
         .flatten()

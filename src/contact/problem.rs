@@ -168,7 +168,7 @@ impl Problem<'_> {
         let (rows, ny) = (self.rows(), self.convolution.shape()[1]);
         let occupied = || window[0].clone();
         self.convolution.rows_in(p, occupied(), workspace);
-        let outwards = self.convolution.outwards(occupied(), workspace);
+        let outwards = self.convolution.outwards(p, occupied(), workspace);
         let displace = |first: usize, u: &mut [f64]| {
             if !u.is_empty() {
                 outwards.rows(first, u);

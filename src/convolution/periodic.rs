@@ -52,6 +52,7 @@ impl Convolution {
             spectrum: Arc::new(inverse),
             transform: transform.clone(),
             threads: Arc::clone(&self.threads),
+            additions: Vec::new(),
             idle: periodic.idle.clone(),
             clock: Arc::clone(&periodic.clock),
             ..periodic

@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::{Convolution, Workspace};
-use crate::fft::{HalfSpectra, Scratches, Workspace as FftWorkspace};
+use super::{Convolution, Memory, Workspace};
+use crate::fft::{HalfSpectra, Scratches};
 use crate::parallel::Written;
 
 impl Convolution {
@@ -13,8 +13,9 @@ impl Convolution {
         &'a self,
         workspace: &'a mut Workspace,
     ) -> (Inwards<'a>, HalfSpectra<'a>) {
-        self.transform.reserve(&mut workspace.0);
-        let (rows, scratches) = self.transform.half_spectra(&mut workspace.0);
+        let memory = &mut workspace.0.fft;
+        self.transform.reserve(memory);
+        let (rows, scratches) = self.transform.half_spectra(memory);
         let inwards = Inwards {
             convolution: self,
             scratches,
@@ -25,23 +26,28 @@ impl Convolution {
     /// First stage, for all rows of an input that is zero outside the rows `occupied`; only these are
     /// read.
     pub(crate) fn rows_in(&self, input: &[f64], occupied: Range<usize>, workspace: &mut Workspace) {
-        let memory = &mut workspace.0;
+        let memory = &mut workspace.0.fft;
         self.transform.reserve(memory);
         let input = (input, occupied);
         let work = || self.transform.rows_in(input, memory, &self.threads);
         self.clock.during(work);
     }
 
-    /// Second stage, after the first stage of the rows `occupied`. Returns the third stage, which can
-    /// compute any rows of the output.
+    /// Second stage, after the first stage of an `input` that is zero outside the rows `occupied`. Returns the
+    /// third stage, which can compute any rows of the output.
     pub(crate) fn outwards<'a>(
         &'a self,
+        input: &[f64],
         occupied: Range<usize>,
         workspace: &'a mut Workspace,
     ) -> Outwards<'a> {
-        let (transform, memory) = (&self.transform, &mut *workspace.0);
-        let work = || transform.columns_through(&self.spectrum, occupied, memory, &self.threads);
-        self.clock.during(work);
+        let memory = &mut *workspace.0;
+        self.clock.during(|| {
+            self.respond(input, occupied.clone(), &mut memory.added);
+            let (spectrum, threads) = (&self.spectrum, &self.threads);
+            self.transform
+                .columns_through(spectrum, occupied, &mut memory.fft, threads);
+        });
         Outwards {
             convolution: self,
             memory,
@@ -78,7 +84,7 @@ impl Inwards<'_> {
 /// Source of the rows of the output of a convolution.
 pub(crate) struct Outwards<'a> {
     convolution: &'a Convolution,
-    memory: &'a FftWorkspace,
+    memory: &'a Memory,
 }
 
 impl Outwards<'_> {
@@ -88,7 +94,8 @@ impl Outwards<'_> {
             transform, clock, ..
         } = self.convolution;
         clock.during_part(transform.scratches(), || {
-            transform.rows_out(first, values, self.memory);
+            transform.rows_out(first, values, &self.memory.fft);
+            self.convolution.add_rows(first, values, &self.memory.added);
         });
     }
 }
@@ -126,7 +133,7 @@ mod tests {
             let input = input.into_raw_vec_and_offset().0;
             let mut of_occupied = vec![f64::NAN; nx * ny];
             convolution.rows_in(&input, occupied.clone(), &mut workspace);
-            let outwards = convolution.outwards(occupied, &mut workspace);
+            let outwards = convolution.outwards(&input, occupied, &mut workspace);
             outwards.rows(0, &mut of_occupied);
             let mut in_parts = vec![f64::NAN; nx * ny];
             for length in [1, 3, 8, 11] {
@@ -136,7 +143,7 @@ mod tests {
                     inwards.rows(part, here);
                     halves = rest;
                 }
-                let outwards = convolution.outwards(0..nx, &mut workspace);
+                let outwards = convolution.outwards(&input, 0..nx, &mut workspace);
                 for (k, part) in in_parts.chunks_mut(length * ny).enumerate() {
                     outwards.rows(k * length, part);
                 }

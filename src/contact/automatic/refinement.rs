@@ -112,8 +112,12 @@ enum Edge {
 
 /// How the contact meets the edges of `shape` along both axes; it does where the solution has a warning of them.
 fn edges(solution: &Solution, shape: &dyn Surface) -> [Edge; 2] {
-    let warned =
-        |warning: &Warning| matches!(warning, Warning::SharpEnd { .. } | Warning::SharpEdge);
+    let warned = |warning: &Warning| {
+        matches!(
+            warning,
+            Warning::SharpEnd { .. } | Warning::FreeEnd | Warning::SharpEdge
+        )
+    };
     let mut edges = [Edge::Away; 2];
     if !solution.report.warnings.iter().any(warned) {
         return edges;

@@ -2,7 +2,7 @@
 
 use super::outside::{Overlap, overlap};
 use super::relief::{Low, Relief, limited};
-use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of, grid_over};
+use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
 use crate::contact::options::{Algorithm, Options};
 use crate::contact::solution::Solution;
 use crate::contact::solution::report::Progress;
@@ -101,7 +101,8 @@ impl<'a> Search<'a> {
             } else {
                 COARSE_CELLS
             };
-            let grid = grid_over(frame, [cells; 2])?;
+            let grid = self.task.grid_over(frame, [cells; 2])?;
+            frame = frame_of(&grid);
             let solution = self.task.solve(grid, &self.options, progress)?;
             let Some(contact) = cells_in_contact(&solution) else {
                 // Nothing touches there: where nothing overlaps anywhere, any grid shows that.
@@ -225,7 +226,7 @@ impl<'a> Search<'a> {
             // Even, so that the middle of a symmetric contact lies between cells.
             2 * (0.5 * count).ceil() as usize
         });
-        grid_over(frame, shape)
+        self.task.grid_over(frame, shape)
     }
 }
 

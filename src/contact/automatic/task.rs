@@ -29,12 +29,6 @@ pub(super) fn frame_of(grid: &Grid) -> Frame {
     })
 }
 
-/// A grid over a rectangle.
-pub(super) fn grid_over(frame: Frame, shape: [usize; 2]) -> Result<Grid> {
-    Grid::new(shape, frame.map(|[low, high]| high - low))?
-        .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
-}
-
 /// The smallest window that holds all cells in contact; `None` where nothing touches.
 pub(super) fn cells_in_contact(solution: &Solution) -> Option<Window> {
     let touches = |i: usize, j: usize| NonNegative.is_free(solution.pressure[[i, j]]);
@@ -48,9 +42,20 @@ pub(super) struct Task<'a> {
     pub(super) body: &'a Body,
     pub(super) setup: &'a Setup,
     pub(super) motion: &'a Motion,
+    /// Range of x in which both bodies go on.
+    pub(super) ends: [f64; 2],
 }
 
 impl Task<'_> {
+    /// A grid over the part of a rectangle that lies between the ends of the bodies. Cells of the rectangle are no
+    /// smaller.
+    pub(super) fn grid_over(&self, frame: Frame, shape: [usize; 2]) -> Result<Grid> {
+        let [low, high] = self.ends;
+        let frame = [[frame[0][0].max(low), frame[0][1].min(high)], frame[1]];
+        Grid::new(shape, frame.map(|[low, high]| high - low))?
+            .centered_at(frame.map(|[low, high]| 0.5 * (low + high)))
+    }
+
     /// Plans one grid, and solves on it.
     pub(super) fn solve(
         &self,

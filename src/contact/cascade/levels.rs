@@ -15,7 +15,7 @@ use crate::contact::problem::scale::LocalDisplacement;
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
 use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
 use crate::contact::start::checked_gaps;
-use crate::convolution::Convolution;
+use crate::convolution::{Addition, Convolution};
 use crate::error::Result;
 use crate::grid::{Grid, full_window};
 use crate::parallel::{Pool, Rows, all, update, update_with_largest};
@@ -66,22 +66,22 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
-    /// Plans the grids that are coarser than `finest`; `of` computes the coefficients of a grid and its local
-    /// displacements.
+    /// Plans the grids that are coarser than `finest`; `of` computes the coefficients of a grid, what free ends add
+    /// to them, and its local displacements.
     pub(crate) fn plan(
         finest: Grid,
         coefficients: Array2<f64>,
         convolution: &Convolution,
-        of: impl Fn(&Grid) -> Result<(Array2<f64>, LocalDisplacement)>,
+        of: impl Fn(&Grid) -> Result<(Array2<f64>, Vec<Addition>, LocalDisplacement)>,
     ) -> Result<Self> {
         let (mut coefficients, mut grids) = (vec![coefficients], vec![finest]);
         let (mut convolutions, mut locals) = (Vec::new(), Vec::new());
         let mut fine = finest;
         while halved(fine.shape()) != [false; 2] {
             fine = coarse_grid(&fine, halved(fine.shape()))?;
-            let (coarse, local) = of(&fine)?;
+            let (coarse, additions, local) = of(&fine)?;
             locals.push(local);
-            convolutions.push(convolution.companion(&coarse));
+            convolutions.push(convolution.companion(&coarse).plus(additions));
             coefficients.push(coarse);
             grids.push(fine);
         }
@@ -252,7 +252,8 @@ impl Level<'_> {
             // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
             let ((windowed, [periodic, inverse]), (gap, memory)) = rows.both(
                 || {
-                    let windowed = (!whole).then(|| self.convolution.companion(&corner));
+                    let first = window[0].start;
+                    let windowed = (!whole).then(|| self.convolution.on_window(&corner, first));
                     (windowed, self.convolution.preconditioner(&corner))
                 },
                 || {

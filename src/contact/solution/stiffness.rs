@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use crate::contact::Solution;
 use crate::contact::options::Setup;
-use crate::contact::plan::operator;
+use crate::contact::plan::{bodies, operator};
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::{block, bounds};
 use crate::contact::solver::linear_cg;
 use crate::convolution::{Convolution, Workspace};
+use crate::ends::Ends;
 use crate::error::Result;
 use crate::grid::{Window, full_window};
 use crate::influence::memory;
@@ -114,7 +115,9 @@ impl Tangent {
         };
         let (coefficients, datum) = operator(&report.body, &setup, grid, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
-        let convolution = Convolution::plan_on(&corner, threads)?;
+        let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, &threads)?;
+        let additions = additions.iter().map(|addition| addition.on_rows(x.clone()));
+        let convolution = Convolution::plan_on(&corner, threads)?.plus(additions.collect());
         let [_, inverse] = convolution.preconditioner(&corner);
         let contact = block(&solution.pressure, &window);
         let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();

@@ -6,6 +6,7 @@ use ndarray::Array2;
 
 use super::outline::Outline;
 use crate::contact::problem::constraint::NonNegative;
+use crate::ends::Ends;
 use crate::grid::{Grid, Window};
 use crate::surface::{Extent, Surface};
 
@@ -20,6 +21,10 @@ pub enum Warning {
         /// 0 along x, 1 along y.
         axis: usize,
     },
+    /// The contact reaches the free end of one body, where the other goes on.
+    FreeEnd,
+    /// A body with layers has a free end, for which there is only a model.
+    CoatedEnd,
     /// The contact reaches an edge of the shape that is not an end along x or y, as that of a punch.
     SharpEdge,
     /// The contact reaches the rim of a measured map.
@@ -83,6 +88,8 @@ impl Warning {
         match self {
             Self::GridEdge => "grid edge",
             Self::SharpEnd { .. } => "sharp end",
+            Self::FreeEnd => "free end",
+            Self::CoatedEnd => "coated end",
             Self::SharpEdge => "sharp edge",
             Self::MapRim { .. } => "map rim",
             Self::Coarse { .. } => "coarse",
@@ -97,7 +104,11 @@ impl Warning {
     pub(crate) fn is_singular(&self) -> bool {
         matches!(
             self,
-            Self::GridEdge | Self::SharpEnd { .. } | Self::SharpEdge | Self::MapRim { .. }
+            Self::GridEdge
+                | Self::SharpEnd { .. }
+                | Self::FreeEnd
+                | Self::SharpEdge
+                | Self::MapRim { .. }
         )
     }
 }
@@ -112,11 +123,25 @@ impl fmt::Display for Warning {
                     "the contact touches the edge of the grid; take a larger grid"
                 )
             }
-            Self::SharpEnd { axis } => write!(
+            Self::SharpEnd { axis: 0 } => write!(
                 f,
-                "the contact reaches the end of the shape along {}: the pressure there is that of \
-                 a sharp edge on a half-space that goes on, and grows as the grid is refined",
-                along(axis)
+                "the contact reaches the end of the shape along x, and the bodies go on beyond it: the \
+                 pressure there is that of a sharp edge on a half-space, far too high for a roller's end, \
+                 and grows as the grid is refined; give the bodies their ends"
+            ),
+            Self::SharpEnd { .. } => write!(
+                f,
+                "the contact reaches the end of the shape along y: the pressure there is that of \
+                 a sharp edge on a half-space that goes on, and grows as the grid is refined"
+            ),
+            Self::FreeEnd => write!(
+                f,
+                "the contact reaches the free end of one body along x, and the other goes on: the pressure \
+                 there has no limit, and grows slowly as the grid is refined"
+            ),
+            Self::CoatedEnd => write!(
+                f,
+                "a body with layers has a free end: near it, the displacement is that of a model"
             ),
             Self::SharpEdge => write!(
                 f,
@@ -164,13 +189,14 @@ impl fmt::Display for Warning {
 }
 
 /// What the user of a solution should know. The pressure is zero outside `window`; the `gap` is infinite
-/// where the shape cannot touch.
+/// where the shape cannot touch, as beyond the ends of `bodies`.
 pub(crate) fn warnings(
     pressure: &Array2<f64>,
     window: &Window,
     gap: &Array2<f64>,
     grid: &Grid,
     shape: &dyn Surface,
+    bodies: &Ends,
 ) -> Vec<Warning> {
     let outline = Outline::of(pressure, gap, window);
     let mut warnings = Vec::new();
@@ -195,10 +221,14 @@ pub(crate) fn warnings(
         if let Extent::CutOff(ends) = extent[axis] {
             let reached = [low - spacing < ends[0], high + spacing > ends[1]];
             let on_map = on_map_rim(ends, axis, shape);
-            if (0..2).any(|k| reached[k] && !on_map[k]) {
-                warnings.push(Warning::SharpEnd { axis });
-                is_cut = false;
-            }
+            let sharp = |k: usize| {
+                (reached[k] && !on_map[k]).then(|| sharpness(bodies, axis, k, ends[k], spacing))
+            };
+            let sharp = [sharp(0), sharp(1)];
+            let mut distinct: Vec<Warning> = sharp.into_iter().flatten().flatten().collect();
+            distinct.dedup();
+            warnings.extend(distinct);
+            is_cut &= sharp == [None; 2];
             if (0..2).any(|k| reached[k] && on_map[k]) {
                 warnings.push(Warning::MapRim { axis });
                 is_cut = false;
@@ -216,6 +246,9 @@ pub(crate) fn warnings(
     if is_cut {
         warnings.push(Warning::SharpEdge);
     }
+    if bodies.layered {
+        warnings.push(Warning::CoatedEnd);
+    }
     let widths = outline.widths;
     let narrow = axes.min_by(|&a, &b| widths[a].total_cmp(&widths[b]));
     let is_coarse = |warning: &Warning| matches!(warning, Warning::Coarse { .. });
@@ -227,6 +260,18 @@ pub(crate) fn warnings(
         warnings.push(Warning::CoarseSpots { axis, cells });
     }
     warnings
+}
+
+/// The warning of a contact that reaches the end of a shape on side `k` of an axis; `None` where all bodies end there.
+fn sharpness(bodies: &Ends, axis: usize, k: usize, end: f64, spacing: f64) -> Option<Warning> {
+    if axis != 0 {
+        return Some(Warning::SharpEnd { axis });
+    }
+    match bodies.at(k, end, 0.5 * spacing) {
+        (0, _) => Some(Warning::SharpEnd { axis }),
+        (_, true) => None,
+        (_, false) => Some(Warning::FreeEnd),
+    }
 }
 
 /// How a contact meets the outermost cells of its grid.

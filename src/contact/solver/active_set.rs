@@ -209,7 +209,8 @@ impl System<'_> {
             .collect();
         let lower = cholesky(places.len(), |a, b| {
             let offset = [0, 1].map(|k| places[a][k].abs_diff(places[b][k]));
-            self.coefficients[offset]
+            let [i, k] = [places[a][0], places[b][0]];
+            self.coefficients[offset] + self.problem.convolution.added([i, k], offset[1])
         })?;
         let b = places
             .iter()

@@ -93,7 +93,7 @@ impl Preconditioned<'_> {
         let inverse = &self.approximation.inverse;
         let rows = || 0..inverse.shape()[0];
         inverse.rows_in(r, rows(), &mut self.workspace);
-        let outwards = inverse.outwards(rows(), &mut self.workspace);
+        let outwards = inverse.outwards(r, rows(), &mut self.workspace);
         self.work += inverse.work();
         let [i0, i1, i2] = loaded_images(freedoms.loaded, images, r);
         let inputs = [p, &*r, r_before, i0, i1, i2];

@@ -43,7 +43,7 @@ impl Preconditioned<'_> {
         } = self.memory.arrays(self.problem.gap.len());
         self.work += convolution.work();
         let rows = 0..convolution.shape()[0];
-        let outwards = convolution.outwards(rows, &mut self.workspace);
+        let outwards = convolution.outwards(direction, rows, &mut self.workspace);
         let [curvature] =
             self.rows
                 .blocks([direction], [response], |block, [direction], [response]| {
@@ -134,7 +134,8 @@ impl Preconditioned<'_> {
         let change = trial;
         self.work += problem.convolution.work();
         let rows = 0..problem.convolution.shape()[0];
-        let outwards = problem.convolution.outwards(rows, &mut self.workspace);
+        let convolution = problem.convolution;
+        let outwards = convolution.outwards(change, rows, &mut self.workspace);
         let [slope, curvature] = self.rows.blocks(
             [&*change, r],
             [response],

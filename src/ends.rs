@@ -1,0 +1,25 @@
+//! Free ends of bodies: what the surface of a body that ends does beyond that of a half-space.
+//!
+//! | file | what |
+//! |---|---|
+//! | `reduction` | the quarter space, reduced to the half-space: one linear equation for each Poisson's ratio |
+//! | `waves` | integrals over the wavenumber along y |
+//! | `bodies` | the ends of the bodies of a contact, on a grid |
+//! | `limited` | shapes that cannot touch beyond the ends |
+//! | `cells` | coefficients of cells, from nodes along x |
+//! | `point` | the displacement at a point |
+//! | `linear` | linear equations |
+
+mod bodies;
+mod cells;
+mod limited;
+mod linear;
+mod point;
+mod reduction;
+mod waves;
+
+pub(crate) use bodies::{Ends, check_carried};
+pub use point::QuarterSpace;
+
+/// kx above which the excess of P over p is less than 1e-19 of it.
+const VANISHED: f64 = 45.0;

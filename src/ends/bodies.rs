@@ -1,0 +1,224 @@
+//! The free ends of the bodies of a contact, on a grid.
+
+use std::collections::BTreeMap;
+
+use ndarray::Array2;
+
+use super::cells::{Nodes, coefficients};
+use super::limited::Limited;
+use crate::body::Substrate;
+use crate::convolution::{Addition, RowWeights};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::material::Elastic;
+use crate::parallel::Threads;
+use crate::response::Body;
+use crate::surface::{Extent, Surface};
+
+/// Distance between an end and the edge of a cell, in cells, or the end of a shape, relative to its length, that is
+/// rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Side of a body on which it ends: the lower or the higher x.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Side {
+    Low,
+    High,
+}
+
+/// A free end of one body.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    side: Side,
+    x: f64,
+    /// Material whose quarter space it is.
+    material: Elastic,
+}
+
+/// The free ends of all bodies of a contact.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Ends {
+    ends: Vec<End>,
+    /// Number of bodies that are not rigid.
+    bodies: usize,
+    /// Whether a body with a free end has layers.
+    pub(crate) layered: bool,
+}
+
+impl Ends {
+    /// The ends of `bodies`.
+    pub(crate) fn of(bodies: &[&Body]) -> Self {
+        let mut ends = Vec::new();
+        let mut layered = false;
+        for half_space in bodies.iter().filter_map(|body| body.half_space()) {
+            let Substrate::Elastic(material) = half_space.substrate() else {
+                continue;
+            };
+            for (side, x) in [Side::Low, Side::High].into_iter().zip(half_space.ends()) {
+                if let Some(x) = x {
+                    ends.push(End { side, x, material });
+                    layered |= !half_space.layers().is_empty();
+                }
+            }
+        }
+        Self {
+            ends,
+            bodies: bodies.len(),
+            layered,
+        }
+    }
+
+    /// Whether any body has a free end.
+    pub(crate) fn any(&self) -> bool {
+        !self.ends.is_empty()
+    }
+
+    /// Range of x in which all bodies go on.
+    pub(crate) fn range(&self) -> [f64; 2] {
+        let on = |side: Side| self.ends.iter().filter(move |end| end.side == side);
+        [
+            on(Side::Low).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
+            on(Side::High).fold(f64::INFINITY, |x, end| x.min(end.x)),
+        ]
+    }
+
+    /// Number of bodies that end on side `k` at x, or before, and whether these are all.
+    pub(crate) fn at(&self, k: usize, x: f64, tolerance: f64) -> (usize, bool) {
+        let before = |end: &&End| match (k, end.side) {
+            (0, Side::Low) => end.x >= x - tolerance,
+            (1, Side::High) => end.x <= x + tolerance,
+            _ => false,
+        };
+        let count = self.ends.iter().filter(before).count();
+        (count, count >= self.bodies)
+    }
+
+    /// `shape`, which cannot touch beyond the ends.
+    pub(crate) fn limit<'a>(&self, shape: &'a dyn Surface) -> Limited<'a> {
+        Limited::new(shape, self.range())
+    }
+
+    /// Checks that the ends lie on edges of the cells of `grid`, or outside them.
+    ///
+    /// # Errors
+    /// Where one does not; where fewer than two rows of cells are left; in line contact.
+    pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
+        if !self.any() {
+            return Ok(());
+        }
+        if grid.is_line() {
+            return Err(Error::Inconsistent(
+                "ends must not be given in line contact, whose strips go on along x",
+            ));
+        }
+        let (count, spacing) = (grid.shape()[0] as f64, grid.spacing()[0]);
+        let place = |x: f64| (x - start(grid)) / spacing;
+        for end in &self.ends {
+            let at = place(end.x);
+            let off = (at - at.round()).abs() > ROUNDING;
+            if at > ROUNDING && at < count - ROUNDING && off {
+                return Err(Error::EndOffGrid {
+                    end: end.x,
+                    edges: [at.floor(), at.ceil()].map(|k| start(grid) + k * spacing),
+                });
+            }
+        }
+        let [low, high] = self.range().map(|x| place(x).clamp(0.0, count).round());
+        if high - low < 2.0 {
+            return Err(Error::Inconsistent(
+                "ends must leave at least two rows of cells of the grid along x between them",
+            ));
+        }
+        Ok(())
+    }
+
+    /// What the ends add to the influence coefficients of all bodies together on `grid`; ends within a cell are
+    /// moved to its edge.
+    pub(crate) fn additions(&self, grid: &Grid, threads: &Threads) -> Result<Vec<Addition>> {
+        let [nx, ny] = grid.shape();
+        let [dx, dy] = grid.spacing();
+        let mut groups: BTreeMap<(Side, u64), Vec<&End>> = BTreeMap::new();
+        for end in &self.ends {
+            groups
+                .entry((end.side, end.x.to_bits()))
+                .or_default()
+                .push(end);
+        }
+        // Rollers end alike on both sides.
+        let mut known: Vec<(Nodes, Vec<Elastic>, Array2<f64>)> = Vec::new();
+        let mut additions = Vec::new();
+        for ends in groups.values() {
+            let End { side, x, .. } = *ends[0];
+            let from_end = |row: usize| {
+                let center = start(grid) + (row as f64 + 0.5) * dx;
+                if side == Side::Low {
+                    center - x
+                } else {
+                    x - center
+                }
+            };
+            let rows: Vec<usize> = match side {
+                Side::Low => (0..nx).collect(),
+                Side::High => (0..nx).rev().collect(),
+            };
+            let beyond = rows.iter().take_while(|row| from_end(**row) < 0.0).count();
+            let Some(&first) = rows.get(beyond) else {
+                continue;
+            };
+            let nearest = from_end(first);
+            // The end is on an edge of this row, or within the row before.
+            let nearest = if nearest < dx { 0.5 * dx } else { nearest };
+            let nodes = Nodes::new(nearest, dx, nx - beyond);
+            let materials: Vec<Elastic> = ends.iter().map(|end| end.material).collect();
+            let found = known
+                .iter()
+                .find(|(n, m, _)| *n == nodes && *m == materials);
+            let coefficients = match found {
+                Some((.., coefficients)) => coefficients.clone(),
+                None => threads.run(|| total(&materials, &nodes, ny, dy))?,
+            };
+            let mut weights = vec![RowWeights::default(); nx];
+            for (row, node) in rows[beyond..].iter().zip(&nodes.rows) {
+                weights[*row] = node.clone();
+            }
+            additions.push(Addition::new(weights, ny, &coefficients));
+            known.push((nodes, materials, coefficients));
+        }
+        Ok(additions)
+    }
+}
+
+/// Checks that the body which carries a `shape` goes on as far as the shape does.
+///
+/// # Errors
+/// [`Error::EndWithinShape`].
+pub(crate) fn check_carried(counterbody: Option<&Body>, shape: &dyn Surface) -> Result<()> {
+    let Extent::CutOff([low, high]) = shape.extent()[0] else {
+        return Ok(());
+    };
+    let [from, to] = Ends::of(&Vec::from_iter(counterbody)).range();
+    let within = ROUNDING * (high - low);
+    for (end, shape, inside) in [
+        (from, low, from > low + within),
+        (to, high, to < high - within),
+    ] {
+        if inside {
+            return Err(Error::EndWithinShape { end, shape });
+        }
+    }
+    Ok(())
+}
+
+/// Coefficients of bodies of these materials that end at the same place, for `ny` cells of width `dy`.
+fn total(materials: &[Elastic], nodes: &Nodes, ny: usize, dy: f64) -> Result<Array2<f64>> {
+    let mut sum = coefficients(materials[0], nodes, ny, dy)?;
+    for material in &materials[1..] {
+        sum += &coefficients(*material, nodes, ny, dy)?;
+    }
+    Ok(sum)
+}
+
+/// Lowest x of a grid.
+fn start(grid: &Grid) -> f64 {
+    grid.center()[0] - 0.5 * grid.size()[0]
+}

@@ -1,0 +1,175 @@
+//! What a free end adds to the influence coefficients of cells.
+//!
+//! The displacement of cell a under unit pressure on cell b is the sum of that from the mirror image of b,
+//! in closed form at the centre of a, and of the mean over a of what keeps the face free. The means make the
+//! second symmetric and positive; the first is symmetric as it is.
+
+use ndarray::{Array1, Array2, Axis};
+use rayon::prelude::*;
+
+use super::VANISHED;
+use super::reduction::Reduction;
+use super::waves::{Waves, Width};
+use crate::convolution::{RowWeights, distances, pair};
+use crate::error::Result;
+use crate::influence::CellInfluence;
+use crate::kernel::quadrature::Rule;
+use crate::material::Elastic;
+
+/// Cells next to the end that are nodes themselves. Farther off, coefficients are polynomials of the place on
+/// panels that end at twice the distance from which they start.
+const NODES_THEMSELVES: f64 = 8.0;
+
+/// Nodes of a panel. The nearest singularity is a panel's length before its start, so that the polynomials err by
+/// 6^−8, 6e-7 of a coefficient.
+const PANEL_NODES: usize = 8;
+
+/// Distances from the end up to which φ is averaged by its integral, in cells; farther off by Gauss's rule.
+const INTEGRATED: f64 = 4.0;
+
+/// Rows of cells at increasing distances from an end, interpolated from nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Nodes {
+    /// Distance of each node from the end.
+    pub(super) distances: Vec<f64>,
+    pub(super) rows: Vec<RowWeights>,
+    /// Length of a cell.
+    pub(super) spacing: f64,
+}
+
+impl Nodes {
+    /// Nodes for `count` rows of cells, of which the first has its centre at the distance `nearest`.
+    pub(super) fn new(nearest: f64, spacing: f64, count: usize) -> Self {
+        let (mut distances, mut rows) = (Vec::new(), Vec::new());
+        let at = |row: usize| nearest + spacing * row as f64;
+        while rows.len() < count {
+            let start = at(rows.len()) - 0.5 * spacing;
+            let doubled = (start / spacing).round().min((count - rows.len()) as f64);
+            let first = distances.len();
+            if start < NODES_THEMSELVES * spacing || doubled <= PANEL_NODES as f64 {
+                distances.push(at(rows.len()));
+                rows.push(RowWeights {
+                    first,
+                    weights: vec![1.0],
+                });
+                continue;
+            }
+            let last = rows.len() + doubled as usize - 1;
+            let (low, high) = (at(rows.len()), at(last));
+            let angle = |q: usize| std::f64::consts::PI * (q as f64 + 0.5) / PANEL_NODES as f64;
+            distances.extend(
+                (0..PANEL_NODES).map(|q| 0.5 * (low + high) - 0.5 * (high - low) * angle(q).cos()),
+            );
+            for row in rows.len()..=last {
+                let t = 2.0 * (at(row) - low) / (high - low) - 1.0;
+                rows.push(RowWeights {
+                    first,
+                    weights: chebyshev(t).to_vec(),
+                });
+            }
+        }
+        Self {
+            distances,
+            rows,
+            spacing,
+        }
+    }
+
+    /// Nodes that are within `most` of the end with all of their cell, or part of it.
+    fn within(&self, most: f64) -> usize {
+        let near = |d: &&f64| **d - 0.5 * self.spacing < most;
+        self.distances.iter().take_while(near).count()
+    }
+}
+
+/// Weights of the Chebyshev nodes −cos((q + ½)π/n) at t.
+fn chebyshev(t: f64) -> [f64; PANEL_NODES] {
+    let nodes: [[f64; 2]; PANEL_NODES] = std::array::from_fn(|q| {
+        let angle = std::f64::consts::PI * (q as f64 + 0.5) / PANEL_NODES as f64;
+        let sign = if q % 2 == 0 { 1.0 } else { -1.0 };
+        [-angle.cos(), sign * angle.sin()]
+    });
+    if let Some(at) = nodes.iter().position(|[x, _]| (x - t).abs() < 1e-14) {
+        return std::array::from_fn(|q| if q == at { 1.0 } else { 0.0 });
+    }
+    let terms = nodes.map(|[x, weight]| weight / (t - x));
+    let sum: f64 = terms.iter().sum();
+    terms.map(|term| term / sum)
+}
+
+/// Coefficients \[m/Pa\] that a free end adds for a body of `material`: pairs of nodes, distances along y for
+/// `ny` cells of width `dy`. On the threads of the caller.
+pub(super) fn coefficients(
+    material: Elastic,
+    nodes: &Nodes,
+    ny: usize,
+    dy: f64,
+) -> Result<Array2<f64>> {
+    let (dx, count) = (nodes.spacing, nodes.distances.len());
+    let along_y: Vec<f64> = (0..distances(ny)).map(|l| l as f64 * dy).collect();
+    let farthest = along_y.last().copied().unwrap_or(0.0) + dy;
+    // Means over cells leave amplitudes that fall as k⁻²; the rest is 1e-7 of the integral.
+    let fallen = 150.0 / (dx * dx * dy).cbrt();
+    let first = nodes.distances[0] - 0.5 * dx;
+    let highest = if first > 1e-9 * dx {
+        fallen.min(VANISHED / first)
+    } else {
+        fallen
+    };
+    let waves = Waves::new(&along_y, Width::LoadAndMean(0.5 * dy), farthest, highest);
+    let reduction = Reduction::of(material.poisson());
+
+    let pairs = pair(count - 1, count - 1) + 1;
+    let mut amplitudes = Array2::zeros((waves.wavenumbers.len(), pairs));
+    (amplitudes.axis_iter_mut(Axis(0)).into_par_iter())
+        .zip(&waves.wavenumbers)
+        .for_each(|(mut row, &k)| {
+            let near = nodes.within(VANISHED / k);
+            let means: Vec<Array1<f64>> = nodes.distances[..near]
+                .iter()
+                .map(|&d| mean_modes(&reduction, k, d, dx))
+                .collect();
+            for a in 0..near {
+                for b in 0..=a {
+                    row[pair(a, b)] = means[a].dot(&means[b]);
+                }
+            }
+        });
+    let short = 2.0 / material.plane_strain_modulus();
+    let factor = short * dx * dy / std::f64::consts::PI.powi(2);
+    let weights = Array2::from_shape_fn((along_y.len(), waves.wavenumbers.len()), |(l, k)| {
+        factor * waves.weights[k][l]
+    });
+    let mut coefficients = amplitudes.t().dot(&weights.t());
+
+    let reach = 2.0 * nodes.distances[count - 1] + farthest;
+    let mirror = CellInfluence::plan(&material, [dx, dy], reach)?;
+    let apart = (0..count).flat_map(|a| (0..=a).map(move |b| [a, b]));
+    let apart = apart.map(|[a, b]| nodes.distances[a] + nodes.distances[b]);
+    let apart: Vec<f64> = apart.collect();
+    (coefficients.axis_iter_mut(Axis(0)).into_par_iter())
+        .zip(apart)
+        .for_each(|(row, apart)| {
+            for (c, &y) in row.into_iter().zip(&along_y) {
+                *c += mirror.at([apart, y]);
+            }
+        });
+    Ok(coefficients)
+}
+
+/// Means of all φ(kx) over a cell of length `dx` around x = `distance`.
+fn mean_modes(reduction: &Reduction, k: f64, distance: f64, dx: f64) -> Array1<f64> {
+    let mut sums = Array1::zeros(reduction.terms());
+    if distance < INTEGRATED * dx {
+        let factor = 1.0 / (k * dx);
+        let low = (distance - 0.5 * dx).max(0.0);
+        reduction.add_integrals(k * (distance + 0.5 * dx), factor, &mut sums);
+        reduction.add_integrals(k * low, -factor, &mut sums);
+        return sums;
+    }
+    for (x, w) in Rule::gauss_legendre(3).nodes(distance, 0.5) {
+        let x = distance + (x - distance) * dx;
+        reduction.add_modes(k * x, w, &mut sums);
+    }
+    sums
+}
