@@ -6,6 +6,7 @@
 //! | `waves` | integrals over the wavenumber along y |
 //! | `bodies` | the ends of the bodies of a contact, on a grid |
 //! | `limited` | shapes that cannot touch beyond the ends |
+//! | `plate` | two free ends of one body |
 //! | `cells` | coefficients of cells, from nodes along x |
 //! | `point` | the displacement at a point |
 //! | `linear` | linear equations |
@@ -14,6 +15,7 @@ mod bodies;
 mod cells;
 mod limited;
 mod linear;
+mod plate;
 mod point;
 mod reduction;
 mod waves;

@@ -6,6 +6,7 @@ use ndarray::Array2;
 
 use super::cells::{Nodes, coefficients};
 use super::limited::Limited;
+use super::plate;
 use crate::body::Substrate;
 use crate::convolution::{Addition, RowWeights};
 use crate::error::{Error, Result};
@@ -35,10 +36,18 @@ struct End {
     material: Elastic,
 }
 
+/// A body with two free ends.
+#[derive(Debug, Clone, Copy)]
+struct Plate {
+    ends: [f64; 2],
+    material: Elastic,
+}
+
 /// The free ends of all bodies of a contact.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ends {
     ends: Vec<End>,
+    plates: Vec<Plate>,
     /// Number of bodies that are not rigid.
     bodies: usize,
     /// Whether a body with a free end has layers.
@@ -48,7 +57,7 @@ pub(crate) struct Ends {
 impl Ends {
     /// The ends of `bodies`.
     pub(crate) fn of(bodies: &[&Body]) -> Self {
-        let mut ends = Vec::new();
+        let (mut ends, mut plates) = (Vec::new(), Vec::new());
         let mut layered = false;
         for half_space in bodies.iter().filter_map(|body| body.half_space()) {
             let Substrate::Elastic(material) = half_space.substrate() else {
@@ -60,9 +69,14 @@ impl Ends {
                     layered |= !half_space.layers().is_empty();
                 }
             }
+            if let [Some(low), Some(high)] = half_space.ends() {
+                let ends = [low, high];
+                plates.push(Plate { ends, material });
+            }
         }
         Self {
             ends,
+            plates,
             bodies: bodies.len(),
             layered,
         }
@@ -183,6 +197,13 @@ impl Ends {
             }
             additions.push(Addition::new(weights, ny, &coefficients));
             known.push((nodes, materials, coefficients));
+        }
+        for Plate { ends, material } in &self.plates {
+            let length = ends[1] - ends[0];
+            let from_start = (0..nx).map(|row| start(grid) + (row as f64 + 0.5) * dx - ends[0]);
+            let coefficients = plate::coefficients(*material, length, [dx, dy], ny);
+            let rows = plate::rows(from_start, dx, length);
+            additions.push(Addition::new(rows, ny, &coefficients));
         }
         Ok(additions)
     }

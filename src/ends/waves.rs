@@ -15,7 +15,7 @@ const POINTS: usize = 10;
 
 /// Panels below the first octave, each longer than the next by a factor of 30: f is a logarithm there, and the
 /// product with k vanishes.
-const LOW_PANELS: i32 = 4;
+const LOW_PANELS: i32 = 5;
 const LOW_RATIO: f64 = 30.0;
 
 /// Half-width times wavenumber below which a load's transform is smooth on a panel.
