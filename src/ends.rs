@@ -3,11 +3,13 @@
 //! | file | what |
 //! |---|---|
 //! | `reduction` | the quarter space, reduced to the half-space: one linear equation for each Poisson's ratio |
+//! | `mesh` | points along the wavenumber times the distance from the end |
 //! | `waves` | integrals over the wavenumber along y |
 //! | `bodies` | the ends of the bodies of a contact, on a grid |
 //! | `limited` | shapes that cannot touch beyond the ends |
 //! | `plate` | two free ends of one body |
 //! | `cells` | coefficients of cells, from nodes along x |
+//! | `spread` | the pressures by which stresses near an end are those of half-spaces |
 //! | `point` | the displacement at a point |
 //! | `linear` | linear equations |
 
@@ -15,13 +17,17 @@ mod bodies;
 mod cells;
 mod limited;
 mod linear;
+mod mesh;
 mod plate;
 mod point;
 mod reduction;
+mod spread;
 mod waves;
 
 pub(crate) use bodies::{Ends, check_carried};
+pub(crate) use cells::node_rows;
 pub use point::QuarterSpace;
+pub(crate) use spread::{EndPressure, Where};
 
 /// kx above which the excess of P over p is less than 1e-19 of it.
 const VANISHED: f64 = 45.0;

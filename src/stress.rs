@@ -35,12 +35,13 @@ use crate::error::Result;
 use crate::grid::Grid;
 
 mod derived;
+mod ends;
 mod field;
 mod friction;
+mod half_space;
 mod member;
 mod options;
 mod plan;
-mod plane;
 mod request;
 mod section;
 mod subcell;
@@ -53,7 +54,7 @@ pub use options::{Section, Side, StressOptions, StressProgress};
 pub use plan::StressPlan;
 pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
 
-use plan::Source;
+use half_space::Source;
 use request::stress_once;
 
 /// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell.

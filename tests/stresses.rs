@@ -10,6 +10,7 @@ mod stress {
     mod closed_forms;
     mod coated;
     mod edge;
+    mod ends;
     mod friction;
     mod invariants;
     mod limits;

@@ -8,6 +8,7 @@ use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
 
 use super::VANISHED;
+use super::mesh::Modes;
 use super::reduction::Reduction;
 use super::waves::{Waves, Width};
 use crate::convolution::{RowWeights, distances, pair};
@@ -75,11 +76,36 @@ impl Nodes {
         }
     }
 
+    /// Means of functions of kx over a cell around x = `distance`.
+    pub(super) fn mean(&self, modes: &Modes, k: f64, distance: f64) -> Array1<f64> {
+        let (dx, mut sums) = (self.spacing, Array1::zeros(modes.count()));
+        if distance < INTEGRATED * dx {
+            let factor = 1.0 / (k * dx);
+            let low = (distance - 0.5 * dx).max(0.0);
+            modes.add_integrals(k * (distance + 0.5 * dx), factor, &mut sums);
+            modes.add_integrals(k * low, -factor, &mut sums);
+            return sums;
+        }
+        for (part, w) in Rule::gauss_legendre(3).nodes(0.0, 0.5) {
+            modes.add(k * (distance + part * dx), w, &mut sums);
+        }
+        sums
+    }
+
     /// Nodes that are within `most` of the end with all of their cell, or part of it.
     fn within(&self, most: f64) -> usize {
         let near = |d: &&f64| **d - 0.5 * self.spacing < most;
         self.distances.iter().take_while(near).count()
     }
+}
+
+/// Distances of nodes from an end, and weights of the nodes for `count` rows of cells of length `spacing`, of which the
+/// first has its centre at the distance `nearest`.
+pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, Vec<RowWeights>) {
+    let Nodes {
+        distances, rows, ..
+    } = Nodes::new(nearest, spacing, count);
+    (distances, rows)
 }
 
 /// Weights of the Chebyshev nodes −cos((q + ½)π/n) at t.
@@ -127,7 +153,7 @@ pub(super) fn coefficients(
             let near = nodes.within(VANISHED / k);
             let means: Vec<Array1<f64>> = nodes.distances[..near]
                 .iter()
-                .map(|&d| mean_modes(&reduction, k, d, dx))
+                .map(|&d| nodes.mean(&reduction.displacement, k, d))
                 .collect();
             for a in 0..near {
                 for b in 0..=a {
@@ -155,21 +181,4 @@ pub(super) fn coefficients(
             }
         });
     Ok(coefficients)
-}
-
-/// Means of all φ(kx) over a cell of length `dx` around x = `distance`.
-fn mean_modes(reduction: &Reduction, k: f64, distance: f64, dx: f64) -> Array1<f64> {
-    let mut sums = Array1::zeros(reduction.terms());
-    if distance < INTEGRATED * dx {
-        let factor = 1.0 / (k * dx);
-        let low = (distance - 0.5 * dx).max(0.0);
-        reduction.add_integrals(k * (distance + 0.5 * dx), factor, &mut sums);
-        reduction.add_integrals(k * low, -factor, &mut sums);
-        return sums;
-    }
-    for (x, w) in Rule::gauss_legendre(3).nodes(distance, 0.5) {
-        let x = distance + (x - distance) * dx;
-        reduction.add_modes(k * x, w, &mut sums);
-    }
-    sums
 }

@@ -82,12 +82,16 @@ impl QuarterSpace {
         let mut sum = 0.0;
         for (k, weights) in waves.wavenumbers.iter().zip(&waves.weights) {
             let [mut at, mut load] = [
-                Array1::zeros(reduction.terms()),
-                Array1::zeros(reduction.terms()),
+                Array1::zeros(reduction.displacement.count()),
+                Array1::zeros(reduction.displacement.count()),
             ];
-            reduction.add_modes(k * x, 1.0, &mut at);
-            reduction.add_integrals(k * end, 1.0 / k, &mut load);
-            reduction.add_integrals(k * self.distance, -1.0 / k, &mut load);
+            reduction.displacement.add(k * x, 1.0, &mut at);
+            reduction
+                .displacement
+                .add_integrals(k * end, 1.0 / k, &mut load);
+            reduction
+                .displacement
+                .add_integrals(k * self.distance, -1.0 / k, &mut load);
             sum += weights[0] * at.dot(&load);
         }
         let short = 2.0 / self.material.plane_strain_modulus();

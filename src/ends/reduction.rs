@@ -21,91 +21,12 @@ use ndarray::{Array1, Array2, Axis};
 use spec_math::cephes64::{k0, k1};
 
 use super::linear::{factors, solve};
+use super::mesh::{ENDS, MESH, Mesh, Modes, PANELS, POINTS, edges, first_reliable, step};
 use crate::kernel::quadrature::Rule;
-
-/// Points of a panel.
-const POINTS: usize = 10;
-
-/// Ends of the panels, kx. Below the lowest, P is taken as constant; above the highest, all kernels are below
-/// 1e-19.
-const ENDS: [f64; 2] = [1e-9, 45.0];
-
-/// Panels from the lowest end to the highest, each longer than the one before by a factor of 2.5. With
-/// 12 points and a factor of 2.3 displacements change by 1e-9 of the largest.
-const PANELS: usize = 27;
-
-/// kx from which on the solution is independent of the lowest end, to 1e-9; smaller ones are taken as equal to it.
-const RELIABLE: f64 = 1e-7;
-
-/// Points along ln kx, and integrals over them.
-#[derive(Debug)]
-struct Mesh {
-    points: Vec<f64>,
-    weights: Vec<f64>,
-    /// Barycentric weights of a panel's points, and the points on (−1, 1).
-    barycentric: Vec<f64>,
-    local: Vec<f64>,
-}
-
-fn step() -> f64 {
-    (ENDS[1] / ENDS[0]).ln() / PANELS as f64
-}
-
-impl Mesh {
-    fn new() -> Self {
-        let rule = Rule::gauss_legendre(POINTS);
-        let mut unit: Vec<(f64, f64)> = rule.nodes(0.0, 1.0).collect();
-        unit.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let local: Vec<f64> = unit.iter().map(|(t, _)| *t).collect();
-        let barycentric = local.iter().map(|t| {
-            let others = local.iter().filter(|other| *other != t);
-            1.0 / others.map(|other| t - other).product::<f64>()
-        });
-        let (mut points, mut weights) = (Vec::new(), Vec::new());
-        for panel in 0..PANELS {
-            let [low, high] = edges(panel);
-            for (t, w) in &unit {
-                let u = 0.5 * (low + high + t * (high - low));
-                points.push(u.exp());
-                weights.push(0.5 * w * (high - low) * u.exp());
-            }
-        }
-        Self {
-            barycentric: barycentric.collect(),
-            points,
-            weights,
-            local,
-        }
-    }
-
-    /// Panel of kx = ξ, and the weights with which its points interpolate to ξ.
-    fn interpolation(&self, xi: f64) -> (usize, [f64; POINTS]) {
-        let place = (xi.max(RELIABLE) / ENDS[0]).ln() / step();
-        let panel = (place as usize).min(PANELS - 1);
-        (panel, self.lagrange(2.0 * (place - panel as f64) - 1.0))
-    }
-
-    /// Lagrange's polynomials of a panel's points at t on (−1, 1).
-    fn lagrange(&self, t: f64) -> [f64; POINTS] {
-        if let Some(at) = self.local.iter().position(|x| (x - t).abs() < 1e-15) {
-            return std::array::from_fn(|q| if q == at { 1.0 } else { 0.0 });
-        }
-        let terms: [f64; POINTS] =
-            std::array::from_fn(|q| self.barycentric[q] / (t - self.local[q]));
-        let sum: f64 = terms.iter().sum();
-        terms.map(|term| term / sum)
-    }
-}
-
-/// Ends of a panel, ln kx.
-fn edges(panel: usize) -> [f64; 2] {
-    [panel, panel + 1].map(|k| ENDS[0].ln() + step() * k as f64)
-}
 
 /// Matrices that all materials share.
 #[derive(Debug)]
 struct Universal {
-    mesh: Mesh,
     /// T at ν = ½, and its derivative by 1 − 2ν, times the weights of the points.
     traction: [Array2<f64>; 2],
     /// The integral of even K0 over P given at the points.
@@ -116,7 +37,7 @@ static UNIVERSAL: LazyLock<Universal> = LazyLock::new(Universal::new);
 
 impl Universal {
     fn new() -> Self {
-        let mesh = Mesh::new();
+        let mesh = &*MESH;
         let (points, weights) = (&mesh.points, &mesh.weights);
         let n = points.len();
         let direct = Array2::from_shape_fn((n, n), |(i, j)| {
@@ -146,13 +67,12 @@ impl Universal {
                         row[j] = even(points[i], points[j]) * weights[j];
                     }
                 } else {
-                    let near = near_panel(&mesh, points[i], panel);
+                    let near = near_panel(mesh, points[i], panel);
                     columns.zip(near).for_each(|(j, value)| row[j] = value);
                 }
             }
         }
         Self {
-            mesh,
             traction: [direct, integral],
             displacement,
         }
@@ -193,6 +113,13 @@ fn near_panel(mesh: &Mesh, xi: f64, panel: usize) -> [f64; POINTS] {
     sums
 }
 
+/// A kernel as a sum of products, Σ_r f_r(ξ) g_r(ξ′): ξ is where it acts, ξ′ where the pressure is.
+#[derive(Debug)]
+pub(super) struct Products {
+    pub(super) targets: Modes,
+    pub(super) sources: Modes,
+}
+
 /// What a free face adds to the mirror image, for one Poisson's ratio: the displacement at ξ = kx under a unit
 /// line load at ξ′ is
 ///
@@ -203,10 +130,12 @@ fn near_panel(mesh: &Mesh, xi: f64, panel: usize) -> [f64; POINTS] {
 /// The sum is symmetric and positive, and has some forty terms.
 #[derive(Debug)]
 pub(super) struct Reduction {
-    /// φ at the points of the mesh: (points, terms).
-    modes: Array2<f64>,
-    /// Integral of φ from 0 to each point, over ξ.
-    means: Array2<f64>,
+    /// φ
+    pub(super) displacement: Modes,
+    /// Excess of P over p on the surface, times 1/k.
+    pub(super) surface: Products,
+    /// Q on the face, times 1/k.
+    pub(super) face: Products,
 }
 
 /// Terms of the sum that are left out, relative to its largest value.
@@ -232,66 +161,40 @@ impl Reduction {
     }
 
     fn new(poisson: f64) -> Self {
+        let mesh = &*MESH;
         let Universal {
-            mesh,
             traction: [direct, integral],
             displacement,
         } = &*UNIVERSAL;
         let traction = direct + &(integral * (1.0 - 2.0 * poisson));
         let squared = traction.dot(&traction);
-        // P − p = (1 − T²)⁻¹ T² p
         let identity = Array2::<f64>::eye(squared.nrows());
-        let excess = solve(&factors(identity - &squared), squared);
-        let mut response = displacement.dot(&excess);
-        for (mut column, weight) in response.axis_iter_mut(Axis(1)).zip(&mesh.weights) {
-            column /= *weight;
-        }
+        let factors = factors(identity - &squared);
+        let kernel = |mut product: Array2<f64>| {
+            for (mut column, weight) in product.axis_iter_mut(Axis(1)).zip(&mesh.weights) {
+                column /= *weight;
+            }
+            product
+        };
+        // P − p = (1 − T²)⁻¹ T² p,  Q = (1 − T²)⁻¹ T p
+        let excess = solve(&factors, squared);
+        let face = kernel(solve(&factors, traction));
+        let response = kernel(displacement.dot(&excess));
         // The response is symmetric. The lowest end of the mesh disturbs it least where the source is the farther one.
         let response =
             Array2::from_shape_fn(response.dim(), |(i, j)| response[[i.min(j), i.max(j)]]);
-        let modes = square_root(response, mesh);
         Self {
-            means: means(&modes, mesh),
-            modes,
-        }
-    }
-
-    /// Number of terms.
-    pub(super) fn terms(&self) -> usize {
-        self.modes.ncols()
-    }
-
-    /// Adds `factor` times φ_r(ξ) to `sums`.
-    pub(super) fn add_modes(&self, xi: f64, factor: f64, sums: &mut Array1<f64>) {
-        self.add(&self.modes, xi, factor, sums);
-    }
-
-    /// Adds `factor` times the integral of φ_r from 0 to ξ to `sums`.
-    pub(super) fn add_integrals(&self, xi: f64, factor: f64, sums: &mut Array1<f64>) {
-        self.add(&self.means, xi.min(ENDS[1]), factor * xi.min(ENDS[1]), sums);
-    }
-
-    fn add(&self, values: &Array2<f64>, xi: f64, factor: f64, sums: &mut Array1<f64>) {
-        if xi > ENDS[1] {
-            return;
-        }
-        let (panel, weights) = UNIVERSAL.mesh.interpolation(xi);
-        for (q, weight) in weights.into_iter().enumerate() {
-            sums.scaled_add(factor * weight, &values.row(panel * POINTS + q));
+            displacement: Modes::new(square_root(response)),
+            surface: products(kernel(excess)),
+            face: products(face),
         }
     }
 }
 
 /// φ with Σ_r φ_r φ_r equal to a `response` that is symmetric and positive: its Cholesky factor, with the largest
 /// remaining pivot first.
-fn square_root(mut response: Array2<f64>, mesh: &Mesh) -> Array2<f64> {
-    let first = mesh
-        .points
-        .iter()
-        .position(|xi| *xi >= RELIABLE)
-        .unwrap_or(0);
-    let first = first / POINTS * POINTS;
-    let n = response.nrows();
+fn square_root(mut response: Array2<f64>) -> Array2<f64> {
+    let (first, n) = (first_reliable(), response.nrows());
     let largest = response[[first, first]];
     let mut modes: Vec<Array1<f64>> = Vec::new();
     loop {
@@ -313,36 +216,37 @@ fn square_root(mut response: Array2<f64>, mesh: &Mesh) -> Array2<f64> {
     Array2::from_shape_fn((n, modes.len()), |(i, r)| modes[r][i])
 }
 
-/// Integral of each φ from 0 to each point ξ, over ξ. Below the points that count, φ is constant.
-fn means(modes: &Array2<f64>, mesh: &Mesh) -> Array2<f64> {
-    let mut means = Array2::zeros(modes.dim());
-    let first = mesh
-        .points
-        .iter()
-        .position(|xi| *xi >= RELIABLE)
-        .unwrap_or(0)
-        / POINTS;
-    let start = edges(first)[0].exp();
-    let rule = Rule::gauss_legendre(POINTS);
-    let mut sum = modes.row(first * POINTS).to_owned() * start;
-    for panel in first..PANELS {
-        let [low, high] = edges(panel);
-        let part = |from: f64, to: f64, sum: &mut Array1<f64>| {
-            for (u, w) in rule.nodes(0.5 * (from + to), 0.5 * (to - from)) {
-                let polynomials = mesh.lagrange((2.0 * u - low - high) / (high - low));
-                for (q, l) in polynomials.into_iter().enumerate() {
-                    sum.scaled_add(l * w * u.exp(), &modes.row(panel * POINTS + q));
-                }
-            }
+/// A `kernel` as a sum of products, with the largest remaining entry as the next pivot.
+fn products(mut kernel: Array2<f64>) -> Products {
+    let (first, n) = (first_reliable(), kernel.nrows());
+    let (mut targets, mut sources) = (Vec::new(), Vec::new());
+    // Entries are weighted by ξ′, over which the kernel is integrated.
+    let weight = |j: usize| MESH.points[j];
+    let mut largest = None;
+    while targets.len() < n {
+        let entries = (first..n).flat_map(|i| (first..n).map(move |j| [i, j]));
+        let size = |at: &[usize; 2]| (kernel[*at] * weight(at[1])).abs();
+        let Some(pivot) = entries.max_by(|a, b| size(a).total_cmp(&size(b))) else {
+            break;
         };
-        let mut from = low;
-        for q in 0..POINTS {
-            let point = mesh.points[panel * POINTS + q];
-            part(from, point.ln(), &mut sum);
-            from = point.ln();
-            means.row_mut(panel * POINTS + q).assign(&(&sum / point));
+        let most = *largest.get_or_insert(size(&pivot));
+        if size(&pivot) <= NEGLIGIBLE * most {
+            break;
         }
-        part(from, high, &mut sum);
+        let target = kernel.column(pivot[1]).to_owned() / kernel[pivot];
+        let source = kernel.row(pivot[0]).to_owned();
+        for i in first..n {
+            kernel.row_mut(i).scaled_add(-target[i], &source);
+        }
+        targets.push(target);
+        sources.push(source);
     }
-    means
+    let columns = |functions: Vec<Array1<f64>>| {
+        let values = Array2::from_shape_fn((n, functions.len()), |(i, r)| functions[r][i]);
+        Modes::new(values)
+    };
+    Products {
+        targets: columns(targets),
+        sources: columns(sources),
+    }
 }

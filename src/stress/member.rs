@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use super::field::Stress;
 use super::friction::Sliding;
+use super::half_space::{Form, Source};
 use super::options::{StressOptions, StressProgress};
-use super::plan::{Form, Source, StressPlan};
+use super::plan::StressPlan;
 use super::request::stress_once;
 use super::subcell::Pair;
 use super::summary::{Strengths, StressSummary, summary_once};
@@ -94,7 +95,7 @@ impl Solution {
     /// # Errors
     /// A counterbody that is rigid, no threads, or too little memory.
     pub fn stress_plan(&self, member: Member, threads: Option<usize>) -> Result<StressPlan> {
-        self.source(member)?.plan_unwatched(threads)
+        self.source(member)?.complete_unwatched(threads)
     }
 
     /// [`Solution::stress_plan`] with a callback: `progress` is told 0 while planning; when it breaks,
@@ -108,7 +109,7 @@ impl Solution {
         threads: Option<usize>,
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
-        self.source(member)?.plan(threads, progress)
+        self.source(member)?.complete(threads, progress)
     }
 
     /// The layers of one of the bodies.

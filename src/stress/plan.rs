@@ -1,19 +1,16 @@
-//! Everything about a stress field that depends on the body, the grid and the pressure alone.
+//! The plan of a stress field: the body that goes on, and what its free ends add.
 
 use std::ops::ControlFlow;
 
-use ndarray::{Array1, ArrayRef2};
+use ndarray::ArrayRef2;
 
-use super::friction::Sliding;
+use super::ends::{EndPlanes, EndPoints, EndStress};
+use super::half_space::{HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source};
 use super::options::StressProgress;
-use super::subcell::{Pair, SubcellStress};
-use crate::body::{HalfSpace, Substrate};
+use crate::body::HalfSpace;
 use crate::error::{Error, Result};
-use crate::fft::{PaddedTransform, QuarterTransform, Transformed};
-use crate::grid::{Grid, Window};
-use crate::kernel::loads;
-use crate::kernel::plans::Kernels;
-use crate::parallel::{Threads, check_memory};
+use crate::grid::Grid;
+use crate::kernel::COMPONENTS;
 use crate::response::interior::Place;
 
 /// Stress below a pressure, planned once and evaluated any number of times.
@@ -39,137 +36,33 @@ use crate::response::interior::Place;
 /// ```
 #[derive(Debug)]
 pub struct StressPlan {
-    pub(super) body: HalfSpace,
-    pub(super) grid: Grid,
-    pub(super) sliding: Sliding,
-    /// Half the width of the loaded cells along their shorter side \[m\].
-    pub(super) half_width: f64,
-    pub(super) kernels: Kernels,
-    /// Number of offsets along x and y between a loaded cell and any other.
-    pub(super) offsets: [usize; 2],
-    /// The pressure \[Pa\], in C order.
-    pub(super) pressure: Vec<f64>,
-    pub(super) transform: PaddedTransform,
-    pub(super) quarter: QuarterTransform,
-    /// Transform of the pressure that is taken as uniform over cells for stresses.
-    pub(super) uniform: Transformed,
-    /// Present where the pressure is reconstructed within cells.
-    pub(super) solved: Option<Solved>,
-    pub(super) threads: Threads,
+    pub(super) whole: HalfSpacePlan,
+    /// Present where the body has free ends, and bears pressure.
+    ends: Option<EndStress>,
 }
 
-/// Additional parts of a solved contact's plan.
-#[derive(Debug)]
-pub(super) struct Solved {
-    pub(super) subcell: SubcellStress,
-    /// Transform of the solver's pressure, whose convolution gives displacements.
-    pub(super) given: Transformed,
-}
-
-/// Distribution of the pressure over a cell.
-pub(super) enum Form<'a> {
-    /// Uniform over each cell.
-    Uniform,
-    /// Reconstructed within cells, from the pressure of a solved contact of these bodies.
-    Solved(Pair<'a>),
-}
-
-/// The pressure that a plan is made for, and the body below it.
-pub(super) struct Source<'a> {
-    pub(super) body: &'a HalfSpace,
-    pub(super) grid: &'a Grid,
-    pub(super) pressure: &'a ArrayRef2<f64>,
-    pub(super) form: Form<'a>,
-    pub(super) sliding: Sliding,
-}
-
-impl<'a> Source<'a> {
-    /// A pressure that is uniform over each cell, and whose shape is not known.
-    pub(super) fn uniform(
-        body: &'a HalfSpace,
-        grid: &'a Grid,
-        pressure: &'a ArrayRef2<f64>,
-    ) -> Self {
-        Self {
-            body,
-            grid,
-            pressure,
-            form: Form::Uniform,
-            sliding: Sliding {
-                sign: 1.0,
-                direction: grid.rolling_direction(),
-            },
-        }
-    }
-
-    /// Bytes that planning takes.
-    pub(super) fn memory(&self) -> u64 {
-        // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
-        // and the transform of the solver's pressure, as 24.
-        let arrays = 8 + if matches!(self.form, Form::Uniform) {
-            0
-        } else {
-            24
-        };
-        transforms_memory(self.grid, arrays)
-    }
-
-    /// The plan, without a callback.
-    pub(super) fn plan_unwatched(&self, threads: Option<usize>) -> Result<StressPlan> {
-        let mut progress = |_| ControlFlow::Continue(());
-        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
-        self.plan(threads, &mut progress)?.ok_or(stopped)
-    }
-
-    /// The plan; none where `progress` stops it. `progress` is asked, with 0, while the pressure is
-    /// reconstructed within cells; the rest is quick.
-    pub(super) fn plan(
+impl Source<'_> {
+    /// The plan with the ends of the body; none where `progress` stops it.
+    pub(super) fn complete(
         &self,
         threads: Option<usize>,
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
-        let Self { body, grid, .. } = *self;
-        check_magnitudes(body, grid)?;
-        let pressure = checked(grid, self.pressure)?;
-        check_memory(grid.shape(), self.memory())?;
-        let threads = Threads::new(threads)?;
-        let subcell = match &self.form {
-            Form::Uniform => None,
-            Form::Solved(pair) => {
-                match SubcellStress::plan((body, pair), grid, &pressure, &threads, progress) {
-                    ControlFlow::Continue(subcell) => Some(subcell),
-                    ControlFlow::Break(()) => return Ok(None),
-                }
-            }
+        let Some(whole) = self.plan(threads, progress)? else {
+            return Ok(None);
         };
-        let [lx, ly] = grid.size();
-        // One per cent more than the diagonal, for rounding.
-        let reach = 1.01 * lx.hypot(ly);
-        let kernels = threads.run(|| Kernels::new::<6, loads::Pressure>(body, grid, 1.0, reach));
-        let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
-        let offsets = offsets(grid.shape(), [&pressure, uniform]);
-        let transform = PaddedTransform::plan_even(grid.shape(), offsets, &threads);
-        let transformed =
-            |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
-        let uniform = transformed(uniform);
-        let solved = subcell.map(|subcell| Solved {
-            subcell,
-            given: transformed(&pressure),
-        });
-        Ok(Some(StressPlan {
-            body: body.clone(),
-            grid: *grid,
-            sliding: self.sliding,
-            half_width: half_width(grid, loaded_cells(grid.shape(), &[&pressure])),
-            kernels,
-            offsets,
-            quarter: transform.quarter_transform(),
-            pressure,
-            transform,
-            uniform,
-            solved,
-            threads,
-        }))
+        let ends = EndStress::plan(&whole, progress)?;
+        Ok(match ends {
+            ControlFlow::Continue(ends) => Some(StressPlan { whole, ends }),
+            ControlFlow::Break(()) => None,
+        })
+    }
+
+    /// [`Source::complete`] without a callback.
+    pub(super) fn complete_unwatched(&self, threads: Option<usize>) -> Result<StressPlan> {
+        let mut progress = |_| ControlFlow::Continue(());
+        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
+        self.complete(threads, &mut progress)?.ok_or(stopped)
     }
 }
 
@@ -187,124 +80,88 @@ impl StressPlan {
         pressure: &ArrayRef2<f64>,
         threads: Option<usize>,
     ) -> Result<Self> {
-        Source::uniform(body, grid, pressure).plan_unwatched(threads)
+        Source::uniform(body, grid, pressure).complete_unwatched(threads)
     }
 
     /// The body.
     pub fn body(&self) -> &HalfSpace {
-        &self.body
-    }
-
-    /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
-    /// none where the pressure is given as uniform over them.
-    pub(super) fn uncertainties(
-        &self,
-        places: &[Place],
-        friction: [f64; 2],
-        window: &Window,
-    ) -> Option<Array1<f64>> {
-        let subcell = &self.solved.as_ref()?.subcell;
-        let steps = subcell.steps(window);
-        let error = |place: &Place| subcell.uncertainty(&self.body, place, friction, steps);
-        Some(places.iter().map(error).collect())
-    }
-
-    /// Pressure that is taken as uniform over cells for stresses.
-    pub(super) fn stress_pressure(&self) -> &[f64] {
-        let solved = self.solved.as_ref();
-        solved.map_or(&self.pressure, |solved| solved.subcell.uniform())
+        &self.whole.body
     }
 }
 
-/// Smallest and largest length and modulus, in whatever units: kernels take fifth powers of lengths and
-/// fourth powers of moduli, which neither overflow nor vanish between these.
-pub(super) const MAGNITUDES: [f64; 2] = [1e-60, 1e60];
-
-/// Refuses lengths and moduli outside of [`MAGNITUDES`].
-fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
-    let check = |name, value: f64| match (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value) {
-        true => Ok(()),
-        false => Err(Error::Parameter {
-            name,
-            requirement: "between 1e-60 and 1e60 for stresses (take other units)",
-            value,
-        }),
-    };
-    for axis in 0..2 {
-        check("size of the grid", grid.size()[axis])?;
-        check("spacing of the grid", grid.spacing()[axis])?;
-    }
-    for layer in body.layers() {
-        check("thickness", layer.thickness())?;
-        check("young", layer.material().young())?;
-    }
-    match body.substrate() {
-        Substrate::Elastic(material) => check("young", material.young()),
-        Substrate::Rigid => Ok(()),
-    }
+/// A plan under one friction, on whole planes, with the memory that all planes use.
+#[derive(Debug)]
+pub(super) struct PlaneStress<'a> {
+    whole: PlaneEvaluator<'a>,
+    ends: Option<EndPlanes<'a>>,
 }
 
-/// Bytes of `arrays` arrays of cells as transforms keep them. Transforms store whole blocks of
-/// columns, at lengths that are products of small primes: together a fifth more than the cells.
-pub(super) fn transforms_memory(grid: &Grid, arrays: u64) -> u64 {
-    let [nx, ny] = grid.shape().map(|n| n as u64);
-    (nx + 1) * (ny + 8) * 8 * arrays * 6 / 5
-}
-
-/// `pressure` in C order, if it is finite and of the grid's shape.
-fn checked(grid: &Grid, pressure: &ArrayRef2<f64>) -> Result<Vec<f64>> {
-    let found = [pressure.nrows(), pressure.ncols()];
-    if found != grid.shape() {
-        return Err(Error::Shape {
-            name: "pressure",
-            expected: grid.shape(),
-            found,
-        });
-    }
-    if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-        return Err(Error::NonFinite {
-            name: "pressure",
-            index: [index.0, index.1],
-        });
-    }
-    Ok(pressure.iter().copied().collect())
-}
-
-/// First and last row, then first and last column, of the cells that any of `pressures` loads; none
-/// where all are zero.
-pub(super) fn loaded_cells(shape: [usize; 2], pressures: &[&[f64]]) -> Option<[[usize; 2]; 2]> {
-    let mut ends = [[usize::MAX, 0]; 2];
-    for pressure in pressures {
-        for (k, _) in pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {
-            for (end, at) in ends.iter_mut().zip([k / shape[1], k % shape[1]]) {
-                *end = [end[0].min(at), end[1].max(at)];
-            }
+impl<'a> PlaneStress<'a> {
+    pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2], displacement: bool) -> Self {
+        let ends = plan.ends.as_ref();
+        Self {
+            whole: PlaneEvaluator::new(&plan.whole, friction, displacement),
+            ends: ends.map(|ends| EndPlanes::new(ends, displacement)),
         }
     }
-    (ends[0][0] <= ends[0][1]).then_some(ends)
+
+    /// Bytes that it takes.
+    pub(super) fn memory(grid: &Grid, slides: bool, displacement: bool) -> u64 {
+        PlaneEvaluator::memory(grid, slides, displacement)
+    }
+
+    /// Writes the components at `place` to `outputs`, whole planes of (nx, ny) cells. `progress` is told
+    /// the fraction of this plane that is done; where it breaks, `outputs` are incomplete.
+    pub(super) fn evaluate(
+        &mut self,
+        place: &Place,
+        outputs: &mut [&mut [f64]],
+        progress: &mut StressProgress,
+    ) -> ControlFlow<()> {
+        self.whole.evaluate(place, outputs, progress)?;
+        match &mut self.ends {
+            Some(ends) => ends.add(place, outputs, progress),
+            None => ControlFlow::Continue(()),
+        }
+    }
 }
 
-/// How many offsets along x and y, 0 included, lie between a cell and one that any of `pressures` loads.
-fn offsets(shape: [usize; 2], pressures: [&[f64]; 2]) -> [usize; 2] {
-    let Some(ends) = loaded_cells(shape, &pressures) else {
-        return shape;
-    };
-    // From the first loaded cell to the last cell, from the first cell to the last loaded one.
-    [0, 1].map(|axis| {
-        let [first, last] = ends[axis];
-        (shape[axis] - first).max(last + 1)
-    })
+/// A plan under one friction, in some cells.
+#[derive(Debug)]
+pub(super) struct PointStress<'a> {
+    whole: PointEvaluator<'a>,
+    ends: Option<EndPoints<'a>>,
 }
 
-/// Half the width of the `loaded` cells along their shorter side; of the whole grid if there are none.
-fn half_width(grid: &Grid, loaded: Option<[[usize; 2]; 2]>) -> f64 {
-    let width = |axis: usize| {
-        let cells = loaded.map_or(grid.shape()[axis], |ends| ends[axis][1] - ends[axis][0] + 1);
-        0.5 * cells as f64 * grid.spacing()[axis]
-    };
-    if grid.is_line() {
-        width(1)
-    } else {
-        width(0).min(width(1))
+impl<'a> PointStress<'a> {
+    pub(super) fn new(
+        plan: &'a StressPlan,
+        friction: [f64; 2],
+        displacement: bool,
+        cells: Vec<[usize; 2]>,
+    ) -> Self {
+        let ends = plan.ends.as_ref();
+        Self {
+            ends: ends.map(|ends| EndPoints::new(ends, displacement, &cells)),
+            whole: PointEvaluator::new(&plan.whole, friction, displacement, cells),
+        }
+    }
+
+    /// Bytes that it takes.
+    pub(super) fn memory(grid: &Grid) -> u64 {
+        PointEvaluator::memory(grid)
+    }
+
+    /// Components at `place` in each of the cells; with displacements, nine. `progress` is told 0.
+    pub(super) fn evaluate(
+        &self,
+        place: &Place,
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Vec<[f64; COMPONENTS]>> {
+        let mut sums = self.whole.evaluate(place, progress)?;
+        if let Some(ends) = &self.ends {
+            ends.add(place, &mut sums, progress)?;
+        }
+        ControlFlow::Continue(sums)
     }
 }

@@ -6,9 +6,9 @@ use ndarray::{Array1, Array3};
 
 use super::field::Stress;
 use super::friction::Sliding;
+use super::half_space::{Source, components};
 use super::options::{StressOptions, StressProgress};
-use super::plan::{Source, StressPlan};
-use super::plane::{PlaneEvaluator, PointEvaluator, components};
+use super::plan::{PlaneStress, PointStress, StressPlan};
 use super::section::{Points, place};
 use crate::body::HalfSpace;
 use crate::error::Result;
@@ -37,8 +37,8 @@ impl StressPlan {
         options: &StressOptions,
         progress: &mut StressProgress,
     ) -> Result<Stress> {
-        let (body, grid) = (&self.body, &self.grid);
-        let request = Request::checked(body, grid, &self.sliding, depths, options)?;
+        let (body, grid) = (&self.whole.body, &self.whole.grid);
+        let request = Request::checked(body, grid, &self.whole.sliding, depths, options)?;
         check_memory(grid.shape(), request.memory())?;
         Ok(request.evaluate(self, progress))
     }
@@ -54,7 +54,7 @@ pub(super) fn stress_once(
     let (body, grid) = (source.body, source.grid);
     let request = Request::checked(body, grid, &source.sliding, depths, options)?;
     check_memory(grid.shape(), request.memory() + source.memory())?;
-    Ok(match source.plan(options.threads, progress)? {
+    Ok(match source.complete(options.threads, progress)? {
         Some(plan) => request.evaluate(&plan, progress),
         // Stopped while planning: no depth is done.
         None => request.result(zeros(request.components(), 0), 0, None),
@@ -104,17 +104,19 @@ impl<'a> Request<'a> {
     fn memory(&self) -> u64 {
         let result = 8 * self.places.len() * self.points.count() * self.components();
         if self.points.count() == 1 {
-            return result as u64 + PointEvaluator::memory(self.grid);
+            return result as u64 + PointStress::memory(self.grid);
         }
         let slides = self.options.friction != 0.0;
-        result as u64 + PlaneEvaluator::memory(self.grid, slides, self.options.displacement)
+        result as u64 + PlaneStress::memory(self.grid, slides, self.options.displacement)
     }
 
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> Stress {
         let mut fields = zeros(self.components(), self.places.len() * self.points.count());
         let done = self.fill(plan, &mut fields, progress);
         let window = self.points.window(self.grid.shape());
-        let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window);
+        let uncertainty = plan
+            .whole
+            .uncertainties(&self.places[..done], self.friction, &window);
         self.result(fields, done, uncertainty)
     }
 
@@ -135,7 +137,7 @@ impl<'a> Request<'a> {
             true => Vec::new(),
             false => zeros(fields.len(), shape[0] * shape[1]),
         };
-        let mut evaluator = PlaneEvaluator::new(plan, self.friction, self.options.displacement);
+        let mut evaluator = PlaneStress::new(plan, self.friction, self.options.displacement);
         for (done, place) in self.places.iter().enumerate() {
             let total = self.places.len() as f64;
             let mut progress = |part: f64| progress((done as f64 + part) / total);
@@ -171,7 +173,7 @@ impl<'a> Request<'a> {
         progress: &mut StressProgress,
     ) -> usize {
         let (cells, weights): (Vec<_>, Vec<_>) = self.points.weighted_cells().into_iter().unzip();
-        let evaluator = PointEvaluator::new(plan, self.friction, self.options.displacement, cells);
+        let evaluator = PointStress::new(plan, self.friction, self.options.displacement, cells);
         for (done, place) in self.places.iter().enumerate() {
             let total = self.places.len() as f64;
             let mut progress = |part: f64| progress((done as f64 + part) / total);

@@ -2,8 +2,8 @@
 
 use ndarray::Array1;
 
+use super::half_space::MAGNITUDES;
 use super::options::{Section, Side};
-use super::plan::MAGNITUDES;
 use crate::body::{HalfSpace, Substrate};
 use crate::error::{Error, Result, finite};
 use crate::grid::{Grid, Window};

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use super::derived::Peak;
 use super::field::Percent;
 use super::friction::Sliding;
+use super::half_space::Source;
 use super::options::{StressOptions, StressProgress};
-use super::plan::{Source, StressPlan};
-use super::plane::PlaneEvaluator;
+use super::plan::{PlaneStress, StressPlan};
 use crate::body::{HalfSpace, Layer, Substrate};
 use crate::error::{Result, positive};
 use crate::grid::Grid;
@@ -153,9 +153,14 @@ impl StressPlan {
         options: &StressOptions,
         progress: &mut StressProgress,
     ) -> Result<StressSummary> {
-        let request =
-            SummaryRequest::checked(&self.body, &self.grid, &self.sliding, strengths, options)?;
-        check_memory(self.grid.shape(), request.memory)?;
+        let request = SummaryRequest::checked(
+            &self.whole.body,
+            &self.whole.grid,
+            &self.whole.sliding,
+            strengths,
+            options,
+        )?;
+        check_memory(self.whole.grid.shape(), request.memory)?;
         Ok(request.evaluate(self, progress))
     }
 }
@@ -170,7 +175,7 @@ pub(super) fn summary_once(
     let (body, grid) = (source.body, source.grid);
     let request = SummaryRequest::checked(body, grid, &source.sliding, strengths, options)?;
     check_memory(grid.shape(), request.memory + source.memory())?;
-    Ok(match source.plan(options.threads, progress)? {
+    Ok(match source.complete(options.threads, progress)? {
         Some(plan) => request.evaluate(&plan, progress),
         None => StressSummary::default(),
     })
@@ -223,13 +228,13 @@ impl<'a> SummaryRequest<'a> {
             strengths,
             residual: options.residual_by_layer(body)?,
             friction: sliding.traction(body, options)?,
-            memory: planes + PlaneEvaluator::memory(grid, options.friction != 0.0, false),
+            memory: planes + PlaneStress::memory(grid, options.friction != 0.0, false),
         })
     }
 
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> StressSummary {
-        let body = &plan.body;
-        let regions = regions(body, plan.half_width);
+        let body = &plan.whole.body;
+        let regions = regions(body, plan.whole.half_width);
         let in_layers: usize = regions
             .iter()
             .map(|region| region.len() + 3 * REFINEMENTS)

@@ -5,15 +5,14 @@ use std::ops::ControlFlow;
 use crate::response::interior::Place;
 use crate::stress::derived::{Peak, Tensor};
 use crate::stress::options::StressProgress;
-use crate::stress::plan::StressPlan;
-use crate::stress::plane::PlaneEvaluator;
+use crate::stress::plan::{PlaneStress, StressPlan};
 
 /// The plane of stress that was evaluated last, and what evaluates the next.
 pub(super) struct Planes<'a, 'b> {
     plan: &'a StressPlan,
     friction: [f64; 2],
     residual: &'a [f64],
-    evaluator: PlaneEvaluator<'a>,
+    evaluator: PlaneStress<'a>,
     /// The six components at the cells.
     fields: [Vec<f64>; 6],
     progress: &'a mut StressProgress<'b>,
@@ -78,12 +77,12 @@ impl<'a, 'b> Planes<'a, 'b> {
         planned: usize,
         progress: &'a mut StressProgress<'b>,
     ) -> Self {
-        let cells = plan.grid.shape().iter().product();
+        let cells = plan.whole.grid.shape().iter().product();
         Self {
             plan,
             friction,
             residual,
-            evaluator: PlaneEvaluator::new(plan, friction, false),
+            evaluator: PlaneStress::new(plan, friction, false),
             fields: std::array::from_fn(|_| vec![0.0; cells]),
             progress,
             done: 0,
@@ -118,15 +117,22 @@ impl<'a, 'b> Planes<'a, 'b> {
     }
 
     fn peak(&self, largest: Largest, place: &Place) -> Peak {
-        let ny = self.plan.grid.shape()[1];
+        let ny = self.plan.whole.grid.shape()[1];
         let Largest { value, cell } = largest;
         let [i, j] = [cell / ny, cell % ny];
         let window = [i..i + 1, j..j + 1];
         let places = std::slice::from_ref(place);
-        let error = self.plan.uncertainties(places, self.friction, &window);
+        let error = self
+            .plan
+            .whole
+            .uncertainties(places, self.friction, &window);
         Peak {
             value,
-            position: [self.plan.grid.x()[i], self.plan.grid.y()[j], place.depth],
+            position: [
+                self.plan.whole.grid.x()[i],
+                self.plan.whole.grid.y()[j],
+                place.depth,
+            ],
             uncertainty: error.map(|errors| errors[0]),
         }
     }

@@ -3,22 +3,15 @@
 
 use std::ops::ControlFlow;
 
-use super::options::StressProgress;
-use super::plan::{StressPlan, transforms_memory};
-use super::subcell::{NearTable, STRESSES};
+use super::plan::{HalfSpacePlan, transforms_memory};
 use crate::fft::{KernelRows, Workspace};
 use crate::grid::Grid;
 use crate::parallel::Threads;
 use crate::response::interior::Place;
+use crate::stress::options::StressProgress;
+use crate::stress::subcell::{NearTable, STRESSES};
 
-mod coefficients;
-mod points;
-
-pub(super) use points::PointEvaluator;
-
-pub(super) use coefficients::components;
-
-use coefficients::{Coefficients, RowSource, SurfaceLoad};
+use super::coefficients::{Coefficients, RowSource, SurfaceLoad, components};
 
 /// Components that are convolved together. More of them read the load's transform less often; fewer
 /// write and read less memory in between. Chosen by trial.
@@ -29,8 +22,8 @@ const _: () = assert!(STRESSES.is_multiple_of(TOGETHER));
 
 /// A plan under one friction, with the memory that all its planes use.
 #[derive(Debug)]
-pub(super) struct PlaneEvaluator<'a> {
-    plan: &'a StressPlan,
+pub(in crate::stress) struct PlaneEvaluator<'a> {
+    plan: &'a HalfSpacePlan,
     /// μ times the unit vector of the traction.
     friction: [f64; 2],
     /// Number of components: the stresses, or all with the displacements.
@@ -43,7 +36,11 @@ pub(super) struct PlaneEvaluator<'a> {
 }
 
 impl<'a> PlaneEvaluator<'a> {
-    pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2], displacement: bool) -> Self {
+    pub(in crate::stress) fn new(
+        plan: &'a HalfSpacePlan,
+        friction: [f64; 2],
+        displacement: bool,
+    ) -> Self {
         let components = components(displacement);
         let loads = SurfaceLoad::all(friction);
         let rows = |load: &SurfaceLoad| {
@@ -62,7 +59,7 @@ impl<'a> PlaneEvaluator<'a> {
     }
 
     /// Bytes that an evaluator takes.
-    pub(super) fn memory(grid: &Grid, slides: bool, displacement: bool) -> u64 {
+    pub(in crate::stress) fn memory(grid: &Grid, slides: bool, displacement: bool) -> u64 {
         let loads = if slides { 3 } else { 1 };
         // Coefficients of each load and component, and of the components that are convolved together
         // a spectrum and a result each.
@@ -72,7 +69,7 @@ impl<'a> PlaneEvaluator<'a> {
 
     /// Writes the components at `place` to `outputs`, whole planes of (nx, ny) cells. `progress` is told
     /// the fraction of this plane that is done; where it breaks, `outputs` are incomplete.
-    pub(super) fn evaluate(
+    pub(in crate::stress) fn evaluate(
         &mut self,
         place: &Place,
         outputs: &mut [&mut [f64]],
@@ -133,7 +130,7 @@ impl<'a> PlaneEvaluator<'a> {
 
 /// Transforms the coefficients of `source` along y into `rows`.
 fn transform_rows(
-    plan: &StressPlan,
+    plan: &HalfSpacePlan,
     rows: &mut KernelRows,
     source: &RowSource,
     workspace: &mut Workspace,

@@ -9,8 +9,8 @@ use super::coefficients::{Coefficients, RowSource, SurfaceLoad};
 use crate::grid::Grid;
 use crate::kernel::COMPONENTS;
 use crate::response::interior::Place;
+use crate::stress::half_space::plan::{HalfSpacePlan, loaded_cells};
 use crate::stress::options::StressProgress;
-use crate::stress::plan::{StressPlan, loaded_cells};
 use crate::stress::subcell::STRESSES;
 
 /// Rows of coefficients that one thread makes at a time. Each such block makes two more rows; few blocks
@@ -20,7 +20,7 @@ const ROWS: usize = 8;
 /// A plan under one friction, at some cells.
 #[derive(Debug)]
 pub(in crate::stress) struct PointEvaluator<'a> {
-    plan: &'a StressPlan,
+    plan: &'a HalfSpacePlan,
     friction: [f64; 2],
     displacement: bool,
     loads: Vec<SurfaceLoad>,
@@ -31,7 +31,7 @@ pub(in crate::stress) struct PointEvaluator<'a> {
 
 impl<'a> PointEvaluator<'a> {
     pub(in crate::stress) fn new(
-        plan: &'a StressPlan,
+        plan: &'a HalfSpacePlan,
         friction: [f64; 2],
         displacement: bool,
         cells: Vec<[usize; 2]>,

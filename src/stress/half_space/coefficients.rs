@@ -11,7 +11,7 @@ use crate::kernel::plane::{Kernel, Plan};
 use crate::kernel::plans::Kernels;
 use crate::kernel::strip::{self, LinePlan};
 use crate::response::interior::Place;
-use crate::stress::plan::StressPlan;
+use crate::stress::half_space::plan::HalfSpacePlan;
 use crate::stress::subcell::STRESSES;
 
 /// A load on the surface, in proportion to the pressure.
@@ -48,7 +48,7 @@ pub(super) type RowSource<'a> = dyn Fn(Range<usize>, &mut Keep) + Sync + 'a;
 /// Coefficients of a plan at one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coefficients<'a> {
-    pub(super) plan: &'a StressPlan,
+    pub(super) plan: &'a HalfSpacePlan,
     pub(super) place: &'a Place,
     /// Numbers of offsets along x and y.
     pub(super) offsets: [usize; 2],

@@ -1,0 +1,11 @@
+//! Stress and displacement of the body that goes on along x and y.
+
+mod coefficients;
+mod plan;
+mod plane;
+mod points;
+
+pub(super) use coefficients::components;
+pub(super) use plan::{Form, HalfSpacePlan, MAGNITUDES, Source};
+pub(super) use plane::PlaneEvaluator;
+pub(super) use points::PointEvaluator;
