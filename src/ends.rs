@@ -6,6 +6,7 @@
 //! | `mesh` | points along the wavenumber times the distance from the end |
 //! | `waves` | integrals over the wavenumber along y |
 //! | `bodies` | the ends of the bodies of a contact, on a grid |
+//! | `layers` | the model of layered bodies |
 //! | `limited` | shapes that cannot touch beyond the ends |
 //! | `plate` | two free ends of one body |
 //! | `cells` | coefficients of cells, from nodes along x |
@@ -15,6 +16,7 @@
 
 mod bodies;
 mod cells;
+mod layers;
 mod limited;
 mod linear;
 mod mesh;

@@ -7,7 +7,7 @@ use ndarray::Array2;
 use super::cells::{Nodes, coefficients};
 use super::limited::Limited;
 use super::plate;
-use crate::body::Substrate;
+use crate::body::{HalfSpace, Substrate};
 use crate::convolution::{Addition, RowWeights};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -28,19 +28,25 @@ enum Side {
 }
 
 /// A free end of one body.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct End {
     side: Side,
     x: f64,
-    /// Material whose quarter space it is.
+    ending: Ending,
+}
+
+/// What ends: a body, without its ends, and the material of its substrate.
+#[derive(Debug, Clone, PartialEq)]
+struct Ending {
+    body: HalfSpace,
     material: Elastic,
 }
 
 /// A body with two free ends.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Plate {
     ends: [f64; 2],
-    material: Elastic,
+    ending: Ending,
 }
 
 /// The free ends of all bodies of a contact.
@@ -63,15 +69,22 @@ impl Ends {
             let Substrate::Elastic(material) = half_space.substrate() else {
                 continue;
             };
+            let (layers, has_layers) = (half_space.layers(), !half_space.layers().is_empty());
+            // Layers on a substrate that is not rigid make a body.
+            let Ok(body) = HalfSpace::new(material, layers.iter().cloned()) else {
+                continue;
+            };
+            let ending = Ending { body, material };
             for (side, x) in [Side::Low, Side::High].into_iter().zip(half_space.ends()) {
                 if let Some(x) = x {
-                    ends.push(End { side, x, material });
-                    layered |= !half_space.layers().is_empty();
+                    let ending = ending.clone();
+                    ends.push(End { side, x, ending });
+                    layered |= has_layers;
                 }
             }
             if let [Some(low), Some(high)] = half_space.ends() {
                 let ends = [low, high];
-                plates.push(Plate { ends, material });
+                plates.push(Plate { ends, ending });
             }
         }
         Self {
@@ -159,10 +172,10 @@ impl Ends {
                 .push(end);
         }
         // Rollers end alike on both sides.
-        let mut known: Vec<(Nodes, Vec<Elastic>, Array2<f64>)> = Vec::new();
+        let mut known: Vec<(Nodes, Vec<&Ending>, Array2<f64>)> = Vec::new();
         let mut additions = Vec::new();
         for ends in groups.values() {
-            let End { side, x, .. } = *ends[0];
+            let &End { side, x, .. } = ends[0];
             let from_end = |row: usize| {
                 let center = start(grid) + (row as f64 + 0.5) * dx;
                 if side == Side::Low {
@@ -183,25 +196,24 @@ impl Ends {
             // The end is on an edge of this row, or within the row before.
             let nearest = if nearest < dx { 0.5 * dx } else { nearest };
             let nodes = Nodes::new(nearest, dx, nx - beyond);
-            let materials: Vec<Elastic> = ends.iter().map(|end| end.material).collect();
-            let found = known
-                .iter()
-                .find(|(n, m, _)| *n == nodes && *m == materials);
+            let endings: Vec<&Ending> = ends.iter().map(|end| &end.ending).collect();
+            let found = known.iter().find(|(n, e, _)| *n == nodes && *e == endings);
             let coefficients = match found {
                 Some((.., coefficients)) => coefficients.clone(),
-                None => threads.run(|| total(&materials, &nodes, ny, dy))?,
+                None => threads.run(|| total(&endings, &nodes, ny, dy))?,
             };
             let mut weights = vec![RowWeights::default(); nx];
             for (row, node) in rows[beyond..].iter().zip(&nodes.rows) {
                 weights[*row] = node.clone();
             }
             additions.push(Addition::new(weights, ny, &coefficients));
-            known.push((nodes, materials, coefficients));
+            known.push((nodes, endings, coefficients));
         }
-        for Plate { ends, material } in &self.plates {
+        for Plate { ends, ending } in &self.plates {
             let length = ends[1] - ends[0];
             let from_start = (0..nx).map(|row| start(grid) + (row as f64 + 0.5) * dx - ends[0]);
-            let coefficients = plate::coefficients(*material, length, [dx, dy], ny);
+            let coefficients =
+                plate::coefficients((&ending.body, ending.material), length, [dx, dy], ny);
             let rows = plate::rows(from_start, dx, length);
             additions.push(Addition::new(rows, ny, &coefficients));
         }
@@ -230,11 +242,12 @@ pub(crate) fn check_carried(counterbody: Option<&Body>, shape: &dyn Surface) -> 
     Ok(())
 }
 
-/// Coefficients of bodies of these materials that end at the same place, for `ny` cells of width `dy`.
-fn total(materials: &[Elastic], nodes: &Nodes, ny: usize, dy: f64) -> Result<Array2<f64>> {
-    let mut sum = coefficients(materials[0], nodes, ny, dy)?;
-    for material in &materials[1..] {
-        sum += &coefficients(*material, nodes, ny, dy)?;
+/// Coefficients of bodies that end at the same place, for `ny` cells of width `dy`.
+fn total(endings: &[&Ending], nodes: &Nodes, ny: usize, dy: f64) -> Result<Array2<f64>> {
+    let of = |ending: &Ending| coefficients((&ending.body, ending.material), nodes, ny, dy);
+    let mut sum = of(endings[0])?;
+    for ending in &endings[1..] {
+        sum += &of(ending)?;
     }
     Ok(sum)
 }

@@ -7,10 +7,11 @@
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
 
-use super::VANISHED;
 use super::mesh::Modes;
 use super::reduction::Reduction;
 use super::waves::{Waves, Width};
+use super::{VANISHED, layers};
+use crate::body::HalfSpace;
 use crate::convolution::{RowWeights, distances, pair};
 use crate::error::Result;
 use crate::influence::CellInfluence;
@@ -123,10 +124,10 @@ fn chebyshev(t: f64) -> [f64; PANEL_NODES] {
     terms.map(|term| term / sum)
 }
 
-/// Coefficients \[m/Pa\] that a free end adds for a body of `material`: pairs of nodes, distances along y for
+/// Coefficients \[m/Pa\] that a free end adds for a `body` on a substrate of `material`: pairs of nodes, distances along y for
 /// `ny` cells of width `dy`. On the threads of the caller.
 pub(super) fn coefficients(
-    material: Elastic,
+    (body, material): (&HalfSpace, Elastic),
     nodes: &Nodes,
     ny: usize,
     dy: f64,
@@ -155,9 +156,10 @@ pub(super) fn coefficients(
                 .iter()
                 .map(|&d| nodes.mean(&reduction.displacement, k, d))
                 .collect();
+            let factor = layers::factor(body, k);
             for a in 0..near {
                 for b in 0..=a {
-                    row[pair(a, b)] = means[a].dot(&means[b]);
+                    row[pair(a, b)] = factor * means[a].dot(&means[b]);
                 }
             }
         });
@@ -169,7 +171,7 @@ pub(super) fn coefficients(
     let mut coefficients = amplitudes.t().dot(&weights.t());
 
     let reach = 2.0 * nodes.distances[count - 1] + farthest;
-    let mirror = CellInfluence::plan(&material, [dx, dy], reach)?;
+    let mirror = CellInfluence::plan(body, [dx, dy], reach)?;
     let apart = (0..count).flat_map(|a| (0..=a).map(move |b| [a, b]));
     let apart = apart.map(|[a, b]| nodes.distances[a] + nodes.distances[b]);
     let apart: Vec<f64> = apart.collect();

@@ -20,7 +20,9 @@ use std::sync::LazyLock;
 
 use ndarray::Array2;
 
+use super::layers;
 use super::waves::{Waves, Width};
+use crate::body::HalfSpace;
 use crate::convolution::{RowWeights, distances, pair};
 use crate::kernel::quadrature::Rule;
 use crate::material::Elastic;
@@ -118,10 +120,11 @@ pub(super) fn rows(x: impl Iterator<Item = f64>, dx: f64, length: f64) -> Vec<Ro
     x.map(means).collect()
 }
 
-/// Coefficients \[m/Pa\] for a body of `material` and this `length` on cells of sides \[dx, dy\]: pairs of
+/// Coefficients \[m/Pa\] for a `body` of this `length` on a substrate of `material`,
+///  on cells of sides \[dx, dy\]: pairs of
 /// polynomials, distances along y for `ny` cells.
 pub(super) fn coefficients(
-    material: Elastic,
+    (body, material): (&HalfSpace, Elastic),
     length: f64,
     [dx, dy]: [f64; 2],
     ny: usize,
@@ -139,7 +142,8 @@ pub(super) fn coefficients(
         let [a, b] = entry.pair;
         let mut row = coefficients.row_mut(pair(a, b));
         for (k, weights) in waves.wavenumbers.iter().zip(&waves.weights) {
-            let amplitude = factor * entry.at(k * length, material.poisson());
+            let amplitude =
+                factor * layers::factor(body, *k) * entry.at(k * length, material.poisson());
             row.iter_mut()
                 .zip(weights)
                 .for_each(|(sum, weight)| *sum += amplitude * weight);

@@ -4,14 +4,15 @@ use std::f64::consts::PI;
 
 use ndarray::Array1;
 
-use super::VANISHED;
 use super::reduction::Reduction;
 use super::waves::{Waves, Width};
+use super::{VANISHED, layers};
+use crate::body::{HalfSpace, Substrate};
 use crate::error::{Error, Result, finite, positive};
 use crate::influence::CellInfluence;
 use crate::material::Elastic;
 
-/// A homogeneous body x ≥ 0, z ≥ 0 whose face x = 0 is free, under uniform pressure on the rectangle
+/// A body x ≥ 0, z ≥ 0 whose face x = 0 is free, under uniform pressure on the rectangle
 /// d ≤ x ≤ d + l, |y| ≤ b of its surface z = 0.
 ///
 /// The displacement is that of a half-space under the load and its mirror image, and of what keeps the face
@@ -31,6 +32,7 @@ use crate::material::Elastic;
 /// ```
 #[derive(Debug)]
 pub struct QuarterSpace {
+    body: HalfSpace,
     material: Elastic,
     distance: f64,
     length: f64,
@@ -38,16 +40,27 @@ pub struct QuarterSpace {
 }
 
 impl QuarterSpace {
-    /// A body of `material` under unit pressure on the rectangle at this `distance` d \[m\] from the end, of
+    /// A `body`, which may have layers ([the model](crate::ends)), under unit pressure on the rectangle at this `distance` d \[m\] from the end, of
     /// length l and half-width b \[m\].
     ///
     /// # Errors
-    /// Unless the distance is at least 0, and all lengths are finite and the last two above 0.
-    pub fn new(material: Elastic, distance: f64, [length, half_width]: [f64; 2]) -> Result<Self> {
+    /// On a rigid substrate; unless the distance is at least 0, and all lengths are finite and the last two above 0.
+    pub fn new(
+        body: impl Into<HalfSpace>,
+        distance: f64,
+        [length, half_width]: [f64; 2],
+    ) -> Result<Self> {
+        let body = body.into();
+        let Substrate::Elastic(material) = body.substrate() else {
+            return Err(Error::Inconsistent(
+                "body must not have a rigid substrate: its face is not free there",
+            ));
+        };
         not_negative("distance", distance)?;
         positive("length", length)?;
         positive("half_width", half_width)?;
         Ok(Self {
+            body,
             material,
             distance,
             length,
@@ -65,7 +78,7 @@ impl QuarterSpace {
         let middle = self.distance + 0.5 * self.length;
         let sides = [self.length, 2.0 * self.half_width];
         let reach = (x + middle).hypot(y) + sides[0].hypot(sides[1]);
-        let half_space = CellInfluence::plan(&self.material, sides, reach)?;
+        let half_space = CellInfluence::plan(&self.body, sides, reach)?;
         let images = half_space.at([x - middle, y]) + half_space.at([x + middle, y]);
         Ok(images + self.excess([x, y]))
     }
@@ -92,7 +105,7 @@ impl QuarterSpace {
             reduction
                 .displacement
                 .add_integrals(k * self.distance, -1.0 / k, &mut load);
-            sum += weights[0] * at.dot(&load);
+            sum += layers::factor(&self.body, *k) * weights[0] * at.dot(&load);
         }
         let short = 2.0 / self.material.plane_strain_modulus();
         sum * short * 2.0 * self.half_width / (PI * PI)

@@ -23,7 +23,11 @@ fn near_end(n: usize, x: f64, depths: &[f64], poisson: f64) -> Result<Stress> {
     let plan = StressPlan::plan(&body, &grid, &pressure, None)?;
     println!("plan {:.2} s", start.elapsed().as_secs_f64());
     let field = plan.stress(depths, &StressOptions::default())?;
-    println!("{} depths: {:.2} s", depths.len(), start.elapsed().as_secs_f64());
+    println!(
+        "{} depths: {:.2} s",
+        depths.len(),
+        start.elapsed().as_secs_f64()
+    );
     Ok(field)
 }
 
@@ -50,7 +54,10 @@ fn the_face_is_free_of_traction() -> Result<()> {
                         }
                     }
                 }
-                let text: Vec<String> = worst.iter().map(|w| format!("{:.0e} {:.0e} {:.0e}", w[0], w[1], w[2])).collect();
+                let text: Vec<String> = worst
+                    .iter()
+                    .map(|w| format!("{:.0e} {:.0e} {:.0e}", w[0], w[1], w[2]))
+                    .collect();
                 println!("nu {poisson} x {x} n {n}: {}", text.join(" | "));
             }
         }

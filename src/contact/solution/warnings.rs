@@ -141,7 +141,8 @@ impl fmt::Display for Warning {
             ),
             Self::CoatedEnd => write!(
                 f,
-                "a body with layers has a free end: near it, the displacement is that of a model"
+                "a body with layers has a free end: what the end adds to the displacement there is a model, with \
+                 an error of up to 4 % of the displacement where moduli differ by a factor of 4, and 9 % at 10"
             ),
             Self::SharpEdge => write!(
                 f,
