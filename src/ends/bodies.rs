@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use super::cells::{Nodes, coefficients};
 use super::limited::Limited;
-use super::plate;
+use super::{layers, plate};
 use crate::body::{HalfSpace, Substrate};
 use crate::convolution::{Addition, RowWeights};
 use crate::error::{Error, Result};
@@ -40,6 +40,16 @@ struct End {
 struct Ending {
     body: HalfSpace,
     material: Elastic,
+}
+
+/// How the free ends of a contact's bodies are counted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeEnds {
+    /// Whether a body has two free ends, and is taken as a plate; else each end is that of a quarter space.
+    pub plates: bool,
+    /// Largest error of the displacement, relative to it, that was measured: 1e-5 for a quarter space, 2e-4 for a plate.
+    /// A body with layers is a model: 0.04 where moduli differ by a factor of 4 at most, 0.09 at 10; `None` beyond.
+    pub error: Option<f64>,
 }
 
 /// A body with two free ends.
@@ -93,6 +103,22 @@ impl Ends {
             bodies: bodies.len(),
             layered,
         }
+    }
+
+    /// How the ends are counted; `None` where there are none.
+    pub(crate) fn form(&self) -> Option<FreeEnds> {
+        let plates = !self.plates.is_empty();
+        let contrasts = self
+            .ends
+            .iter()
+            .map(|end| layers::contrast(&end.ending.body));
+        let error = match contrasts.reduce(f64::max)? {
+            equal if equal <= 1.0 => Some(if plates { 2e-4 } else { 1e-5 }),
+            mild if mild <= 4.0 => Some(0.04),
+            high if high <= 10.0 => Some(0.09),
+            _ => None,
+        };
+        Some(FreeEnds { plates, error })
     }
 
     /// Whether any body has a free end.

@@ -23,3 +23,21 @@ pub(super) fn factor(body: &HalfSpace, k: f64) -> f64 {
     let (here, below) = (alpha_compliance(body, k), Compliance::homogeneous(material));
     (here.c11 / below.c11).cbrt() * (here.c22 / below.c22).cbrt().powi(2)
 }
+
+/// Largest ratio of the moduli of a body, at least 1; 1 for a body without layers.
+pub(super) fn contrast(body: &HalfSpace) -> f64 {
+    let layers = body.layers().iter().map(|layer| layer.material());
+    let substrate = match body.substrate() {
+        Substrate::Elastic(material) => Some(material),
+        Substrate::Rigid => None,
+    };
+    let young = layers.chain(substrate).map(|material| material.young());
+    let [low, high] = young.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], e| {
+        [low.min(e), high.max(e)]
+    });
+    if body.layers().is_empty() {
+        1.0
+    } else {
+        (high / low).max(1.0 + f64::EPSILON)
+    }
+}

@@ -9,6 +9,7 @@ use crate::contact::motion::Motion;
 use crate::contact::plan::Plan;
 use crate::contact::problem::Quality;
 use crate::contact::solver::{Solver, Termination};
+use crate::ends::{Ends, FreeEnds};
 use crate::error::Error;
 use crate::grid::Grid;
 use crate::influence::Method;
@@ -66,6 +67,12 @@ impl Report {
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged
+    }
+
+    /// How free ends of the bodies are counted; `None` where there are none.
+    pub fn free_ends(&self) -> Option<FreeEnds> {
+        let bodies = std::iter::once(&self.body).chain(&self.counterbody);
+        Ends::of(&bodies.collect::<Vec<_>>()).form()
     }
 
     /// The error that says which conditions of convergence were not met; the message quotes `tolerance`.
