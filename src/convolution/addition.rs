@@ -115,12 +115,6 @@ impl Addition {
         }
     }
 
-    /// Bytes of the operator for rows of `ny` cells with this number of nodes, and of one application.
-    pub(crate) fn memory(nodes: usize, ny: usize) -> u64 {
-        let (nodes, waves) = (nodes as u64, distances(ny) as u64);
-        8 * waves * nodes * (nodes + 1) / 2 + 48 * waves * nodes
-    }
-
     fn row(&self, row: usize) -> &RowWeights {
         &self.rows[self.window.start + row]
     }
