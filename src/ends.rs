@@ -32,6 +32,8 @@ mod plate;
 mod point;
 mod reduction;
 mod spread;
+#[cfg(test)]
+mod tests;
 mod waves;
 
 pub use bodies::FreeEnds;

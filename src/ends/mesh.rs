@@ -12,14 +12,14 @@ pub(super) const POINTS: usize = 10;
 
 /// Ends of the panels, kx. Below the lowest, P is taken as constant; above the highest, all kernels are below
 /// 1e-19.
-pub(super) const ENDS: [f64; 2] = [1e-9, VANISHED];
+pub(super) const ENDS: [f64; 2] = [1e-11, VANISHED];
 
 /// Panels from the lowest end to the highest, each longer than the one before by a factor of 2.5. With
 /// 12 points and a factor of 2.3 displacements change by 1e-9 of the largest.
-pub(super) const PANELS: usize = 27;
+pub(super) const PANELS: usize = 32;
 
 /// kx from which on the solution is independent of the lowest end, to 1e-9; smaller ones are taken as equal to it.
-const RELIABLE: f64 = 1e-7;
+const RELIABLE: f64 = 1e-9;
 
 /// Points along ln kx, and integrals over them.
 #[derive(Debug)]
