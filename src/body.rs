@@ -154,8 +154,8 @@ impl HalfSpace {
     /// This body with free ends at these coordinates x \[m\]: it is cut off there, across the axis of a roller,
     /// and nothing holds the end face. `None` where the body goes on.
     ///
-    /// Contacts count both ends ([`crate::ends`]); frequency response, influence coefficients and the functions
-    /// that evaluate a given pressure are those of the body that goes on.
+    /// Contacts count both ends ([`crate::ends`]), and stresses do but for those of friction; frequency response and
+    /// influence coefficients are those of the body that goes on.
     ///
     /// ```
     /// use nacre::{Elastic, HalfSpace};

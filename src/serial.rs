@@ -72,8 +72,15 @@ value! {
         substrate: Substrate = of.substrate();
         #[serde(default)]
         layers: Vec<Layer> = of.layers().to_vec();
+        #[serde(default, skip_serializing_if = "goes_on")]
+        ends: [Option<f64>; 2] = of.ends();
     }
-    of, given => Self::new(given.substrate, given.layers)
+    of, given => Self::new(given.substrate, given.layers)?.with_ends(given.ends)
+}
+
+/// Whether a body has no free end.
+fn goes_on(ends: &[Option<f64>; 2]) -> bool {
+    *ends == [None; 2]
 }
 
 value! {
@@ -230,6 +237,7 @@ mod tests {
             layer.with_interface(Interface::Frictionless),
         ];
         kept(HalfSpace::new(steel, layers.clone())?)?;
+        kept(HalfSpace::new(steel, layers.clone())?.with_ends([Some(-1e-2 / 3.0), None])?)?;
         kept(HalfSpace::new(Substrate::Rigid, layers)?)?;
         kept(Grid::new([4, 3], [0.1, 0.2])?.centered_at([0.3, -0.4])?)?;
         kept(Grid::line(5, 0.1)?.centered_at([0.0, 0.3])?)?;
@@ -256,6 +264,19 @@ mod tests {
     }
 
     #[test]
+    fn ends_are_left_out_where_a_body_goes_on()
+    -> std::result::Result<(), Box<dyn std::error::Error>> {
+        let body = HalfSpace::from(Elastic::new(1.0, 0.3)?);
+        assert!(!serde_json::to_string(&body)?.contains("ends"));
+        let body = body.with_ends([None, Some(0.25)])?;
+        assert!(serde_json::to_string(&body)?.contains(r#""ends":[null,0.25]"#));
+        // As data that were written before bodies had ends.
+        let older = r#"{"substrate": {"elastic": {"young": 1.0, "poisson": 0.3}}, "layers": []}"#;
+        assert_eq!(serde_json::from_str::<HalfSpace>(older)?.ends(), [None; 2]);
+        Ok(())
+    }
+
+    #[test]
     fn values_are_checked_when_they_are_read() {
         let negative = r#"{"young": -1.0, "poisson": 0.3}"#;
         assert!(refused::<Elastic>(negative).contains("young must be finite and above 0, got -1"));
@@ -265,6 +286,9 @@ mod tests {
         let ragged = r#"{"heights": [[0.0, 1.0], [2.0]], "spacing": [1.0, 1.0]}"#;
         assert!(refused::<HeightMap>(ragged).contains("rows of the same length"));
         assert!(refused::<HalfSpace>(r#"{"substrate": "rigid"}"#).contains("at least one layer"));
+        let reversed =
+            r#"{"substrate": {"elastic": {"young": 1.0, "poisson": 0.3}}, "ends": [1.0, 0.0]}"#;
+        assert!(refused::<HalfSpace>(reversed).contains("ends must be in ascending order"));
         let narrow = r#"{"radius": 1.0, "counter_radius": -0.5}"#;
         assert!(refused::<Cylinder>(narrow).contains("counter_radius"));
     }

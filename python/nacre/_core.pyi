@@ -52,6 +52,7 @@ _Real: TypeAlias = npt.NDArray[np.floating | np.integer | np.bool]
 _Vector: TypeAlias = _Real | Sequence[float]
 _Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
 _Pair: TypeAlias = tuple[float, float]
+_Ends: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
 _Peak: TypeAlias = tuple[float, tuple[float, float, float]]
@@ -127,7 +128,15 @@ class Layer:
 
 @final
 class HalfSpace:
-    def __new__(cls, substrate: Elastic | Rigid, layers: Iterable[Layer] | None = None) -> Self: ...
+    def __new__(
+        cls,
+        substrate: Elastic | Rigid,
+        layers: Iterable[Layer] | None = None,
+        *,
+        ends: _Ends | None = None,
+    ) -> Self: ...
+    @property
+    def ends(self) -> _Ends: ...
     @property
     def substrate(self) -> Elastic | Rigid: ...
     @property
@@ -236,6 +245,8 @@ class Roller(Shape):
     def counter_radius(self) -> float | None: ...
     @property
     def equivalent_radius(self) -> float: ...
+    @property
+    def ends(self) -> _Ends: ...
     @property
     def radius(self) -> float: ...
     @property
@@ -449,6 +460,8 @@ class Report:
     def balance(self) -> tuple[float, float, float]: ...
     @property
     def discretisation(self) -> dict[str, float | None] | None: ...
+    @property
+    def free_ends(self) -> dict[str, bool | float | None] | None: ...
     @property
     def warnings(self) -> list[str]: ...
     @property

@@ -287,7 +287,7 @@ def _pair(values: tuple[float, float], unit: str, noise: Sequence[float]) -> str
 
 
 def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
-    """Describe a body: its substrate, and a row for each layer or one for many."""
+    """Describe a body: its substrate, a row for each layer or one for many, and its free ends."""
     if body is None:
         return [(name, "rigid")]
     layers = [
@@ -300,7 +300,9 @@ def _body(name: str, body: HalfSpace | None) -> list[tuple[str, str]]:
     if len(layers) > LAYER_ROWS:
         depth = written(body.interfaces[-1], "m", 3)
         layers = [("  layers", f"{len(layers)}, together {depth}")]
-    return [(name, _material(body.substrate)), *layers]
+    places = [f"x = {written(x, 'm')}" for x in body.ends if x is not None]
+    ends = [("  free end" if len(places) == 1 else "  free ends", " and ".join(places))]
+    return [(name, _material(body.substrate)), *layers, *(ends if places else [])]
 
 
 def _moduli(body: HalfSpace, counterbody: HalfSpace | None) -> list[tuple[str, str]]:

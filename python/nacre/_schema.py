@@ -58,14 +58,26 @@ class Layer(Table):
     name: Text | None = Field(None, description=LAYER["name"])
 
 
+Ends = Annotated[
+    list[float],
+    Field(min_length=2, max_length=2),
+    Words("a pair of numbers, or of -inf and inf where the body goes on"),
+]
+
+
 class Body(Table):
-    """A half-space: a substrate, and layers from the surface down."""
+    """A half-space: a substrate, and layers from the surface down; it may end along x."""
 
     substrate: AnyMaterial = Field(
         description='Material below the layers; "rigid" is a rigid base.'
     )
     layers: Annotated[list[Layer], Words("a list of tables")] = Field(
         [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
+    )
+    ends: Ends | None = Field(
+        None,
+        description="Coordinates x of free ends [m], the lower one first; -inf or inf where the "
+        "body goes on, as it does at both sides by default.",
     )
 
 
@@ -283,8 +295,9 @@ class CaseTable(Table):
                 with at("material"):
                     material = self._material(layer.material)
                 layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
+        ends = None if body.ends is None else (body.ends[0], body.ends[1])
         with at(name):
-            return nacre.HalfSpace(substrate, layers)
+            return nacre.HalfSpace(substrate, layers, ends=ends)
 
     def _is_rigid(self, body: Body) -> bool:
         return body.substrate == "rigid" and "rigid" not in self.materials

@@ -38,9 +38,11 @@ FIELDS: dict[type, tuple[str, ...]] = {
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
 KINDS = {kind.__name__: kind for kind in FIELDS}
-LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y"}
+LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends"}
 """Arguments that format 1 had not at first. Where they are None they are left out: older data are
-still read, and older studies found again."""
+still read, and older studies found again. Versions that do not know them refuse them by name."""
+ABSENT = (None, (None, None))
+"""Values of those arguments that say nothing; the second one is of ends."""
 RESULTS = (
     core.Report
     | core.Solution
@@ -95,7 +97,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return of(value.to_dict())
         if type(value) in FIELDS:
             fields = {name: getattr(value, name) for name in FIELDS[type(value)]}
-            kept = {k: of(v) for k, v in fields.items() if not (v is None and k in LATER)}
+            kept = {k: of(v) for k, v in fields.items() if not (k in LATER and v in ABSENT)}
             return {type(value).__name__: kept}
         if isinstance(value, core.Shape):
             make, arguments = reduced(value)

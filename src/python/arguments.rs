@@ -194,6 +194,15 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
     Ok(pair.map(|number| number.map(|number| number.0)))
 }
 
+/// Coordinates of the free ends of a body; it goes on where one is `None`, or infinite on its own side.
+pub(super) fn ends(value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2]> {
+    let [low, high] = pair("ends", value)?;
+    Ok([
+        low.filter(|x| *x != f64::NEG_INFINITY),
+        high.filter(|x| *x != f64::INFINITY),
+    ])
+}
+
 /// Real number, or `None` where `value` is.
 pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
     let extract = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {

@@ -2,9 +2,9 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyTuple, PyType};
+use pyo3::types::{PyDict, PyTuple, PyType};
 
-use super::arguments::{Real, Repr, hash, items};
+use super::arguments::{Real, Repr, ends, hash, items, remade};
 use super::words::Word;
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::material::Elastic;
@@ -220,7 +220,7 @@ fn quoted(text: &str) -> String {
 
 type LayerArguments<'a> = (PyElastic, f64, &'static str, Option<&'a str>);
 
-/// A half-space: a substrate, and layers from the surface down.
+/// A half-space: a substrate, and layers from the surface down; free ends cut it off along x.
 ///
 /// Parameters
 /// ----------
@@ -228,11 +228,23 @@ type LayerArguments<'a> = (PyElastic, f64, &'static str, Option<&'a str>);
 ///     Material below the layers.
 /// layers : sequence of Layer, optional
 ///     Layers from the surface down.
+/// ends : tuple of float, optional
+///     Coordinates x of free ends [m], the lower one first: the body is cut off there, and nothing holds
+///     the end face. None, -inf or inf where it goes on. By default it goes on at both sides.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     If the substrate is rigid and there is no layer.
+///     If the substrate is rigid and there is no layer, or there are ends; if the ends are not finite or not
+///     in ascending order.
+///
+/// Notes
+/// -----
+/// Contacts count the ends of both bodies, and so do stresses but for those of friction. A body that ends is
+/// a quarter space: Hetényi, A general solution for the elastic quarter space, J. Appl. Mech. 37 (1970) 75,
+/// doi:10.1115/1.3408508. Its reduction to the half-space, and that of a body with two ends, are nacre's own.
+/// What the end of a body with layers adds is a model, and a warning tells of its error. Ends lie on edges of
+/// the cells of a grid, or outside it.
 ///
 /// Examples
 /// --------
@@ -240,6 +252,17 @@ type LayerArguments<'a> = (PyElastic, f64, &'static str, Option<&'a str>);
 /// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
 /// >>> nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=2e-6)]).interfaces
 /// [2e-06]
+///
+/// A roller of 10 mm on a raceway that goes on:
+///
+/// >>> roller = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
+/// >>> counterbody = nacre.HalfSpace(steel, ends=roller.ends)
+/// >>> counterbody.ends
+/// (-0.005, 0.005)
+/// >>> free = nacre.solve(roller, steel, counterbody, load=100.0)
+/// >>> whole = nacre.solve(roller, steel, steel, load=100.0)
+/// >>> bool(free.approach > whole.approach)
+/// True
 #[pyclass(name = "HalfSpace", module = "nacre", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(super) struct PyHalfSpace(pub(super) HalfSpace);
@@ -257,15 +280,20 @@ impl PyHalfSpace {
 #[pymethods]
 impl PyHalfSpace {
     #[new]
-    #[pyo3(signature = (substrate, layers=None))]
-    fn new(substrate: &Bound<'_, PyAny>, layers: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (substrate, layers=None, *, ends=None))]
+    fn new(
+        substrate: &Bound<'_, PyAny>,
+        layers: Option<&Bound<'_, PyAny>>,
+        ends: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
         let substrate = self::substrate(substrate)?;
         let layers: Vec<PyLayer> = match layers {
             Some(layers) => items("layers", "Layer", layers)?,
             None => Vec::new(),
         };
         let layers = layers.into_iter().map(|layer| layer.0);
-        Ok(Self(HalfSpace::new(substrate, layers)?))
+        let ends = self::ends(ends)?;
+        Ok(Self(HalfSpace::new(substrate, layers)?.with_ends(ends)?))
     }
 
     /// Material below the layers: an `Elastic`, or `nacre.RIGID`.
@@ -289,6 +317,12 @@ impl PyHalfSpace {
         self.0.interfaces()
     }
 
+    /// Coordinates x of the free ends [m]; None where the body goes on.
+    #[getter]
+    fn ends(&self) -> (Option<f64>, Option<f64>) {
+        self.0.ends().into()
+    }
+
     pub(super) fn __repr__(&self) -> String {
         let substrate = match self.0.substrate() {
             Substrate::Elastic(material) => elastic_repr(&material),
@@ -296,7 +330,15 @@ impl PyHalfSpace {
         };
         let layers = self.0.layers().iter().cloned().map(PyLayer);
         let layers: Vec<_> = layers.map(|layer| layer.__repr__()).collect();
-        format!("HalfSpace({substrate}, layers=[{}])", layers.join(", "))
+        let written = |end: Option<f64>| end.map_or("None".into(), |x| format!("{x:?}"));
+        let ends = match self.0.ends() {
+            [None, None] => String::new(),
+            [low, high] => format!(", ends=({}, {})", written(low), written(high)),
+        };
+        format!(
+            "HalfSpace({substrate}, layers=[{}]{ends})",
+            layers.join(", ")
+        )
     }
 
     fn __hash__(&self) -> u64 {
@@ -304,13 +346,23 @@ impl PyHalfSpace {
     }
 
     /// Callable and arguments that make the half-space again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let arguments = (self.substrate(py)?, self.layers(py)?);
-        Ok((py.get_type::<Self>(), arguments))
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (class, arguments) = (
+            py.get_type::<Self>(),
+            (self.substrate(py)?, self.layers(py)?),
+        );
+        if self.0.ends() == [None; 2] {
+            // Earlier versions read it.
+            return Ok((class.into_any(), arguments.into_pyobject(py)?));
+        }
+        let keywords = PyDict::new(py);
+        keywords.set_item("ends", self.ends())?;
+        remade(class, arguments, keywords)
     }
 }
-
-type Reduced<'py> = (Bound<'py, PyType>, (Bound<'py, PyAny>, Bound<'py, PyTuple>));
 
 /// Substrate from an argument.
 pub(super) fn substrate(object: &Bound<'_, PyAny>) -> PyResult<Substrate> {

@@ -22,7 +22,7 @@ pub(super) use convolution::PyConvolution;
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     Body under the pressure.
+///     Body under the pressure; its free ends are not counted.
 /// wavenumber : float or array_like
 ///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
 ///
@@ -71,7 +71,7 @@ pub(super) fn frequency_response<'py>(
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     Body under the tractions.
+///     Body under the tractions; its free ends are not counted.
 /// wavenumber : float or array_like
 ///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
 ///
@@ -135,7 +135,7 @@ pub(super) fn surface_compliance<'py>(
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     Body under the pressure.
+///     Body under the pressure; its free ends are not counted.
 /// grid : Grid
 ///     Grid with that cell; there is an offset for each of its cells.
 /// method : {"exact", "plain", "difference", "image"}, optional

@@ -283,7 +283,8 @@ impl PyContact {
 /// body : HalfSpace or Elastic
 ///     Body that it is pressed into.
 /// counterbody : HalfSpace or Elastic, optional
-///     Body that carries the shape; rigid where there is none.
+///     Body that carries the shape; rigid where there is none. A roller of finite length ends on both
+///     sides: ``HalfSpace(steel, ends=roller.ends)``.
 /// grid : Grid, optional
 ///     Cells of the pressure. An endless shape, such as a cylinder, needs a grid.
 #[doc = plan_docs!()]
@@ -299,7 +300,8 @@ impl PyContact {
 /// Raises
 /// ------
 /// ValueError
-///     If an argument is out of range, the arguments contradict each other, or no grid is found.
+///     If an argument is out of range, the arguments contradict each other, no grid is found, a free end of a
+///     body lies within a cell, or the counterbody ends within the shape that it carries.
 /// ConvergenceError
 ///     If the tolerance was not met; the unfinished solution is its `solution`.
 ///

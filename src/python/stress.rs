@@ -30,7 +30,7 @@ use keywords::{
 /// Parameters
 /// ----------
 /// body : HalfSpace or Elastic
-///     Body under the pressure.
+///     Body under the pressure; its free ends are counted, but not in the stress of friction.
 /// grid : Grid
 ///     Cells of the pressure.
 /// pressure : array_like

@@ -148,7 +148,7 @@ pub(super) fn method_words(method: Method) -> (&'static str, usize) {
 /// Kind, axis and figure of a warning; 0 where it has none.
 pub(super) fn warning_words(warning: &Warning) -> (&'static str, usize, f64) {
     let (axis, figure) = match *warning {
-        Warning::GridEdge | Warning::SharpEdge => (0, 0.0),
+        Warning::GridEdge | Warning::SharpEdge | Warning::FreeEnd | Warning::CoatedEnd => (0, 0.0),
         Warning::SharpEnd { axis } | Warning::MapRim { axis } => (axis, 0.0),
         Warning::Coarse { axis, cells } => (axis, cells as f64),
         Warning::CoarseSpots { axis, cells } => (axis, cells),
@@ -165,6 +165,8 @@ pub(super) fn warning(kind: &str, axis: usize, figure: f64) -> PyResult<Warning>
     let warnings = [
         Warning::GridEdge,
         Warning::SharpEnd { axis },
+        Warning::FreeEnd,
+        Warning::CoatedEnd,
         Warning::SharpEdge,
         Warning::MapRim { axis },
         Warning::Coarse { axis, cells },

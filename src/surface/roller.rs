@@ -129,6 +129,26 @@ impl Roller {
         self.length
     }
 
+    /// Coordinates x \[m\] of the ends, which its body takes ([`HalfSpace::with_ends`]): ±`length` / 2 or, without
+    /// a length, the ends of a logarithmic or sampled profile. `None` where a crown ends the roller.
+    ///
+    /// ```
+    /// use nacre::{Elastic, HalfSpace, Roller};
+    /// let roller = Roller::new(5e-3, 8e-3, 7.5)?.with_length(10e-3)?;
+    /// let body = HalfSpace::from(Elastic::new(210e9, 0.3)?).with_ends(roller.ends())?;
+    /// assert_eq!(body.ends(), [Some(-5e-3), Some(5e-3)]);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    ///
+    /// [`HalfSpace::with_ends`]: crate::HalfSpace::with_ends
+    pub fn ends(&self) -> [Option<f64>; 2] {
+        match self.length {
+            Some(length) => [-0.5 * length, 0.5 * length].map(Some),
+            None if self.profile.has_sharp_ends() => self.profile.ends().map(Some),
+            None => [None; 2],
+        }
+    }
+
     /// Whether x is within the length of the roller.
     fn reaches(&self, x: f64) -> bool {
         self.length.is_none_or(|length| x.abs() <= 0.5 * length)

@@ -329,6 +329,11 @@ ERRORS = {
     "table with young and poisson, got 3",
     "poisson = 0.3 } -> poison = 0.3 }": "materials.steel.poison: there is no such key; the keys",
     "[materials] -> units = 'N-mm-kPa'\n[materials]": "units: units must be consistent, ",
+    "[body]\n -> [body]\nends = [1e-3]\n": "body.ends: must be a pair of numbers, or of -inf "
+    "and inf where the body goes on, got [0.001]",
+    '[body]\n -> [body]\nends = "none"\n': "body.ends: must be a pair of numbers, or",
+    "[body]\n -> [body]\nends = [1, -1]\n": "body: ends must be in ascending order",
+    "[body]\n -> [body]\nends = [inf, 1]\n": "body: ends must be finite, got inf",
     "[materials] -> units = 3\n[materials]": "units: must be a text, got 3",
 }
 
@@ -467,7 +472,7 @@ def test_bodies_grids_and_motions_can_be_described() -> None:
     found = Case(
         base(
             body={"substrate": "rigid", "layers": [layer | {"interface": "frictionless"}]},
-            counterbody={"substrate": {"young": 3, "poisson": 0.1}},
+            counterbody={"substrate": {"young": 3, "poisson": 0.1}, "ends": [-1, float("inf")]},
             grid={"cells": 64, "width": 2, "center": 0.5},
             solve={"approach": 1, "tilt": [1, 2], "moment": {"y": 3}, "threads": 2},
         )
@@ -476,7 +481,7 @@ def test_bodies_grids_and_motions_can_be_described() -> None:
     assert found == {
         "shape": nacre.Sphere(1),
         "body": nacre.HalfSpace(nacre.RIGID, [soft]),
-        "counterbody": nacre.HalfSpace(nacre.Elastic(3, 0.1)),
+        "counterbody": nacre.HalfSpace(nacre.Elastic(3, 0.1), ends=(-1, None)),
         "grid": nacre.Grid.line(64, 2, 0.5),
         "approach": 1,
         "tilt": (1, 2),

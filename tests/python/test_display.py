@@ -57,6 +57,18 @@ def test_many_layers_are_one_row() -> None:
     assert table(nacre.solve(nacre.Sphere(5e-3), body, load=10.0))["layers"] == "20, together 20 µm"
 
 
+def test_free_ends_are_a_row() -> None:
+    grid = nacre.Grid((48, 48), (2.4e-4, 2.4e-4))
+    one = nacre.HalfSpace(STEEL, ends=(-9e-5, None))
+    two = nacre.HalfSpace(STEEL, ends=(-1e-3, 2e-3))
+    solution = nacre.solve(nacre.Sphere(5e-3), one, two, grid=grid, load=10.0)
+    rows = table(solution)
+    assert rows["free end"] == "x = -90 µm"
+    assert rows["free ends"] == "x = -1 mm and x = 2 mm"
+    assert "x = -1 mm and x = 2 mm" in solution._repr_html_()
+    assert "ends=(-0.001, 0.002)" in repr(solution)
+
+
 def pixels(png: bytes) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:
     """Decode a PNG of unfiltered 8-bit RGB lines."""
     width, height = struct.unpack(">II", png[16:24])

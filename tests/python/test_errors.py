@@ -18,6 +18,8 @@ PROFILE = nacre.LogarithmicProfile(1e-6, length=1.0)
 PUNCH = nacre.FlatPunch(1e-4)
 GRID = nacre.Grid(shape=(16, 20), size=(4e-4, 4e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
+ENDS = nacre.HalfSpace(STEEL, ends=(-1e-3, 1e-5))
+ROLLER = nacre.Roller(5e-3, flat_length=8e-4, crown_radius=1.0, length=1e-3)
 HEIGHTS = np.zeros((4, 5))
 NAN_AT_1_2 = HEIGHTS.copy()
 NAN_AT_1_2[1, 2] = NAN
@@ -41,6 +43,19 @@ VALUE_ERRORS = {
     "Layer(STEEL, 1.0, name='')": r"name must be a text .*other than a number.*got \"\"",
     "Layer(STEEL, 1.0, name='substrate')": r"name must be .*got \"substrate\"",
     "HalfSpace(RIGID)": r"layers must .*at least one.*rigid",
+    "HalfSpace(STEEL, ends=(1.0, 0.5))": r"ends must be in ascending order.*got 0\.5",
+    "HalfSpace(STEEL, ends=(1.0, 1.0))": r"ends must be in ascending order.*got 1",
+    "HalfSpace(STEEL, ends=(INF, None))": r"ends must be finite, got inf",
+    "HalfSpace(STEEL, ends=(None, -INF))": r"ends must be finite, got -inf",
+    "HalfSpace(STEEL, ends=(NAN, 1.0))": r"ends must be finite, got NaN",
+    "HalfSpace(RIGID, [Layer(STEEL, 1.0)], ends=(0.0, None))": r"ends must not .*rigid substrate",
+    # free ends and the grid: cells are 2.5e-5 long
+    "Contact(ENDS, GRID)": r"ends must lie on edges of the grid's cells along x, or outside the "
+    r"grid, was 1e-5 between the edges 0e0 and 2\.50*\d*e-5",
+    "Contact(STEEL, GRID, counterbody=ENDS)": r"ends must lie on edges of the grid's cells",
+    "Contact(ENDS, Grid.line(16, 1e-3))": r"ends must not be given in line contact",
+    "solve(ROLLER, STEEL, ENDS, load=1.0)": r"ends of the counterbody must not lie within the "
+    r"shape that it carries: it ends at x = 1e-5, and the shape at 5e-4",
     # shapes
     "Sphere(0.0)": r"radius must be .*above 0, got 0",
     "Sphere(INF)": r"radius must be finite.*got inf",
@@ -180,6 +195,10 @@ TYPE_ERRORS = {
     "HalfSpace(None)": r"substrate must be an Elastic or .*RIGID, got None",
     "HalfSpace(STEEL, [STEEL])": r"layers must be a sequence of Layer, got Elastic.* in it",
     "HalfSpace(STEEL, Layer(STEEL, 1.0))": r"layers must be a sequence of Layer, got Layer",
+    "HalfSpace(STEEL, ends=1.0)": r"ends must be a pair of numbers or None, got 1\.0",
+    "HalfSpace(STEEL, ends=(0.0, 1.0, 2.0))": r"ends must be a pair.*got \(0\.0, 1\.0, 2\.0\)",
+    "HalfSpace(STEEL, ends=('left', None))": r"ends must be a pair.*'left'",
+    "HalfSpace(STEEL, [], (0.0, 1.0))": r"positional",
     "Sphere('round')": r"(?s)number.*radius",
     "Sphere([1.0, 2.0])": r"(?s)number.*radius",
     "SPHERE + Elastic(1.0, 0.3)": r"unsupported operand",
@@ -237,7 +256,8 @@ TYPE_ERRORS = {
 }
 
 
-NAMES = globals() | vars(nacre) | {"press": partial(CONTACT.solve, SPHERE)}
+# nacre.hertz is imported when it is first used.
+NAMES = globals() | vars(nacre) | {"hertz": nacre.hertz, "press": partial(CONTACT.solve, SPHERE)}
 
 
 @pytest.mark.parametrize(("call", "message"), VALUE_ERRORS.items(), ids=VALUE_ERRORS)

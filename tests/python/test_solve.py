@@ -369,16 +369,30 @@ def test_stopping_the_search_for_a_grid_stops_all() -> None:
 
 # Warnings.
 
+SHARP = nacre.Roller(5e-3, flat_length=1e-3, crown_radius=1.0, length=1.1e-3)
+SHARP_GRID = nacre.Grid(shape=(65, 64), size=(1.3e-3, 3e-4))
+
 WARNINGS: dict[str, tuple[Callable[[], nacre.Solution], str]] = {
     "grid edge": (lambda: CONTACT.solve(SPHERE, load=1e3), r"edge of the grid"),
     "sharp end of a roller": (
-        lambda: nacre.solve(
-            nacre.Roller(5e-3, flat_length=1e-3, crown_radius=1.0, length=1.1e-3),
-            STEEL,
-            load=50.0,
-            grid=nacre.Grid(shape=(64, 64), size=(1.3e-3, 3e-4)),
-        ),
+        lambda: nacre.solve(SHARP, STEEL, grid=SHARP_GRID, load=50.0),
         r"reaches the end .* along x",
+    ),
+    "free end of a roller": (
+        lambda: nacre.solve(
+            SHARP, STEEL, nacre.HalfSpace(STEEL, ends=SHARP.ends), grid=SHARP_GRID, load=50.0
+        ),
+        r"free end of one body along x, and the other goes on",
+    ),
+    "free end of a coated roller": (
+        lambda: nacre.solve(
+            SHARP,
+            STEEL,
+            nacre.HalfSpace(STEEL, COATED.layers, ends=SHARP.ends),
+            grid=SHARP_GRID,
+            load=50.0,
+        ),
+        r"body with layers has a free end: what the end adds .* is a model, with an error",
     ),
     "sharp edge of a punch": (
         lambda: nacre.solve(nacre.FlatPunch(1e-4), STEEL, load=LOAD),

@@ -37,6 +37,8 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "half-space": nacre.HalfSpace(STEEL),
     "coated": COATED,
     "two layers on a rigid base": FLOATING,
+    "body with two ends": nacre.HalfSpace(STEEL, ends=(-1e-2 / 3, 1e-2 / 7)),
+    "coated body with one end": nacre.HalfSpace(STEEL, COATED.layers, ends=(None, 1e-2 / 3)),
     "grid": GRID,
     "grid off the origin": nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4), center=(-1e-3 / 7, 0.1)),
     "line grid": nacre.Grid.line(cells=48, width=1e-3 / 3, center=1e-4 / 7),
@@ -156,6 +158,7 @@ def test_equal_values_have_equal_hashes_or_none(value: object) -> None:
 
 
 SIGNED_ZEROS: list[tuple[Any, Any]] = [
+    (nacre.HalfSpace(STEEL, ends=(0.0, 1.0)), nacre.HalfSpace(STEEL, ends=(-0.0, 1.0))),
     (nacre.Elastic(1.0, 0.0), nacre.Elastic(1.0, -0.0)),
     (nacre.Grid((2, 2), (1.0, 1.0)), nacre.Grid((2, 2), (1.0, 1.0), (-0.0, 0.0))),
     (nacre.Grid.line(2, 1.0), nacre.Grid.line(2, 1.0, -0.0)),

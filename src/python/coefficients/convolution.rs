@@ -87,7 +87,7 @@ impl PyConvolution {
     /// Parameters
     /// ----------
     /// body : HalfSpace or Elastic
-    ///     Body under the pressure.
+    ///     Body under the pressure. Free ends are not counted, of either body.
     /// grid : Grid
     ///     Cells of the pressure.
     /// counterbody : HalfSpace or Elastic, optional

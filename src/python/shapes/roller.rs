@@ -44,6 +44,8 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 /// --------
 /// >>> nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
 /// Roller(radius=0.005, flat_length=0.01913, crown_radius=7.5, length=None, profile=None)
+/// >>> nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, length=10e-3).ends
+/// (-0.005, 0.005)
 /// >>> outer = nacre.Roller(radius=5e-3, flat_length=8e-3, crown_radius=7.5, counter_radius=-30e-3)
 /// >>> round(outer.equivalent_radius, 9)
 /// 0.006
@@ -130,6 +132,15 @@ impl PyRoller {
     #[getter]
     fn length(slf: &Bound<'_, Self>) -> Option<f64> {
         held::<_, Roller>(slf).length()
+    }
+
+    /// Coordinates x of both ends [m], which `HalfSpace` takes as those of the roller's body.
+    ///
+    /// They are half of ``length`` on either side, or the ends of a profile; None where a crown ends the
+    /// roller.
+    #[getter]
+    fn ends(slf: &Bound<'_, Self>) -> (Option<f64>, Option<f64>) {
+        held::<_, Roller>(slf).ends().into()
     }
 
     /// Radius of the raceway along y [m], below 0 where it is concave; None for a plane.

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::contact::{Balance, Discretisation, Motion, Report, Warning};
+use crate::ends::FreeEnds;
 use crate::python::bodies::PyHalfSpace;
 use crate::python::grid::PyGrid;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
@@ -239,6 +240,22 @@ impl PyReport {
         Ok(Some(named))
     }
 
+    /// How free ends of the bodies are counted; None where there are none.
+    ///
+    /// ``plates`` says whether a body has two ends, and is taken as a plate. ``error`` is the largest error of
+    /// the displacement, relative to it, that was measured for such bodies; None for layers whose moduli
+    /// differ by a factor of more than 10.
+    #[getter]
+    fn free_ends<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(FreeEnds { plates, error }) = self.0.free_ends() else {
+            return Ok(None);
+        };
+        let named = PyDict::new(py);
+        named.set_item("plates", plates)?;
+        named.set_item("error", error)?;
+        Ok(Some(named))
+    }
+
     /// Warnings about the solution; each was also issued as a `nacre.NacreWarning`.
     #[getter]
     fn warnings(&self) -> Vec<String> {
@@ -247,8 +264,8 @@ impl PyReport {
 
     /// Kinds of the warnings, without their numbers: words by which warnings are counted.
     ///
-    /// They are "grid edge", "sharp end", "sharp edge", "map rim", "coarse", "coarse spots", "large
-    /// contact", "outside grid" and "peak error".
+    /// They are "grid edge", "sharp end", "free end", "coated end", "sharp edge", "map rim", "coarse",
+    /// "coarse spots", "large contact", "outside grid" and "peak error".
     #[getter]
     fn warning_kinds(&self) -> Vec<&'static str> {
         self.0.warnings.iter().map(Warning::kind).collect()

@@ -1,0 +1,29 @@
+"""
+Free ends of a roller
+=====================
+
+A straight steel roller of 10 mm with sharp ends on a wider race, under 2 kN. As a half-space, the
+roller has the pressure of a sharp punch at its ends. With free ends, its body yields there, and
+most of that peak is gone. Where the race ends flush with the roller, there is no peak at all.
+"""
+
+import warnings
+
+import nacre
+from nacre import plot
+
+steel = nacre.Elastic(young=210e9, poisson=0.3)
+roller = nacre.Roller(radius=5e-3, flat_length=10e-3, crown_radius=1.0, length=10e-3)
+whole, ended = nacre.HalfSpace(steel), nacre.HalfSpace(steel, ends=roller.ends)
+grid = nacre.Grid(shape=(500, 64), size=(10e-3, 0.32e-3))
+pairs = {
+    "roller a half-space": (whole, whole),
+    "roller with free ends": (whole, ended),
+    "both with free ends": (ended, ended),
+}
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", nacre.NacreWarning)  # of the ends
+    solutions = {
+        name: nacre.solve(roller, *pair, grid=grid, load=2e3) for name, pair in pairs.items()
+    }
+axes = plot.compare(solutions, at=0.0)

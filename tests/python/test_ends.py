@@ -1,0 +1,291 @@
+"""Free ends of bodies reach the solver from Python, and come back from files, cases and studies."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from math import inf, pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+import nacre
+from nacre import values
+from nacre.case import Case
+
+STEEL = nacre.Elastic(210e9, 0.3)
+LAYERS = [nacre.Layer(nacre.Elastic(420e9, 0.25), 2e-6)]
+COATED = nacre.HalfSpace(STEEL, LAYERS)
+
+pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # the ends are sharp
+
+
+# Arguments.
+
+
+def test_a_body_goes_on_by_default() -> None:
+    assert nacre.HalfSpace(STEEL).ends == (None, None)
+    assert nacre.HalfSpace(STEEL, ends=(None, None)) == nacre.HalfSpace(STEEL)
+    assert repr(nacre.HalfSpace(STEEL)).endswith("layers=[])")
+
+
+@pytest.mark.parametrize(
+    ("given", "ends"),
+    [
+        ((-1e-3, 2e-3), (-1e-3, 2e-3)),
+        ([-1, None], (-1.0, None)),
+        (np.array([0.25, 0.5]), (0.25, 0.5)),
+        ((-inf, 2e-3), (None, 2e-3)),
+        ((-1e-3, inf), (-1e-3, None)),
+        ((-inf, inf), (None, None)),
+    ],
+)
+def test_ends_may_be_missing_or_infinite(
+    given: tuple[float, float], ends: tuple[float | None, float | None]
+) -> None:
+    assert nacre.HalfSpace(STEEL, LAYERS, ends=given).ends == ends
+
+
+def test_bodies_with_other_ends_differ() -> None:
+    bodies = [nacre.HalfSpace(STEEL, ends=ends) for ends in [(None, 1.0), (0.0, 1.0), (0.0, None)]]
+    assert len({nacre.HalfSpace(STEEL), *bodies}) == 4
+
+
+def test_a_roller_knows_its_ends() -> None:
+    crowned = nacre.Roller(5e-3, flat_length=8e-3, crown_radius=1.0)
+    assert crowned.ends == (None, None)
+    profile = nacre.LogarithmicProfile.iso16281(10e-3, 12e-3)
+    logarithmic = nacre.Roller(5e-3, profile=profile)
+    assert logarithmic.ends == (-0.5 * profile.length, 0.5 * profile.length)
+    assert nacre.Roller(5e-3, profile=profile, length=10e-3).ends == (-5e-3, 5e-3)
+    sampled = nacre.Roller(5e-3, profile=([-4e-3, 0.0, 6e-3], [1e-6, 0.0, 1e-6]))
+    assert sampled.ends == (-4e-3, 6e-3)
+
+
+# Solves.
+
+# Half-width and largest pressure of the line contact are 1, and displacements are multiples of
+# SOFT = (1 - nu^2)/E of each body. The circle of the roller differs from a parabola by SOFT^2.
+SOFT = 1e-6
+UNIT = nacre.Elastic((1 - 0.3**2) / SOFT, 0.3)
+STRAIGHT = nacre.Roller(1 / (4 * SOFT), flat_length=20.0, crown_radius=1 / SOFT, length=20.0)
+REFERENCES = {
+    case["case"]: case
+    for case in json.loads(
+        (Path(__file__).parents[1] / "data" / "finite_roller.json").read_text(encoding="utf-8")
+    )["cases"]
+}
+
+
+def straight(body: nacre.HalfSpace | nacre.Elastic, roller: nacre.HalfSpace) -> nacre.Solution:
+    grid = nacre.Grid((400, 64), (20.0, 3.0))
+    return nacre.solve(STRAIGHT, body, roller, grid=grid, load=10 * pi)
+
+
+def on_axis(solution: nacre.Solution, x: float) -> float:
+    axis = solution.pressure[:, 31:33].mean(axis=1)
+    return float(np.interp(x, solution.x + 10.0, axis))
+
+
+REFERENCE = REFERENCES["0.3 C roller exact, raceway half-space"]
+BESIDE = [
+    pair for pair in zip(REFERENCE["x_over_b"], REFERENCE["p_axis"], strict=True) if pair[0] > 0.4
+]
+"""Distances from the end, and pressures there: the reference states an error of 0.2 %."""
+
+
+def test_two_single_ends_are_those_of_the_reference() -> None:
+    # The reference superposes two single ends. Two bodies of one material that end at one side each
+    # do so, too. It states an error of 2e-4 of the approach; cells of b/20 add less than 1e-3.
+    left = nacre.HalfSpace(UNIT, ends=(STRAIGHT.ends[0], None))
+    right = nacre.HalfSpace(UNIT, ends=(None, STRAIGHT.ends[1]))
+    solution = straight(left, right)
+    assert solution.approach / SOFT == pytest.approx(REFERENCE["approach"], rel=1e-3)
+    for x, pressure in BESIDE:
+        assert on_axis(solution, x) == pytest.approx(pressure, rel=3e-3)
+        assert on_axis(solution, 20.0 - x) == pytest.approx(pressure, rel=3e-3)
+
+
+def test_a_sharp_roller_on_a_wide_race_is_near_the_reference() -> None:
+    # What the ends of one body do to each other is not in the reference: up to 1.6 % of the
+    # pressure. On a half-space, the pressure at b/2 is 20 % higher, and in the middle 6 % lower.
+    roller = nacre.HalfSpace(UNIT, ends=STRAIGHT.ends)
+    solution = straight(UNIT, roller)
+    for x, pressure in BESIDE:
+        assert on_axis(solution, x) == pytest.approx(pressure, rel=0.016)
+    assert solution.report.warning_kinds == ["free end"]
+    assert solution.report.counterbody == roller
+
+
+def test_both_bodies_free_are_softer_and_warn_of_no_edge() -> None:
+    roller = nacre.HalfSpace(UNIT, ends=STRAIGHT.ends)
+    whole, one, both = (
+        straight(UNIT, nacre.HalfSpace(UNIT)),
+        straight(UNIT, roller),
+        straight(roller, roller),
+    )
+    assert whole.approach < one.approach < both.approach
+    assert whole.report.warning_kinds == ["sharp end"]
+    assert both.report.warning_kinds == []
+    # Body and counterbody may be exchanged.
+    other = straight(roller, nacre.HalfSpace(UNIT))
+    np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=1e-6)
+
+
+def test_a_plan_has_the_ends_of_its_bodies() -> None:
+    contact = nacre.Contact(
+        nacre.HalfSpace(STEEL, ends=(-1e-4, None)), nacre.Grid((32, 32), (4e-4, 4e-4)), COATED
+    )
+    assert contact.body.ends == (-1e-4, None)
+    assert contact.counterbody is not None
+    assert contact.counterbody.ends == (None, None)
+    solution = contact.solve(nacre.Sphere(5e-3), load=10.0)
+    assert solution.report.body == contact.body
+    # Nothing touches beyond the end.
+    assert not solution.pressure[solution.x < -1e-4].any()
+
+
+def test_a_grid_is_found_that_fits_the_ends() -> None:
+    roller = nacre.Roller(5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
+    free = nacre.solve(roller, STEEL, nacre.HalfSpace(STEEL, ends=roller.ends), load=1e3)
+    whole = nacre.solve(roller, STEEL, STEEL, load=1e3)
+    assert free.approach > 1.01 * whole.approach
+
+
+def test_the_report_says_how_ends_are_counted() -> None:
+    grid = nacre.Grid((48, 48), (2.4e-4, 2.4e-4))
+
+    def told(body: nacre.HalfSpace | nacre.Elastic) -> dict[str, bool | float | None] | None:
+        return nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=10.0).report.free_ends
+
+    assert told(STEEL) is None
+    assert told(nacre.HalfSpace(STEEL, ends=(-1e-4, None))) == {"plates": False, "error": 1e-5}
+    assert told(nacre.HalfSpace(STEEL, ends=(-1e-3, 1e-4))) == {"plates": True, "error": 2e-4}
+    for ratio, error in [(2.0, 0.04), (8.0, 0.09), (12.0, None)]:
+        layer = nacre.Layer(nacre.Elastic(ratio * STEEL.young, 0.3), 2e-6)
+        body = nacre.HalfSpace(STEEL, [layer], ends=(None, 1e-4))
+        assert told(body) == {"plates": False, "error": error}
+
+
+# What is saved.
+
+
+def ended() -> nacre.Solution:
+    grid = nacre.Grid((32, 32), (4e-4, 4e-4))
+    body = nacre.HalfSpace(STEEL, LAYERS, ends=(-1e-4 / 0.8, None))
+    return nacre.solve(nacre.Sphere(5e-3), body, STEEL, grid=grid, load=10.0)
+
+
+def test_a_file_gives_the_ends_back(tmp_path: Path) -> None:
+    solution = ended()
+    assert "coated end" in solution.report.warning_kinds
+    saved = nacre.load(solution.save(tmp_path / "a.nc"))
+    assert saved == solution
+    assert saved.report.body.ends == solution.report.body.ends
+    assert saved.report.warning_kinds == solution.report.warning_kinds
+    assert nacre.Solution.from_dict(solution.to_dict()) == solution
+
+
+def test_bodies_without_ends_are_kept_as_before_there_were_ends() -> None:
+    # Older versions read them, and older studies are found again.
+    assert set(values.encode(COATED)["HalfSpace"]) == {"substrate", "layers"}
+    assert COATED.__reduce__() == (nacre.HalfSpace, (STEEL, COATED.layers))
+    assert values.decode(values.encode(COATED)) == COATED
+
+
+@pytest.mark.parametrize("ends", [(-1e-2 / 3, 1e-2 / 7), (None, 0.5), (-0.5, None)])
+def test_plain_data_hold_the_ends_under_their_name(ends: tuple[float | None, float | None]) -> None:
+    body = nacre.HalfSpace(STEEL, LAYERS, ends=ends)
+    data = json.loads(json.dumps(values.encode(body)))
+    # Versions before there were ends refuse a key that they do not know.
+    assert data["HalfSpace"]["ends"] == list(ends)
+    assert values.decode(data) == body
+
+
+def test_wrong_ends_in_data_are_a_value_error() -> None:
+    data = values.encode(nacre.HalfSpace(STEEL, ends=(0.0, 1.0)))
+    for wrong in ([1.0, 0.0], [1.0], "both", 3):
+        data["HalfSpace"]["ends"] = wrong
+        with pytest.raises(ValueError, match="ends must be"):
+            values.decode(data)
+
+
+# Studies and cases.
+
+
+def test_a_study_takes_bodies_with_ends_and_counts_their_warnings(tmp_path: Path) -> None:
+    grid = nacre.Grid((24, 24), (2.4e-4, 2.4e-4))
+    roller = nacre.Roller(5e-3, flat_length=2e-4, crown_radius=1.0, length=2e-4)
+    bodies = {
+        "whole": nacre.HalfSpace(STEEL),
+        "free": nacre.HalfSpace(STEEL, ends=roller.ends),
+        "coated": nacre.HalfSpace(STEEL, LAYERS, ends=roller.ends),
+    }
+    case = {"shape": roller, "body": STEEL, "grid": grid, "load": 10.0}
+    parameters, store = {"counterbody": bodies}, tmp_path / "a.nc"
+    with pytest.warns(nacre.NacreWarning) as issued:
+        study = nacre.sweep(case, parameters, store=store, progress=False)
+    (said,) = (str(warning.message) for warning in issued)
+    assert "free end (2)" in said
+    assert "coated end (1)" in said
+    assert "sharp end (1)" in said
+    approach = study.approach.sel(counterbody=["whole", "free"]).values
+    assert approach[0] < approach[1]
+    journal = (tmp_path / "a.journal").read_bytes()
+    with pytest.warns(nacre.NacreWarning):
+        again = nacre.sweep(case, parameters, store=store, progress=False)
+    xarray.testing.assert_identical(again, study)
+    assert (tmp_path / "a.journal").read_bytes() == journal  # nothing was solved again
+
+
+CASE: dict[str, Any] = {
+    "shape": {
+        "kind": "roller",
+        "radius": 5.0,
+        "flat_length": 0.2,
+        "crown_radius": 1e3,
+        "length": 0.2,
+    },
+    "body": {"substrate": {"young": 210e3, "poisson": 0.3}},
+    "counterbody": {"substrate": {"young": 210e3, "poisson": 0.3}, "ends": [-0.1, 0.1]},
+    "grid": {"shape": [24, 24], "size": [0.24, 0.24]},
+    "solve": {"load": 10.0},
+}
+
+
+def test_a_case_is_the_call_in_python() -> None:
+    arguments = Case(CASE | {"units": "N-mm-MPa"}).arguments()
+    assert arguments["counterbody"].ends == arguments["shape"].ends == (-0.1, 0.1)
+    case = Case(CASE | {"body": CASE["body"] | {"ends": [-inf, 0.1]}})
+    assert case.arguments()["body"].ends == (None, 0.1)
+
+
+def test_the_ends_of_a_case_can_be_swept(tmp_path: Path) -> None:
+    lists = [[-0.1, 0.1], [-0.1, inf], [-inf, inf]]
+    sweep = {"parameters": {"counterbody.ends": lists}, "outputs": ["approach"]}
+    case = Case(CASE | {"sweep": sweep})
+    study = nacre.sweep(case, progress=False, store=tmp_path / "a.nc", **case.study())
+    both, one, none = study.approach.values
+    assert none < one < both
+    sweep = {"parameters": {"counterbody.ends[1]": [0.1, inf]}, "outputs": ["approach"]}
+    case = Case(CASE | {"sweep": sweep})
+    single = nacre.sweep(case, progress=False, **case.study())
+    assert single.approach.values.tolist() == [both, one]
+
+
+def test_the_reference_of_case_files_has_the_ends() -> None:
+    from nacre import _reference
+
+    told = _reference.text()
+    assert "ends: pair of numbers, or of -inf and inf where the body goes on [m]" in told
+
+
+def test_no_warning_without_contact_at_the_ends() -> None:
+    # A ball far from both ends.
+    body = nacre.HalfSpace(STEEL, ends=(-1e-3, 1e-3))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", nacre.NacreWarning)
+        nacre.solve(nacre.Sphere(5e-3), body, load=1.0)
