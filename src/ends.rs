@@ -15,7 +15,6 @@
 //! | `waves` | integrals over the wavenumber along y |
 //! | `bodies` | the ends of the bodies of a contact, on a grid |
 //! | `layers` | the model of layered bodies |
-//! | `limited` | shapes that cannot touch beyond the ends |
 //! | `plate` | two free ends of one body |
 //! | `cells` | coefficients of cells, from nodes along x |
 //! | `spread` | the pressures by which stresses near an end are those of half-spaces |
@@ -25,7 +24,6 @@
 mod bodies;
 mod cells;
 mod layers;
-mod limited;
 mod linear;
 mod mesh;
 mod plate;

@@ -13,12 +13,14 @@ use crate::parallel::each_row;
 
 mod counterpart;
 mod height_map;
+mod limited;
 mod profile;
 mod quadric;
 mod roller;
 mod superposition;
 
 pub use height_map::HeightMap;
+pub(crate) use limited::Limited;
 pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
 pub use roller::Roller;
@@ -56,7 +58,7 @@ impl Extent {
     }
 
     /// Extent of the sum of two shapes, and of a shape within a range.
-    pub(crate) fn and(self, other: Self) -> Self {
+    fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::Endless, Self::Endless) => Self::Endless,
             (Self::Rising | Self::Endless, Self::Rising | Self::Endless) => Self::Rising,

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use ndarray::Array2;
 
 use super::cells::{Nodes, coefficients};
-use super::limited::Limited;
 use super::{layers, plate};
 use crate::body::{HalfSpace, Substrate};
 use crate::convolution::{Addition, RowWeights};
@@ -14,7 +13,7 @@ use crate::grid::Grid;
 use crate::material::Elastic;
 use crate::parallel::Threads;
 use crate::response::Body;
-use crate::surface::{Extent, Surface};
+use crate::surface::{Extent, Limited, Surface};
 
 /// Distance between an end and the edge of a cell, in cells, or the end of a shape, relative to its length, that is
 /// rounding.

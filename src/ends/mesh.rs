@@ -44,9 +44,9 @@ impl Mesh {
         let mut unit: Vec<(f64, f64)> = rule.nodes(0.0, 1.0).collect();
         unit.sort_by(|a, b| a.0.total_cmp(&b.0));
         let local: Vec<f64> = unit.iter().map(|(t, _)| *t).collect();
-        let barycentric = local.iter().map(|t| {
-            let others = local.iter().filter(|other| *other != t);
-            1.0 / others.map(|other| t - other).product::<f64>()
+        let barycentric = local.iter().enumerate().map(|(q, t)| {
+            let others = local.iter().enumerate().filter(|(other, _)| *other != q);
+            1.0 / others.map(|(_, other)| t - other).product::<f64>()
         });
         let (mut points, mut weights) = (Vec::new(), Vec::new());
         for panel in 0..PANELS {

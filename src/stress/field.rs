@@ -102,8 +102,8 @@ impl Stress {
         })
     }
 
-    /// Warnings about what the cells do not resolve: the depth at which the estimated error is largest
-    /// compared with the largest stress there, if it is above a twentieth of it.
+    /// Warnings about what the cells do not resolve, the depth at which the estimated error is largest
+    /// compared with the largest stress there, if it is above a twentieth of it; and about friction at free ends.
     pub fn warnings(&self) -> Vec<String> {
         let errors = self.uncertainty.iter().flatten();
         let ratio = |(k, error): (usize, &f64)| {
@@ -127,7 +127,12 @@ impl Stress {
                 Percent(ratio)
             )
         };
-        worst.map(said).into_iter().collect()
+        let slides = self.friction.iter().any(|part| *part != 0.0);
+        let ends = (slides && self.body.ends() != [None; 2]).then(|| {
+            "the stress of the friction is that of a body that goes on past its free ends"
+                .to_owned()
+        });
+        worst.map(said).into_iter().chain(ends).collect()
     }
 
     /// Normal stress σ_xx \[Pa\].

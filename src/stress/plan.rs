@@ -2,14 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use ndarray::ArrayRef2;
+use ndarray::{Array1, ArrayRef2};
 
 use super::ends::{EndPlanes, EndPoints, EndStress};
 use super::half_space::{HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source};
 use super::options::StressProgress;
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::kernel::COMPONENTS;
 use crate::response::interior::Place;
 
@@ -81,6 +81,23 @@ impl StressPlan {
         threads: Option<usize>,
     ) -> Result<Self> {
         Source::uniform(body, grid, pressure).complete_unwatched(threads)
+    }
+
+    /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`: from the size of the cells, and of
+    /// what free ends add. None where neither is known.
+    pub(super) fn uncertainties(
+        &self,
+        places: &[Place],
+        friction: [f64; 2],
+        window: &Window,
+    ) -> Option<Array1<f64>> {
+        let cells = self.whole.uncertainties(places, friction, window);
+        let Some(ends) = &self.ends else {
+            return cells;
+        };
+        let ends = places.iter().map(|place| ends.uncertainty(place.depth));
+        let ends: Array1<f64> = ends.collect();
+        Some(cells.map_or(ends.clone(), |cells| cells + &ends))
     }
 
     /// The body.

@@ -114,9 +114,7 @@ impl<'a> Request<'a> {
         let mut fields = zeros(self.components(), self.places.len() * self.points.count());
         let done = self.fill(plan, &mut fields, progress);
         let window = self.points.window(self.grid.shape());
-        let uncertainty = plan
-            .whole
-            .uncertainties(&self.places[..done], self.friction, &window);
+        let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window);
         self.result(fields, done, uncertainty)
     }
 

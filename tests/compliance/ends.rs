@@ -44,7 +44,7 @@ fn coated_ends_are_within_the_error_of_the_model() -> Result<()> {
         let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coating])?;
         let ended = QuarterSpace::new(body.clone(), d, [2.0, 1.0])?;
         let whole = CellInfluence::plan(&body, [2.0, 2.0], 10.0)?;
-        let limit = if ratio > 5.0 || ratio < 0.2 {
+        let limit = if !(0.2..=5.0).contains(&ratio) {
             0.09
         } else {
             0.033

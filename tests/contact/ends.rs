@@ -315,7 +315,7 @@ fn a_far_end_adds_to_the_approach_alone() -> Result<()> {
         assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
         // A square of side a as the force.
         let at = QuarterSpace::new(material, -end - 0.5 * a, [a, 0.5 * a])?;
-        let square = CellInfluence::plan(&material, [a, a], 10.0 * a)?;
+        let square = CellInfluence::plan(material, [a, a], 10.0 * a)?;
         let added = (at.displacement([-end, 0.0])? - square.at([0.0, 0.0])) * load / (a * a);
         let found = ended.approach - whole.approach;
         assert!(

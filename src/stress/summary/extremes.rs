@@ -122,10 +122,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         let [i, j] = [cell / ny, cell % ny];
         let window = [i..i + 1, j..j + 1];
         let places = std::slice::from_ref(place);
-        let error = self
-            .plan
-            .whole
-            .uncertainties(places, self.friction, &window);
+        let error = self.plan.uncertainties(places, self.friction, &window);
         Peak {
             value,
             position: [

@@ -2,9 +2,9 @@
 
 use ndarray::{Array2, Axis};
 
+use super::{Extent, Surface};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::surface::{Extent, Surface};
 
 /// A shape within a range of x.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ pub(crate) struct Limited<'a> {
 }
 
 impl<'a> Limited<'a> {
-    pub(super) fn new(shape: &'a dyn Surface, range: [f64; 2]) -> Self {
+    pub(crate) fn new(shape: &'a dyn Surface, range: [f64; 2]) -> Self {
         Self { shape, range }
     }
 
