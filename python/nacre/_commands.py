@@ -78,7 +78,7 @@ def paper(
     """Solve the contacts of Spinu et al. and draw their figures.
 
     A coated sphere and a coated roller of finite length, for five ratios of moduli each: a table
-    here, six figures (PNG) and all numbers (CSV) under OUT.
+    here, seven figures (PNG) and all numbers (CSV) under OUT.
     """
     try:
         make_directory(out)

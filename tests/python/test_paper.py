@@ -16,7 +16,7 @@ import nacre.paper
 from nacre.paper import cases, evaluation, figures
 
 COARSE = 0.005  # error of the coarse grids in pressure, relative
-NAMES = {"table.csv"} | {f"figure{k}.{kind}" for k in range(1, 7) for kind in ("png", "csv")}
+NAMES = {"table.csv"} | {f"figure{k}.{kind}" for k in range(1, 8) for kind in ("png", "csv")}
 
 
 @pytest.fixture(scope="module")
@@ -213,6 +213,24 @@ def test_half_width_of_a_hertzian_line_is_exact_whatever_its_outermost_cell() ->
     pressure = np.sqrt(np.maximum(0, 1 - (y / 0.77) ** 2))
     pressure[np.flatnonzero(pressure)[[0, -1]]] *= 0.3
     assert cases.half_width(y, pressure) == pytest.approx(0.77, rel=1e-12)
+
+
+def test_free_ends_are_drawn(results: list[nacre.paper.Result], out: Path) -> None:
+    rows = read(out / "figure7.csv")
+    series = {(row["roller"], row["load"], row["bodies"]) for row in rows}
+    assert len(series) == 12
+
+    def pressure(bodies: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+        chosen = ("straight, sharp ends", "centred", bodies)
+        lines = [row for row in rows if (row["roller"], row["load"], row["bodies"]) == chosen]
+        return column(lines, "pressure [MPa]")
+
+    # In the cell at the end, the half-space has three times the pressure of the middle, and a free
+    # end a third more than it; in the middle both agree to 3 %.
+    free, half_space = pressure("free ends"), pressure("half-space")
+    middle = len(free) // 2
+    assert free[middle] == pytest.approx(half_space[middle], rel=0.04)
+    assert half_space[0] > 1.7 * free[0] > 2 * free[middle]
 
 
 def test_note_says_why_there_are_two_thicknesses(results: list[nacre.paper.Result]) -> None:

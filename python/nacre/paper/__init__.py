@@ -58,8 +58,9 @@ def run(
     Parameters
     ----------
     out
-        Directory for ``table.csv`` and ``figure1.png``, ``figure1.csv`` to ``figure6.png``,
-        ``figure6.csv``. It is made if need be; nothing is written unless every solve converged.
+        Directory for ``table.csv`` and ``figure1.png``, ``figure1.csv`` to ``figure7.png``,
+        ``figure7.csv``. The first six are the paper's; the seventh is its roller with free ends.
+        It is made if need be; nothing is written unless every solve converged.
     threads, quick, progress
         As in `solve`.
 
@@ -78,7 +79,7 @@ def run(
         Where a solve does not converge.
     """
     try:
-        from nacre.paper import figures
+        from nacre.paper import figures, finite
     except ModuleNotFoundError as missing:
         message = f"figures need {missing.name}: pip install 'nacre-contact[plot]'"
         raise ModuleNotFoundError(message, name=missing.name) from missing
@@ -87,7 +88,8 @@ def run(
     make_directory(out)
     results = solve(threads=threads, quick=quick, progress=progress)
     files = {"table.csv": _csv(*table(results))}
-    for number, drawing in enumerate(figures.draw(results), start=1):
+    drawings = [*figures.draw(results), finite.draw(finite.solve(quick=quick))]
+    for number, drawing in enumerate(drawings, start=1):
         files[f"figure{number}.png"] = drawing.png
         files[f"figure{number}.csv"] = _csv(drawing.header, drawing.rows)
     for name, content in files.items():

@@ -95,11 +95,11 @@ def _sphere(results: list[Result]) -> Drawing:
         axes.plot(
             reference.radius[::2], reference.pressure[::2], **MARKS | {"color": look["color"]}
         )
-        rows += _rows("computed", result.ratio, radius, pressure)
-        rows += _rows("reference", result.ratio, reference.radius, reference.pressure)
+        rows += rows_of("computed", result.ratio, radius, pressure)
+        rows += rows_of("reference", result.ratio, reference.radius, reference.pressure)
     axes.set(xlim=(0, 1.55), ylim=(0, None))
     axes.legend(handles=[*_ratio_handles(), Line2D([], [], **MARKS, label="reference values")])
-    return _finish(figure, ("source", "E1/E2", "r/a_H", "p/p_H"), rows)
+    return finish(figure, ("source", "E1/E2", "r/a_H", "p/p_H"), rows)
 
 
 def _profiles(
@@ -123,7 +123,7 @@ def _profiles(
             position, pressure = result.profile(axis)
             position, pressure = _loaded(1e3 * position, 1e-6 * pressure)
             axes.plot(position, pressure, **LOOKS[result.ratio])
-            rows += _rows(axis, 1e3 * series.thickness, result.ratio, position, pressure)
+            rows += rows_of(axis, 1e3 * series.thickness, result.ratio, position, pressure)
         if axis == "x":
             _landmarks(axes, series)
         cut = "y = 0" if axis == "x" else "x = 0"
@@ -134,7 +134,7 @@ def _profiles(
     figure.legend(handles=_ratio_handles(), loc="outside upper center", ncols=len(LOOKS))
     note = textwrap.fill(thickness_note(results), 116)
     figure.supxlabel(note, x=0.01, ha="left", fontsize=8, linespacing=1.3)
-    return _finish(figure, ("along", "h [mm]", "E1/E2", "position [mm]", "pressure [MPa]"), rows)
+    return finish(figure, ("along", "h [mm]", "E1/E2", "position [mm]", "pressure [MPa]"), rows)
 
 
 def _landmarks(axes: Axes, series: Series) -> None:
@@ -178,8 +178,8 @@ def _surface(results: list[Result], series: Series) -> Drawing:
     axes.view_init(elev=28, azim=-60)
     load = "centred" if series in CENTRED else "at $e/L = 0.3$"
     figure.text(0.02, 0.94, f"$E_1 = E_2$: the same for every $h$; load {load}")
-    rows = [row for columns in zip(x, y, pressure, strict=True) for row in _rows(*columns)]
-    return _finish(figure, ("x [mm]", "y [mm]", "pressure [MPa]"), rows)
+    rows = [row for columns in zip(x, y, pressure, strict=True) for row in rows_of(*columns)]
+    return finish(figure, ("x [mm]", "y [mm]", "pressure [MPa]"), rows)
 
 
 def _mesh(result: Result) -> tuple[Array, Array, Array]:
@@ -215,7 +215,7 @@ def _loaded(position: Array, pressure: Array) -> tuple[Array, Array]:
     return position[part], pressure[part]
 
 
-def _rows(*columns: str | float | Array) -> list[Row]:
+def rows_of(*columns: str | float | Array) -> list[Row]:
     """Return rows of the values in `columns`; a value that is no array is repeated in every row."""
     arrays = [column for column in columns if isinstance(column, np.ndarray)]
     return [
@@ -232,7 +232,8 @@ def _ratio_handles() -> list[Line2D]:
     ]
 
 
-def _finish(figure: Figure, header: Sequence[str], rows: list[Row]) -> Drawing:
+def finish(figure: Figure, header: Sequence[str], rows: list[Row]) -> Drawing:
+    """Return a figure as PNG, with the numbers that it shows."""
     png = io.BytesIO()
     figure.savefig(png, format="png", dpi=300)
     return Drawing(png.getvalue(), header, rows)
