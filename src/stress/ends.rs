@@ -50,6 +50,13 @@ const REACH: f64 = 4.0;
 /// Columns beyond the contact's on either side, in the same unit.
 const MARGIN: f64 = 1.0;
 
+/// Distance of the load from an end, relative to the longer side of the contact, from which on the end adds less than
+/// 1e-3 of the peak pressure: the image of a force p b² at 20 b.
+const FAR: f64 = 10.0;
+
+/// Rows of cells on which the excess is followed.
+const MOST_ROWS: usize = 1024;
+
 impl EndStress {
     /// What the ends of the body of a plan add; none where it has none, or no pressure. [`ControlFlow::Break`]
     /// where `progress` stops it.
@@ -63,11 +70,13 @@ impl EndStress {
         };
         let shape @ [nx, ny] = grid.shape();
         let pressure = Array2::from_shape_fn((nx, ny), |(i, j)| whole.pressure[i * ny + j]);
-        let loaded = pressure.columns().into_iter();
-        let loaded = loaded
-            .filter(|column| column.iter().any(|p| *p != 0.0))
-            .count();
-        let [_, dy] = grid.spacing();
+        let bears = |lines: ndarray::iter::Lanes<'_, f64, ndarray::Ix1>| {
+            let lines = lines.into_iter();
+            lines.filter(|line| line.iter().any(|p| *p != 0.0)).count()
+        };
+        let [dx, dy] = grid.spacing();
+        let width = bears(pressure.columns()) as f64 * dy;
+        let size = width.max(bears(pressure.rows()) as f64 * dx);
         let mut images = Images::new(grid);
         let mut faces = Vec::new();
         for (end, sign) in body.ends().into_iter().zip([1.0, -1.0]) {
@@ -75,15 +84,18 @@ impl EndStress {
             let Some(near) = NearEnd::new(&pressure, grid, end, sign) else {
                 continue;
             };
-            let scale = (loaded as f64 * dy).max(near.nearest);
-            let margin = (MARGIN * scale / dy).ceil() as usize;
+            if near.nearest > FAR * size {
+                continue;
+            }
+            let scale = width.max(near.nearest);
+            let margin = ((MARGIN * scale / dy).ceil() as usize).min(2 * ny);
             let spread = EndPressure::new(&near.pressure, near.first, grid.spacing());
             let over = |place: Where, spacing: f64| {
-                let count = (REACH * scale / spacing).ceil() as usize;
+                let count = ((REACH * scale / spacing).ceil() as usize).min(MOST_ROWS);
                 threads.run(|| spread.spread(place, material.poisson(), spacing, count, margin))
             };
             images.add_mirror(&pressure, end);
-            images.add_excess(&over(Where::Surface, grid.spacing()[0]), end, margin);
+            images.add_excess(&over(Where::Surface, dx), end, margin);
             let spacing = Face::spacing(grid, REACH * scale);
             let below = HalfSpace::from(material);
             let pressed = over(Where::Face, spacing);

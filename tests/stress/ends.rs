@@ -56,7 +56,7 @@ fn the_face_is_free_of_traction() -> Result<()> {
             assert!(normal < uncertainty[k], "{poisson} {depth}: {normal}");
         }
         // Farther in, the stress is not small.
-        assert!(largest(field.xx(), 2, 8..16) > 0.05);
+        assert!(largest(field.zz(), 2, 8..16) > 0.5);
     }
     Ok(())
 }
@@ -107,7 +107,7 @@ fn a_far_end_changes_nothing() -> Result<()> {
     let pressure = smooth(&grid.centered_at([1.6, 0.0])?);
     let steel = Elastic::new(1.0, 0.3)?;
     let whole = StressPlan::plan(&steel.into(), &grid, &pressure, None)?;
-    let ended = HalfSpace::from(steel).with_ends([Some(-200.0), None])?;
+    let ended = HalfSpace::from(steel).with_ends([Some(-20.0), None])?;
     let ended = StressPlan::plan(&ended, &grid, &pressure, None)?;
     let options = StressOptions::default();
     let (whole, ended) = (
@@ -116,8 +116,8 @@ fn a_far_end_changes_nothing() -> Result<()> {
     );
     for (whole, ended) in whole.components.iter().zip(&ended.components) {
         let apart = (whole - ended).fold(0.0, |worst: f64, d| worst.max(d.abs()));
-        // The image's force, 2.7, at a distance of 400: 2.7/2π/400².
-        assert!(apart < 1e-5, "{apart:e}");
+        // The image's force, 2.7, at a distance of 40: 2.7/2π/40² and the excess of about the same.
+        assert!(apart < 1e-3, "{apart:e}");
     }
     Ok(())
 }
