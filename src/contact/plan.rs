@@ -90,7 +90,7 @@ impl Plan {
 }
 
 /// The two bodies, or the one that is not rigid.
-fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
+pub(super) fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
     [Some(body), setup.counterbody.as_ref()]
         .into_iter()
         .flatten()
