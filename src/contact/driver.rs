@@ -1,16 +1,18 @@
 //! One solve, as named steps in order.
 
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
 use ndarray::Array2;
 
+use super::cascade::corners;
 use super::cascade::discretisation::{GridResult, estimate};
 use super::cascade::{Cascade, Coarser};
 use super::motion::Motion;
 use super::options::{Algorithm, Options};
-use super::plan::Plan;
+use super::plan::{Plan, bodies};
 use super::problem::fields::{Fields, slice};
 use super::problem::freedoms::{Freedoms, OVERFLOW};
 use super::problem::{Problem, Quality};
@@ -128,7 +130,9 @@ impl Plan {
             report.discretisation = estimate(&results, singular).map(|changes| {
                 let (fields, loaded) = ([pressure, &fields.displacement], motion.load.is_some());
                 let unresolved = &self.unresolved;
-                changes.plus(unresolved.errors(fields, window, &self.grid, loaded, singular))
+                let others = unresolved.errors(fields, window, &self.grid, loaded, singular);
+                let corners = corners::peak_error(pressure, &self.grid, shape, self.short_waves());
+                changes.plus(others).at_least(corners)
             });
         }
         let raised = self.datum.raise() * carried.force;
@@ -150,6 +154,14 @@ impl Plan {
                 multipliers: fields.multipliers,
             },
         })
+    }
+
+    /// Sum of the responses α û/p̂ of both bodies to waves of the length of two cells \[1/Pa\].
+    fn short_waves(&self) -> f64 {
+        let [dx, dy] = self.grid.spacing();
+        let finest = if self.grid.is_line() { dy } else { dx.min(dy) };
+        let bodies = bodies(&self.body, &self.setup);
+        bodies.iter().map(|body| body.normal(PI / finest)).sum()
     }
 
     /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution. The shape

@@ -66,6 +66,14 @@ pub(crate) fn estimate(results: &[GridResult], singular: bool) -> Option<Discret
 }
 
 impl Discretisation {
+    /// These errors, with that of the peak pressure raised to `peak` where it is less.
+    pub(crate) fn at_least(self, peak: f64) -> Self {
+        Self {
+            peak_pressure: self.peak_pressure.map(|error| error.max(peak)),
+            ..self
+        }
+    }
+
     /// The sum of two independent errors.
     pub(crate) fn plus(self, other: Self) -> Self {
         let peak = self.peak_pressure.zip(other.peak_pressure);

@@ -182,7 +182,8 @@ impl fmt::Display for Warning {
                 f,
                 "the peak pressure has an estimated error of {:.1} %: dividing the cells further does \
                  not lower it, or needs too many cells; give a finer grid around the peak, or round \
-                 edges and corners of the shape",
+                 edges and corners of the shape (a sampled profile has a corner at each point: give more \
+                 points)",
                 100.0 * error
             ),
         }
