@@ -120,13 +120,14 @@ def _label(axes: Axes, lines: ContourSet) -> None:
     """
     box = axes.get_window_extent()
     margin = LABEL * axes.figure.dpi / 72
+    low, high = np.array(box.min) + margin, np.array(box.max) - margin
     places = []
     for line in filter(len, itertools.chain(*lines.allsegs)):
         marks = np.arange(len(line))
         steps = np.linspace(0, len(line) - 1, 50 * len(line))
         along = np.stack([np.interp(steps, marks, side) for side in line.T], axis=1)
         pixels = axes.transData.transform(along)
-        inside = np.all((pixels > box.min + margin) & (pixels < box.max - margin), axis=1)
+        inside = np.all((pixels > low) & (pixels < high), axis=1)
         if inside.any():
             places.append(along[inside][inside.sum() // 2])
     axes.clabel(lines, fontsize=7, fmt="%.4g", manual=places)
