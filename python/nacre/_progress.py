@@ -1,4 +1,4 @@
-"""Progress of a study: a bar where there is a terminal or a notebook, lines in a log elsewhere."""
+"""Progress of a study: a bar in a terminal or a notebook with ipywidgets, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
+from importlib.util import find_spec
 
 from nacre._extras import extra
 
@@ -31,7 +32,9 @@ def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], 
             TimeRemainingColumn,
         )
     console = Console(stderr=True)
-    if not (console.is_terminal or console.is_jupyter):
+    # Without ipywidgets, rich would show a warning and an empty line in a notebook.
+    notebook = console.is_jupyter and find_spec("ipywidgets") is not None
+    if not (console.is_terminal or notebook):
         lines = _Lines(total, found, at_once=bool(wanted))
         yield lines.advance
         lines.end()

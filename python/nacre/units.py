@@ -146,8 +146,13 @@ _system = SI
 class Restoring:
     """The context in which units are set: they are restored at its end."""
 
-    def __init__(self, before: System) -> None:
+    def __init__(self, before: System, now: System) -> None:
         self.before = before
+        self.now = now
+
+    def __repr__(self) -> str:
+        """Name the units: a notebook shows this where `display_units` ends a cell."""
+        return f"numbers are in {', '.join(self.now.units[unit][1] for unit in ('N', 'm', 'Pa'))}"
 
     def __enter__(self) -> None:
         """Begin the context, in which the units are set already."""
@@ -203,7 +208,7 @@ def display_units(system: str) -> Restoring:
     global _system
     before, asked = _system, System(system)
     _system = SI if asked.name == SI.name else asked
-    return Restoring(before)
+    return Restoring(before, _system)
 
 
 def system() -> System:

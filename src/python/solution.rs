@@ -565,7 +565,7 @@ impl PySolution {
     ///     interface occurs twice, above and below it.
     /// whole : bool, optional
     ///     Whether the ``.csv`` holds every cell, in place of the two sections, after a block of
-    ///     comments ``# name: value`` with the key figures.
+    ///     comments ``# name: value`` with the most important numbers.
     /// options : optional
     ///     Keywords of `stress`, with depths only: ``body``, ``friction``, ``direction``, ``residual``,
     ///     ``threads``, and ``displacement``, which adds a vector of that name.

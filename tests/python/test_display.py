@@ -221,6 +221,12 @@ def test_units_are_restored_and_hold_until_the_next_call() -> None:
         nacre.display_units("SI")
 
 
+def test_a_notebook_shows_the_units_that_were_set() -> None:
+    with nacre.display_units("SI"):
+        assert repr(nacre.display_units("N-mm-MPa")) == "numbers are in N, mm, MPa"
+        assert repr(nacre.display_units("SI")) == "numbers are in N, m, Pa"
+
+
 @pytest.mark.parametrize("name", ["N-mm-Pa", "mm-N-MPa", "N-mm", "N-mm-bar", "", "SI-SI-SI"])
 def test_units_that_are_not_consistent_are_refused(name: str) -> None:
     with pytest.raises(ValueError, match=r"^units must be .*got "):

@@ -38,3 +38,19 @@ def test_every_cell_of_a_notebook_shows_its_picture(
     done = client.execute()
     shown = [images(cell["outputs"]) for cell in done.cells]
     assert shown == [1] * len(CELLS), json.dumps(done.cells[-1]["outputs"])[:500]
+
+
+def test_a_study_shows_nothing_in_a_notebook_without_widgets(tmp_path: Path) -> None:
+    study = f"""{FIRST}
+import matplotlib.pyplot as plt; plt.close()
+import sys; sys.modules["ipywidgets"] = None  # as if it were not installed
+loads = lambda load: {{"shape": nacre.Sphere(5e-3), "body": steel, "load": load}}
+study = nacre.sweep(loads, {{"load": [10.0, 20.0]}})
+nacre.display_units("N-m-Pa")
+"""
+    v4 = nbformat.v4
+    notebook = v4.new_notebook(cells=[v4.new_code_cell(study)])  # type: ignore[no-untyped-call]
+    client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
+    (cell,) = client.execute().cells
+    assert [output["output_type"] for output in cell["outputs"]] == ["execute_result"], cell
+    assert cell["outputs"][0]["data"] == {"text/plain": "numbers are in N, m, Pa"}

@@ -207,6 +207,26 @@ def test_bad_arguments_are_named(tilted: nacre.Solution) -> None:
         plot.compare([])
 
 
+@pytest.mark.parametrize("quantity", ["peak_pressure", "coating_tension", "interface_shear"])
+def test_levels_on_contours_are_within_the_frame(quantity: str) -> None:
+    chart = design.coating_chart(
+        nacre.Sphere(2e-3),
+        STEEL,
+        thickness=[1e-6, 3e-6, 10e-6],
+        young=[1e11, 2e11, 4e11],
+        load=5.0,
+        tolerance=1e-4,
+    )
+    axes = plot.chart(chart, quantity)
+    drawn(axes.figure)
+    frame = axes.get_window_extent()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert len(boxes) >= 4
+    for box in boxes:
+        assert frame.x0 < box.x0 < box.x1 < frame.x1
+        assert frame.y0 < box.y0 < box.y1 < frame.y1
+
+
 def test_studies_are_drawn_with_their_units() -> None:
     chart = design.coating_chart(
         nacre.Sphere(5e-3),

@@ -30,7 +30,7 @@ def interface_map(
 ) -> Axes:
     """Draw the traction at an interface from above, with the outline of the contact.
 
-    What is much longer than wide is drawn out of scale, and the picture says so.
+    A map much longer than wide is drawn out of scale, and the picture says so.
 
     Parameters
     ----------

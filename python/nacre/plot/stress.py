@@ -48,8 +48,8 @@ def stress_section(
 ) -> Axes:
     """Draw a vertical section, with the interfaces.
 
-    The cross marks the largest value. What is much longer than deep is drawn out of scale, and the
-    picture says so.
+    The cross marks the largest value. A section much longer than deep is drawn out of scale, and
+    the picture says so.
 
     Parameters
     ----------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,10 +15,14 @@ from nacre.units import PARAMETERS, UNITS, Scale
 
 with extra("plot"):
     from matplotlib.axes import Axes
+    from matplotlib.contour import ContourSet
     from matplotlib.ticker import LogLocator, NullFormatter
 
 if TYPE_CHECKING:
     import xarray
+
+LABEL = 18.0
+"""Distance of a contour's label from the frame [points]: half of its six signs, 7 points high."""
 
 
 def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | None = None) -> Axes:
@@ -52,7 +57,7 @@ def chart(study: xarray.Dataset, quantity: str = "peak_pressure", axes: Axes | N
         values = scale.factor * field.values.T
         filled = axes.contourf(*sides, values, levels=24, cmap=COLOURMAP)
         lines = axes.contour(*sides, values, levels=8, colors="white", linewidths=0.6)
-        axes.clabel(lines, fontsize=7, fmt="%.4g")
+        _label(axes, lines)
         name = quantity.replace("_", " ")
         errors = _errors(study, quantity)
         label = f"{name} [{scale.unit}]"
@@ -106,6 +111,26 @@ def curve(
             axes.errorbar(x, scale.factor * field.values, bars, capsize=0, **line)
         axes.set_ylabel(f"{quantity.replace('_', ' ')} [{scale.unit}]")
     return axes
+
+
+def _label(axes: Axes, lines: ContourSet) -> None:
+    """Write the level of each contour on it, halfway through what is not close to the frame.
+
+    Matplotlib chooses places by how straight a contour is, also where the frame cuts the label.
+    """
+    box = axes.get_window_extent()
+    margin = LABEL * axes.figure.dpi / 72
+    low, high = np.array(box.min) + margin, np.array(box.max) - margin
+    places = []
+    for line in filter(len, itertools.chain(*lines.allsegs)):
+        marks = np.arange(len(line))
+        steps = np.linspace(0, len(line) - 1, 50 * len(line))
+        along = np.stack([np.interp(steps, marks, side) for side in line.T], axis=1)
+        pixels = axes.transData.transform(along)
+        inside = np.all((pixels > low) & (pixels < high), axis=1)
+        if inside.any():
+            places.append(along[inside][inside.sum() // 2])
+    axes.clabel(lines, fontsize=7, fmt="%.4g", manual=places)
 
 
 def _quantity(study: xarray.Dataset, quantity: str, parameters: int) -> xarray.DataArray:

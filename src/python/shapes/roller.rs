@@ -28,8 +28,8 @@ use crate::surface::{CrownedProfile, Profile, Roller};
 /// length : float, optional
 ///     Whole length [m], at least `flat_length`: the gap is +inf beyond its ends.
 /// profile : LogarithmicProfile, SampledProfile or tuple of array_like, optional
-///     Another axial profile, in place of `flat_length` and `crown_radius`. A pair holds positions and
-///     drops.
+///     Another axial profile, in place of `flat_length` and `crown_radius`. ``(positions, drops)`` are two
+///     arrays: places along the axis [m], and how far the surface has dropped there [m].
 /// counter_radius : float, optional
 ///     Radius R_2 of the raceway along y [m]: above 0 where it is convex, as of an inner ring, below 0
 ///     where it is concave, as of an outer ring, which must be wider than the roller. A plane by default.

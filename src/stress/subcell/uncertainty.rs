@@ -40,7 +40,7 @@ const SHARE_OF_CHANGE: f64 = 2.0;
 /// Wavenumber of the longest waves of a step, times the side of a cell. Chosen by trial.
 const LONGEST: f64 = 1.5;
 
-/// Wavenumbers that are looked at, over that of the longest waves.
+/// Largest wavenumber that is looked at, as a multiple of that of the longest waves.
 const RATIO: f64 = 100.0;
 
 /// Number of those wavenumbers, even in their logarithm: four to an octave.
