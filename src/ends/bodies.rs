@@ -218,8 +218,9 @@ impl Ends {
                 continue;
             };
             let nearest = from_end(first);
-            // The end is on an edge of this row, or within the row before.
-            let nearest = if nearest < dx { 0.5 * dx } else { nearest };
+            // The end is on an edge of this row, within it or the row before, or outside the grid.
+            let inside = beyond > 0 || nearest < 0.5 * dx;
+            let nearest = if inside { 0.5 * dx } else { nearest };
             let nodes = Nodes::new(nearest, dx, nx - beyond);
             let endings: Vec<&Ending> = ends.iter().map(|end| &end.ending).collect();
             let found = known.iter().find(|(n, e, _)| *n == nodes && *e == endings);

@@ -254,6 +254,30 @@ fn an_end_on_any_edge() -> Result<()> {
     Ok(())
 }
 
+/// An end outside the grid, even by less than half a cell, acts from where it is: the approach changes evenly with it.
+#[test]
+fn an_end_outside_the_grid() -> Result<()> {
+    let grid = Grid::new([32, 32], [3.2, 3.2])?;
+    let ball = Sphere::new(10.0)?;
+    let approach = |end: f64| -> Result<f64> {
+        let body = unit(0.3, [Some(end), None])?;
+        let contact = Contact::plan(body, grid, Setup::default())?;
+        Ok(contact
+            .solve(&ball, &Motion::load(0.1), &Options::default())?
+            .approach)
+    };
+    let mut steps = Vec::new();
+    for [near, far] in [[-1.6, -1.6333], [-1.6333, -1.6667], [-1.6667, -1.7]] {
+        steps.push(approach(near)? - approach(far)?);
+    }
+    assert!(steps.iter().all(|step| *step > 0.0), "{steps:?}");
+    assert!(
+        steps[0] < 1.3 * steps[2] && steps[2] < 1.3 * steps[0],
+        "{steps:?}"
+    );
+    Ok(())
+}
+
 /// The automatic grid lies between the ends, and its solution is that of a given grid.
 #[test]
 fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
