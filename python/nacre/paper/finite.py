@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -38,7 +39,7 @@ ROLLERS = {
 
 ECCENTRICITIES = {"centred": 0.0, "$e/L$ = 0.3": 0.3 * HALF_FLAT}
 BODIES = {"half-space": False, "free ends": True}
-LOOKS = {
+LOOKS: dict[str, dict[str, Any]] = {
     "half-space": {"color": "#D55E00", "linestyle": (0, (4, 1.5))},
     "free ends": {"color": "#0072B2", "linestyle": "-"},
 }
