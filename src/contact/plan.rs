@@ -1,6 +1,8 @@
 //! A body on a grid, planned: coefficients, their transform, and the coarser grids.
 
 mod datum;
+#[cfg(test)]
+mod superposed;
 
 use std::sync::Arc;
 
@@ -40,8 +42,13 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn new(body: Body, grid: Grid, setup: Setup) -> Result<Self> {
-        check_memory(grid.shape(), Self::memory(&grid))?;
         let ends = Ends::of(&bodies(&body, &setup));
+        Self::ending(body, grid, setup, ends)
+    }
+
+    /// The plan of bodies with these `ends`.
+    fn ending(body: Body, grid: Grid, setup: Setup, ends: Ends) -> Result<Self> {
+        check_memory(grid.shape(), Self::memory(&grid))?;
         ends.check(&grid)?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let (finest, datum) = operator(&body, &setup, &grid, &threads)?;
