@@ -1,8 +1,6 @@
 //! A body on a grid, planned: coefficients, their transform, and the coarser grids.
 
 mod datum;
-#[cfg(test)]
-mod superposed;
 
 use std::sync::Arc;
 
@@ -42,13 +40,8 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn new(body: Body, grid: Grid, setup: Setup) -> Result<Self> {
-        let ends = Ends::of(&bodies(&body, &setup));
-        Self::ending(body, grid, setup, ends)
-    }
-
-    /// The plan of bodies with these `ends`.
-    fn ending(body: Body, grid: Grid, setup: Setup, ends: Ends) -> Result<Self> {
         check_memory(grid.shape(), Self::memory(&grid))?;
+        let ends = Ends::of(&bodies(&body, &setup));
         ends.check(&grid)?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let (finest, datum) = operator(&body, &setup, &grid, &threads)?;

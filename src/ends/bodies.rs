@@ -104,15 +104,6 @@ impl Ends {
         }
     }
 
-    /// These ends, each as if its body had no other.
-    #[cfg(test)]
-    pub(crate) fn superposed(self) -> Self {
-        Self {
-            plates: Vec::new(),
-            ..self
-        }
-    }
-
     /// How the ends are counted; `None` where there are none.
     pub(crate) fn form(&self) -> Option<FreeEnds> {
         let plates = !self.plates.is_empty();

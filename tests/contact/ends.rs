@@ -1,18 +1,18 @@
 //! Contacts of bodies with free ends.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+mod refused;
+mod rollers;
+
+use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
-use nacre::contact::{Case, Report};
-use nacre::ends::QuarterSpace;
-use nacre::influence::CellInfluence;
+use nacre::contact::Case;
 use nacre::surface::Extent;
 use nacre::{
-    Algorithm, Body, Contact, Elastic, Error, Grid, HalfSpace, HeightMap, Layer,
-    LogarithmicProfile, Motion, Options, Paraboloid, Result, Roller, Setup, Solution, Solver,
-    Sphere, Substrate, Surface, Warning, solve,
+    Algorithm, Contact, Elastic, Grid, HalfSpace, HeightMap, Motion, Options, Paraboloid, Result,
+    Setup, Solution, Solver, Sphere, Surface,
 };
-use ndarray::{Array2, Axis};
+use ndarray::Array2;
 
 use crate::support::random::uniform;
 
@@ -81,86 +81,6 @@ fn straight(bodies: [&HalfSpace; 2], motion: &Motion) -> Result<Solution> {
 
 fn differ(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
     (a - b).fold(0.0, |worst: f64, d| worst.max(d.abs()))
-}
-
-/// For ν = 0 a pressure that is independent of x leaves the ends of both bodies free, so that the pressure is uniform
-/// along x. Superposed quarter spaces leave 1.5 % for the roller of 20 half-widths; the plate's table leaves 5e-5 of the
-/// displacement for each coefficient, some of which makes pressures of a few times as much.
-#[test]
-fn flush_bodies_without_lateral_strain_have_uniform_pressure() -> Result<()> {
-    for (half_length, rows) in [(HALF_LENGTH, 160), (2.0, 32)] {
-        let body = unit(0.0, [Some(-half_length), Some(half_length)])?;
-        let grid = Grid::new([rows, 32], [2.0 * half_length, 3.0])?;
-        let solution = plan([&body, &body], grid)?
-            .solve(
-                &Straight(half_length),
-                &Motion::load(half_length * PI),
-                &Options::default(),
-            )?
-            .require_converged(1e-8)?;
-        let mean = solution.pressure.mean_axis(Axis(0)).expect("rows");
-        let mut worst = 0.0_f64;
-        for row in solution.pressure.rows() {
-            worst = (&row - &mean).fold(worst, |worst, d| worst.max(d.abs()));
-        }
-        println!("{half_length}: {worst:e}");
-        assert!(worst < 5e-4, "{half_length}: {worst}");
-        // Hertz's line, but for the outermost cells in contact, of 0.094, which the circle cuts.
-        for (y, p) in grid.y().iter().zip(&mean).filter(|(y, _)| y.abs() < 0.8) {
-            let hertz = (1.0 - y * y).sqrt();
-            println!("{y} {}", p / hertz - 1.0);
-            assert!((p / hertz - 1.0).abs() < 5e-3, "{y}: {p}");
-        }
-        let warnings = &solution.report.warnings;
-        assert!(warnings.is_empty(), "{warnings:?}");
-        let counted = solution.report.free_ends().expect("both bodies end");
-        assert!(counted.plates && counted.error == Some(2e-4));
-    }
-    Ok(())
-}
-
-/// Where both bodies end at the same place, the pressure falls towards it, the more the larger ν, and is finite. Numbers
-/// of the limits ν = ½ and 0 are in the other tests.
-#[test]
-fn pressure_falls_towards_flush_ends() -> Result<()> {
-    let mut beside = Vec::new();
-    for poisson in [0.0, 0.3, 0.5] {
-        let body = unit(poisson, BOTH)?;
-        let solution = straight([&body, &body], &Motion::load(LOAD))?;
-        assert!(solution.report.warnings.is_empty());
-        beside.push(solution.pressure[[0, 16]]);
-    }
-    println!("{beside:?}");
-    assert!(
-        beside[0] > 0.99 && beside[1] < 0.7 && beside[2] < beside[1] && beside[2] > 0.0,
-        "{beside:?}"
-    );
-    Ok(())
-}
-
-/// Pressures beside the end, against the half-space: 1.22 of Hertz's line at 0.1 instead of 2.25. A plate's pressure is
-/// 0.9 % above that of superposed quarter spaces at 0.5, 1.0532 (`src/contact/plan/superposed.rs`).
-#[test]
-fn the_pressure_at_a_sharp_end_grows_slowly() -> Result<()> {
-    let (whole, free) = (unit(0.3, WHOLE)?, unit(0.3, BOTH)?);
-    let solution = straight([&whole, &free], &Motion::load(LOAD))?;
-    assert_eq!(solution.report.warnings, [Warning::FreeEnd]);
-    let message = solution.report.warnings[0].to_string();
-    assert!(
-        message.contains("the free end of one body along x, and the other goes on"),
-        "{message}"
-    );
-    let half_space = straight([&whole, &whole], &Motion::load(LOAD))?;
-    assert_eq!(half_space.report.warnings, [Warning::SharpEnd { axis: 0 }]);
-    assert_eq!(half_space.report.free_ends(), None);
-    let message = half_space.report.warnings[0].to_string();
-    assert!(message.contains("give the bodies their ends"), "{message}");
-    let at_end = |solution: &Solution| solution.pressure[[0, 16]];
-    assert!(at_end(&half_space) > 1.7 * at_end(&solution));
-    let at_half = 0.5 * (solution.pressure[[3, 16]] + solution.pressure[[4, 16]]);
-    println!("{at_half}");
-    assert!((at_half / 1.062 - 1.0).abs() < 4e-3, "{at_half}");
-    Ok(())
 }
 
 /// Mirrored, shifted, scaled and exchanged contacts have the same pressure, to the tolerance.
@@ -279,9 +199,8 @@ fn controls_agree() -> Result<()> {
     Ok(())
 }
 
-/// The tangent stiffness against central differences of load and moments. While the contact stays they agree to the
-/// tolerance over the step, 1e-11/1e-5; that contacts grow by whole cells changes nothing, since pressure on a cell
-/// grows from 0.
+/// The tangent stiffness against central differences of load and moments: both err by 1e-6, the tolerance of the
+/// solutions, 1e-11, over the step of 1e-5. No cell enters or leaves the contact within such a step.
 #[test]
 fn stiffness_is_that_of_differences() -> Result<()> {
     let (free, low) = (unit(0.3, BOTH)?, unit(0.3, [Some(-HALF_LENGTH), None])?);
@@ -320,7 +239,7 @@ fn stiffness_is_that_of_differences() -> Result<()> {
 }
 
 /// A ball beside an end, in a window of the grid that begins behind the end: as by the reference algorithm, which knows
-/// no windows. The end draws the contact towards it.
+/// no windows. The contact is softer towards the end, and the load moves away from it.
 #[test]
 fn windows_keep_their_distance_from_the_end() -> Result<()> {
     let grid = Grid::new([128, 96], [8.0, 6.0])?;
@@ -354,6 +273,8 @@ fn windows_keep_their_distance_from_the_end() -> Result<()> {
             found.eccentricity()
         );
         assert!(worst < 1e-9, "{ends:?} {worst:e}");
+        let nearer_high = ends[1].is_some();
+        assert!(found.eccentricity()[0] * if nearer_high { -1.0 } else { 1.0 } > 1e-3);
         assert!((found.approach / reference.approach - 1.0).abs() < 1e-9);
     }
     Ok(())
@@ -439,169 +360,5 @@ fn an_end_on_any_edge() -> Result<()> {
     for pressure in &pressures[1..] {
         assert!(differ(&pressures[0], pressure) < 1e-5);
     }
-    Ok(())
-}
-
-/// The automatic grid lies between the ends, and its solution is that of a given grid.
-#[test]
-fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
-    let steel = Elastic::new(210e9, 0.3)?;
-    let race = HalfSpace::from(steel);
-    let crowned = Roller::new(5e-3, 6e-3, 2.0)?.with_length(10e-3)?;
-    let profile = LogarithmicProfile::new(2e-6, 10e-3, 0.0, 0.99)?;
-    let logarithmic = Roller::with_profile(5e-3, profile)?;
-    let roller = HalfSpace::from(steel).with_ends([Some(-5e-3), Some(5e-3)])?;
-    for shape in [&crowned as &dyn Surface, &logarithmic] {
-        let setup = || Setup {
-            counterbody: Some((&roller).into()),
-            ..Setup::default()
-        };
-        let (motion, options) = (Motion::load(3000.0), Options::default());
-        let mut go_on = |_: &Report| ControlFlow::Continue(());
-        let body = Body::from(&race);
-        let found =
-            nacre::contact::solve_watched(shape, &body, &setup(), &motion, &options, &mut go_on)?;
-        let half = 0.5 * found.grid().size()[0];
-        assert!(half <= 5e-3 * (1.0 + 1e-9), "{half}");
-        let whole = Grid::new(
-            [512, 128],
-            [10e-3, 2.0 * found.contact_extent()[1][1] * 1.2],
-        )?;
-        let expected = Contact::plan(&race, whole, setup())?
-            .solve(shape, &motion, &options)?
-            .require_converged(1e-8)?;
-        let ratio = found.approach / expected.approach;
-        assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
-    }
-    let cut = solve(&nacre::Cylinder::new(5e-3)?, &roller, &Motion::load(3000.0))?;
-    assert!((cut.grid().size()[0] - 10e-3).abs() < 1e-9);
-    Ok(())
-}
-
-/// A ball 100 contact radii from an end: the pressure does not change, and the approach grows by the displacement that
-/// the end adds under a force at this distance, W u/d, uniform over the contact to 1/100.
-#[test]
-fn a_far_end_adds_to_the_approach_alone() -> Result<()> {
-    let (radius, load) = (1.0, 1e-3);
-    for poisson in [0.0, 0.3, 0.5] {
-        let material = Elastic::new(1.0, poisson)?;
-        let hertz = nacre::hertz::Point::new(radius, material.plane_strain_modulus(), load)?;
-        let a = hertz.radius;
-        let end = -100.0 * a;
-        let grid = Grid::new([64, 64], [3.0 * a, 3.0 * a])?;
-        let solved = |body: HalfSpace| {
-            let contact = Contact::plan(body, grid, Setup::default())?;
-            contact.solve(
-                &Sphere::new(radius)?,
-                &Motion::load(load),
-                &Options::default(),
-            )
-        };
-        let whole = solved(material.into())?;
-        let ended = solved(HalfSpace::from(material).with_ends([Some(end), None])?)?;
-        let ratio = ended.peak_pressure() / whole.peak_pressure();
-        assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
-        // A square of side a as the force.
-        let at = QuarterSpace::new(material, -end - 0.5 * a, [a, 0.5 * a])?;
-        let square = CellInfluence::plan(material, [a, a], 10.0 * a)?;
-        let added = (at.displacement([-end, 0.0])? - square.at([0.0, 0.0])) * load / (a * a);
-        let found = ended.approach - whole.approach;
-        assert!(
-            (found / added - 1.0).abs() < 2e-3,
-            "{poisson}: {found:e} {added:e}"
-        );
-        // Of the order of the mirror image, W/(π E* 2d), for ν = 0, and three times that for ν = ½.
-        let image = load / (PI * material.plane_strain_modulus() * 200.0 * a);
-        assert!(
-            added > image && added < 5.0 * image,
-            "{poisson} {}",
-            added / image
-        );
-    }
-    Ok(())
-}
-
-/// A coat warns of its model.
-#[test]
-fn coated_ends_are_warned_of() -> Result<()> {
-    let coat = Layer::new(Elastic::new(2.0, 0.3)?, 0.2)?;
-    let coated = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?.with_ends(BOTH)?;
-    let solution = straight([&coated, &unit(0.3, BOTH)?], &Motion::load(LOAD))?;
-    assert_eq!(solution.report.warnings, [Warning::CoatedEnd]);
-    assert_eq!(
-        solution.report.free_ends().and_then(|ends| ends.error),
-        Some(0.04)
-    );
-    Ok(())
-}
-
-fn message<T>(result: Result<T>) -> String {
-    result
-        .err()
-        .map(|error| error.to_string())
-        .unwrap_or_default()
-}
-
-#[test]
-fn senseless_ends_are_refused() -> Result<()> {
-    let steel = || Elastic::new(210e9, 0.3).map(HalfSpace::from);
-    let crossed = message(steel()?.with_ends([Some(1.0), Some(-1.0)]));
-    assert!(
-        crossed.contains("ends") && crossed.contains("ascending"),
-        "{crossed}"
-    );
-    assert!(message(steel()?.with_ends([Some(f64::NAN), None])).contains("finite"));
-    let coat = Layer::new(Elastic::new(1.0, 0.3)?, 1.0)?;
-    let rigid = HalfSpace::new(Substrate::Rigid, [coat])?.with_ends([Some(0.0), None]);
-    assert!(message(rigid).contains("rigid substrate"));
-
-    let grid = Grid::new([8, 8], [8.0, 8.0])?;
-    let at = |low: f64, high: f64| -> Result<Contact> {
-        Contact::plan(
-            steel()?.with_ends([Some(low), Some(high)])?,
-            grid,
-            Setup::default(),
-        )
-    };
-    let off = message(at(-1.3, 3.0));
-    assert!(
-        off.contains("-1.3e0 between the edges -2e0 and -1e0"),
-        "{off}"
-    );
-    assert!(message(at(0.0, 1.0)).contains("two rows"));
-    assert!(at(0.0, 2.0).is_ok() && at(-40.3, 17.7).is_ok());
-    let line = Contact::plan(
-        steel()?.with_ends([Some(0.0), None])?,
-        Grid::line(8, 8.0)?,
-        Setup::default(),
-    );
-    assert!(message(line).contains("line contact"));
-
-    // The roller's material ends within the roller.
-    let setup = Setup {
-        counterbody: Some(steel()?.with_ends([Some(-4e-3), Some(5e-3)])?.into()),
-        ..Setup::default()
-    };
-    let roller = Roller::new(5e-3, 6e-3, 2.0)?.with_length(10e-3)?;
-    let motion = Motion::load(10.0);
-    let contact = Contact::plan(steel()?, Grid::new([20, 8], [10e-3, 1e-3])?, setup.clone())?;
-    let short = contact.solve(&roller, &motion, &Options::default());
-    assert!(
-        matches!(short, Err(Error::EndWithinShape { .. })),
-        "{short:?}"
-    );
-    let mut go_on = |_: &Report| ControlFlow::Continue(());
-    let body = Body::from(&steel()?);
-    let options = Options::default();
-    let short =
-        nacre::contact::solve_watched(&roller, &body, &setup, &motion, &options, &mut go_on);
-    assert!(matches!(short, Err(Error::EndWithinShape { .. })));
-    let map = HeightMap::new(Array2::zeros((8, 8)), [1e-4, 1e-4])?;
-    let within = Contact::plan(
-        steel()?.with_ends([Some(-0.23e-4), None])?,
-        map.grid().expect("a map has a grid"),
-        Setup::default(),
-    );
-    assert!(matches!(within, Err(Error::EndOffGrid { .. })));
     Ok(())
 }

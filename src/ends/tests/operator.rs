@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ndarray::{Array1, Array2};
+use ndarray::Array2;
 
 use crate::body::HalfSpace;
 use crate::convolution::Convolution;
@@ -59,31 +59,21 @@ fn cholesky(matrix: &Array2<f64>, shift: f64) -> Option<Vec<Vec<f64>>> {
     Some(rows)
 }
 
-/// Rayleigh's quotient after inverse iterations: not below the smallest eigenvalue, and [`OF_EIGENVALUE`] above it at
-/// most, as the caller checks by a shift.
-fn smallest_eigenvalue(matrix: &Array2<f64>) -> Option<f64> {
-    let (rows, n) = (cholesky(matrix, 0.0)?, matrix.nrows());
-    let mut v: Vec<f64> = (0..n).map(|i| ((i * i) as f64 * 0.618).sin()).collect();
-    for _ in 0..300 {
-        for (i, row) in rows.iter().enumerate() {
-            v[i] = (v[i] - dot(&row[..i], &v[..i])) / row[i];
-        }
-        for (i, row) in rows.iter().enumerate().rev() {
-            v[i] /= row[i];
-            let solved = v[i];
-            v.iter_mut()
-                .zip(&row[..i])
-                .for_each(|(v, l)| *v -= l * solved);
-        }
-        let norm = dot(&v, &v).sqrt();
-        v.iter_mut().for_each(|v| *v /= norm);
-    }
-    let v = Array1::from(v);
-    Some(v.dot(&matrix.dot(&v)))
-}
-
 /// Relative error of [`smallest_eigenvalue`].
-const OF_EIGENVALUE: f64 = 1e-4;
+const OF_EIGENVALUE: f64 = 1e-6;
+
+/// The smallest eigenvalue, from below: the largest shift that leaves a matrix positive definite.
+fn smallest_eigenvalue(matrix: &Array2<f64>) -> f64 {
+    let (mut below, mut above) = (0.0, matrix[[0, 0]]);
+    while above - below > OF_EIGENVALUE * above {
+        let middle = 0.5 * (below + above);
+        match cholesky(matrix, middle) {
+            Some(_) => below = middle,
+            None => above = middle,
+        }
+    }
+    below
+}
 
 const ENDS: [[Option<f64>; 2]; 4] = [
     [Some(-5.0), None],
@@ -94,56 +84,45 @@ const ENDS: [[Option<f64>; 2]; 4] = [
 
 /// The operator of one body with one end, or two, and of two bodies is symmetric to rounding, and no eigenvalue is below
 /// the smallest of the half-spaces: what an end adds is positive. What the plate adds to two quarter spaces need not be
-/// positive, but is as smooth as a polynomial, and pressures of such eigenvalues change sign from cell to cell.
+/// positive, but is as smooth as a polynomial, and pressures of the smallest eigenvalues change sign from cell to cell.
 #[test]
 fn operators_are_symmetric_and_positive() -> Result<()> {
     let grid = Grid::new([40, 14], [10.0, 3.5])?;
+    let body = |poisson: f64, ends: [Option<f64>; 2]| {
+        HalfSpace::from(Elastic::new(1.0 - poisson * poisson, poisson)?).with_ends(ends)
+    };
+    let half_space = Body::from(&body(0.0, [None; 2])?);
+    let least = smallest_eigenvalue(&dense(&[&half_space], &grid)?);
     for poisson in [0.0, 0.25, 0.3, 0.4, 0.5] {
-        let whole = HalfSpace::from(Elastic::new(1.0, poisson)?);
-        let half_space = Body::from(&whole);
-        let matrix = dense(&[&half_space], &grid)?;
-        let least = smallest_eigenvalue(&matrix).expect("K is positive definite");
-        assert!(cholesky(&matrix, least * (1.0 - OF_EIGENVALUE)).is_some());
-        let one = ENDS.map(|ends| Ok((vec![whole.clone().with_ends(ends)?], 1.0)));
-        let two = [
-            (ENDS[0], ENDS[0], 2.0),
-            (ENDS[0], ENDS[2], 2.0),
-            (ENDS[2], [None; 2], 2.0),
+        let [low, high, flush, beyond] = ENDS;
+        let cases = [
+            vec![low],
+            vec![high],
+            vec![flush],
+            vec![beyond],
+            vec![low, low],
+            vec![low, flush],
+            vec![flush, [None; 2]],
         ];
-        let two = two.map(|(a, b, times)| {
-            let bodies = [a, b].map(|ends| whole.clone().with_ends(ends));
-            Ok((
-                Vec::from_iter(bodies).into_iter().collect::<Result<_>>()?,
-                times,
-            ))
-        });
-        for case in one.into_iter().chain(two) {
-            let (bodies, times): (Vec<HalfSpace>, f64) = case?;
-            let name = format!(
-                "{poisson} {:?}",
-                bodies.iter().map(HalfSpace::ends).collect::<Vec<_>>()
-            );
-            let bodies: Vec<Body> = bodies.iter().map(Body::from).collect();
+        for ends in cases {
+            let name = format!("{poisson} {ends:?}");
+            let bodies = ends
+                .iter()
+                .map(|ends| Ok(Body::from(&body(poisson, *ends)?)));
+            let bodies = bodies.collect::<Result<Vec<Body>>>()?;
             let matrix = dense(&bodies.iter().collect::<Vec<_>>(), &grid)?;
             let largest = matrix.diag().fold(0.0_f64, |most, entry| most.max(*entry));
             let asymmetry = (&matrix - &matrix.t()).fold(0.0_f64, |most, d| most.max(d.abs()));
             assert!(asymmetry < 1e-12 * largest, "{name}: {asymmetry:e}");
-            let bound = times * least * (1.0 - OF_EIGENVALUE);
+            let bound = least * bodies.len() as f64 * (1.0 - OF_EIGENVALUE);
             assert!(cholesky(&matrix, bound).is_some(), "{name}");
-            if let Some(found) = smallest_eigenvalue(&matrix) {
-                println!(
-                    "{name}: {:e} {:e}",
-                    asymmetry / largest,
-                    found / (times * least) - 1.0
-                );
-            }
         }
     }
     Ok(())
 }
 
 /// Cells converge to the displacement at their centres under a rectangle of cells at the end: away from its rim, the
-/// error falls with the square of the cells, from 1e-3 of the largest displacement.
+/// error falls as the cells to the power 2.1, from 3.4e-4 of the displacement to 1.7e-5.
 #[test]
 fn cells_converge() -> Result<()> {
     let material = Elastic::new(1.0, 0.3)?;
@@ -173,16 +152,17 @@ fn cells_converge() -> Result<()> {
         }
         errors.push(worst);
     }
-    assert!(errors[0] < 2e-3 && errors[2] < 1e-4, "{errors:?}");
+    assert!(errors[0] < 5e-4 && errors[2] < 3e-5, "{errors:?}");
     assert!(
-        errors[1] < 0.4 * errors[0] && errors[2] < 0.4 * errors[1],
+        errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1],
         "{errors:?}"
     );
     Ok(())
 }
 
 /// Entries for cells far apart along a long end, where rows are interpolated from nodes, are displacements at a point
-/// under pressure on a cell: as a mean over the cell differs from its middle by (cell/distance)²/24, and rows by 6e-7.
+/// under pressure on a cell. The mean over the cell differs from its middle by (cell/distance)²/24; integrals over
+/// waves that are much longer than the grid is wide err by 1.4e-5 of an entry.
 #[test]
 fn far_entries_are_those_of_points() -> Result<()> {
     let material = Elastic::new(1.0, 0.3)?;
@@ -206,7 +186,7 @@ fn far_entries_are_those_of_points() -> Result<()> {
             let expected = point.displacement([here, y])? - half_space.at([here - there, y]);
             // The end is at the last row.
             let found = convolution.added([599 - a, 599 - b], l);
-            let tolerance = 1e-6 + (dx / here).powi(2) / 24.0;
+            let tolerance = 2e-5 + (dx / here).powi(2) / 24.0;
             println!("{a} {b} {l}: {:e} {tolerance:e}", found / expected - 1.0);
             assert!(
                 (found / expected - 1.0).abs() < tolerance,
