@@ -164,7 +164,6 @@ fn the_exponent_of_a_sharp_end() {
         let [near, far] = [at(1e-6), at(1e-3)];
         let slope =
             (pressure[[far, 0]] / pressure[[near, 0]]).ln() / (middle(far) / middle(near)).ln();
-        println!("{slope}");
         assert!((slope + 0.225_987).abs() < 1e-3, "{poisson}: {slope}");
     }
 }

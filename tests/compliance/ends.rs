@@ -36,7 +36,7 @@ fn rectangles_agree_with_the_reference() -> Result<()> {
 
 /// For ν = ½ the edge sinks 2π²/(π² − 4) times as far as the surface of a half-space, under any pressure and at any place
 /// along it: the stress of a force on the edge is radial, and the rest is reciprocity. On the edge the integral over the
-/// wavenumber ends where its rest is 1e-8.
+/// wavenumber ends where its rest is 1e-8; the largest error, 3e-6, is that of a load far away along the edge.
 #[test]
 fn an_incompressible_edge_sinks_by_a_constant_factor() -> Result<()> {
     let rubber = Elastic::new(1e6, 0.5)?;
@@ -54,9 +54,8 @@ fn an_incompressible_edge_sinks_by_a_constant_factor() -> Result<()> {
         for y in [0.0, 0.7, 2.5, -20.0] {
             let whole = half_space.at([distance + 0.5 * length, y]);
             let error = body.displacement([0.0, y])? / whole / exact - 1.0;
-            println!("{distance} {length} {half_width} {y}: {error:e}");
             assert!(
-                error.abs() < 1e-4,
+                error.abs() < 1e-5,
                 "{distance} {length} {half_width} {y}: {error:e}"
             );
         }
@@ -124,7 +123,6 @@ fn displacements_are_reciprocal() -> Result<()> {
                 half_width: 1.0,
             };
             let [there, back] = [a.moved_by(b, material)?, b.moved_by(a, material)?];
-            println!("{poisson} {distance} {y}: {:e}", there / back - 1.0);
             assert!(
                 (there / back - 1.0).abs() < 1e-6,
                 "{poisson} {distance} {y}: {there} {back}"

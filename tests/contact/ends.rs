@@ -93,10 +93,8 @@ fn symmetries() -> Result<()> {
     let back = eccentric(LOAD, -1.5);
     let mirrored = straight([&high, &free], &back)?.pressure;
     let mirrored = Array2::from_shape_fn(given.dim(), |(i, j)| mirrored[[159 - i, j]]);
-    println!("mirrored {:e}", differ(&given, &mirrored));
     assert!(differ(&given, &mirrored) < 1e-9);
     let exchanged = straight([&free, &low], &motion)?.pressure;
-    println!("exchanged {:e}", differ(&given, &exchanged));
     assert!(differ(&given, &exchanged) < 1e-9);
 
     // Along x by 3, and lengths by 1e-3 with moduli by 1e9.
@@ -121,7 +119,6 @@ fn symmetries() -> Result<()> {
             .pressure
             / modulus;
         let worst = differ(&given, &found);
-        println!("{shift} {length} {worst:e}");
         assert!(worst < 1e-9, "{shift} {length}: {worst:e}");
     }
     Ok(())
@@ -165,7 +162,6 @@ fn controls_agree() -> Result<()> {
     };
     let same = |name: &str, other: &Solution| {
         let worst = differ(&first.pressure, &other.pressure);
-        println!("{name} {worst:e}");
         assert!(worst < 1e-9, "{name}: {worst:e}");
         assert!(
             (other.approach / first.approach - 1.0).abs() < 1e-10,
@@ -231,7 +227,6 @@ fn stiffness_is_that_of_differences() -> Result<()> {
             let slope = (above[row] - below[row]) / (2.0 * step);
             let scale = (stiffness[row][row] * stiffness[freedom][freedom]).sqrt();
             let error = (stiffness[row][freedom] - slope) / scale;
-            println!("{row} {freedom}: {error:e}");
             assert!(error.abs() < 1e-5, "{row} {freedom}: {stiffness:?} {slope}");
         }
     }
@@ -267,11 +262,6 @@ fn windows_keep_their_distance_from_the_end() -> Result<()> {
         ];
         let scale = reference.peak_pressure();
         let worst = differ(&found.pressure, &reference.pressure) / scale;
-        println!(
-            "{ends:?} {worst:e} {:?} {:?}",
-            found.contact_extent(),
-            found.eccentricity()
-        );
         assert!(worst < 1e-9, "{ends:?} {worst:e}");
         let nearer_high = ends[1].is_some();
         assert!(found.eccentricity()[0] * if nearer_high { -1.0 } else { 1.0 } > 1e-3);
@@ -326,7 +316,6 @@ fn few_cells_beside_an_end() -> Result<()> {
             );
         }
     }
-    println!("{by_active_set}");
     assert!(by_active_set > 0, "none took this way");
     Ok(())
 }

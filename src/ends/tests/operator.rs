@@ -187,7 +187,6 @@ fn far_entries_are_those_of_points() -> Result<()> {
             // The end is at the last row.
             let found = convolution.added([599 - a, 599 - b], l);
             let tolerance = 2e-5 + (dx / here).powi(2) / 24.0;
-            println!("{a} {b} {l}: {:e} {tolerance:e}", found / expected - 1.0);
             assert!(
                 (found / expected - 1.0).abs() < tolerance,
                 "{a} {b} {l}: {found} {expected}"

@@ -35,12 +35,10 @@ fn flush_bodies_without_lateral_strain_have_uniform_pressure() -> Result<()> {
         for row in solution.pressure.rows() {
             worst = (&row - &mean).fold(worst, |worst, d| worst.max(d.abs()));
         }
-        println!("{half_length}: {worst:e}");
         assert!(worst < 5e-4, "{half_length}: {worst}");
         // Hertz's line, but for the outermost cells in contact, of 0.094, which the circle cuts.
         for (y, p) in grid.y().iter().zip(&mean).filter(|(y, _)| y.abs() < 0.8) {
             let hertz = (1.0 - y * y).sqrt();
-            println!("{y} {}", p / hertz - 1.0);
             assert!((p / hertz - 1.0).abs() < 5e-3, "{y}: {p}");
         }
         let warnings = &solution.report.warnings;
@@ -62,7 +60,6 @@ fn pressure_falls_towards_flush_ends() -> Result<()> {
         assert!(solution.report.warnings.is_empty());
         beside.push(solution.pressure[[0, 16]]);
     }
-    println!("{beside:?}");
     assert!(
         beside[0] > 0.99 && beside[1] < 0.7 && beside[2] < beside[1] && beside[2] > 0.0,
         "{beside:?}"
@@ -90,7 +87,6 @@ fn the_pressure_at_a_sharp_end_grows_slowly() -> Result<()> {
     let at_end = |solution: &Solution| solution.pressure[[0, 16]];
     assert!(at_end(&half_space) > 1.7 * at_end(&solution));
     let at_half = 0.5 * (solution.pressure[[3, 16]] + solution.pressure[[4, 16]]);
-    println!("{at_half}");
     assert!((at_half / 1.062 - 1.0).abs() < 4e-3, "{at_half}");
     Ok(())
 }
@@ -132,13 +128,11 @@ fn superposed_ends_agree_with_the_reference() -> Result<()> {
         let high = unit(poisson, [None, Some(HALF_LENGTH)])?;
         let solution = fine([&low, &high])?;
         let error = solution.approach / number(&case, "approach") - 1.0;
-        println!("{name}: {error:e}");
         assert!(error.abs() < 2e-4, "{name}: {error:e}");
         let values = list(&case, "x_over_b").iter().zip(list(&case, "p_axis"));
         for (x, p) in values {
             let [x, p] = [x, p].map(|value| value.as_f64().unwrap_or(f64::NAN));
             let error = pressure_at(&solution, x) / p - 1.0;
-            println!("{x}: {error:e}");
             let tolerance = match x {
                 // The second cell, whose pressure is a mean beside a singularity.
                 x if x < 0.2 => 1.5e-2,
@@ -153,24 +147,22 @@ fn superposed_ends_agree_with_the_reference() -> Result<()> {
 }
 
 /// Where a body is 20 half-widths long, pressure and approach of the plate differ from those of superposed ends by up to
-/// 1.2 %. The numbers are the library's own: they fix the sum of its parts, each of which is tested by itself.
+/// 1.4 %. The numbers are the library's own, to their last digit: they fix the sum of parts that are tested by themselves.
 #[test]
 fn a_plate_differs_from_superposed_ends_by_a_percent() -> Result<()> {
     for (poisson, approach, pressures) in [
-        (0.3, -3.95e-3, [1.205e-2, 8.42e-3, 1.11e-3, -3.58e-3]),
-        (0.0, -2.5e-3, [7.07e-3, 5.14e-3, 4.6e-4, -2.33e-3]),
+        (0.3, -3.954e-3, [1.205e-2, 8.425e-3, 1.114e-3, -3.582e-3]),
+        (0.0, 1.355e-2, [7.07e-3, 5.14e-3, 4.63e-4, -2.33e-3]),
     ] {
         let low = unit(poisson, [Some(-HALF_LENGTH), None])?;
         let high = unit(poisson, [None, Some(HALF_LENGTH)])?;
         let two = fine([&low, &high])?;
         let plate = fine([&unit(poisson, WHOLE)?, &unit(poisson, BOTH)?])?;
         let found = plate.approach / two.approach - 1.0;
-        println!("{poisson} {found:e}");
-        //assert!((found - approach).abs() < 1e-4, "{poisson} {found}");
+        assert!((found - approach).abs() < 2e-5, "{poisson} {found}");
         for (x, expected) in [0.1, 0.5, 3.0, 8.0].into_iter().zip(pressures) {
             let found = pressure_at(&plate, x) / pressure_at(&two, x) - 1.0;
-            println!("{poisson} {x} {found:e}");
-            //assert!((found - expected).abs() < 1e-4, "{poisson} {x} {found}");
+            assert!((found - expected).abs() < 2e-5, "{poisson} {x} {found}");
         }
     }
     Ok(())
@@ -205,11 +197,6 @@ fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
                 .require_converged(options.tolerance)?;
             let [length, width] = found.grid().size();
             let [reached, half_width] = found.contact_extent().map(|[_, high]| high);
-            println!(
-                "{race_ends:?} {load} {reached} {length} {width} {:?} {:?}",
-                found.grid(),
-                found.report.warnings
-            );
             assert!(length <= 10e-3 * (1.0 + 1e-12) && width > 2.0 * half_width);
             if reached > 4.9e-3 {
                 assert!((length / 10e-3 - 1.0).abs() < 1e-12, "{length}");
@@ -220,7 +207,6 @@ fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
                 .require_converged(options.tolerance)?;
             let ratio = found.approach / expected.approach;
             let middle = found.central_pressure() / expected.central_pressure();
-            println!("{ratio} {middle}");
             assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
             assert!((middle - 1.0).abs() < 5e-3, "{middle}");
         }
