@@ -8,8 +8,8 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::{
-    Algorithm, Contact, Convolution, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid,
-    Result, Roller, Setup, Solution, StressOptions, Surface, stress,
+    Algorithm, Contact, Convolution, Cylinder, Elastic, Grid, HalfSpace, Layer, Motion, Options,
+    Paraboloid, Result, Roller, Setup, Solution, StressOptions, Surface, stress,
 };
 use ndarray::Array2;
 
@@ -160,6 +160,44 @@ fn contact(c: &mut Criterion) {
     group.finish();
 }
 
+/// A straight roller of 20 half-widths on a race, whose ends are free or none: half-width and pressure of Hertz's line
+/// are 1.
+fn straight(ends: [Option<f64>; 2]) -> Result<Contact> {
+    let race = HalfSpace::from(Elastic::new(0.91, 0.3)?);
+    let setup = Setup {
+        counterbody: Some(race.clone().with_ends(ends)?.into()),
+        threads: Some(1),
+        ..Setup::default()
+    };
+    Contact::plan(&race, Grid::new([1024, 128], [20.0, 4.0])?, setup)
+}
+
+fn free_ends(c: &mut Criterion) {
+    let mut group = c.benchmark_group("ends");
+    group.sample_size(10);
+    let shape = Cylinder::new(0.25).expect("valid");
+    let (motion, options) = (
+        Motion::load(10.0 * std::f64::consts::PI),
+        Options::default(),
+    );
+    for (name, ends) in [
+        ("none", [None; 2]),
+        ("quarter_space", [Some(-10.0), None]),
+        ("plate", [Some(-10.0), Some(10.0)]),
+    ] {
+        let contact = straight(ends).expect("valid");
+        let solution = converged(&contact, &shape, &motion, &options);
+        assert!(solution.peak_pressure() > 1.0);
+        group.bench_function(BenchmarkId::new("plan", name), |b| {
+            b.iter(|| straight(ends))
+        });
+        group.bench_function(BenchmarkId::new("solve", name), |b| {
+            b.iter(|| converged(&contact, &shape, &motion, &options));
+        });
+    }
+    group.finish();
+}
+
 /// The roller of Spinu et al., E1/E2 = 4, under an off-centre force.
 fn roller() -> Result<(Contact, Motion)> {
     let steel = Elastic::new(210e9, 0.3)?;
@@ -206,6 +244,7 @@ criterion_group!(
     coefficients,
     convolution,
     contact,
+    free_ends,
     interior
 );
 criterion_main!(chain);

@@ -10,7 +10,7 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use ndarray::{Array2, Axis};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -51,6 +51,8 @@ pub(crate) struct Addition {
     length: usize,
     /// Transform of A over the inverse transform's factor: pairs of nodes, wavenumbers.
     spectrum: Arc<Array2<f64>>,
+    /// A, for [`Addition::entry`], which few solves need.
+    coefficients: Arc<OnceLock<Array2<f64>>>,
     forward: Arc<dyn RealToComplex<f64>>,
     inverse: Arc<dyn ComplexToReal<f64>>,
 }
@@ -101,6 +103,7 @@ impl Addition {
             rows: Arc::new(rows),
             length,
             spectrum: Arc::new(spectrum),
+            coefficients: Arc::default(),
             forward,
             inverse,
         }
@@ -119,23 +122,37 @@ impl Addition {
         &self.rows[self.window.start + row]
     }
 
-    /// Entry of the operator for cells of two rows at a `distance` along y, from all wavenumbers.
+    /// Entry of the operator for cells of two rows at a `distance` along y.
     pub(super) fn entry(&self, rows: [usize; 2], distance: usize) -> f64 {
+        let coefficients = self.coefficients.get_or_init(|| self.inverted());
         let [here, there] = rows.map(|row| self.row(row));
-        let turn = std::f64::consts::TAU * distance as f64 / self.length as f64;
         let mut sum = 0.0;
         for (k, a) in here.weights.iter().enumerate() {
             for (l, b) in there.weights.iter().enumerate() {
-                let waves = self.spectrum.row(pair(here.first + k, there.first + l));
-                let terms = waves.iter().enumerate().map(|(n, wave)| {
-                    // Each wave stands for two, but for the constant and the shortest of an even length.
-                    let single = n == 0 || 2 * n == self.length;
-                    wave * (turn * n as f64).cos() * if single { 1.0 } else { 2.0 }
-                });
-                sum += a * b * terms.sum::<f64>();
+                sum += a * b * coefficients[[pair(here.first + k, there.first + l), distance]];
             }
         }
         sum
+    }
+
+    /// A, from all wavenumbers: pairs of nodes, distances.
+    fn inverted(&self) -> Array2<f64> {
+        let mut coefficients = Array2::zeros(self.spectrum.dim());
+        let (mut even, mut waves) = (vec![0.0; self.length], vec![ZERO; self.length / 2 + 1]);
+        let mut scratch = vec![ZERO; self.inverse.get_scratch_len()];
+        let pairs = self.spectrum.axis_iter(Axis(0));
+        for (from, mut to) in pairs.zip(coefficients.axis_iter_mut(Axis(0))) {
+            waves
+                .iter_mut()
+                .zip(from)
+                .for_each(|(wave, from)| *wave = from.into());
+            let done = (self.inverse).process_with_scratch(&mut waves, &mut even, &mut scratch);
+            debug_assert!(done.is_ok(), "lengths are those of the plan");
+            to.iter_mut()
+                .zip(&even)
+                .for_each(|(to, value)| *to = *value);
+        }
+        coefficients
     }
 
     /// A Bᵀ p of the rows `occupied` of `input`, outside of which it is 0.

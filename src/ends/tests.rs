@@ -1,23 +1,16 @@
 //! The quarter space at one wavenumber, and its cells.
 
+mod operator;
+
 use std::f64::consts::PI;
 
 use ndarray::{Array1, Array2};
 use spec_math::cephes64::k0;
 
-use super::bodies::Ends;
+use super::VANISHED;
 use super::linear::{factors, solve};
 use super::reduction::Reduction;
-use super::{QuarterSpace, VANISHED};
-use crate::body::HalfSpace;
-use crate::convolution::Convolution;
-use crate::error::Result;
-use crate::grid::Grid;
-use crate::influence::{Method, influence_coefficients};
 use crate::kernel::quadrature::Rule;
-use crate::material::Elastic;
-use crate::parallel::Threads;
-use crate::response::Body;
 
 /// What the face adds at ξ under pressure from 0 to `end`, with the mirror image.
 fn added(reduction: &Reduction, xi: f64, end: f64) -> f64 {
@@ -173,106 +166,4 @@ fn the_exponent_of_a_sharp_end() {
             (pressure[[far, 0]] / pressure[[near, 0]]).ln() / (middle(far) / middle(near)).ln();
         assert!((slope + 0.225_987).abs() < 1e-3, "{poisson}: {slope}");
     }
-}
-
-/// The operator of all cells, as a matrix.
-fn dense(bodies: &[&Body], grid: &Grid) -> Result<Array2<f64>> {
-    let threads = std::sync::Arc::new(Threads::new(Some(1))?);
-    let mut coefficients = Array2::zeros(grid.shape());
-    for body in bodies {
-        coefficients += &influence_coefficients(*body, grid, Method::Exact)?;
-    }
-    let additions = Ends::of(bodies).additions(grid, &threads)?;
-    let convolution = Convolution::plan(&coefficients, Some(1))?.plus(additions);
-    let cells = coefficients.len();
-    let mut matrix = Array2::zeros((cells, cells));
-    for cell in 0..cells {
-        let mut unit = Array2::zeros(grid.shape());
-        unit[[cell / grid.shape()[1], cell % grid.shape()[1]]] = 1.0;
-        let column = convolution.apply(&unit)?;
-        matrix.column_mut(cell).assign(&column.flatten());
-    }
-    Ok(matrix)
-}
-
-/// Smallest pivot of the Cholesky factorisation, relative to the largest entry.
-fn smallest_pivot(mut matrix: Array2<f64>) -> f64 {
-    let n = matrix.nrows();
-    let largest = matrix[[0, 0]];
-    let mut smallest = f64::INFINITY;
-    for k in 0..n {
-        let pivot = matrix[[k, k]];
-        smallest = smallest.min(pivot / largest);
-        for i in k + 1..n {
-            let factor = matrix[[i, k]] / pivot;
-            for j in k + 1..n {
-                matrix[[i, j]] -= factor * matrix[[k, j]];
-            }
-        }
-    }
-    smallest
-}
-
-/// Symmetric to rounding, and positive definite: with one end, two ends, and layers. The pivots are no smaller than
-/// those of the half-space, but for the table of the plate, whose error is 1e-4 of the displacement.
-#[test]
-fn operators_are_symmetric_and_positive() -> Result<()> {
-    let grid = Grid::new([40, 14], [10.0, 3.5])?;
-    for poisson in [0.0, 0.25, 0.5] {
-        let whole = HalfSpace::from(Elastic::new(1.0, poisson)?);
-        let least = smallest_pivot(dense(&[&Body::from(&whole)], &grid)?);
-        for ends in [
-            [Some(-5.0), None],
-            [Some(-5.0), Some(5.0)],
-            [Some(-6.3), Some(5.2)],
-        ] {
-            let ended = Body::from(&whole.clone().with_ends(ends)?);
-            let matrix = dense(&[&ended], &grid)?;
-            let largest = matrix.fold(0.0_f64, |most, entry| most.max(entry.abs()));
-            let asymmetry = (&matrix - &matrix.t()).fold(0.0_f64, |most, d| most.max(d.abs()));
-            assert!(asymmetry < 1e-12 * largest, "{asymmetry:e}");
-            let pivot = smallest_pivot(matrix);
-            assert!(pivot > 0.3 * least, "{poisson} {ends:?}: {pivot} {least}");
-        }
-    }
-    Ok(())
-}
-
-/// Cells converge to the displacement at their centres under a rectangle of cells at the end: away from its rim, the
-/// error falls with the square of the cells, from 1e-3 of the largest displacement.
-#[test]
-fn cells_converge() -> Result<()> {
-    let material = Elastic::new(1.0, 0.3)?;
-    let exact = QuarterSpace::new(material, 0.0, [2.0, 1.0])?;
-    let body = Body::from(&HalfSpace::from(material).with_ends([Some(0.0), None])?);
-    let mut errors = Vec::new();
-    for n in [4, 8, 16] {
-        let grid = Grid::new([3 * n, 3 * n], [3.0, 3.0])?.centered_at([1.5, 0.0])?;
-        let threads = std::sync::Arc::new(Threads::new(Some(1))?);
-        let coefficients = influence_coefficients(&body, &grid, Method::Exact)?;
-        let additions = Ends::of(&[&body]).additions(&grid, &threads)?;
-        let convolution = Convolution::plan(&coefficients, Some(1))?.plus(additions);
-        let (x, y) = (grid.x(), grid.y());
-        let loaded = |i: usize, j: usize| f64::from(u8::from(x[i] < 2.0 && y[j].abs() < 1.0));
-        let u = convolution.apply(&Array2::from_shape_fn((3 * n, 3 * n), |(i, j)| {
-            loaded(i, j)
-        }))?;
-        let mut worst = 0.0_f64;
-        for (i, j) in [
-            (0, 3 * n / 2),
-            (n, 3 * n / 2),
-            (n / 2, n),
-            (2 * n + n / 2, 3 * n / 2),
-        ] {
-            let expected = exact.displacement([x[i], y[j]])?;
-            worst = worst.max((u[[i, j]] / expected - 1.0).abs());
-        }
-        errors.push(worst);
-    }
-    assert!(errors[0] < 2e-3 && errors[2] < 1e-4, "{errors:?}");
-    assert!(
-        errors[1] < 0.4 * errors[0] && errors[2] < 0.4 * errors[1],
-        "{errors:?}"
-    );
-    Ok(())
 }
