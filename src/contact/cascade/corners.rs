@@ -17,8 +17,8 @@ use crate::surface::Surface;
 /// Parts into which an interval is divided in the search for a corner.
 const PARTS: usize = 8;
 
-/// Divisions of a cell: a smooth gap leaves 8⁻³ of the change of its slope over the cell.
-const DIVISIONS: usize = 4;
+/// Divisions of a cell: a smooth gap leaves 4⁻⁴ of the change of its slope over the cell.
+const DIVISIONS: usize = 5;
 
 /// Share of the largest change of the slope over an eighth of the cell that a corner keeps: all of it, or half where it
 /// lies between two points.
