@@ -225,8 +225,8 @@ def test_free_ends_are_drawn(results: list[nacre.paper.Result], out: Path) -> No
         lines = [row for row in rows if (row["roller"], row["load"], row["bodies"]) == chosen]
         return column(lines, "pressure [MPa]")
 
-    # In the cell at the end, 0.075 mm long, the half-space has 1.8 times the pressure of the middle,
-    # and a free end 1.14 times; in the middle both agree to 3 %.
+    # In the cell at the end, 0.075 mm long, the half-space has 1.8 times the pressure of the
+    # middle, and a free end 1.14 times; in the middle both agree to 3 %.
     free, half_space = pressure("free ends"), pressure("half-space")
     middle = len(free) // 2
     assert free[middle] == pytest.approx(half_space[middle], rel=0.04)
