@@ -15,7 +15,7 @@
 
 use std::collections::HashMap;
 use std::f64::consts::FRAC_2_PI;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 use ndarray::{Array1, Array2, Axis};
 use spec_math::cephes64::{k0, k1};
@@ -133,9 +133,29 @@ pub(super) struct Reduction {
     /// φ
     pub(super) displacement: Modes,
     /// Excess of P over p on the surface, times 1/k.
-    pub(super) surface: Products,
+    pub(super) surface: Kernel,
     /// Q on the face, times 1/k.
-    pub(super) face: Products,
+    pub(super) face: Kernel,
+}
+
+/// A kernel, and its sum of products, which stresses alone need.
+#[derive(Debug)]
+pub(super) struct Kernel {
+    values: Array2<f64>,
+    products: OnceLock<Products>,
+}
+
+impl Kernel {
+    fn new(values: Array2<f64>) -> Self {
+        Self {
+            values,
+            products: OnceLock::new(),
+        }
+    }
+
+    pub(super) fn products(&self) -> &Products {
+        self.products.get_or_init(|| products(self.values.clone()))
+    }
 }
 
 /// Terms of the sum that are left out, relative to its largest value.
@@ -185,8 +205,8 @@ impl Reduction {
             Array2::from_shape_fn(response.dim(), |(i, j)| response[[i.min(j), i.max(j)]]);
         Self {
             displacement: Modes::new(square_root(response)),
-            surface: products(kernel(excess)),
-            face: products(face),
+            surface: Kernel::new(kernel(excess)),
+            face: Kernel::new(face),
         }
     }
 }

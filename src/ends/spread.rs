@@ -62,8 +62,8 @@ impl EndPressure {
     ) -> Array2<f64> {
         let reduction = Reduction::of(poisson);
         let products = match place {
-            Where::Surface => &reduction.surface,
-            Where::Face => &reduction.face,
+            Where::Surface => reduction.surface.products(),
+            Where::Face => reduction.face.products(),
         };
         let targets = Nodes::new(0.5 * spacing, spacing, count);
         let width = self.values.ncols() + 2 * margin;

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 use ndarray::Array2;
 
-use super::half_space::{HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source, components};
+use super::half_space::{HalfSpacePlan, PlaneEvaluator, PointEvaluator, components};
 use super::options::StressProgress;
 use crate::body::{HalfSpace, Substrate};
 use crate::ends::{EndPressure, Where};
@@ -20,35 +20,39 @@ use crate::response::interior::Place;
 
 mod face;
 mod images;
+mod part;
+mod strip;
 
-use face::{Face, NearEnd};
+use face::{Face, FacePressure, NearEnd};
 use images::Images;
+use part::Part;
+use strip::{STRIP, Strip};
 
 /// Stress beyond that of the body that goes on, on the cells of a contact's grid.
 #[derive(Debug)]
 pub(super) struct EndStress {
-    /// The body without ends under mirror images and excesses, on a larger grid.
-    surface: HalfSpacePlan,
-    /// First row and column of that grid that are the contact's.
-    first: [usize; 2],
+    /// The body without ends under mirror images and excesses; beside each end the same on finer cells instead.
+    surfaces: Vec<Part>,
     /// Numbers of rows and columns of the contact's grid.
     shape: [usize; 2],
     faces: Vec<Face>,
+    /// Length of the contact's cells along x \[m\].
+    spacing: f64,
     /// Largest pressure \[Pa\].
     peak: f64,
 }
 
-/// Error of the stress one cell below the surface beside the face, over the peak pressure, and that left far below. The
-/// first falls with the depth z as z^−3/2. Measured under a smooth pressure half its length from the end, for ν = 0,
-/// the worst: 0.022, 0.008 and 0.002 at one, two and four cells, 0.001 from there on (`tests/stress/ends.rs`).
-const ERRORS: [f64; 2] = [0.025, 1.5e-3];
+/// Error of the stress from one cell below the surface on, over the peak pressure, and at most. In between it falls
+/// as z⁻². Measured beside the face, under a smooth pressure as long as wide, for ν = 0, the worst: 0.08, 5.4e-3,
+/// 1.6e-3 and 1.0e-3 at 0, ¼, ½ and one cell, and less farther down (`tests/stress/ends.rs`).
+const ERRORS: [f64; 2] = [1.2e-3, 0.1];
 
 /// Length over which the pressures beside the load are followed, in widths of the contact or in distances of it from
 /// the end, if that is more: they fall with the square of the distance at least.
-const REACH: f64 = 4.0;
+const REACH: f64 = 3.0;
 
 /// Columns beyond the contact's on either side, in the same unit.
-const MARGIN: f64 = 1.0;
+const MARGIN: f64 = 3.0;
 
 /// Distance of the load from an end, relative to the longer side of the contact, from which on the end adds less than
 /// 1e-3 of the peak pressure: the image of a force p b² at 20 b.
@@ -77,8 +81,9 @@ impl EndStress {
         let [dx, dy] = grid.spacing();
         let width = bears(pressure.columns()) as f64 * dy;
         let size = width.max(bears(pressure.rows()) as f64 * dx);
+        let endless = body.clone().with_ends([None; 2])?;
         let mut images = Images::new(grid);
-        let mut faces = Vec::new();
+        let (mut surfaces, mut faces) = (Vec::new(), Vec::new());
         for (end, sign) in body.ends().into_iter().zip([1.0, -1.0]) {
             let Some(end) = end else { continue };
             let Some(near) = NearEnd::new(&pressure, grid, end, sign) else {
@@ -90,24 +95,38 @@ impl EndStress {
             let scale = width.max(near.nearest);
             let margin = ((MARGIN * scale / dy).ceil() as usize).min(2 * ny);
             let spread = EndPressure::new(&near.pressure, near.first, grid.spacing());
+            let means = |place: Where, spacing: f64, count: usize| {
+                threads.run(|| spread.spread(place, material.poisson(), spacing, count, margin))
+            };
             let over = |place: Where, spacing: f64| {
                 let count = ((REACH * scale / spacing).ceil() as usize).min(MOST_ROWS);
-                threads.run(|| spread.spread(place, material.poisson(), spacing, count, margin))
+                means(place, spacing, count)
             };
             images.add_mirror(&pressure, end);
             images.add_excess(&over(Where::Surface, dx), end, margin);
-            let spacing = Face::spacing(grid, REACH * scale);
-            let below = HalfSpace::from(material);
-            let pressed = over(Where::Face, spacing);
-            match Face::plan(
-                &below,
-                grid,
-                &near,
-                sign,
-                (&pressed, spacing),
+            let strip = Strip::new(dx, dx, |spacing, count| {
+                means(Where::Surface, spacing, count)
+            });
+            surfaces.extend(Part::beside(
+                &endless,
+                (grid, near.rows(STRIP)),
+                &strip,
+                end,
+                margin,
                 threads,
-                progress,
-            )? {
+            )?);
+            let spacing = Face::spacing(grid, REACH * scale);
+            let strip = Strip::new(spacing, dx, |spacing, count| {
+                means(Where::Face, spacing, count)
+            });
+            let below = HalfSpace::from(material);
+            let pressed = FacePressure {
+                spacing,
+                margin,
+                means: over(Where::Face, spacing),
+                strip,
+            };
+            match Face::plan(&below, grid, &near, sign, &pressed, threads, progress)? {
                 ControlFlow::Continue(face) => faces.push(face),
                 ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
             }
@@ -115,27 +134,23 @@ impl EndStress {
         if faces.is_empty() {
             return Ok(ControlFlow::Continue(None));
         }
-        let pressure_peak = whole
-            .pressure
-            .iter()
-            .fold(0.0, |most: f64, p| most.max(p.abs()));
-        let (pressure, grid, first) = images.together()?;
-        let endless = body.clone().with_ends([None; 2])?;
-        let surface = Source::uniform(&endless, &grid, &pressure);
+        let peak = |most: f64, p: &f64| most.max(p.abs());
+        surfaces.push(Part::new(&endless, &images, threads)?);
         Ok(ControlFlow::Continue(Some(Self {
-            surface: surface.plan_unwatched(Some(threads.count()))?,
-            first,
+            surfaces,
             shape,
             faces,
-            peak: pressure_peak,
+            spacing: dx,
+            peak: whole.pressure.iter().fold(0.0, peak),
         })))
     }
 
     /// Estimated error \[Pa\] of the stress that the ends add at the depth `z`, at the worst place, which is beside
     /// the face.
     pub(super) fn uncertainty(&self, z: f64) -> f64 {
-        let cells = (z / self.surface.grid.spacing()[0]).max(1.0);
-        self.peak * (ERRORS[0] * cells.powf(-1.5) + ERRORS[1])
+        let [deep, most] = ERRORS;
+        let cells = (z / self.spacing).min(1.0);
+        self.peak * (deep / cells.powi(2)).min(most)
     }
 }
 
@@ -143,20 +158,24 @@ impl EndStress {
 #[derive(Debug)]
 pub(super) struct EndPlanes<'a> {
     ends: &'a EndStress,
-    surface: PlaneEvaluator<'a>,
+    surfaces: Vec<PlaneEvaluator<'a>>,
     displacement: bool,
-    /// Components on the larger grid.
+    /// Components on the cells of the largest part.
     fields: Vec<Vec<f64>>,
 }
 
 impl<'a> EndPlanes<'a> {
     pub(super) fn new(ends: &'a EndStress, displacement: bool) -> Self {
-        let [nx, ny] = ends.surface.grid.shape();
+        let cells = |part: &Part| part.plan.grid.shape().iter().product();
+        let most: usize = ends.surfaces.iter().map(cells).max().unwrap_or(0);
+        let surfaces = ends.surfaces.iter();
         Self {
             ends,
-            surface: PlaneEvaluator::new(&ends.surface, [0.0; 2], displacement),
+            surfaces: surfaces
+                .map(|part| PlaneEvaluator::new(&part.plan, [0.0; 2], displacement))
+                .collect(),
             displacement,
-            fields: vec![vec![0.0; nx * ny]; components(displacement)],
+            fields: vec![vec![0.0; most]; components(displacement)],
         }
     }
 
@@ -167,15 +186,14 @@ impl<'a> EndPlanes<'a> {
         outputs: &mut [&mut [f64]],
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
-        let mut fields: Vec<&mut [f64]> = self.fields.iter_mut().map(|f| &mut f[..]).collect();
-        self.surface.evaluate(place, &mut fields, progress)?;
-        let ([row, column], [_, ny]) = (self.ends.first, self.ends.shape);
-        let width = self.ends.surface.grid.shape()[1];
-        for (field, output) in self.fields.iter().zip(&mut *outputs) {
-            let rows = field.chunks_exact(width).skip(row);
-            for (output, field) in output.chunks_exact_mut(ny).zip(rows) {
-                let columns = output.iter_mut().zip(&field[column..]);
-                columns.for_each(|(output, value)| *output += value);
+        let [_, ny] = self.ends.shape;
+        for (part, surface) in self.ends.surfaces.iter().zip(&mut self.surfaces) {
+            let cells: usize = part.plan.grid.shape().iter().product();
+            let mut fields: Vec<&mut [f64]> =
+                self.fields.iter_mut().map(|f| &mut f[..cells]).collect();
+            surface.evaluate(place, &mut fields, progress)?;
+            for (field, output) in fields.iter().zip(&mut *outputs) {
+                part.add(field, ny, output);
             }
         }
         for face in &self.ends.faces {
@@ -194,18 +212,20 @@ impl<'a> EndPlanes<'a> {
 #[derive(Debug)]
 pub(super) struct EndPoints<'a> {
     ends: &'a EndStress,
-    surface: PointEvaluator<'a>,
+    surfaces: Vec<PointEvaluator<'a>>,
     displacement: bool,
     cells: Vec<[usize; 2]>,
 }
 
 impl<'a> EndPoints<'a> {
     pub(super) fn new(ends: &'a EndStress, displacement: bool, cells: &[[usize; 2]]) -> Self {
-        let [row, column] = ends.first;
-        let there = cells.iter().map(|[i, j]| [i + row, j + column]).collect();
+        let surface = |part: &'a Part| {
+            let there = cells.iter().map(|cell| part.cell(*cell).0).collect();
+            PointEvaluator::new(&part.plan, [0.0; 2], displacement, there)
+        };
         Self {
             ends,
-            surface: PointEvaluator::new(&ends.surface, [0.0; 2], displacement, there),
+            surfaces: ends.surfaces.iter().map(surface).collect(),
             displacement,
             cells: cells.to_vec(),
         }
@@ -218,11 +238,14 @@ impl<'a> EndPoints<'a> {
         sums: &mut [[f64; N]],
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
-        let surface = self.surface.evaluate(place, progress)?;
-        for (sums, surface) in sums.iter_mut().zip(surface) {
-            sums.iter_mut()
-                .zip(surface)
-                .for_each(|(sum, value)| *sum += value);
+        for (part, surface) in self.ends.surfaces.iter().zip(&self.surfaces) {
+            let found = surface.evaluate(place, progress)?;
+            for ((sums, found), cell) in sums.iter_mut().zip(found).zip(&self.cells) {
+                let (_, factor) = part.cell(*cell);
+                sums.iter_mut()
+                    .zip(found)
+                    .for_each(|(sum, value)| *sum += factor * value);
+            }
         }
         for face in &self.ends.faces {
             let at = face.at_depth(place.depth, self.displacement)?;

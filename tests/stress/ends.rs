@@ -34,13 +34,13 @@ fn largest(field: &Array3<f64>, depth: usize, rows: Range<usize>) -> f64 {
         .fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
-/// The two half-spaces leave no shear on the face by symmetry. Their normal tractions cancel to the estimated error,
-/// 0.025 of the peak one cell below the surface and 1.5e-3 far below; each alone is 0.1 to 0.4.
+/// The two half-spaces leave no shear on the face by symmetry. Their normal tractions, each 0.1 to 0.4 of the peak,
+/// cancel to 1e-3 of it from one cell below the surface on, and to the estimated error at a quarter of a cell.
 #[test]
 fn the_face_is_free_of_traction() -> Result<()> {
     for poisson in [0.0, 0.3, 0.5] {
         let n = 8;
-        let depths = [1.0, 2.0, 4.0, 8.0, 16.0].map(|cells| cells / n as f64);
+        let depths = [0.25, 1.0, 2.0, 4.0, 8.0, 16.0].map(|cells| cells / n as f64);
         let field = near_end(n, true, &depths, poisson)?;
         let uncertainty = field
             .uncertainty
@@ -53,20 +53,23 @@ fn the_face_is_free_of_traction() -> Result<()> {
                 along_y < 1e-13 && along_z < 1e-13,
                 "{along_y:e} {along_z:e}"
             );
-            assert!(normal < uncertainty[k], "{poisson} {depth}: {normal}");
+            let error = if k == 0 { uncertainty[0] } else { 1e-3 };
+            assert!(normal < error, "{poisson} {depth}: {normal}");
+            assert!(normal < uncertainty[k] && uncertainty[k] < 0.05);
         }
         // Farther in, the stress is not small.
-        assert!(largest(field.zz(), 2, 8..16) > 0.5);
+        assert!(largest(field.zz(), 3, 8..16) > 0.5);
     }
     Ok(())
 }
 
-/// Largest residual of equilibrium, by central differences over two cells, at the depth z near the end.
+/// Largest residual of equilibrium, by central differences over two cells, at the depth z near the end. Half a cell
+/// below the face, uniform cells of Q leave a shear of the order of the cells, which has no such difference.
 fn residual(n: usize, z: f64) -> Result<f64> {
     let h = 1.0 / n as f64;
     let field = near_end(n, false, &[z - h, z, z + h], 0.3)?;
     let mut worst = 0.0_f64;
-    for i in 1..2 * n {
+    for i in 2..2 * n {
         for j in n..3 * n {
             let along = |c: &Array3<f64>, axis: usize| {
                 let (before, after) = match axis {
@@ -90,13 +93,14 @@ fn residual(n: usize, z: f64) -> Result<f64> {
     Ok(worst)
 }
 
-/// The residual of equilibrium falls with the square of the cells, 0.7 being the largest gradient.
+/// The residual of equilibrium falls with the square of the cells, to a rest that is 1e-3 of 0.7, the largest gradient:
+/// 5.7e-3 and 1.4e-3 at the depth 0.5, 6.3e-3 and 2.0e-3 at the depth 1.
 #[test]
 fn stresses_are_in_equilibrium() -> Result<()> {
     let [coarse, fine] = [residual(8, 0.5)?, residual(16, 0.5)?];
-    assert!(coarse < 8e-3 && fine < 0.6 * coarse, "{coarse} {fine}");
+    assert!(coarse < 7e-3 && fine < 0.35 * coarse, "{coarse} {fine}");
     let [coarse, fine] = [residual(8, 1.0)?, residual(16, 1.0)?];
-    assert!(coarse < 8e-3 && fine < 0.6 * coarse, "{coarse} {fine}");
+    assert!(coarse < 7e-3 && fine < 0.35 * coarse, "{coarse} {fine}");
     Ok(())
 }
 

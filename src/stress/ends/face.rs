@@ -1,19 +1,21 @@
 //! The stress below an end face, as that of a half-space whose surface is the face.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::OnceLock;
 
 use ndarray::{Array2, ArrayRef2};
 
+use super::images::Images;
+use super::part::Part;
+use super::strip::{STRIP, Strip};
 use crate::body::HalfSpace;
 use crate::convolution::RowWeights;
 use crate::ends::node_rows;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::parallel::{Threads, check_memory};
-use crate::stress::half_space::{HalfSpacePlan, PlaneEvaluator, Source, components};
+use crate::stress::half_space::{PlaneEvaluator, components};
 use crate::stress::options::{Side, StressProgress};
-
 use crate::stress::section::place;
 
 /// Components of the half-space below the face for each component of the body. The axes of the first are z, y
@@ -38,6 +40,7 @@ const BETWEEN: usize = 4;
 
 /// The pressure of a contact, seen from an end.
 pub(super) struct NearEnd {
+    sign: f64,
     /// Distance of the first row from the end \[m\].
     pub(super) first: f64,
     /// Rows between the contact's first one and that, which lie beyond the end.
@@ -61,16 +64,40 @@ impl NearEnd {
         let loaded = (beyond..nx).find(bears)?;
         let shape = (nx - beyond, pressure.ncols());
         Some(Self {
+            sign,
             first: distance(beyond),
             beyond,
             nearest: distance(loaded),
             pressure: Array2::from_shape_fn(shape, |(k, j)| pressure[[row(beyond + k), j]]),
         })
     }
+
+    /// The `count` rows of the contact next to the end, or as many as it has.
+    pub(super) fn rows(&self, count: usize) -> Range<usize> {
+        let rows = self.pressure.nrows();
+        let count = count.min(rows);
+        if self.sign > 0.0 {
+            self.beyond..self.beyond + count
+        } else {
+            rows - count..rows
+        }
+    }
 }
 
-/// Fields of components at several depths below the face, on (z, y).
-type Fields = Vec<Vec<Array2<f64>>>;
+/// The pressure Q on an end face.
+pub(super) struct FacePressure {
+    /// Length of its cells along z.
+    pub(super) spacing: f64,
+    /// Columns beyond the contact's on either side.
+    pub(super) margin: usize,
+    /// Means over cells of (z, y), from z = 0 down.
+    pub(super) means: Array2<f64>,
+    /// Means beside the edge, over finer cells too.
+    pub(super) strip: Strip,
+}
+
+/// Components at several depths below the face, on (z, y) in C order.
+type Fields = Vec<Vec<Vec<f64>>>;
 
 /// Stress below one end face.
 #[derive(Debug)]
@@ -80,11 +107,20 @@ pub(super) struct Face {
     depths: Vec<f64>,
     /// Weights of these depths for each row of the contact's grid.
     rows: Vec<RowWeights>,
-    plan: HalfSpacePlan,
-    /// Rows of cells from z = 0 down, and the first of the contact's columns.
-    cells: usize,
-    margin: usize,
+    /// Number of the contact's columns.
     columns: usize,
+    tables: Vec<Table>,
+}
+
+/// Fields of one part of the pressure on a face.
+#[derive(Debug)]
+struct Table {
+    part: Part,
+    /// Rows, from z = 0 down, and their length.
+    rows: usize,
+    spacing: f64,
+    /// Depth z down to which it counts.
+    reach: f64,
     stresses: Fields,
     displacements: OnceLock<Fields>,
 }
@@ -96,87 +132,121 @@ impl Face {
         grid.spacing()[0].min(reach / least).max(reach / most)
     }
 
-    /// The half-space `below` the face under a pressure on (z, y), from z = 0 down in cells of a given length.
+    /// The half-space `below` the face under a pressure.
     pub(super) fn plan(
         below: &HalfSpace,
         grid: &Grid,
         near: &NearEnd,
         sign: f64,
-        (pressure, spacing): (&ArrayRef2<f64>, f64),
+        pressed: &FacePressure,
         threads: &Threads,
         progress: &mut StressProgress,
     ) -> Result<ControlFlow<(), Self>> {
-        let [nx, columns] = grid.shape();
-        let (cells, width) = (pressure.nrows(), pressure.ncols());
-        let even = Array2::from_shape_fn((2 * cells, width), |(i, j)| {
-            let depth = if i < cells { cells - 1 - i } else { i - cells };
-            pressure[[depth, j]]
-        });
-        let size = [
-            2.0 * cells as f64 * spacing,
-            width as f64 * grid.spacing()[1],
-        ];
-        let on = Grid::new([2 * cells, width], size)?;
-        let (depths, near_rows) = node_rows(near.first, grid.spacing()[0], nx - near.beyond);
-        let values = depths.len() as u64 * components(true) as u64 * (cells * columns) as u64;
-        check_memory([cells, columns], 8 * values)?;
-        let mut rows = vec![RowWeights::default(); nx];
-        for (k, weights) in near_rows.into_iter().enumerate() {
+        let ([nx, columns], [dx, dy]) = (grid.shape(), grid.spacing());
+        let (rows, spacing) = (pressed.means.nrows(), pressed.spacing);
+        let size = [rows as f64 * spacing, columns as f64 * dy];
+        let on = Grid::new([rows, columns], size)?.centered_at([0.5 * size[0], 0.0])?;
+        let (depths, near_rows) = node_rows(near.first, dx, nx - near.beyond);
+        let mut weights = vec![RowWeights::default(); nx];
+        for (k, row_weights) in near_rows.into_iter().enumerate() {
             let row = near.beyond + k;
-            rows[if sign > 0.0 { row } else { nx - 1 - row }] = weights;
+            weights[if sign > 0.0 { row } else { nx - 1 - row }] = row_weights;
         }
-        let plan = Source::uniform(below, &on, &even).plan_unwatched(Some(threads.count()))?;
+        let (strip, margin) = (&pressed.strip, pressed.margin);
+        // Rows that the interpolation needs beyond a depth.
+        let beside = 0..(STRIP + BETWEEN).min(rows);
+        let finer = beside.len() * strip.division;
+        let values = depths.len() * components(true) * (rows + beside.len() + finer) * columns;
+        check_memory([rows, columns], 8 * values as u64)?;
+        let mut images = Images::new(&on);
+        images.add_excess(&pressed.means, 0.0, margin);
+        let whole = Part::new(below, &images, threads)?;
+        let near_rows = (&on, beside.clone());
+        let [coarse, fine] = Part::beside(below, near_rows, strip, 0.0, margin, threads)?;
+        let (reach, fine_spacing) = (STRIP as f64 * spacing, spacing / strip.division as f64);
+        let tables = [
+            (whole, rows, spacing, f64::INFINITY),
+            (coarse, beside.len(), spacing, reach),
+            (fine.in_finer_cells(), finer, fine_spacing, reach),
+        ];
         let mut face = Self {
             sign,
             depths,
-            rows,
-            plan,
-            cells,
-            margin: (width - columns) / 2,
+            rows: weights,
             columns,
-            stresses: Fields::new(),
-            displacements: OnceLock::new(),
+            tables: Vec::new(),
         };
-        Ok(match face.fields(false, progress) {
-            ControlFlow::Continue(fields) => {
-                face.stresses = fields;
-                ControlFlow::Continue(face)
+        for (part, rows, spacing, reach) in tables {
+            let mut table = Table {
+                part,
+                rows,
+                spacing,
+                reach,
+                stresses: Fields::new(),
+                displacements: OnceLock::new(),
+            };
+            match table.fields(&face.depths, columns, false, progress) {
+                ControlFlow::Continue(fields) => table.stresses = fields,
+                ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
             }
-            ControlFlow::Break(()) => ControlFlow::Break(()),
-        })
+            face.tables.push(table);
+        }
+        Ok(ControlFlow::Continue(face))
     }
 
-    /// The stresses at all depths below the face, or the displacements.
-    fn fields(&self, displacement: bool, progress: &mut StressProgress) -> ControlFlow<(), Fields> {
-        let mut evaluator = PlaneEvaluator::new(&self.plan, [0.0; 2], displacement);
-        let [rows, width] = self.plan.grid.shape();
-        let mut planes = vec![vec![0.0; rows * width]; components(displacement)];
+    /// The components at the depth `z` of the body.
+    pub(super) fn at_depth(&self, z: f64, displacement: bool) -> ControlFlow<(), AtDepth<'_>> {
+        let count = components(displacement);
+        let mut lines = vec![vec![vec![0.0; self.columns]; count]; self.depths.len()];
+        for table in self.tables.iter().filter(|table| z < table.reach) {
+            if displacement && table.displacements.get().is_none() {
+                let mut unwatched = |_| ControlFlow::Continue(());
+                let fields = table.fields(&self.depths, self.columns, true, &mut unwatched)?;
+                let _ = table.displacements.set(fields);
+            }
+            table.add(z, self.sign, &mut lines);
+        }
+        ControlFlow::Continue(AtDepth {
+            rows: &self.rows,
+            lines,
+        })
+    }
+}
+
+impl Table {
+    /// The stresses at all `depths` below the face, or the displacements.
+    fn fields(
+        &self,
+        depths: &[f64],
+        columns: usize,
+        displacement: bool,
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Fields> {
+        let plan = &self.part.plan;
+        let mut evaluator = PlaneEvaluator::new(plan, [0.0; 2], displacement);
+        let cells: usize = plan.grid.shape().iter().product();
+        let mut planes = vec![vec![0.0; cells]; components(displacement)];
         let first = if displacement { components(false) } else { 0 };
         let mut fields = Fields::new();
-        for depth in &self.depths {
-            let Ok(place) = place(&self.plan.body, *depth, Side::Below) else {
+        for depth in depths {
+            let Ok(place) = place(&plan.body, *depth, Side::Below) else {
                 return ControlFlow::Break(());
             };
             let mut outputs: Vec<&mut [f64]> = planes.iter_mut().map(|p| &mut p[..]).collect();
             evaluator.evaluate(&place, &mut outputs, &mut |_| progress(0.0))?;
             let kept = planes[first..].iter().map(|plane| {
-                Array2::from_shape_fn((self.cells, self.columns), |(i, j)| {
-                    plane[(self.cells + i) * width + self.margin + j]
-                })
+                let mut kept = vec![0.0; self.rows * columns];
+                self.part.add(plane, columns, &mut kept);
+                kept
             });
             fields.push(kept.collect());
         }
         ControlFlow::Continue(fields)
     }
 
-    /// The components at the depth `z` of the body.
-    pub(super) fn at_depth(&self, z: f64, displacement: bool) -> ControlFlow<(), AtDepth<'_>> {
-        if displacement && self.displacements.get().is_none() {
-            let fields = self.fields(true, &mut |_| ControlFlow::Continue(()))?;
-            let _ = self.displacements.set(fields);
-        }
-        let spacing = self.plan.grid.spacing()[0];
-        let at = z / spacing - 0.5;
+    /// Adds components of the body at the depth `z` to `lines`: for each depth below the face and component, along y.
+    fn add(&self, z: f64, sign: f64, lines: &mut [Vec<Vec<f64>>]) {
+        let at = z / self.spacing - 0.5;
         let below = at.floor();
         // Lagrange's polynomials of four cells around.
         let t = at - below;
@@ -187,43 +257,29 @@ impl Face {
                 .map(|other| (t - (other as f64 - 1.0)) / (node - (other as f64 - 1.0)))
                 .product()
         });
-        let between = |field: &Array2<f64>, odd: bool| -> Vec<f64> {
-            let mut line = vec![0.0; self.columns];
-            for (q, weight) in weights.iter().enumerate() {
-                let cell = below as i64 + q as i64 - 1;
-                let (cell, sign) = if cell < 0 {
-                    (-1 - cell, if odd { -1.0 } else { 1.0 })
-                } else {
-                    (cell, 1.0)
-                };
-                if cell < self.cells as i64 {
-                    let row = field.row(cell as usize);
-                    let values = line.iter_mut().zip(row);
-                    values.for_each(|(sum, value)| *sum += sign * weight * value);
-                }
-            }
-            line
-        };
-        let count = components(displacement);
-        let lines = (0..self.depths.len()).map(|node| {
-            let stresses = self.stresses[node].iter();
-            let displacements = self.displacements.get().filter(|_| displacement);
-            let fields: Vec<&Array2<f64>> = stresses
+        for (node, lines) in lines.iter_mut().enumerate() {
+            let displacements = self.displacements.get();
+            let fields: Vec<&Vec<f64>> = self.stresses[node]
+                .iter()
                 .chain(displacements.into_iter().flat_map(|fields| &fields[node]))
                 .collect();
-            let line = |&(turned, odd, along_x): &(usize, bool, bool)| {
-                let mut line = between(fields[turned], odd);
-                if along_x {
-                    line.iter_mut().for_each(|value| *value *= self.sign);
+            for (line, &(turned, odd, along_x)) in lines.iter_mut().zip(&TURNED) {
+                for (q, weight) in weights.iter().enumerate() {
+                    let cell = below as i64 + q as i64 - 1;
+                    let (cell, mirrored) = if cell < 0 {
+                        (-1 - cell, if odd { -1.0 } else { 1.0 })
+                    } else {
+                        (cell, 1.0)
+                    };
+                    if cell < self.rows as i64 {
+                        let factor = mirrored * weight * if along_x { sign } else { 1.0 };
+                        let row = fields[turned].chunks_exact(line.len()).nth(cell as usize);
+                        let values = line.iter_mut().zip(row.into_iter().flatten());
+                        values.for_each(|(sum, value)| *sum += factor * value);
+                    }
                 }
-                line
-            };
-            TURNED[..count].iter().map(line).collect()
-        });
-        ControlFlow::Continue(AtDepth {
-            rows: &self.rows,
-            lines: lines.collect(),
-        })
+            }
+        }
     }
 }
 

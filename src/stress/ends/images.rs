@@ -34,6 +34,10 @@ impl Images {
         }
     }
 
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
     /// Number of the row with its centre at x.
     fn row(&self, x: f64) -> f64 {
         let at = (x - self.grid.x()[0]) / self.grid.spacing()[0];
