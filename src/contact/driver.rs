@@ -183,8 +183,13 @@ impl Plan {
     }
 }
 
-/// Solves in a window, which opens until nothing overlaps on the whole grid. Where the cascade breaks down
-/// by rounding, the reference algorithm goes on from there.
+/// Residual and overlap from which on the reference algorithm goes on where the preconditioned iteration ended. A worse
+/// pressure cost it two to five times the iterations that it takes from a uniform one, on coats 1e3 to 1e5 times harder
+/// than the body.
+const GOOD_START: f64 = 1e-5;
+
+/// Solves in a window, which opens until nothing overlaps on the whole grid. Where the cascade breaks down, the
+/// reference algorithm goes on.
 fn solve_in_window(
     problem: &Problem,
     mut cascade: Cascade,
@@ -214,6 +219,9 @@ fn solve_in_window(
         retries += 1;
         if !converged || retries > RETRIES {
             let (left, before) = (criteria.after(iterations), cascade.work);
+            if !converged && !quality.meets(GOOD_START) {
+                fields.pressure = uniform_pressure(problem)?;
+            }
             let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
                 watch(iterations + more, before + work, quality)
             })?;
