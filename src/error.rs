@@ -140,6 +140,16 @@ pub enum Error {
         /// Width from which on the approach can be prescribed, estimated.
         needed: f64,
     },
+    /// A tangential force that friction does not bear.
+    #[error(
+        "force must be below what friction bears, {bears:e}, was {force:e}: the contact would slide as a whole"
+    )]
+    FullSlip {
+        /// The force \[N\].
+        force: f64,
+        /// Σ μp dA \[N\].
+        bears: f64,
+    },
     /// An iteration that ended before the tolerance was met.
     #[error(
         "not converged after {iterations} iterations: {}; raise max_iterations or the tolerance",
