@@ -25,8 +25,10 @@
 //! | `linear` | Newton's linear systems |
 //! | `newton` | tractions for a pressure |
 //! | `task` | sliding in one step, rolling |
+//! | `fields` | fields of the whole grid, and their errors |
 //! | `session` | pressure and tractions in turn |
 //! | `solution` | what comes out |
+//! | `creep` | Kalker's coefficients |
 
 use std::ops::ControlFlow;
 
@@ -34,6 +36,8 @@ use crate::contact::Contact;
 use crate::error::Result;
 use crate::surface::Surface;
 
+mod creep;
+mod fields;
 mod law;
 mod linear;
 mod newton;
@@ -43,6 +47,7 @@ mod solution;
 mod step;
 mod task;
 
+pub use creep::{CreepCoefficients, creep_coefficients, creep_coefficients_watched};
 pub use session::FrictionProgress;
 pub use solution::{FrictionReport, FrictionSolution, TangentialMotion};
 pub use step::{Friction, FrictionOptions, Rolling, RollingDirection, Step};

@@ -82,11 +82,12 @@ impl<'a> Linear<'a> {
                     .for_each(|(l, v)| *v = if l == k { 1.0 } else { 0.0 });
                 continue;
             }
-            for l in k + 1..n {
-                let factor = matrix[l][k] / pivot;
-                for m in k..n {
-                    matrix[l][m] -= factor * matrix[k][m];
-                }
+            let (above, below) = matrix.split_at_mut(k + 1);
+            for (row, l) in below.iter_mut().zip(k + 1..) {
+                let factor = row[k] / pivot;
+                row.iter_mut()
+                    .zip(&above[k])
+                    .for_each(|(to, from)| *to -= factor * from);
                 y[l] -= factor * y[k];
             }
         }

@@ -32,8 +32,6 @@ pub(super) struct Effort {
 /// Where an iteration ended.
 pub(super) struct Outcome {
     pub(super) q: Vec<f64>,
-    /// A q
-    pub(super) response: Vec<f64>,
     /// δ of the loaded degrees of freedom.
     pub(super) multipliers: Vec<f64>,
     pub(super) states: Vec<State>,
@@ -113,7 +111,6 @@ impl Problem<'_> {
                 stopped |= quality.worst() > effort.tolerance && left > 0;
                 return Outcome {
                     q,
-                    response,
                     multipliers,
                     states,
                     quality,

@@ -1,11 +1,14 @@
 //! The solution of a contact with friction.
 
+use std::ops::ControlFlow;
+
 use ndarray::Array2;
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+use crate::stress::{Member, Stress, StressOptions, StressPlan, StressProgress};
 
 /// Tangential motion of the counterbody over the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,6 +111,39 @@ impl FrictionSolution {
             balance: report.imbalance,
             tolerance: report.tolerance,
         })
+    }
+
+    /// Stress at `depths` in one of the bodies, under the pressure and the tractions. The pressure is reconstructed
+    /// within cells, as [`Solution::stress`](crate::Solution::stress) does; tractions are uniform over cells.
+    ///
+    /// # Errors
+    /// As [`Solution::stress`](crate::Solution::stress); friction among the `options`.
+    pub fn stress(
+        &self,
+        depths: &[f64],
+        member: Member,
+        options: &StressOptions,
+    ) -> Result<Stress> {
+        let mut progress = |_| ControlFlow::Continue(());
+        let plan = self.stress_plan(member, options.threads, &mut progress)?;
+        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
+        plan.ok_or(stopped)?.stress(depths, options)
+    }
+
+    /// A plan of the stress in one of the bodies under the pressure and the tractions, evaluated any number of times,
+    /// also for a [`StressPlan::summary`]. `progress` is told 0 while planning; when it breaks, there is no plan.
+    ///
+    /// # Errors
+    /// A counterbody that is rigid, no threads, or too little memory.
+    pub fn stress_plan(
+        &self,
+        member: Member,
+        threads: Option<usize>,
+        progress: &mut StressProgress,
+    ) -> Result<Option<StressPlan>> {
+        let tractions = self.traction.each_ref();
+        self.normal
+            .stress_plan_with(member, tractions, threads, progress)
     }
 
     /// Forces (Σ q_x dA, Σ q_y dA) of the tractions on the body \[N\].

@@ -3,13 +3,14 @@
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
-use crate::body::{HalfSpace, Substrate};
+use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::kernel::cells::Source;
 use crate::kernel::loads::{EXCHANGED, ODD, TractionDisplacement};
 use crate::kernel::plane::{Kernel, Plan};
 use crate::kernel::strip::{Across, Along, LinePlan};
+use crate::material::Elastic;
 use crate::parallel::{Threads, check_memory};
 use crate::response::Body;
 use crate::response::interior::Place;
@@ -57,9 +58,16 @@ pub fn traction_coefficients(body: impl Into<Body>, grid: &Grid) -> Result<Tract
 /// # Errors
 /// Where it is of another kind.
 fn half_space(body: &Body) -> Result<&HalfSpace> {
-    body.half_space().ok_or(Error::Inconsistent(
+    let layers = body.half_space().ok_or(Error::Inconsistent(
         "friction needs bodies with a substrate and layers: the response along the surface of this body is not known",
-    ))
+    ))?;
+    let slips = |layer: &Layer| layer.interface() == Interface::Frictionless;
+    if layers.layers().iter().any(slips) {
+        return Err(Error::Inconsistent(
+            "friction needs bodies without frictionless interfaces: nothing holds the layers above one against tractions",
+        ));
+    }
+    Ok(layers)
 }
 
 /// Coefficients of `body` and `counterbody` together: sums of xx, xy and yy, and differences of zx and zy.
@@ -93,14 +101,8 @@ pub(super) fn of_pair(
 }
 
 /// What makes a body's response: two bodies that are the same but for names and ends have the same.
-fn surface(
-    body: &HalfSpace,
-) -> (
-    Substrate,
-    Vec<(crate::material::Elastic, f64, crate::body::Interface)>,
-) {
-    let layer =
-        |layer: &crate::body::Layer| (layer.material(), layer.thickness(), layer.interface());
+fn surface(body: &HalfSpace) -> (Substrate, Vec<(Elastic, f64, Interface)>) {
+    let layer = |layer: &Layer| (layer.material(), layer.thickness(), layer.interface());
     (body.substrate(), body.layers().iter().map(layer).collect())
 }
 
