@@ -38,6 +38,7 @@ FILES = 12
 LINES = 400
 LONGER = {
     "python/nacre/_core.pyi": "one stub for one compiled module",
+    "src/python/contact/friction/solution.rs": "the docstrings of FrictionSolution",
     "src/python/solution.rs": "the docstrings of the class Solution, which Python shows",
 }
 

@@ -146,6 +146,40 @@ impl FrictionSolution {
             .stress_plan_with(member, tractions, threads, progress)
     }
 
+    /// The solution itself, if its fields fit the grid and are finite.
+    ///
+    /// # Errors
+    /// A field of another shape, or one that is not finite; a coefficient of friction below 0.
+    pub fn checked(self) -> Result<Self> {
+        self.friction.check(self.grid())?;
+        let expected = self.grid().shape();
+        let named = [
+            ("traction", &self.traction),
+            ("displacement", &self.displacement),
+            ("slip", &self.slip),
+        ];
+        for (name, field) in named
+            .into_iter()
+            .flat_map(|(name, [x, y])| [(name, x), (name, y)])
+        {
+            let found = [field.nrows(), field.ncols()];
+            if found != expected {
+                return Err(Error::Shape {
+                    name,
+                    expected,
+                    found,
+                });
+            }
+            if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
+                return Err(Error::NonFinite {
+                    name,
+                    index: index.into(),
+                });
+            }
+        }
+        Ok(self)
+    }
+
     /// Forces (Σ q_x dA, Σ q_y dA) of the tractions on the body \[N\].
     pub fn force(&self) -> [f64; 2] {
         let area = self.grid().cell_area();
