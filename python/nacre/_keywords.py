@@ -6,7 +6,11 @@ The compiled module has the signatures with the defaults; a test compares the tw
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Literal, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 Along = tuple[float | None, float | None]
 """Values along x and y; None where one is not given."""
@@ -88,3 +92,32 @@ class SolutionSummary(Strengths, Threads, total=False):
     """Keywords of `Solution.stress_summary`."""
 
     body: Member
+
+
+class TractionSearch(TypedDict, total=False):
+    """Keywords that say how tractions are found."""
+
+    tolerance: float
+    max_convolutions: int
+    coupling: bool
+
+
+class Slide(Motion, total=False):
+    """Keywords of a step of sliding."""
+
+    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer]
+    shift: Along | None
+    force: Along | None
+    twist: float | None
+    torque: float | None
+
+
+class Roll(Motion, total=False):
+    """Keywords of rolling."""
+
+    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer]
+    creepage: Along | None
+    force: Along | None
+    spin: float
+    direction: Literal["+x", "-x", "+y", "-y"] | None
+    cells: int | None

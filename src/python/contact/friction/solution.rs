@@ -545,7 +545,7 @@ impl PyFrictionSolution {
     /// >>> dataset.traction.dims, dataset.traction.units
     /// (('component', 'x', 'y'), 'Pa')
     fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.friction", "to_xarray", ())
+        call(slf, "nacre._friction_files", "to_xarray", ())
     }
 
     /// Writes a file, whole or not at all; needs ``nacre-contact[files]``.
@@ -578,19 +578,19 @@ impl PyFrictionSolution {
     /// ...     nacre.load(ball.save(f"{folder}/ball.nc")) == ball
     /// True
     fn save<'py>(slf: &Bound<'py, Self>, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.friction", "save", (path,))
+        call(slf, "nacre._friction_files", "save", (path,))
     }
 
     fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.friction", "text", ())
+        call(slf, "nacre._friction_display", "text", ())
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.friction", "markup", ())
+        call(slf, "nacre._friction_display", "markup", ())
     }
 
     fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        call(slf, "nacre.friction", "line", ())
+        call(slf, "nacre._friction_display", "line", ())
     }
 
     #[doc = to_dict_docs!()]

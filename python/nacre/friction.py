@@ -1,0 +1,182 @@
+"""Studies of friction: histories and creep curves, to one Dataset.
+
+`nacre.slide` and `nacre.roll` make the solutions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._extras import extra
+from nacre.units import symbol
+
+if TYPE_CHECKING:
+    import xarray
+
+PLAN = ("method", "refinement", "threads")
+"""Keywords of a plan."""
+MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
+"""Keywords of the motion along z."""
+
+
+def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
+    """Dataset of the main numbers of a history, step by step; needs ``nacre-contact[files]``.
+
+    Parameters
+    ----------
+    solutions : sequence of FrictionSolution
+        Steps that `nacre.slide` or `Contact.roll` returned.
+
+    Returns
+    -------
+    xarray.Dataset
+        Load, force, torque, dissipated energy, share of the contact that sticks and the number of
+        convolutions over ``step``; shift and twist of sliding, creepage of rolling.
+
+    Raises
+    ------
+    ValueError
+        If there is no solution.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> steps = [{"force": (force, None)} for force in (2.0, -2.0, 2.0)]
+    >>> loop = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps)
+    >>> study = nacre.friction.history(loop)
+    >>> study.force.dims, bool((study.dissipated >= 0).all())
+    (('step', 'component'), True)
+    """
+    with extra("files"):
+        import xarray
+
+    if not solutions:
+        raise ValueError("solutions must hold at least one solution, got none")
+    line = solutions[0].grid.is_line
+    force = "N/m" if line else "N"
+    touching = [np.count_nonzero(s.pressure) for s in solutions]
+    values: dict[str, tuple[tuple[str, ...], Any, str]] = {
+        "load": (("step",), [s.normal.load for s in solutions], symbol(force)),
+        "force": (("step", "component"), [s.force for s in solutions], symbol(force)),
+        "torque": (("step",), [s.torque for s in solutions], symbol("N m")),
+        "dissipated": (("step",), [s.dissipated for s in solutions], "J/m" if line else "J"),
+        "stick_share": (
+            ("step",),
+            [s.stick.sum() / max(cells, 1) for s, cells in zip(solutions, touching, strict=True)],
+            "1",
+        ),
+        "convolutions": (("step",), [s.report.convolutions for s in solutions], "1"),
+    }
+    if all(s.shift is not None for s in solutions):
+        values["shift"] = (("step", "component"), [s.shift for s in solutions], symbol("m"))
+        values["twist"] = (("step",), [s.twist for s in solutions], "rad")
+    if all(s.creepage is not None for s in solutions):
+        values["creepage"] = (("step", "component"), [s.creepage for s in solutions], "1")
+    dataset = xarray.Dataset(
+        {name: (dims, np.asarray(data)) for name, (dims, data, _) in values.items()},
+        coords={"step": np.arange(len(solutions)), "component": ["x", "y"]},
+    )
+    for name, (_, _, unit) in values.items():
+        dataset[name].attrs = {"units": unit}
+    dataset.attrs = {"title": "history of a contact with friction"}
+    dataset.attrs["source"] = f"nacre {core.__version__}"
+    return dataset
+
+
+def creep_curve(
+    shape: core.Shape,
+    body: core.HalfSpace | core.Elastic,
+    counterbody: core.HalfSpace | core.Elastic | None = None,
+    *,
+    creepages: npt.ArrayLike,
+    lateral: bool = False,
+    **keywords: Any,
+) -> xarray.Dataset:
+    """Roll at several creepages, and return the forces; needs ``nacre-contact[files]``.
+
+    Parameters
+    ----------
+    shape, body, counterbody
+        As `nacre.roll`.
+    creepages : array_like
+        Creepages, one after the other.
+    lateral : bool, optional
+        Whether they are lateral ones, eta, instead of longitudinal ones, xi.
+    **keywords
+        Other keywords of `nacre.roll`: load, friction, direction, spin, grid, tolerance.
+
+    Returns
+    -------
+    xarray.Dataset
+        Force along and across rolling, torque, share of the contact that sticks, and power over
+        the speed of rolling, over ``creepage``; the force over friction times load as
+        ``traction_ratio``.
+
+    Raises
+    ------
+    ValueError
+        If creepages are not a sequence of numbers, or `nacre.roll` would raise.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> curve = nacre.friction.creep_curve(
+    ...     nacre.Sphere(5e-3), steel, steel, creepages=[1e-4, 1e-2], load=10.0, friction=0.3,
+    ...     direction="+x",
+    ... )
+    >>> curve.traction_ratio.round(3).values[-1]
+    np.float64(1.0)
+    """
+    with extra("files"):
+        import xarray
+
+    values = np.asarray(creepages, dtype=np.float64)
+    if values.ndim != 1 or values.size == 0:
+        raise ValueError(f"creepages must be a sequence of numbers, got shape {values.shape}")
+    for name in ("creepage", "force", "cells", "initial"):
+        if name in keywords:
+            raise ValueError(f"{name} must not be given: creepages say what is asked")
+    plan = {name: keywords.pop(name) for name in PLAN if name in keywords}
+    grid = keywords.pop("grid", None)
+    if grid is None:
+        motion = {name: keywords[name] for name in MOTION if name in keywords}
+        grid = core.solve(shape, body, counterbody, **plan, **motion).report.grid
+    contact = core.Contact(body, grid, counterbody, **plan)
+    solutions = [
+        contact.roll(shape, creepage=(None, value) if lateral else (value, None), **keywords)
+        for value in values.tolist()
+    ]
+    along = {"+x": (0, 1), "-x": (0, -1), "+y": (1, 1), "-y": (1, -1)}
+    axis, sign = along[solutions[0].direction]
+    # z x e: along +y for rolling towards +x, along -x for rolling towards +y.
+    across = 1 - axis, sign if axis == 0 else -sign
+    forces = np.array([s.force for s in solutions])
+    bears = np.array([s.normal.load * s.bound.sum() / s.pressure.sum() for s in solutions])
+    line = contact.grid.is_line
+    unit = symbol("N/m" if line else "N")
+    touching = np.array([np.count_nonzero(s.pressure) for s in solutions])
+    columns: dict[str, tuple[Any, str]] = {
+        "longitudinal_force": (sign * forces[:, axis], unit),
+        "lateral_force": (across[1] * forces[:, across[0]], unit),
+        "torque": ([s.torque for s in solutions], symbol("N m")),
+        "traction_ratio": (np.hypot(*forces.T) / bears, "1"),
+        "stick_share": ([s.stick.sum() for s in solutions] / np.maximum(touching, 1), "1"),
+        "power_over_speed": ([s.dissipated for s in solutions], unit),
+    }
+    dataset = xarray.Dataset(
+        {name: ("creepage", np.asarray(data)) for name, (data, _) in columns.items()},
+        coords={"creepage": values},
+    )
+    for name, (_, unit) in columns.items():
+        dataset[name].attrs = {"units": unit}
+    dataset["creepage"].attrs = {
+        "units": "1",
+        "long_name": "lateral creepage" if lateral else "longitudinal creepage",
+    }
+    dataset.attrs = {"title": "creep curve", "source": f"nacre {core.__version__}"}
+    return dataset
