@@ -19,7 +19,10 @@ def numbers(solution: core.FrictionSolution) -> list[tuple[str, str]]:
     report = solution.report
     rows = [("force", _pair(solution.force, force))]
     if not line:
-        rows.append(("torque", written(solution.torque, "N m")))
+        arm = max(solution.grid.size)
+        noise = NOISE * arm * max(abs(part) for part in solution.force)
+        torque = solution.torque if abs(solution.torque) > noise else 0.0
+        rows.append(("torque", written(torque, "N m")))
     if solution.shift is not None:
         rows.append(("shift", _pair(solution.shift, "m")))
         if not line:
@@ -33,8 +36,9 @@ def numbers(solution: core.FrictionSolution) -> list[tuple[str, str]]:
     sticking = int(solution.stick.sum())
     state = "all slips" if report.full_slip else f"{sticking} of {touching} cells stick"
     rows.append(("contact", state if touching else "nothing touches"))
-    dissipated = "N" if solution.shift is None else ("J/m" if line else "J")
-    rows.append(("dissipated", _energy(solution.dissipated, dissipated)))
+    # In rolling, over the distance rolled.
+    dissipated = force if solution.shift is None else ("N" if line else "N m")
+    rows.append(("dissipated", written(solution.dissipated, dissipated)))
     coupled = f", {report.sweeps} sweeps" if report.coupled else ""
     rows.append(
         (
@@ -51,11 +55,6 @@ def _pair(values: tuple[float, float], unit: str) -> str:
     largest = max(abs(value) for value in values)
     shown = [value if abs(value) > NOISE * largest else 0.0 for value in values]
     return f"({written(shown[0], unit)}, {written(shown[1], unit)})"
-
-
-def _energy(value: float, unit: str) -> str:
-    """Return an energy, or a force; joules stay joules in every system of units."""
-    return f"{value:.4g} {unit}" if unit.startswith("J") else written(value, unit)
 
 
 def line(solution: core.FrictionSolution) -> str:

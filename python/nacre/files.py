@@ -147,7 +147,7 @@ def save(
     return path
 
 
-def load(path: AnyPath) -> core.Solution | core.FrictionSolution:
+def load(path: AnyPath) -> Any:
     """Solution from a file that its `save` wrote, bit for bit; needs ``nacre-contact[files]``.
 
     Parameters

@@ -58,13 +58,17 @@ def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
     if not solutions:
         raise ValueError("solutions must hold at least one solution, got none")
     line = solutions[0].grid.is_line
-    force = "N/m" if line else "N"
+    force, rolls = "N/m" if line else "N", solutions[0].shift is None
     touching = [np.count_nonzero(s.pressure) for s in solutions]
     values: dict[str, tuple[tuple[str, ...], Any, str]] = {
         "load": (("step",), [s.normal.load for s in solutions], symbol(force)),
         "force": (("step", "component"), [s.force for s in solutions], symbol(force)),
         "torque": (("step",), [s.torque for s in solutions], symbol("N m")),
-        "dissipated": (("step",), [s.dissipated for s in solutions], "J/m" if line else "J"),
+        "dissipated": (
+            ("step",),
+            [s.dissipated for s in solutions],
+            symbol(force if rolls else ("N" if line else "N m")),
+        ),
         "stick_share": (
             ("step",),
             [s.stick.sum() / max(cells, 1) for s, cells in zip(solutions, touching, strict=True)],

@@ -242,6 +242,14 @@ impl PyContact {
     #[doc = slide_docs!()]
     #[doc = found_docs!()]
     #[doc = slid_docs!()]
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
+    /// >>> ball = contact.slide(nacre.Sphere(5e-3), load=10.0, friction=0.3, force=(1.5, None))
+    /// >>> round(ball.force[0], 6), ball.report.full_slip
+    /// (1.5, False)
     #[pyo3(signature = (shape, steps=None, **keywords), text_signature = None)]
     fn slide<'py>(
         &self,
@@ -266,6 +274,15 @@ impl PyContact {
     #[doc = roll_docs!()]
     #[doc = found_docs!()]
     #[doc = rolled_docs!()]
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
+    /// >>> ball = nacre.Sphere(5e-3)
+    /// >>> wheel = contact.roll(ball, load=10.0, friction=0.3, creepage=(0.02, None), direction="+x")
+    /// >>> wheel.report.full_slip, round(wheel.force[0], 6)
+    /// (True, 3.0)
     #[pyo3(signature = (shape, **keywords), text_signature = None)]
     fn roll<'py>(
         &self,

@@ -42,7 +42,14 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
         The axes.
+
+    Raises
+    ------
+    TypeError
+        If `axes` are not axes.
     """
+    if axes is not None and not isinstance(axes, Axes):
+        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
     with styled():
         if solution.grid.is_line:
             return _line(solution, axes or new_axes(0.6, 0.4))

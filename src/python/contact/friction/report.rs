@@ -7,8 +7,9 @@ use crate::friction::FrictionReport;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
 use crate::python::words::Word;
 
-/// Report of a contact with friction: its course, and how well the laws hold. Errors are computed afresh at the end,
-/// with the operator of the whole grid.
+/// Report of a contact with friction: its course, and how well the laws hold.
+///
+/// Errors are computed afresh at the end, with the operator of the whole grid.
 ///
 /// Examples
 /// --------

@@ -111,7 +111,9 @@ impl Rolled {
 }
 
 #[doc = concat!("roll(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", roll_signature!(), ", ", found_signature!(), ")\n--\n")]
-/// Presses a shape into a body, which rolls, in one call: chooses a grid where none is given, plans, solves.
+/// Presses a shape into a body, which rolls, in one call.
+///
+/// It chooses a grid where none is given, plans, and solves.
 ///
 /// Parameters
 /// ----------

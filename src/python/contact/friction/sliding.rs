@@ -204,9 +204,10 @@ where
     }
 }
 
-#[doc = concat!("slide(shape, body, counterbody=None, *, grid=None, steps=None, ", plan_signature!(), ", ", motion_signature!(), ", ", slide_signature!(), ", ", found_signature!(), ")\n--\n")]
-/// Presses a shape into a body and moves it tangentially, with friction, in one call: chooses a grid where none is
-/// given, plans, solves.
+#[doc = concat!("slide(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", steps=None, ", motion_signature!(), ", ", slide_signature!(), ", ", found_signature!(), ")\n--\n")]
+/// Presses a shape into a body and moves it tangentially, with friction, in one call.
+///
+/// It chooses a grid where none is given, plans, and solves.
 ///
 /// Parameters
 /// ----------

@@ -234,8 +234,9 @@ impl PyFrictionSolution {
         read_only(py, vector(&self.solution.displacement))
     }
 
-    /// Slip of the counterbody over the body, ``(2, nx, ny)``: in the step [m], or in rolling over the speed; 0 outside
-    /// the contact.
+    /// Slip of the counterbody over the body, ``(2, nx, ny)``; 0 outside the contact.
+    ///
+    /// It is that in the step [m], or in rolling the slip velocity over the speed of rolling.
     #[getter]
     fn slip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         read_only(py, vector(&self.solution.slip))
@@ -319,14 +320,17 @@ impl PyFrictionSolution {
         }
     }
 
-    /// Energy that friction dissipates by area, traction times slip, ``(nx, ny)``: in the step [J/m²], or in rolling over
-    /// the distance rolled [J/m³].
+    /// Energy that friction dissipates by area, traction times slip, ``(nx, ny)``.
+    ///
+    /// It is that of the step [J/m²], or in rolling that of the distance rolled [J/m³].
     #[getter]
     fn dissipation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         read_only(py, self.solution.dissipation())
     }
 
-    /// Energy that friction dissipates in the step [J]; in rolling over the distance rolled [N], the power over the speed.
+    /// Energy that friction dissipates in the step [J].
+    ///
+    /// In rolling it is that of the distance rolled [N], the power over the speed.
     #[getter]
     fn dissipated(&self) -> f64 {
         self.solution.dissipated()
@@ -433,7 +437,7 @@ impl PyFrictionSolution {
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
     /// >>> pressed = ball.normal.stress_summary().layers[0]
-    /// >>> ball.stress_summary().layers[0].von_mises > 0.9 * pressed.von_mises
+    /// >>> ball.stress_summary().layers[0].von_mises[0] > 0.9 * pressed.von_mises[0]
     /// True
     #[pyo3(signature = (**keywords), text_signature = None)]
     fn stress_summary<'py>(
@@ -515,6 +519,11 @@ impl PyFrictionSolution {
     /// -------
     /// matplotlib.axes.Axes
     ///     Axes of the picture.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     If `axes` are not axes.
     ///
     /// Examples
     /// --------
