@@ -47,13 +47,18 @@ class Search(TypedDict, total=False):
     algorithm: Literal["cascade", "polonsky-keer"]
 
 
-class Traction(TypedDict, total=False):
+class Residual(TypedDict, total=False):
+    """Keywords of all stresses."""
+
+    residual: ByLayer | None
+    progress: Callable[[float], object] | None
+
+
+class Traction(Residual, total=False):
     """Keywords that say what acts on a body beside the pressure."""
 
     friction: float
     direction: Direction | None
-    residual: ByLayer | None
-    progress: Callable[[float], object] | None
 
 
 class Section(Traction, total=False):
@@ -94,6 +99,24 @@ class SolutionSummary(Strengths, Threads, total=False):
     body: Member
 
 
+class FrictionStress(Residual, Threads, total=False):
+    """Keywords of `FrictionSolution.stress`."""
+
+    body: Member
+    side: Side
+    x: float | None
+    y: float | None
+    displacement: bool
+
+
+class FrictionSummary(Residual, Threads, total=False):
+    """Keywords of `FrictionSolution.stress_summary`."""
+
+    body: Member
+    yield_stress: ByLayer | None
+    strength: ByLayer | None
+
+
 class TractionSearch(TypedDict, total=False):
     """Keywords that say how tractions are found."""
 
@@ -105,7 +128,7 @@ class TractionSearch(TypedDict, total=False):
 class Slide(Motion, total=False):
     """Keywords of a step of sliding."""
 
-    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer]
+    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
     shift: Along | None
     force: Along | None
     twist: float | None
@@ -115,7 +138,7 @@ class Slide(Motion, total=False):
 class Roll(Motion, total=False):
     """Keywords of rolling."""
 
-    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer]
+    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
     creepage: Along | None
     force: Along | None
     spin: float

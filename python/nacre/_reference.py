@@ -55,6 +55,8 @@ def words(hint: Any, metadata: Iterable[Any] = ()) -> str:
         return alternatives(dict.fromkeys(words(one) for one in parts if one is not type(None)))
     if isinstance(hint, type) and issubclass(hint, Table):
         return "a table"
+    if hint is bool:
+        return "true or false"
     return "any value"
 
 

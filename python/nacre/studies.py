@@ -201,7 +201,8 @@ def _describe(
     except (ValueError, ArithmeticError) as error:
         return {}, _reason(error)
     unknown = set(arguments) - ARGUMENTS
-    if unknown - SLIDE and unknown - ROLL:
+    frictionless = unknown and not {"friction", "steps"} & unknown
+    if frictionless or (unknown - SLIDE and unknown - ROLL):
         raise TypeError(
             f"case must give arguments of nacre.solve, nacre.slide or nacre.roll, "
             f"got {sorted(unknown)}"

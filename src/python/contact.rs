@@ -281,7 +281,7 @@ impl PyContact {
     /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
     /// >>> ball = nacre.Sphere(5e-3)
     /// >>> wheel = contact.roll(ball, load=10.0, friction=0.3, creepage=(0.02, None), direction="+x")
-    /// >>> wheel.report.full_slip, round(wheel.force[0], 6)
+    /// >>> wheel.report.full_slip, round(wheel.force[0], 3)
     /// (True, 3.0)
     #[pyo3(signature = (shape, **keywords), text_signature = None)]
     fn roll<'py>(
