@@ -45,7 +45,7 @@ pub struct CreepCoefficients {
 const CELLS: usize = 64;
 
 /// Residual slip over the largest displacement.
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
 
 /// Convolutions for one motion.
 const MOST: usize = 2000;

@@ -57,45 +57,11 @@ impl<'a> Linear<'a> {
 
     /// Coefficients y with S y = `right`; 0 for columns that are 0.
     fn small(&self, right: &[f64]) -> Vec<f64> {
-        let Constraints {
-            columns,
-            preconditioned,
-        } = &self.constraints;
-        let n = columns.len();
-        let mut matrix: Vec<Vec<f64>> = columns
-            .iter()
-            .map(|c| preconditioned.iter().map(|z| dot(c, z)).collect())
-            .collect();
-        let mut y = right.to_vec();
-        // Gauss's elimination with scaled diagonal pivots: S is near a symmetric and positive matrix.
-        let scales: Vec<f64> = (0..n).map(|k| matrix[k][k].abs()).collect();
-        for k in 0..n {
-            let pivot = matrix[k][k];
-            if pivot.abs() <= 1e-13 * scales[k] || pivot == 0.0 {
-                y[k] = 0.0;
-                for (l, row) in matrix.iter_mut().enumerate() {
-                    row[k] = if l == k { 1.0 } else { 0.0 };
-                }
-                matrix[k]
-                    .iter_mut()
-                    .enumerate()
-                    .for_each(|(l, v)| *v = if l == k { 1.0 } else { 0.0 });
-                continue;
-            }
-            let (above, below) = matrix.split_at_mut(k + 1);
-            for (row, l) in below.iter_mut().zip(k + 1..) {
-                let factor = row[k] / pivot;
-                row.iter_mut()
-                    .zip(&above[k])
-                    .for_each(|(to, from)| *to -= factor * from);
-                y[l] -= factor * y[k];
-            }
-        }
-        for k in (0..n).rev() {
-            let rest: f64 = (k + 1..n).map(|m| matrix[k][m] * y[m]).sum();
-            y[k] = (y[k] - rest) / matrix[k][k];
-        }
-        y
+        small_system(
+            &self.constraints.preconditioned,
+            &self.constraints.columns,
+            right,
+        )
     }
 
     /// Replaces z = M r by G r.
@@ -110,22 +76,20 @@ impl<'a> Linear<'a> {
         }
     }
 
-    /// δ with which r − C δ is least, as M weighs it.
+    /// δ with which M (r − C δ) has no force.
     pub(super) fn multipliers(&mut self, r: &[f64]) -> Vec<f64> {
-        if self.constraints.columns.is_empty() {
-            return Vec::new();
-        }
         let mut restricted = r.to_vec();
         restrict(self.states, &mut restricted);
         let mut z = vec![0.0; r.len()];
         self.precondition(&restricted, &mut z);
-        let forces: Vec<f64> = self
-            .constraints
-            .columns
-            .iter()
-            .map(|c| dot(c, &z))
-            .collect();
+        let columns = self.constraints.columns.iter();
+        let forces: Vec<f64> = columns.map(|c| dot(c, &z)).collect();
         self.small(&forces)
+    }
+
+    /// M C, which weighs the residuals of cells.
+    pub(super) fn into_weights(self) -> Vec<Vec<f64>> {
+        self.constraints.preconditioned
     }
 
     /// d for the right side `b`, restricted, and the forces `c`. It iterates until the residual, as M weighs it, has
@@ -196,6 +160,43 @@ impl<'a> Linear<'a> {
             }
         }
     }
+}
+
+/// Coefficients y with Σ_l (c_k · z_l) y_l = `right`_k, by Gauss's elimination; 0 for columns that are 0. The matrix is
+/// near a symmetric and positive one.
+pub(super) fn small_system(z: &[Vec<f64>], columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+    let n = columns.len();
+    let row = |c: &Vec<f64>| z.iter().map(|z| dot(c, z)).collect();
+    let mut matrix: Vec<Vec<f64>> = columns.iter().map(row).collect();
+    let mut y = right.to_vec();
+    let scales: Vec<f64> = (0..n).map(|k| matrix[k][k].abs()).collect();
+    for k in 0..n {
+        let pivot = matrix[k][k];
+        if pivot.abs() <= 1e-13 * scales[k] || pivot == 0.0 {
+            y[k] = 0.0;
+            for (l, row) in matrix.iter_mut().enumerate() {
+                row[k] = if l == k { 1.0 } else { 0.0 };
+            }
+            matrix[k]
+                .iter_mut()
+                .enumerate()
+                .for_each(|(l, v)| *v = if l == k { 1.0 } else { 0.0 });
+            continue;
+        }
+        let (above, below) = matrix.split_at_mut(k + 1);
+        for (row, l) in below.iter_mut().zip(k + 1..) {
+            let factor = row[k] / pivot;
+            row.iter_mut()
+                .zip(&above[k])
+                .for_each(|(to, from)| *to -= factor * from);
+            y[l] -= factor * y[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let rest: f64 = (k + 1..n).map(|m| matrix[k][m] * y[m]).sum();
+        y[k] = (y[k] - rest) / matrix[k][k];
+    }
+    y
 }
 
 /// to += factor · from

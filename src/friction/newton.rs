@@ -6,7 +6,7 @@
 //! equations, forces and preconditioner of nacre's own.
 
 use super::law::{Law, State, restrict};
-use super::linear::Linear;
+use super::linear::{Linear, small_system};
 use super::operator::Operator;
 use crate::parallel::dot;
 
@@ -65,65 +65,105 @@ const INNER: [f64; 3] = [0.1, 30.0, 0.2];
 /// Iterations of one linear system.
 const MOST_INNER: usize = 200;
 
+/// Tractions, and how they stand to the laws.
+struct Standing {
+    states: Vec<State>,
+    /// δ
+    multipliers: Vec<f64>,
+    /// A q − g − C δ
+    residual: Vec<f64>,
+    quality: Quality,
+}
+
 impl Problem<'_> {
+    /// How well the laws hold for the tractions `q`, within their bounds. It takes a convolution.
+    pub(super) fn quality_of(&self, mut q: Vec<f64>) -> Quality {
+        self.law.project(&self.law.at_bound(&q), &mut q);
+        let mut response = vec![0.0; q.len()];
+        self.stand(&q, &mut response, &self.columns).quality
+    }
+
+    /// Computes `response` = A q, and what cells do. `weights` weigh the residuals of sticking cells for δ, one field
+    /// for each column.
+    fn stand(&self, q: &[f64], response: &mut [f64], weights: &[Vec<f64>]) -> Standing {
+        let largest = self.operator.apply_measured(q, response);
+        let given = response.iter().zip(&self.given);
+        let rest: Vec<f64> = given.map(|(u, g)| u - g).collect();
+        // Cells at their bound slip, or at the δ of all others would slip along the traction and stick.
+        let mut states = self.law.at_bound(q);
+        let mut residual = rest.clone();
+        self.release(&mut residual, &self.multipliers(weights, &states, &rest));
+        self.law.states(q, &residual, &mut states);
+        let multipliers = self.multipliers(weights, &states, &rest);
+        residual = rest;
+        self.release(&mut residual, &multipliers);
+        let quality = self.quality(q, &residual, largest, &states);
+        Standing {
+            states,
+            multipliers,
+            residual,
+            quality,
+        }
+    }
+
+    /// δ with which the residuals `r` − C δ of sticking cells vanish in the mean; across the tractions, where none sticks.
+    /// In rolling M is not symmetric, and M C is no weight: M weighs the residuals themselves.
+    fn multipliers(&self, weights: &[Vec<f64>], states: &[State], r: &[f64]) -> Vec<f64> {
+        if self.columns.is_empty() {
+            return Vec::new();
+        }
+        if self.operator.rolling.is_some() {
+            return Linear::new(self.operator, states, self.columns.clone()).multipliers(r);
+        }
+        let sticks = states.contains(&State::Stick);
+        let weigh = |(weight, column): (&Vec<f64>, &Vec<f64>)| {
+            if !sticks {
+                let mut across = column.clone();
+                restrict(states, &mut across);
+                return across;
+            }
+            let both = states.iter().chain(states);
+            let of_cell = |(value, state): (&f64, &State)| match state {
+                State::Stick => *value,
+                _ => 0.0,
+            };
+            weight.iter().zip(both).map(of_cell).collect()
+        };
+        let weights: Vec<Vec<f64>> = weights.iter().zip(&self.columns).map(weigh).collect();
+        let right: Vec<f64> = weights.iter().map(|weight| dot(weight, r)).collect();
+        small_system(&self.columns, &weights, &right)
+    }
+
     /// Solves from the tractions `q`.
     pub(super) fn solve(&self, mut q: Vec<f64>, effort: Effort, watch: &mut Watch) -> Outcome {
-        let size = q.len();
-        let mut states: Vec<State> = self
-            .law
-            .bound
-            .iter()
-            .map(|bound| {
-                if *bound > 0.0 {
-                    State::Stick
-                } else {
-                    State::Free
-                }
-            })
-            .collect();
-        self.law.project(&states, &mut q);
-        let mut response = vec![0.0; size];
+        self.law.project(&self.law.at_bound(&q), &mut q);
+        let mut response = vec![0.0; q.len()];
+        let mut weights = self.columns.clone();
         let (mut convolutions, mut outer, mut stopped) = (0, 0, false);
         loop {
-            let largest = self.operator.apply_measured(&q, &mut response);
+            let Standing {
+                states,
+                multipliers,
+                mut residual,
+                quality,
+            } = self.stand(&q, &mut response, &weights);
             convolutions += 1;
-            let mut r: Vec<f64> = response
-                .iter()
-                .zip(&self.given)
-                .map(|(u, g)| u - g)
-                .collect();
-            let before = self.law.at_bound(&q);
-            let mut linear = Linear::new(self.operator, &before, self.columns.clone());
-            let multipliers = linear.multipliers(&r);
-            let mut free = r.clone();
-            self.release(&mut free, &multipliers);
-            self.law.states(&q, &free, &mut states);
-            let mut linear = Linear::new(self.operator, &states, self.columns.clone());
-            let multipliers = linear.multipliers(&r);
-            self.release(&mut r, &multipliers);
-            let quality = self.quality(&q, &r, largest, &states);
             let left = effort.most.saturating_sub(convolutions);
-            if quality.worst() <= effort.tolerance
-                || left == 0
-                || stopped
-                || !watch(convolutions, quality)
-            {
-                stopped |= quality.worst() > effort.tolerance && left > 0;
+            let good = quality.worst() <= effort.tolerance;
+            if good || left == 0 || stopped || !watch(convolutions, quality) {
                 return Outcome {
                     q,
                     multipliers,
                     states,
                     quality,
                     convolutions,
-                    stopped,
+                    stopped: !good && left > 0,
                 };
             }
-            restrict(&states, &mut r);
-            r.iter_mut().for_each(|r| *r = -*r);
-            let missing: Vec<f64> = self
-                .columns
-                .iter()
-                .zip(&self.forces)
+            restrict(&states, &mut residual);
+            residual.iter_mut().for_each(|r| *r = -*r);
+            let pairs = self.columns.iter().zip(&self.forces);
+            let missing: Vec<f64> = pairs
                 .map(|(column, force)| force - dot(column, &q))
                 .collect();
             let [most, factor, least] = INNER;
@@ -138,14 +178,17 @@ impl Problem<'_> {
             };
             let inner = sought.max((least * effort.tolerance / quality.worst()).min(most));
             outer += 1;
+            let mut linear = Linear::new(self.operator, &states, self.columns.clone());
             let mut count = convolutions;
-            let (d, done) = linear.solve(&r, &missing, inner, left.min(MOST_INNER), &mut || {
+            let most = left.min(MOST_INNER);
+            let (d, done) = linear.solve(&residual, &missing, inner, most, &mut || {
                 count += 1;
                 let goes_on = watch(count, quality);
                 stopped |= !goes_on;
                 goes_on
             });
             convolutions += done;
+            weights = linear.into_weights();
             q.iter_mut().zip(&d).for_each(|(q, d)| *q += d);
             self.law.project(&states, &mut q);
         }

@@ -239,10 +239,9 @@ impl<'a> Session<'a> {
                     .max_convolutions
                     .saturating_sub(report.convolutions),
             };
-            let first = report.sweeps == 1 && traction.iter().flatten().all(|q| *q == 0.0);
-            if first && force > 0.0 && task.slides() {
-                let share = force / bears;
-                self.superpose(motion, &normal, (share, forces), friction, &mut traction)?;
+            let mut starts = vec![traction.clone()];
+            if report.sweeps == 1 && force > 0.0 && task.slides() {
+                starts = self.starts(motion, &normal, (forces, bears), friction, &traction)?;
             }
             let counted = report.convolutions;
             let mut watch = |convolutions: usize, quality: Quality| {
@@ -254,7 +253,7 @@ impl<'a> Session<'a> {
                 !stopped
             };
             let given = (grid, &bound, &normal.pressure);
-            let solved = task.solve(&self.tangential, given, &traction, effort, &mut watch);
+            let solved = task.solve(&self.tangential, given, &starts, effort, &mut watch);
             if let Some(solved) = &solved {
                 report.convolutions = counted + solved.outcome.convolutions;
                 report.imbalance = solved.outcome.quality.imbalance;
@@ -298,19 +297,51 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Tractions after Cattaneo, Mindlin, Jäger and Ciavarella: μ times the pressure less that of the load less
-    /// |Q|/μ. They are exact for equal bodies with ν = 0, and a good start elsewhere. Ciavarella, J. Appl. Mech. 65
-    /// (1998) 998, doi:10.1115/1.2791936.
-    fn superpose(
+    /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
+    /// and those before with the change of the force by superposition, as after a reversal.
+    fn starts(
         &self,
         motion: &Motion,
         normal: &Solution,
-        (share, forces): (f64, [f64; 2]),
+        (forces, bears): ([f64; 2], f64),
         friction: &Friction,
-        traction: &mut [Array2<f64>; 2],
-    ) -> Result<()> {
+        traction: &[Array2<f64>; 2],
+    ) -> Result<Vec<[Array2<f64>; 2]>> {
+        let area = normal.grid().cell_area();
+        let before = traction.each_ref().map(|q| q.sum() * area);
+        let whole = self.superposed(motion, normal, (forces, bears), friction)?;
+        if before[0].hypot(before[1]) <= 0.0 {
+            return Ok(vec![whole]);
+        }
+        let mut starts = vec![traction.clone(), whole];
+        let half = [0, 1].map(|axis| 0.5 * (forces[axis] - before[axis]));
+        if half[0].hypot(half[1]) < bears {
+            let mut changed = self.superposed(motion, normal, (half, bears), friction)?;
+            for (changed, before) in changed.iter_mut().zip(traction) {
+                changed.zip_mut_with(before, |q, before| *q = 2.0 * *q + before);
+            }
+            starts.push(changed);
+        }
+        Ok(starts)
+    }
+
+    /// Tractions after Cattaneo, Mindlin, Jäger and Ciavarella: μ times the pressure less that of the load less
+    /// |Q|/μ. They are exact for equal bodies with ν = 0, and a good start elsewhere. Ciavarella, J. Appl. Mech. 65
+    /// (1998) 998, doi:10.1115/1.2791936.
+    fn superposed(
+        &self,
+        motion: &Motion,
+        normal: &Solution,
+        (forces, bears): ([f64; 2], f64),
+        friction: &Friction,
+    ) -> Result<[Array2<f64>; 2]> {
+        let force = forces[0].hypot(forces[1]);
+        let zero = || Array2::zeros(normal.grid().shape());
+        if force <= 0.0 {
+            return Ok([zero(), zero()]);
+        }
         let less = Motion {
-            load: Some(normal.load() * (1.0 - share)),
+            load: Some(normal.load() * (1.0 - force / bears)),
             approach: None,
             ..*motion
         };
@@ -319,14 +350,14 @@ impl<'a> Session<'a> {
             ..Options::default()
         };
         let sticking = self.contact.solve(self.shape, &less, &options)?;
-        let force = forces[0].hypot(forces[1]);
+        let mut tractions = [zero(), zero()];
         for ((i, j), p) in normal.pressure.indexed_iter() {
             let q = friction.at([i, j]) * (p - sticking.pressure[[i, j]]).max(0.0);
-            for (traction, component) in traction.iter_mut().zip(forces) {
+            for (traction, component) in tractions.iter_mut().zip(forces) {
                 traction[[i, j]] = q * component / force;
             }
         }
-        Ok(())
+        Ok(tractions)
     }
 
     /// The pressure for given tractions.

@@ -182,12 +182,12 @@ impl Task<'_> {
         before.displacement.each_ref().map(|u| u[[k, l]])
     }
 
-    /// Tractions for a `pressure`, starting from those of `start`.
+    /// Tractions for a `pressure`, starting from the best of `starts`.
     pub(super) fn solve(
         &self,
         tangential: &Tangential,
         (grid, bound, pressure): (&Grid, &Array2<f64>, &Array2<f64>),
-        start: &[Array2<f64>; 2],
+        starts: &[[Array2<f64>; 2]],
         effort: Effort,
         watch: &mut Watch,
     ) -> Option<Solved> {
@@ -243,8 +243,20 @@ impl Task<'_> {
             columns: loaded,
             forces,
         };
-        let [qx, qy] = start.each_ref().map(|q| cut(q, &window));
-        let outcome = problem.solve([qx, qy].concat(), effort, watch);
+        let starts = starts
+            .iter()
+            .map(|start| start.each_ref().map(|q| cut(q, &window)).concat());
+        let mut starts: Vec<Vec<f64>> = starts.collect();
+        let compared = if starts.len() > 1 { starts.len() } else { 0 };
+        if compared > 0 {
+            let worst = |q: &Vec<f64>| problem.quality_of(q.clone()).worst();
+            let quality: Vec<f64> = starts.iter().map(worst).collect();
+            let best = (0..compared).min_by(|a, b| quality[*a].total_cmp(&quality[*b]));
+            starts.swap(0, best.unwrap_or(0));
+        }
+        let best = starts.into_iter().next()?;
+        let mut outcome = problem.solve(best, effort, watch);
+        outcome.convolutions += compared;
         let mut moved = increments.map(|freedom| match freedom {
             Freedom::Prescribed(value) => value,
             _ => 0.0,
