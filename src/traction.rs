@@ -14,9 +14,11 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `bare` | coefficients of a body without layers |
 //! | `coefficients` | coefficients of one body, and of a pair |
 //! | `convolution` | tractions to displacements, by FFT |
 
+mod bare;
 mod coefficients;
 mod convolution;
 

@@ -65,6 +65,9 @@ const INNER: [f64; 3] = [0.1, 30.0, 0.2];
 /// Iterations of one linear system.
 const MOST_INNER: usize = 200;
 
+/// Steps without a better quality before they are halved.
+const PATIENCE: i32 = 5;
+
 /// Tractions, and how they stand to the laws.
 struct Standing {
     states: Vec<State>,
@@ -140,6 +143,7 @@ impl Problem<'_> {
         let mut response = vec![0.0; q.len()];
         let mut weights = self.columns.clone();
         let (mut convolutions, mut outer, mut stopped) = (0, 0, false);
+        let (mut best, mut stalled) = (f64::INFINITY, 0);
         loop {
             let Standing {
                 states,
@@ -176,7 +180,16 @@ impl Problem<'_> {
             } else {
                 most.min(factor * quality.worst())
             };
-            let inner = sought.max((least * effort.tolerance / quality.worst()).min(most));
+            let floor = (least * effort.tolerance / quality.worst()).min(most);
+            // Loose systems may send the sets to and fro; so may exact ones, and shorter steps then lead on.
+            stalled = if quality.worst() < 0.9 * best {
+                0
+            } else {
+                stalled + 1
+            };
+            best = best.min(quality.worst());
+            let inner = (sought * 0.1_f64.powi(stalled)).max(floor);
+            let part = if stalled > PATIENCE { 0.5 } else { 1.0 };
             outer += 1;
             let mut linear = Linear::new(self.operator, &states, self.columns.clone());
             let mut count = convolutions;
@@ -189,7 +202,7 @@ impl Problem<'_> {
             });
             convolutions += done;
             weights = linear.into_weights();
-            q.iter_mut().zip(&d).for_each(|(q, d)| *q += d);
+            q.iter_mut().zip(&d).for_each(|(q, d)| *q += part * d);
             self.law.project(&states, &mut q);
         }
     }

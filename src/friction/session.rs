@@ -217,7 +217,7 @@ impl<'a> Session<'a> {
             let bound = bounds(&normal.pressure, friction);
             let bears = bound.sum() * grid.cell_area();
             let force = forces[0].hypot(forces[1]);
-            if force > 0.0 && force >= bears {
+            if force > 0.0 && force >= (1.0 - tolerance) * bears {
                 return Err(Error::FullSlip { force, bears });
             }
             if task.leaves_the_grid(&bound) {

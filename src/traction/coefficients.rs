@@ -113,6 +113,9 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
     if grid.is_line() {
         return Ok(of_strips(body, grid, &place));
     }
+    if let (Substrate::Elastic(material), []) = (body.substrate(), body.layers()) {
+        return Ok(with_parities(super::bare::of_cells(material, grid)));
+    }
     let spacing = grid.spacing();
     let [lx, ly] = grid.size();
     // One per cent more than the diagonal, for rounding.
@@ -155,13 +158,24 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
         rows
     };
     let component = |axis: usize, k: usize| threads.run(|| component(axis, k));
-    Ok(TractionCoefficients {
+    Ok(with_parities(TractionCoefficients {
         xx: component(0, 0),
         xy: component(0, 1),
         yy: component(1, 1),
         zx: component(0, 2),
         zy: component(1, 2),
-    })
+    }))
+}
+
+/// What is odd vanishes on its axis, where rounding leaves a rest.
+fn with_parities(mut c: TractionCoefficients) -> TractionCoefficients {
+    let TractionCoefficients { xy, zx, zy, .. } = &mut c;
+    let (along_x, along_y) = (Axis(0), Axis(1));
+    for (odd, axis) in [(&mut *xy, along_x), (zx, along_x), (zy, along_y)] {
+        odd.index_axis_mut(axis, 0).fill(0.0);
+    }
+    xy.index_axis_mut(along_y, 0).fill(0.0);
+    c
 }
 
 /// Rows of coefficients that are computed together.

@@ -3,8 +3,10 @@
 use std::f64::consts::PI;
 
 use nacre::{
-    Elastic, Grid, HalfSpace, Interface, Layer, Result, TractionCoefficients, traction_coefficients,
+    Elastic, Grid, HalfSpace, Interface, Layer, Result, Substrate, TractionCoefficients,
+    traction_coefficients,
 };
+use ndarray::Array2;
 use serde_json::Value;
 
 use crate::support::reference::{list, number, read};
@@ -13,10 +15,11 @@ fn body(stack: &Value) -> Result<HalfSpace> {
     let elastic = |value: &Value| Elastic::new(number(value, "E"), number(value, "nu"));
     let layers = list(stack, "layers").iter();
     let layers = layers.map(|layer| Layer::new(elastic(layer)?, number(layer, "h")));
-    HalfSpace::new(
-        elastic(&stack["substrate"])?,
-        layers.collect::<Result<Vec<_>>>()?,
-    )
+    let substrate = match stack["substrate"].as_str() {
+        Some("rigid") => Substrate::Rigid,
+        _ => elastic(&stack["substrate"])?.into(),
+    };
+    HalfSpace::new(substrate, layers.collect::<Result<Vec<_>>>()?)
 }
 
 /// All five coefficients agree with two independent computations of the reference, to 1e-10 of the self-coefficient.
@@ -32,7 +35,6 @@ fn coefficients_are_those_of_the_reference() -> Result<()> {
             let at = [number(row, "i") as usize, number(row, "j") as usize];
             for (found, name) in [(&c.xx, "ux"), (&c.xy, "uy"), (&c.zx, "uz")] {
                 let error = (found[at] - number(row, name)).abs() / own;
-                println!("{} {at:?} {name}: {error:e}", stack["name"]);
                 assert!(error < 1e-10, "{} {at:?} {name}: {error:e}", stack["name"]);
             }
         }
@@ -40,13 +42,16 @@ fn coefficients_are_those_of_the_reference() -> Result<()> {
     Ok(())
 }
 
-/// The closed form on a bare body: FRICTION's corner functions, near and at 60 cells.
+/// Cells of a bare body, and of one with a layer of the same material, which is integrated: near, and at 60 cells.
 #[test]
 fn bare_cells_are_in_closed_form() -> Result<()> {
     let (nu, g) = (0.3, 1.0);
     let bare = Elastic::new(2.0 * g * (1.0 + nu), nu)?;
     let (dx, dy) = (1.0, 0.25);
-    let c = traction_coefficients(bare, &Grid::new([64, 64], [64.0 * dx, 64.0 * dy])?)?;
+    let grid = Grid::new([64, 64], [64.0 * dx, 64.0 * dy])?;
+    let c = traction_coefficients(bare, &grid)?;
+    let coated = HalfSpace::new(bare, [Layer::new(bare, 0.5)?])?;
+    let integrated = traction_coefficients(coated, &grid)?;
     let asinh = |y: f64, x: f64| {
         if y == 0.0 || x == 0.0 {
             0.0
@@ -78,15 +83,15 @@ fn bare_cells_are_in_closed_form() -> Result<()> {
             nu * corners(&fxy) / (2.0 * PI * g),
             (1.0 - 2.0 * nu) * corners(&fx) / (4.0 * PI * g),
         ];
-        // Near the load, rounding; far from it, that of the corners' differences, 1e-13 · 60².
-        let rounding = if i == 60 { 1e-10 } else { 2e-13 };
-        for (found, exact) in [&c.xx, &c.xy, &c.zx].into_iter().zip(exact) {
-            let error = (found[[i, j]] - exact).abs() / own;
-            assert!(
-                error < rounding,
-                "{i} {j}: {} {exact} {error:e}",
-                found[[i, j]]
-            );
+        // Near the load, rounding; far from it, that of the differences of corners.
+        let rounding = if i == 60 { 1e-11 } else { 1e-13 };
+        let found = [&c.xx, &c.xy, &c.zx].map(|c| c[[i, j]]);
+        let layered = [&integrated.xx, &integrated.xy, &integrated.zx].map(|c| c[[i, j]]);
+        for ((found, layered), exact) in found.into_iter().zip(layered).zip(exact) {
+            let error = (found - exact).abs() / own;
+            assert!(error < rounding, "{i} {j}: {found} {exact} {error:e}");
+            let error = (layered - exact).abs() / own;
+            assert!(error < 1e-10, "{i} {j}: {layered} {exact} {error:e}");
         }
     }
     Ok(())
@@ -137,11 +142,12 @@ fn coefficients_have_their_symmetries() -> Result<()> {
     let bare = traction_coefficients(Elastic::new(3.0, 0.5)?, &grid)?;
     assert!(bare.zx.iter().chain(&bare.zy).all(|c| *c == 0.0));
     let own = c.xx[[0, 0]];
-    assert!(c.zx[[1, 0]].abs() > 0.02 * own && c.zx[[0, 3]] == 0.0 && c.xy[[3, 0]] == 0.0);
+    assert!(c.zx[[1, 0]].abs() > 1e-3 * own && c.zx[[0, 3]] == 0.0 && c.xy[[3, 0]] == 0.0);
     Ok(())
 }
 
-/// Strips of line contact are columns of cells along x: sums of cells over a long line, but for the datum.
+/// Strips of line contact are columns of cells along x: sums of cells over a line, extrapolated to an endless one. What
+/// a line of n cells lacks is of second order in 1/n, of first in u_z; the next order is (15/1024)⁴ and (15/1024)³.
 #[test]
 fn strips_are_rows_of_cells() -> Result<()> {
     let coated = HalfSpace::new(
@@ -149,26 +155,21 @@ fn strips_are_rows_of_cells() -> Result<()> {
         [Layer::new(Elastic::new(4.0, 0.3)?, 0.7)?],
     )?;
     let strips = traction_coefficients(&coated, &Grid::line(16, 16.0)?)?;
-    let cells = traction_coefficients(&coated, &Grid::new([4096, 16], [4096.0, 16.0])?)?;
-    let row = |c: &ndarray::Array2<f64>, j: usize| c.column(j).sum() * 2.0 - c[[0, j]];
-    for (strip, cell, by) in [
-        (&strips.xx, &cells.xx, true),
-        (&strips.yy, &cells.yy, true),
-        (&strips.zy, &cells.zy, false),
-    ] {
-        for j in 1..16 {
-            let datum = if by {
-                [strip[[0, 0]], row(cell, 0)]
-            } else {
-                [0.0; 2]
-            };
-            let (found, expected) = (strip[[0, j]] - datum[0], row(cell, j) - datum[1]);
-            // The line ends at 4096: what is missing differs by (j/4096)².
-            assert!(
-                (found - expected).abs() < 2e-5 * expected.abs(),
-                "{j}: {found} {expected}"
-            );
+    let cells = |n: usize| traction_coefficients(&coated, &Grid::new([n, 16], [n as f64, 16.0])?);
+    let (coarse, fine) = (cells(1024)?, cells(2048)?);
+    let row = |c: &Array2<f64>, j: usize| c.column(j).sum() * 2.0 - c[[0, j]];
+    for j in 1..16 {
+        for (strip, coarse, fine) in [
+            (&strips.xx, &coarse.xx, &fine.xx),
+            (&strips.yy, &coarse.yy, &fine.yy),
+        ] {
+            let [coarse, fine] = [coarse, fine].map(|c| row(c, j) - row(c, 0));
+            let (found, due) = (strip[[0, j]] - strip[[0, 0]], (4.0 * fine - coarse) / 3.0);
+            assert!((found - due).abs() < 1e-6 * due.abs(), "{j}: {found} {due}");
         }
+        let due = 2.0 * row(&fine.zy, j) - row(&coarse.zy, j);
+        let found = strips.zy[[0, j]];
+        assert!((found - due).abs() < 3e-5 * due.abs(), "{j}: {found} {due}");
     }
     Ok(())
 }
