@@ -193,7 +193,7 @@ fn spences_ball() -> Result<()> {
     let last = solutions.last().expect("steps");
     let radius = (last.normal.contact_area() / std::f64::consts::PI).sqrt();
     assert!((stick_radius(last) / radius - 0.5).abs() < 0.01);
-    let found = last.normal.peak_pressure() * load / last.normal.approach().powi(2);
+    let found = last.normal.peak_pressure() * load / last.normal.approach.powi(2);
     let due = 0.02392 * 0.4705 / (0.5_f64 * 0.09874).powi(2);
     assert!((found / due - 1.0).abs() < 0.01, "{found} {due}");
     Ok(())
