@@ -35,7 +35,7 @@ def numbers(solution: core.FrictionSolution) -> list[tuple[str, str]]:
     touching = int((solution.pressure > 0).sum())
     sticking = int(solution.stick.sum())
     state = "all slips" if report.full_slip else f"{sticking} of {touching} cells stick"
-    rows.append(("contact", state if touching else "nothing touches"))
+    rows.append(("friction", state if touching else "nothing touches"))
     # In rolling, over the distance rolled.
     dissipated = force if solution.shift is None else ("N" if line else "N m")
     rows.append(("dissipated", written(solution.dissipated, dissipated)))
