@@ -27,6 +27,7 @@
 //! | `task` | sliding in one step, rolling |
 //! | `fields` | fields of the whole grid, and their errors |
 //! | `session` | pressure and tractions in turn |
+//! | `starts` | tractions from which an iteration starts |
 //! | `solution` | what comes out |
 //! | `creep` | Kalker's coefficients |
 
@@ -44,6 +45,7 @@ mod newton;
 mod operator;
 mod session;
 mod solution;
+mod starts;
 mod step;
 mod task;
 

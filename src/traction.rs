@@ -18,6 +18,10 @@
 //! | `coefficients` | coefficients of one body, and of a pair |
 //! | `convolution` | tractions to displacements, by FFT |
 
+/// What friction asks of bodies.
+pub(crate) const GO_ON: &str =
+    "friction needs bodies that go on along x: what tractions do near free ends is not known";
+
 mod bare;
 mod coefficients;
 mod convolution;

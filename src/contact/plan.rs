@@ -81,9 +81,7 @@ impl Plan {
             return Ok(Arc::clone(known));
         }
         if self.ends.any() {
-            return Err(Error::Inconsistent(
-                "friction needs bodies that go on along x: what tractions do near free ends is not known",
-            ));
+            return Err(Error::Inconsistent(crate::traction::GO_ON));
         }
         let counterbody = self.setup.counterbody.as_ref();
         let threads = Arc::new(Threads::new(Some(self.convolution.threads()))?);

@@ -103,6 +103,14 @@ pub fn creep_coefficients_watched(
             value: cells as f64,
         });
     }
+    for body in std::iter::once(&body).chain(&counterbody) {
+        if body
+            .half_space()
+            .is_some_and(|layers| layers.ends() != [None; 2])
+        {
+            return Err(Error::Inconsistent(crate::traction::GO_ON));
+        }
+    }
     let shear = shear(&body, counterbody.as_ref())?;
     let threads = Arc::new(Threads::new(None)?);
     let mut on = |cells: usize| {
@@ -233,6 +241,7 @@ impl Ellipse {
                     overlap: 0.0,
                     balance: 0.0,
                     tolerance: TOLERANCE,
+                    limit: "cells",
                 });
             }
             let (qx, qy) = outcome.q.split_at(cells);

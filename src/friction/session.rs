@@ -15,6 +15,7 @@ use super::step::{Freedom, Friction, FrictionOptions, Rolling, Step};
 use super::task::{Before, Task, bounds};
 use crate::contact::{Contact, Motion, Options, Solution, Termination};
 use crate::error::{Error, Result};
+use crate::grid::Grid;
 use crate::surface::{Lifted, Surface};
 use crate::traction::Tangential;
 
@@ -29,8 +30,8 @@ const MOST_SWEEPS: usize = 60;
 
 /// One shape on one contact.
 pub(super) struct Session<'a> {
-    contact: &'a Contact,
-    shape: &'a dyn Surface,
+    pub(super) contact: &'a Contact,
+    pub(super) shape: &'a dyn Surface,
     tangential: Arc<Tangential>,
     options: FrictionOptions,
     coupled: bool,
@@ -70,9 +71,11 @@ impl<'a> Session<'a> {
         Self: Sized,
     {
         let grid = self.contact.grid();
-        let motion = step
-            .motion
-            .or_else(|| last.map(|last| last.normal.report.motion));
+        let before = last.map(|last| last.normal.report.motion);
+        let motion = match (step.motion, before) {
+            (Some(motion), Some(before)) => Some(motion.after(&before)),
+            (motion, before) => motion.or(before),
+        };
         let motion = motion.ok_or(Error::Inconsistent(
             "the first step must have a load or an approach",
         ))?;
@@ -86,31 +89,21 @@ impl<'a> Session<'a> {
         friction.check(grid)?;
         let freedoms = step.freedoms(grid)?;
         let before = match last {
-            Some(last) => state(last)?,
+            Some(last) => state(last, grid)?,
             None => Before::nothing(grid),
         };
         let task = Task::Slide {
             freedoms,
             before: &before,
         };
-        let forces = freedoms.map(|freedom| match freedom {
-            Freedom::Loaded(force) => force,
-            _ => 0.0,
-        });
+        let forces = freedoms.map(Freedom::force);
         let again = last.filter(|last| last.normal.report.motion == motion && !self.coupled);
         let start = Start {
             normal: again.map(|last| &last.normal),
             pressure: last.map(|last| &last.normal.pressure),
             traction: &before.traction,
         };
-        self.settle(
-            &task,
-            &motion,
-            friction,
-            [forces[0], forces[1]],
-            start,
-            progress,
-        )
+        self.settle(&task, &motion, friction, forces, start, progress)
     }
 
     /// Rolling: steady, or by one cell after `last`.
@@ -126,7 +119,7 @@ impl<'a> Session<'a> {
         let nothing = Before::nothing(grid);
         let before = match last {
             None => None,
-            Some(Some(last)) => Some(state(last)?),
+            Some(Some(last)) => Some(state(last, grid)?),
             Some(None) => Some(nothing.clone()),
         };
         let task = Task::Roll {
@@ -134,10 +127,7 @@ impl<'a> Session<'a> {
             freedoms,
             before: before.as_ref(),
         };
-        let forces = freedoms.map(|freedom| match freedom {
-            Freedom::Loaded(force) => force,
-            _ => 0.0,
-        });
+        let [along, across] = freedoms.map(Freedom::force);
         let last = last.flatten();
         let again =
             last.filter(|last| last.normal.report.motion == rolling.motion && !self.coupled);
@@ -152,7 +142,7 @@ impl<'a> Session<'a> {
             &task,
             &rolling.motion,
             &rolling.friction,
-            forces,
+            [along, across, 0.0],
             start,
             progress,
         )
@@ -163,11 +153,11 @@ impl<'a> Session<'a> {
         task: &Task,
         motion: &Motion,
         friction: &Friction,
-        forces: [f64; 2],
+        [x, y, torque]: [f64; 3],
         start: Start,
         progress: &mut Watching,
     ) -> Result<FrictionSolution> {
-        let begun = Instant::now();
+        let (begun, forces) = (Instant::now(), [x, y]);
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
         let mut report = FrictionReport {
             termination: Termination::Running,
@@ -217,8 +207,16 @@ impl<'a> Session<'a> {
             let bound = bounds(&normal.pressure, friction);
             let bears = bound.sum() * grid.cell_area();
             let force = forces[0].hypot(forces[1]);
-            if force > 0.0 && force >= (1.0 - tolerance) * bears {
-                return Err(Error::FullSlip { force, bears });
+            if stopped {
+                break (normal, None);
+            }
+            for (name, value, bears) in [
+                ("force", force, bears),
+                ("torque", torque.abs(), largest_torque(grid, &bound)),
+            ] {
+                if value > 0.0 && value >= (1.0 - tolerance) * bears {
+                    return Err(Error::FullSlip { name, value, bears });
+                }
             }
             if task.leaves_the_grid(&bound) {
                 return Err(Error::Inconsistent(
@@ -297,69 +295,6 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
-    /// and those before with the change of the force by superposition, as after a reversal.
-    fn starts(
-        &self,
-        motion: &Motion,
-        normal: &Solution,
-        (forces, bears): ([f64; 2], f64),
-        friction: &Friction,
-        traction: &[Array2<f64>; 2],
-    ) -> Result<Vec<[Array2<f64>; 2]>> {
-        let area = normal.grid().cell_area();
-        let before = traction.each_ref().map(|q| q.sum() * area);
-        let whole = self.superposed(motion, normal, (forces, bears), friction)?;
-        if before[0].hypot(before[1]) <= 0.0 {
-            return Ok(vec![whole]);
-        }
-        let mut starts = vec![traction.clone(), whole];
-        let half = [0, 1].map(|axis| 0.5 * (forces[axis] - before[axis]));
-        if half[0].hypot(half[1]) < bears {
-            let mut changed = self.superposed(motion, normal, (half, bears), friction)?;
-            for (changed, before) in changed.iter_mut().zip(traction) {
-                changed.zip_mut_with(before, |q, before| *q = 2.0 * *q + before);
-            }
-            starts.push(changed);
-        }
-        Ok(starts)
-    }
-
-    /// Tractions after Cattaneo, Mindlin, Jäger and Ciavarella: μ times the pressure less that of the load less
-    /// |Q|/μ. They are exact for equal bodies with ν = 0, and a good start elsewhere. Ciavarella, J. Appl. Mech. 65
-    /// (1998) 998, doi:10.1115/1.2791936.
-    fn superposed(
-        &self,
-        motion: &Motion,
-        normal: &Solution,
-        (forces, bears): ([f64; 2], f64),
-        friction: &Friction,
-    ) -> Result<[Array2<f64>; 2]> {
-        let force = forces[0].hypot(forces[1]);
-        let zero = || Array2::zeros(normal.grid().shape());
-        if force <= 0.0 {
-            return Ok([zero(), zero()]);
-        }
-        let less = Motion {
-            load: Some(normal.load() * (1.0 - force / bears)),
-            approach: None,
-            ..*motion
-        };
-        let options = Options {
-            tolerance: START,
-            ..Options::default()
-        };
-        let sticking = self.contact.solve(self.shape, &less, &options)?;
-        let mut tractions = [zero(), zero()];
-        for ((i, j), p) in normal.pressure.indexed_iter() {
-            let q = friction.at([i, j]) * (p - sticking.pressure[[i, j]]).max(0.0);
-            for (traction, component) in tractions.iter_mut().zip(forces) {
-                traction[[i, j]] = q * component / force;
-            }
-        }
-        Ok(tractions)
-    }
-
     /// The pressure for given tractions.
     fn press(
         &self,
@@ -387,11 +322,17 @@ impl<'a> Session<'a> {
     }
 }
 
+/// Σ μp r dA: the largest torque about the origin.
+fn largest_torque(grid: &Grid, bound: &Array2<f64>) -> f64 {
+    let (x, y) = (grid.x(), grid.y());
+    let each = bound
+        .indexed_iter()
+        .map(|((i, j), bound)| bound * x[i].hypot(y[j]));
+    each.sum::<f64>() * grid.cell_area()
+}
+
 /// Change of the pressure to which tractions are found while it changes.
 const LOOSE: f64 = 0.01;
-
-/// Tolerance of a start.
-const START: f64 = 1e-3;
 
 /// What a step starts from.
 #[derive(Clone, Copy)]
@@ -403,7 +344,15 @@ struct Start<'a> {
 }
 
 /// The state that a solution leaves.
-fn state(last: &FrictionSolution) -> Result<Before> {
+///
+/// # Errors
+/// Where it is on another grid.
+fn state(last: &FrictionSolution, grid: &Grid) -> Result<Before> {
+    if last.grid() != grid {
+        return Err(Error::Inconsistent(
+            "initial must be a solution on the grid of this contact",
+        ));
+    }
     let (shift, twist) = match last.motion {
         TangentialMotion::Slide { shift, twist } => (shift, twist),
         TangentialMotion::Roll { .. } => ([0.0; 2], 0.0),

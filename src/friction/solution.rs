@@ -110,6 +110,7 @@ impl FrictionSolution {
             overlap: self.normal.report.overlap,
             balance: report.imbalance,
             tolerance: report.tolerance,
+            limit: "max_convolutions",
         })
     }
 

@@ -77,7 +77,7 @@ impl Friction {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
-    /// Load or approach, and tilts. `None`: as in the step before.
+    /// Load or approach, and tilts. What it leaves open, and all of it where it is `None`, is as in the step before.
     pub motion: Option<Motion>,
     /// Coefficient of friction. `None`: as in the step before.
     pub friction: Option<Friction>,
@@ -89,6 +89,23 @@ pub struct Step {
     pub twist: Option<f64>,
     /// Torque Σ (x q_y − y q_x) dA \[N m\] of the tractions on the body, about the origin.
     pub torque: Option<f64>,
+}
+
+/// A motion that is small, as the theory of elasticity supposes.
+fn small(name: &'static str, value: f64, most: f64) -> Result<f64> {
+    if value.abs() < most {
+        return Ok(value);
+    }
+    let requirement = match name {
+        "shift" => "finite, and between minus and plus the width of the grid",
+        "spin" => "finite, and such that the creepage from it is below 1 on the whole grid",
+        _ => "finite, and between -1 and 1",
+    };
+    Err(Error::Parameter {
+        name,
+        requirement,
+        value,
+    })
 }
 
 impl Step {
@@ -108,9 +125,12 @@ impl Step {
             (self.twist, self.torque),
         ];
         let names = [("shift", "force"), ("shift", "force"), ("twist", "torque")];
-        for ((motion, load), (of_motion, of_load)) in given.into_iter().zip(names) {
+        let [lx, ly] = grid.size();
+        let most = [lx, ly, 1.0];
+        for (((motion, load), (of_motion, of_load)), most) in given.into_iter().zip(names).zip(most)
+        {
             if let Some(value) = motion {
-                finite(of_motion, value)?;
+                small(of_motion, value, most)?;
             }
             if let Some(value) = load {
                 finite(of_load, value)?;
@@ -142,6 +162,16 @@ pub(super) enum Freedom {
     Prescribed(f64),
     /// Has this force or torque.
     Loaded(f64),
+}
+
+impl Freedom {
+    /// The force or torque that is given, or 0.
+    pub(super) fn force(self) -> f64 {
+        match self {
+            Self::Loaded(force) => force,
+            _ => 0.0,
+        }
+    }
 }
 
 /// Along x, along y, and about z.
@@ -204,7 +234,8 @@ impl Rolling {
     }
 
     pub(super) fn freedoms(&self, grid: &Grid) -> Result<[Freedom; 2]> {
-        finite("spin", self.spin)?;
+        let [lx, ly] = grid.size();
+        small("spin", self.spin, 1.0 / lx.hypot(ly))?;
         let axis_is_x = self.direction.vector()[0].abs() > 0.5;
         if grid.is_line() && (axis_is_x || self.spin != 0.0) {
             return Err(Error::Inconsistent(
@@ -222,7 +253,7 @@ impl Rolling {
                         "of creepage and force along one axis, one must be given, not both",
                     ));
                 }
-                (Some(value), None) => Freedom::Prescribed(finite("creepage", value)?),
+                (Some(value), None) => Freedom::Prescribed(small("creepage", value, 1.0)?),
                 (None, Some(value)) => Freedom::Loaded(finite("force", value)?),
                 (None, None) => Freedom::Prescribed(0.0),
             };

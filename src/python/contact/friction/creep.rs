@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 
 use crate::body::HalfSpace;
 use crate::friction::{CreepCoefficients, creep_coefficients_watched};
-use crate::python::arguments::Real;
+use crate::python::arguments::{Pair, count};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
 use crate::response::Body;
@@ -81,6 +81,10 @@ impl PyCreepCoefficients {
     }
 }
 
+fn cells(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("cells", 8, given)
+}
+
 /// Kalker's linear coefficients of two bodies with any layers, by one call.
 ///
 /// Parameters
@@ -119,14 +123,14 @@ pub(in crate::python) fn creep_coefficients(
     py: Python<'_>,
     #[pyo3(from_py_with = body)] body: HalfSpace,
     counterbody: Option<&Bound<'_, PyAny>>,
-    semi_axes: (Real, Real),
-    cells: usize,
+    semi_axes: Pair,
+    #[pyo3(from_py_with = cells)] cells: usize,
 ) -> PyResult<PyCreepCoefficients> {
     let counterbody = counterbody
         .map(crate::python::bodies::body)
         .transpose()?
         .map(Body::from);
-    let axes = [semi_axes.0.0, semi_axes.1.0];
+    let Pair(axes) = semi_axes;
     let found = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());
         creep_coefficients_watched(body, counterbody, axes, Some(cells), &mut watch)

@@ -1,11 +1,10 @@
 //! Keywords of friction: signature, documentation and meaning of each.
 
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::friction::{Friction, FrictionOptions, RollingDirection};
 use crate::python::arguments::keywords::Keywords;
-use crate::python::arguments::{Repr, real_array};
+use crate::python::arguments::{real_array, real_matrix};
 use crate::python::words::Word;
 
 /// Signature of the keywords that say how tractions are found.
@@ -157,16 +156,10 @@ pub(super) fn friction(keywords: &Keywords) -> PyResult<Option<Friction>> {
         return Ok(None);
     };
     let values = real_array("friction", &given)?;
-    match values.ndim() {
-        0 => Ok(Some(Friction::Uniform(values.sum()))),
-        _ => match values.into_dimensionality() {
-            Ok(cells) => Ok(Some(Friction::Cells(cells))),
-            Err(_) => Err(PyTypeError::new_err(format!(
-                "friction must be a number or an array with two axes, got {}",
-                Repr(&given)
-            ))),
-        },
+    if values.ndim() == 0 {
+        return Ok(Some(Friction::Uniform(values.sum())));
     }
+    Ok(Some(Friction::Cells(real_matrix("friction", &given)?)))
 }
 
 /// How tractions are found, the callback and the check.

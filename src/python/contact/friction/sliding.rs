@@ -83,7 +83,13 @@ impl Sliding {
             ));
         }
         let mut steps = Vec::new();
-        for (number, given) in given.try_iter()?.enumerate() {
+        let listed = given.try_iter().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "steps must be an iterable of mappings, got {}",
+                Repr(given)
+            ))
+        })?;
+        for (number, given) in listed.enumerate() {
             let given = given?;
             let mapping = given.cast::<PyMapping>().map_err(|_| {
                 PyTypeError::new_err(format!(
@@ -103,6 +109,9 @@ impl Sliding {
                 next.friction = next.friction.or(first.friction.clone());
             }
             steps.push(next);
+        }
+        if steps.is_empty() {
+            return Err(PyValueError::new_err("steps must hold a step at least"));
         }
         Ok(Self {
             shape,
