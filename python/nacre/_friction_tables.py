@@ -95,5 +95,5 @@ class Roll(Table):
     coupling: bool = Field(True, description=ROLL["coupling"])
 
     def keywords(self) -> dict[str, Any]:
-        """Return the keywords of `nacre.roll`."""
-        return _keywords(self)
+        """Return the keywords of `nacre.roll`, with one at least that `nacre.slide` has not."""
+        return {"spin": self.spin} | _keywords(self)

@@ -63,7 +63,7 @@ def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
     values: dict[str, tuple[tuple[str, ...], Any, str]] = {
         "load": (("step",), [s.normal.load for s in solutions], symbol(force)),
         "force": (("step", "component"), [s.force for s in solutions], symbol(force)),
-        "torque": (("step",), [s.torque for s in solutions], symbol("N m")),
+        "torque": (("step",), [s.torque for s in solutions], symbol("N" if line else "N m")),
         "dissipated": (
             ("step",),
             [s.dissipated for s in solutions],
@@ -167,7 +167,7 @@ def creep_curve(
     columns: dict[str, tuple[Any, str]] = {
         "longitudinal_force": (sign * forces[:, axis], unit),
         "lateral_force": (across[1] * forces[:, across[0]], unit),
-        "torque": ([s.torque for s in solutions], symbol("N m")),
+        "torque": ([s.torque for s in solutions], symbol("N" if line else "N m")),
         "traction_ratio": (np.hypot(*forces.T) / bears, "1"),
         "stick_share": ([s.stick.sum() for s in solutions] / np.maximum(touching, 1), "1"),
         "power_over_speed": ([s.dissipated for s in solutions], unit),

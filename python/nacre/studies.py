@@ -19,7 +19,7 @@ from nacre._dataset import assembled, counted, laid_out
 from nacre._extras import extra
 from nacre._identity import identified, key_of
 from nacre._journal import Journal, Record
-from nacre._outputs import OUTPUTS, STRESSES, Output, check_direction, evaluated, named
+from nacre._outputs import OUTPUTS, STRESSES, Output, check_direction, evaluated, named, rolls
 from nacre._progress import shown
 
 if TYPE_CHECKING:
@@ -299,7 +299,9 @@ def _solve(
             "warnings": normal.report.warnings + unresolved,
             "kinds": kinds + ["unresolved stress"] * len(unresolved),
         }
-        return record | ({"line": True} if normal.report.grid.is_line else {})
+        rolling = isinstance(solution, core.FrictionSolution) and rolls(solution)
+        marks = {"line": normal.report.grid.is_line, "rolls": rolling}
+        return record | {name: True for name, holds in marks.items() if holds}
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
 

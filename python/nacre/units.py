@@ -38,7 +38,7 @@ UNITS = {
 """SI units of a solution's quantities, and of the stresses that studies keep."""
 LINE_UNITS = UNITS | {
     **{"load": "N/m", "force": "N/m", "moment": "N", "contact_area": "m"},
-    **{"dissipated": "N", "tangential_energy": "N"},
+    **{"torque": "N", "dissipated": "N", "tangential_energy": "N"},
 }
 """SI units of the same quantities of a line contact, whose loads and areas are per length."""
 PARAMETERS = {
@@ -47,6 +47,8 @@ PARAMETERS = {
     "eccentricity": "m",
     "moment": "N m",
     "tilt": "rad",
+    "twist": "rad",
+    "torque": "N m",
     "young": "Pa",
     "thickness": "m",
     "radius": "m",

@@ -60,8 +60,9 @@ BEGUN = ("traction", "displacement", "friction", "motion")
 def encode(value: Any, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
-    With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure
-    or what a history needs to go on, which is enough to compare. A value that is neither one of nacre's nor plain is a `TypeError`.
+    With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure or
+    what a history needs to go on, which is enough to compare. A value that is neither one of
+    nacre's nor plain is a `TypeError`.
     """
 
     def of(value: Any) -> Any:

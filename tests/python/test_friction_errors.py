@@ -182,7 +182,8 @@ def test_a_list_or_an_array_is_as_good_as_a_tuple() -> None:
         found = slide(force=like((1.0, 0.0)))
         assert found.force == pytest.approx((1.0, 0.0), abs=1e-7)
     steps = [ONE, {"force": [2.0, None]}]
-    for many in (tuple(steps), iter(steps), np.array(steps, dtype=object)):
+    several: tuple[Any, ...] = (tuple(steps), iter(steps), np.array(steps, dtype=object))
+    for many in several:
         found = CONTACT.slide(BALL, many, **HELD)
         assert [s.force[0] for s in found] == pytest.approx([1.0, 2.0])
 

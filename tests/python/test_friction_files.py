@@ -1,4 +1,4 @@
-"""Solutions with friction come back bit for bit from copies and files; text and pictures show them."""
+"""Solutions with friction come back bit for bit; text shows their numbers."""
 
 from __future__ import annotations
 
@@ -8,21 +8,16 @@ import json
 import pickle
 import re
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import pyvista
 import xarray
-from matplotlib.axes import Axes
 
 import nacre
-from nacre import plot, values
-from nacre.units import Scale
+from nacre import values
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.25)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-5)])
@@ -59,20 +54,17 @@ ROLLED = ("rolled", "line rolled")
 every = pytest.mark.parametrize("kind", SOLVED)
 
 
-@pytest.fixture(autouse=True)
-def _figures() -> Iterator[None]:
-    """Draw without a screen, and close what was drawn."""
-    with mpl.rc_context({"backend": "agg"}):
-        yield
-    plt.close("all")
-
-
 def same(found: Any, expected: nacre.FrictionSolution) -> None:
     assert found == expected  # every field and the whole report
     for name in FIELDS:
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes()
     for name in ("force", "shift", "twist", "creepage", "spin", "direction", "report"):
         assert getattr(found, name) == getattr(expected, name)
+
+
+def shift_of(solution: nacre.FrictionSolution) -> tuple[float, float]:
+    assert solution.shift is not None
+    return solution.shift
 
 
 # Copies.
@@ -181,7 +173,7 @@ def test_other_units_change_the_names_of_units_alone() -> None:
         dataset = SOLVED["slid"].to_xarray()
         assert (dataset.traction.units, dataset.slip.units) == ("MPa", "mm")
         assert dataset.attrs["unit_system"] == "N-mm-MPa"
-        assert f"{solution.shift[0] * 1e9:.4g} pm" in str(solution)  # its numbers are mm now
+        assert f"{shift_of(solution)[0] * 1e9:.4g} pm" in str(solution)  # its numbers are mm now
         assert "spin           3 /mm" in str(SOLVED["rolled"])
     np.testing.assert_array_equal(dataset.traction, solution.traction)
 
@@ -258,10 +250,12 @@ def test_pyvista_reads_the_vtk_file_back(kind: str, tmp_path: Path) -> None:
         read = np.asarray(mesh.cell_data[name]).reshape(shape, order="F")
         np.testing.assert_array_equal(read, getattr(solution, name))
     for name in ("traction", "displacement", "slip"):
-        read = np.asarray(mesh.cell_data[name]).reshape(*shape, 3, order="F")
-        np.testing.assert_array_equal(read[..., :2], np.moveaxis(getattr(solution, name), 0, -1))
-        assert not read[..., 2].any()
-    middles = 0.5 * (mesh.x[1:] + mesh.x[:-1])
+        vectors = np.asarray(mesh.cell_data[name]).reshape(*shape, 3, order="F")
+        expected = np.moveaxis(getattr(solution, name), 0, -1)
+        np.testing.assert_array_equal(vectors[..., :2], expected)
+        assert not vectors[..., 2].any()
+    edges = np.asarray(mesh.x)
+    middles = 0.5 * (edges[1:] + edges[:-1])
     np.testing.assert_allclose(middles, solution.x, rtol=0, atol=1e-12)
 
 
@@ -294,7 +288,8 @@ def test_text_shows_the_numbers_with_units() -> None:
     solution = SOLVED["slid"]
     stick, all_cells = solution.stick.sum(), (solution.pressure > 0).sum()
     assert f"{stick} of {all_cells} cells stick" in slid
-    assert f"({solution.shift[0] * 1e9:.4g} nm, {solution.shift[1] * 1e9:.4g} nm)" in slid
+    x, y = shift_of(solution)
+    assert f"({x * 1e9:.4g} nm, {y * 1e9:.4g} nm)" in slid
     for said in ("creepage       (0.001, 0.0002)", "spin           3 /m", "towards -x"):
         assert said in rolled
     assert "(0 N/m, 1 kN/m)" in line
@@ -325,100 +320,3 @@ def test_coefficients_print_their_errors() -> None:
     assert repr(nacre.creep_coefficients(STEEL, STEEL, (1e-3, 1e-3))).startswith(
         "<CreepCoefficients: C11 4.29"
     )
-
-
-# Studies of histories and creep.
-
-
-def test_a_history_is_a_dataset() -> None:
-    loop = CONTACT.slide(BALL, [{"force": (f, None)} for f in (2.0, -2.0)], **HELD)
-    study = nacre.friction.history(loop)
-    for name in ("force", "shift", "torque", "dissipated", "twist"):
-        np.testing.assert_array_equal(study[name], [getattr(s, name) for s in loop])
-    assert {n: study[n].units for n in study} == {
-        **{"load": "N", "force": "N", "torque": "N m", "dissipated": "N m", "stick_share": "1"},
-        **{"convolutions": "1", "shift": "m", "twist": "rad"},
-    }
-    share = [s.stick.sum() / np.count_nonzero(s.pressure) for s in loop]
-    assert study.stick_share.values.tolist() == share
-    assert nacre.friction.history([SOLVED["apart"]]).stick_share.item() == 0
-    rolls = nacre.friction.history([SOLVED["rolled"]])
-    assert rolls.creepage.values.tolist() == [list(SOLVED["rolled"].creepage)]
-    assert (rolls.dissipated.units, "shift" in rolls) == ("N", False)
-    assert nacre.friction.history([SOLVED["line"]]).force.units == "N/m"
-
-
-@pytest.mark.parametrize("direction", ["+x", "-x", "+y", "-y"])
-@pytest.mark.parametrize("lateral", [False, True])
-def test_a_creep_curve_counts_along_and_across_rolling(direction: str, lateral: bool) -> None:
-    grid = nacre.Grid((40, 40), (2.4e-4, 2.4e-4))
-    keywords: dict[str, Any] = {**HELD, "direction": direction, "grid": grid}
-    creepages = [1e-4, 1e-1]
-    curve = nacre.friction.creep_curve(
-        BALL, STEEL, STEEL, creepages=creepages, lateral=lateral, **keywords
-    )
-    # All slips at the second one. Surfaces deform by 5e-3 of the length, at which the slip of each
-    # cell differs from the creepage; that takes 3e-3 of the power on these cells.
-    first, other = ("lateral", "longitudinal") if lateral else ("longitudinal", "lateral")
-    assert curve[f"{first}_force"].values[1] == pytest.approx(3.0, rel=1e-5)
-    assert 0.1 < curve[f"{first}_force"].values[0] < 0.2
-    # 1e-3 of the force: slip turns aside where nu is not 0.
-    np.testing.assert_allclose(curve[f"{other}_force"], 0, atol=3e-3)
-    assert curve.traction_ratio.values[1] == pytest.approx(1.0, rel=1e-5)
-    assert curve.stick_share.values[1] == 0
-    assert curve.power_over_speed.values[1] == pytest.approx(1e-1 * 3.0, rel=4e-3)
-    assert curve.creepage.long_name == f"{first} creepage"
-
-
-# Pictures.
-
-
-@every
-def test_the_picture_has_units_on_its_axes(kind: str) -> None:
-    axes = SOLVED[kind].plot()
-    axes.figure.canvas.draw()
-    if "line" in kind:
-        assert axes.get_xlabel() == "y [µm]"
-        assert axes.get_ylabel() == "traction [MPa]"
-        solution, scale = SOLVED[kind], Scale.of(float(SOLVED[kind].bound.max()), "Pa")
-        drawn = {line.get_label(): line for line in axes.lines}["traction along y"]
-        np.testing.assert_allclose(drawn.get_ydata(), scale.factor * solution.traction[1, 0])
-    else:
-        assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [µm]", "y [µm]")
-        (mesh,) = (c for c in axes.collections if hasattr(c, "get_coordinates"))
-        states = np.ma.filled(mesh.get_array(), -1).reshape(36, 40).T
-        np.testing.assert_array_equal(states == 0, SOLVED[kind].stick)
-        slips = (SOLVED[kind].pressure > 0) & ~SOLVED[kind].stick
-        np.testing.assert_array_equal(states == 1, slips)
-    assert [text.get_text() for text in axes.get_legend().get_texts()][-2:] == ["sticks", "slips"]
-
-
-def test_pictures_go_into_given_axes() -> None:
-    _, axes = plt.subplots()
-    assert SOLVED["slid"].plot(axes) is axes
-    assert SOLVED["slid"].plot(axes=axes) is axes
-    with pytest.raises(TypeError, match="axes must be axes of Matplotlib, got 'here'"):
-        plot.friction(SOLVED["line"], "here")  # type: ignore[arg-type]
-
-
-def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
-    loop = CONTACT.slide(BALL, [{"force": (f, None)} for f in (2.0, -2.0, 2.0)], **HELD)
-    axes: Axes = plot.loop(loop)
-    axes.figure.canvas.draw()
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("shift along x [nm]", "force along x [N]")
-    shown = np.asarray(axes.lines[-1].get_xydata())
-    np.testing.assert_allclose(shown, [(1e9 * s.shift[0], s.force[0]) for s in loop])
-    for along in ("z", 0, None):
-        with pytest.raises(ValueError, match="along must be 'x' or 'y', got"):
-            plot.loop(loop, along)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="must be steps of sliding, got one of rolling"):
-        plot.loop([SOLVED["rolled"]])
-    curve = nacre.friction.creep_curve(
-        BALL, STEEL, STEEL, creepages=[1e-4, 1e-3], grid=GRID, direction="+x", **HELD
-    )
-    axes = plot.creep_curve(curve)
-    assert axes.get_xlabel() == "longitudinal creepage [10⁻³]"
-    assert axes.get_ylabel() == "force over friction times load"
-    shown = np.asarray(axes.lines[-1].get_xydata())
-    np.testing.assert_allclose(shown[:, 0], [0.1, 1.0])
-    np.testing.assert_allclose(shown[:, 1], curve.traction_ratio)
