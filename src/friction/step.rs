@@ -91,15 +91,15 @@ pub struct Step {
     pub torque: Option<f64>,
 }
 
-/// A motion that is small, as the theory of elasticity supposes.
-fn small(name: &'static str, value: f64, most: f64) -> Result<f64> {
-    if value.abs() < most {
+/// A motion of any size but one at which numbers overflow.
+fn bounded(name: &'static str, value: f64, unit: f64) -> Result<f64> {
+    if finite(name, value)?.abs() <= 1e6 * unit {
         return Ok(value);
     }
     let requirement = match name {
-        "shift" => "finite, and between minus and plus the width of the grid",
-        "spin" => "finite, and such that the creepage from it is below 1 on the whole grid",
-        _ => "finite, and between -1 and 1",
+        "shift" => "at most a million times the width of the grid",
+        "spin" => "at most a million over the width of the grid",
+        _ => "at most a million",
     };
     Err(Error::Parameter {
         name,
@@ -126,11 +126,12 @@ impl Step {
         ];
         let names = [("shift", "force"), ("shift", "force"), ("twist", "torque")];
         let [lx, ly] = grid.size();
-        let most = [lx, ly, 1.0];
-        for (((motion, load), (of_motion, of_load)), most) in given.into_iter().zip(names).zip(most)
+        let units = [lx, ly, 1.0];
+        for (((motion, load), (of_motion, of_load)), unit) in
+            given.into_iter().zip(names).zip(units)
         {
             if let Some(value) = motion {
-                small(of_motion, value, most)?;
+                bounded(of_motion, value, unit)?;
             }
             if let Some(value) = load {
                 finite(of_load, value)?;
@@ -234,14 +235,15 @@ impl Rolling {
     }
 
     pub(super) fn freedoms(&self, grid: &Grid) -> Result<[Freedom; 2]> {
-        let [lx, ly] = grid.size();
-        small("spin", self.spin, 1.0 / lx.hypot(ly))?;
+        finite("spin", self.spin)?;
         let axis_is_x = self.direction.vector()[0].abs() > 0.5;
         if grid.is_line() && (axis_is_x || self.spin != 0.0) {
             return Err(Error::Inconsistent(
                 "in line contact, the direction of rolling must be +y or -y, and the spin 0",
             ));
         }
+        let [lx, ly] = grid.size();
+        bounded("spin", self.spin, 1.0 / lx.hypot(ly))?;
         let mut freedoms = [Freedom::Prescribed(0.0); 2];
         for (freedom, (creepage, force)) in freedoms
             .iter_mut()
@@ -253,7 +255,7 @@ impl Rolling {
                         "of creepage and force along one axis, one must be given, not both",
                     ));
                 }
-                (Some(value), None) => Freedom::Prescribed(small("creepage", value, 1.0)?),
+                (Some(value), None) => Freedom::Prescribed(bounded("creepage", value, 1.0)?),
                 (None, Some(value)) => Freedom::Loaded(finite("force", value)?),
                 (None, None) => Freedom::Prescribed(0.0),
             };

@@ -43,9 +43,9 @@ impl Rolled {
         let shape = shape(given)?.get().0.clone();
         let friction = friction(keywords)?
             .ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
-        let direction = match keywords.text("direction", "")?.as_str() {
-            word if !word.is_empty() => RollingDirection::from_word(word)?,
-            _ => match shape.rolling_direction() {
+        let direction = match keywords.optional_text("direction")? {
+            Some(word) => RollingDirection::from_word(&word)?,
+            None => match shape.rolling_direction() {
                 Some([x, _]) if x.abs() < 0.5 => RollingDirection::PlusY,
                 Some(_) => RollingDirection::PlusX,
                 None => {

@@ -78,7 +78,8 @@ impl PyFrictionSolution {
         check: bool,
     ) -> PyResult<Self> {
         let category = py.get_type::<NacreWarning>();
-        for warning in &solution.normal.report.warnings {
+        let stopped = solution.report.termination == Termination::Stopped;
+        for warning in solution.normal.report.warnings.iter().filter(|_| !stopped) {
             let message = CString::new(warning.to_string())?;
             PyErr::warn(py, &category, &message, 1)?;
         }
