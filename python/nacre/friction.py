@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +24,28 @@ MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
 """Keywords of the motion along z."""
 
 
+def checked(solutions: object) -> list[core.FrictionSolution]:
+    """Return solutions as a list, with one of them at least, and all of one kind.
+
+    Raises
+    ------
+    TypeError
+        If they are no sequence of FrictionSolution.
+    ValueError
+        If there is none, or some slide and some roll, or some are line contacts.
+    """
+    found: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
+    if not all(isinstance(solution, core.FrictionSolution) for solution in found):
+        raise TypeError(f"solutions must be a sequence of FrictionSolution, got {solutions!r}")
+    if not found:
+        raise ValueError("solutions must hold at least one solution, got none")
+    if len({(s.shift is None, s.grid.is_line) for s in found}) > 1:
+        raise ValueError(
+            "solutions must all slide or all roll, in line contact or not, got some of each"
+        )
+    return found
+
+
 def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
     """Dataset of the main numbers of a history, step by step; needs ``nacre-contact[files]``.
 
@@ -40,8 +62,10 @@ def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
 
     Raises
     ------
+    TypeError
+        If they are no sequence of FrictionSolution.
     ValueError
-        If there is no solution.
+        If there is none, or some slide and some roll.
 
     Examples
     --------
@@ -55,8 +79,7 @@ def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
     with extra("files"):
         import xarray
 
-    if not solutions:
-        raise ValueError("solutions must hold at least one solution, got none")
+    solutions = checked(solutions)
     line = solutions[0].grid.is_line
     force, rolls = "N/m" if line else "N", solutions[0].shift is None
     touching = [np.count_nonzero(s.pressure) for s in solutions]
@@ -119,10 +142,12 @@ def creep_curve(
     xarray.Dataset
         Force along and across rolling, torque, share of the contact that sticks, and power over
         the speed of rolling, over ``creepage``; the force over friction times load as
-        ``traction_ratio``.
+        ``traction_ratio``, NaN where there is neither.
 
     Raises
     ------
+    TypeError
+        If creepages are not real numbers.
     ValueError
         If creepages are not a sequence of numbers, or `nacre.roll` would raise.
 
@@ -139,6 +164,8 @@ def creep_curve(
     with extra("files"):
         import xarray
 
+    if np.ma.isMaskedArray(creepages) or np.asarray(creepages).dtype.kind not in "biuf":
+        raise TypeError(f"creepages must be real numbers without a mask, got {creepages!r}")
     values = np.asarray(creepages, dtype=np.float64)
     if values.ndim != 1 or values.size == 0:
         raise ValueError(f"creepages must be a sequence of numbers, got shape {values.shape}")
@@ -160,7 +187,9 @@ def creep_curve(
     # z x e: along +y for rolling towards +x, along -x for rolling towards +y.
     across = 1 - axis, sign if axis == 0 else -sign
     forces = np.array([s.force for s in solutions])
-    bears = np.array([s.normal.load * s.bound.sum() / s.pressure.sum() for s in solutions])
+    area = [s.normal.load / (s.pressure.sum() or 1.0) for s in solutions]
+    bears = np.array([s.bound.sum() * cell for s, cell in zip(solutions, area, strict=True)])
+    bears[bears <= 0] = np.nan  # there is no ratio
     line = contact.grid.is_line
     unit = symbol("N/m" if line else "N")
     touching = np.array([np.count_nonzero(s.pressure) for s in solutions])

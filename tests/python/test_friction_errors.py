@@ -18,6 +18,7 @@ CONTACT = nacre.Contact(STEEL, GRID, STEEL)
 LINE = nacre.Contact(STEEL, nacre.Grid.line(64, 4e-4), STEEL)
 HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
 LAST = CONTACT.slide(BALL, **HELD, force=(1.0, None))
+ROLLED = CONTACT.roll(BALL, **HELD, direction="+x")
 ENDS = nacre.HalfSpace(STEEL, ends=(-1e-3, 1e-3))
 LOOSE = nacre.HalfSpace(STEEL, [nacre.Layer(STEEL, 1e-5, "frictionless")])
 
@@ -110,7 +111,8 @@ VALUE_ERRORS = {
     "curve(creepages=1e-3)": r"creepages must be a sequence of numbers, got shape \(\)",
     "curve(creepages=[1e-3], force=(1, None))": r"force must not be given: creepages say",
     "curve(creepages=[1e-3], cells=3)": r"cells must not be given: creepages say",
-    "curve(creepages=['fast'])": r"fast",
+    "nacre.friction.history([LAST, ROLLED])": r"solutions must all slide or all roll",
+    "nacre.plot.loop([])": r"solutions must hold at least one solution, got none",
 }
 
 TYPE_ERRORS = {
@@ -151,6 +153,16 @@ TYPE_ERRORS = {
     "coefficients(STEEL, STEEL, ('a', 1.0))": r"(?s)pair of numbers, got \('a', 1.0\).*semi_axes",
     "coefficients(STEEL, STEEL, (1.0, 1.0), cells=8.5)": r"(?s)integer.*cells",
     "LAST.plot(3)": r"axes must be axes of Matplotlib, got 3",
+    "curve(creepages=['fast'])": r"creepages must be real numbers.*'fast'",
+    "curve(creepages=[1j])": r"creepages must be real numbers.*1j",
+    "curve(creepages=np.ma.masked_equal([1e-3, 2e-3], 1e-3))": r"creepages must .*without a mask",
+    "nacre.friction.history([3])": r"solutions must be a sequence of FrictionSolution, got \[3\]",
+    "nacre.friction.history(LAST)": r"solutions must be a sequence of FrictionSolution, got <nac",
+    "nacre.friction.history(None)": r"solutions must be a sequence of FrictionSolution, got None",
+    "nacre.plot.loop(LAST)": r"solutions must be a sequence of FrictionSolution, got <nacre",
+    "nacre.plot.loop([LAST], axes=3)": r"axes must be axes of Matplotlib, got 3",
+    "nacre.plot.creep_curve(None, axes=3)": r"axes must be axes of Matplotlib, got 3",
+    "nacre.plot.friction(3)": r"solution must be a FrictionSolution, got 3",
     "curve(creepages=[1e-3], colour=3)": r"Contact\.roll must be among .*'colour'",
     "nacre.FrictionSolution()": r"FrictionSolution",
 }

@@ -82,6 +82,15 @@ def test_a_creep_curve_counts_along_and_across_rolling(direction: str, lateral: 
     assert curve.creepage.long_name == f"{first} creepage"
 
 
+@pytest.mark.parametrize("wrong", [{"friction": 0.0}, {"load": None, "approach": -1e-6}])
+def test_without_friction_or_contact_there_is_no_ratio(wrong: dict[str, Any]) -> None:
+    curve = nacre.friction.creep_curve(
+        BALL, STEEL, STEEL, creepages=[1e-3], grid=GRID, direction="+x", **HELD | wrong
+    )
+    assert np.isnan(curve.traction_ratio.item())
+    assert curve.longitudinal_force.item() == 0
+
+
 # Pictures.
 
 

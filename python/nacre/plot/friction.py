@@ -9,6 +9,7 @@ import numpy as np
 
 from nacre._core import FrictionSolution
 from nacre._extras import extra
+from nacre.friction import checked
 from nacre.plot.style import lengths, new_axes, next_look, styled
 from nacre.units import Scale
 
@@ -46,14 +47,21 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
     Raises
     ------
     TypeError
-        If `axes` are not axes.
+        If `solution` is not one, or `axes` are not axes.
     """
-    if axes is not None and not isinstance(axes, Axes):
-        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
+    if not isinstance(solution, FrictionSolution):
+        raise TypeError(f"solution must be a FrictionSolution, got {solution!r}")
+    _check(axes)
     with styled():
         if solution.grid.is_line:
             return _line(solution, axes or new_axes(0.6, 0.4))
         return _map(solution, axes or new_axes(0.6, 0.5))
+
+
+def _check(axes: object) -> None:
+    """Raise a `TypeError` unless `axes` are axes or None."""
+    if axes is not None and not isinstance(axes, Axes):
+        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
 
 
 def _map(solution: FrictionSolution, axes: Axes) -> Axes:
@@ -191,9 +199,13 @@ def loop(
 
     Raises
     ------
+    TypeError
+        If they are no sequence of FrictionSolution, or `axes` are not axes.
     ValueError
-        If a solution is one of rolling, or the axis is another.
+        If there is no solution, one is of rolling, or the axis is another.
     """
+    _check(axes)
+    solutions = checked(solutions)
     if along not in ("x", "y"):
         raise ValueError(f"along must be 'x' or 'y', got {along!r}")
     axis = "xy".index(along)
@@ -232,7 +244,13 @@ def creep_curve(dataset: xarray.Dataset, axes: Axes | None = None, **style: Any)
     -------
     matplotlib.axes.Axes
         The axes.
+
+    Raises
+    ------
+    TypeError
+        If `axes` are not axes.
     """
+    _check(axes)
     with styled():
         axes = axes or new_axes(0.5, 0.4)
         look = next_look(axes) | style
