@@ -142,7 +142,7 @@ pub enum Error {
     },
     /// A tangential force or torque that friction does not bear.
     #[error(
-        "{name} must be below what friction bears, {bears:e}, was {value:e}: the contact would slide as a whole"
+        "{name} must be below what friction bears, {bears:.4e}, was {value:.4e}: the contact would slide as a whole"
     )]
     FullSlip {
         /// `force` or `torque`.

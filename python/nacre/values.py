@@ -52,6 +52,7 @@ RESULTS = (
     | core.InterfaceStress
     | core.FrictionSolution
     | core.FrictionReport
+    | core.CreepCoefficients
 )
 BEGUN = ("traction", "displacement", "friction", "motion")
 """Fields of a contact with friction on which a history depends that goes on from it."""

@@ -85,6 +85,7 @@ VALUES = MADE_BY_A_CALL | {
     "stress plan": SOLUTION.stress_plan(threads=1),
     "friction solution": SLID,
     "friction report": SLID.report,
+    "creep coefficients": nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
     "stress summary": SUMMARY,
     "layer stress": SUMMARY.layers[0],
     "interface stress": SUMMARY.interfaces[0],

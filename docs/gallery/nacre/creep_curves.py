@@ -2,18 +2,16 @@
 Creep curves of a coated wheel
 ==============================
 
-A wheel rolls on a rail of its own kind, both bare or both coated. The force along the direction of rolling rises with
-the creepage until the whole contact slips. At small creepage its slope is Kalker's coefficient C11 times the area; a
-coating changes it by more than it changes the contact.
+A wheel rolls on a rail, both without coating or both with the same. The force along the direction
+of rolling rises with the creepage until the whole contact slips. Where the creepage is small, the
+slope follows from Kalker's coefficient C11.
 
-*Left*: creep curves of equal loads. *Right*: Kalker's coefficients of a circular contact over those of bodies without
-coating, as functions of the thickness of the coating.
+*Left*: creep curves under the same load, with coatings a fifth as thick as the contact's radius.
+*Right*: Kalker's coefficients of a circular contact over those without coatings.
 """
 
-# %%
-from matplotlib import pyplot as plt
-
 import numpy as np
+from matplotlib import pyplot as plt
 
 import nacre
 
@@ -31,22 +29,33 @@ def coated(ratio, thickness):
 
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
-bodies = {"hard coating, 4 : 1": coated(4, 0.2 * a), "no coating": steel, "soft coating, 1 : 4": coated(0.25, 0.2 * a)}
+bodies = {
+    "hard coating, 4 : 1": coated(4, 0.2 * a),
+    "no coating": steel,
+    "soft coating, 1 : 4": coated(0.25, 0.2 * a),
+}
 for name, body in bodies.items():
-    curve = nacre.friction.creep_curve(
-        wheel, body, body, creepages=creepages, load=load, friction=friction, direction="+x", grid=grid, tolerance=1e-5
-    )
+    held = {"load": load, "friction": friction, "direction": "+x", "grid": grid}
+    curve = nacre.friction.creep_curve(wheel, body, body, creepages=creepages, **held)
     nacre.plot.creep_curve(curve, axes=left, label=name)
 left.legend(fontsize="small")
 
 thicknesses = np.array([0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0])
 bare = nacre.creep_coefficients(steel, steel, (a, a), cells=32)
 for ratio, colour in ((4, "C0"), (0.25, "C1")):
-    found = [nacre.creep_coefficients(*[coated(ratio, h * a)] * 2, (a, a), cells=32) for h in thicknesses]
+    bodies = [coated(ratio, thickness * a) for thickness in thicknesses]
+    found = [nacre.creep_coefficients(body, body, (a, a), cells=32) for body in bodies]
+    kind = "4 : 1" if ratio > 1 else "1 : 4"
     for name, style in (("c11", "o-"), ("c22", "s--"), ("c23", "^:")):
         values = [getattr(one, name) / getattr(bare, name) for one in found]
-        right.loglog(thicknesses, values, style, ms=4, color=colour, label=f"{name.upper()}, {ratio:g} : 1")
+        label = f"{name.upper()}, {kind}"
+        right.loglog(thicknesses, values, style, ms=4, color=colour, label=label)
 right.axhline(1, color="0.6", lw=0.8)
-right.set(xlabel="thickness of both coatings over radius a", ylabel="coefficient over that without coating")
-right.legend(fontsize="small", ncols=2)
-plt.show()
+right.set(
+    xlabel="thickness of both coatings over radius a",
+    ylabel="coefficient over that without coatings",
+)
+ticks = [0.25, 0.5, 1, 2, 4]
+right.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+right.minorticks_off()
+right.legend(fontsize="small", ncols=2, loc="center right")

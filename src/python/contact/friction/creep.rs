@@ -1,12 +1,14 @@
 //! `nacre.creep_coefficients`.
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::body::HalfSpace;
 use crate::friction::{CreepCoefficients, creep_coefficients_watched};
 use crate::python::arguments::{Pair, count};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
+use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
 use crate::response::Body;
 
 /// Kalker's linear coefficients of an elliptic contact, with their estimated errors.
@@ -20,6 +22,33 @@ use crate::response::Body;
 #[pyclass(name = "CreepCoefficients", module = "nacre", frozen, eq)]
 #[derive(PartialEq)]
 pub(in crate::python) struct PyCreepCoefficients(CreepCoefficients);
+
+impl State for PyCreepCoefficients {
+    const KIND: &'static str = "CreepCoefficients";
+
+    fn write(&self, fields: &Fields) -> PyResult<()> {
+        let found = &self.0;
+        fields.set("c11", found.c11)?;
+        fields.set("c22", found.c22)?;
+        fields.set("c23", found.c23)?;
+        fields.set("c33", found.c33)?;
+        fields.set("errors", self.errors())?;
+        fields.set("shear", found.shear)?;
+        fields.set("semi_axes", self.semi_axes())
+    }
+
+    fn read(fields: &Fields) -> PyResult<Self> {
+        Ok(Self(CreepCoefficients {
+            c11: fields.get("c11")?,
+            c22: fields.get("c22")?,
+            c23: fields.get("c23")?,
+            c33: fields.get("c33")?,
+            errors: fields.get("errors")?,
+            shear: fields.get("shear")?,
+            semi_axes: fields.get("semi_axes")?,
+        }))
+    }
+}
 
 #[pymethods]
 impl PyCreepCoefficients {
@@ -78,6 +107,29 @@ impl PyCreepCoefficients {
             "<CreepCoefficients: C11 {c11:.4} ± {:.4}, C22 {c22:.4} ± {:.4}, C23 {c23:.4} ± {:.4}, C33 {c33:.4} ± {:.4}>",
             errors[0], errors[1], errors[2], errors[3]
         )
+    }
+
+    #[doc = to_dict_docs!()]
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.25)
+    /// >>> creep = nacre.creep_coefficients(steel, steel, (1e-3, 2e-3), cells=16)
+    /// >>> creep.to_dict()["semi_axes"]
+    /// (0.001, 0.002)
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        state::to_dict(py, self)
+    }
+
+    #[doc = from_dict_docs!()]
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.25)
+    /// >>> creep = nacre.creep_coefficients(steel, steel, (1e-3, 2e-3), cells=16)
+    /// >>> nacre.CreepCoefficients.from_dict(creep.to_dict()) == creep
+    /// True
+    #[staticmethod]
+    fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        state::from_dict(data)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        state::reduce(py, self)
     }
 }
 

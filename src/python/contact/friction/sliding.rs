@@ -186,7 +186,14 @@ where
                     caller.ask(|| (number, PyFrictionReport(report.clone())))
                 };
                 step(before.as_deref(), &mut tell)
-            })??;
+            })?;
+            let solved = solved.map_err(|error| {
+                let error = PyErr::from(error);
+                if history {
+                    let _ = error.add_note(py, format!("step {number}"));
+                }
+                error
+            })?;
             let Some(solution) = solved.into_iter().next() else {
                 break;
             };
