@@ -34,7 +34,7 @@ def with_nacre(cells: int, threads: int) -> Solve:
     grid = nacre.Grid(shape=(cells, cells), size=(SIDE, SIDE))
     contact = nacre.Contact(body, grid, counterbody=body, threads=threads)
     shape = nacre.Paraboloid(RADIUS, RADIUS)
-    step = {"load": LOAD, "force": (FORCE, 0.0)}
+    step: dict[str, Any] = {"load": LOAD, "force": (FORCE, 0.0)}
     # What tractions need is planned with the first of them.
     contact.slide(shape, friction=FRICTION, tolerance=0.1, **step)
 

@@ -138,7 +138,7 @@ def cells(row: Row) -> tuple[str, ...]:
 def friction(rows: list[Row]) -> list[str]:
     """Return the table of tractions, and what is compared."""
     ours = {row.cells: row.seconds for row in rows if row.program == "nacre"}
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for row in rows:
         times = row.seconds, ours.get(row.cells)
         share = "–" if None in times else f"{(times[0] or 0) / (times[1] or 1):.3g}"

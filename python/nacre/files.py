@@ -263,7 +263,7 @@ def _solution(
     if not isinstance(state, dict):
         raise ValueError(f"the attribute {STATE} must hold named fields, got {text!r:.60}")
     if state.get("kind") == "FrictionSolution":
-        from nacre._friction_files import restored
+        from nacre._friction_state import restored
 
         arrays = {name: _as_saved(name, variables) for name in variables if name not in "xy"}
         return restored(state, text, attributes[CHECKSUM], arrays)

@@ -4,11 +4,10 @@ use std::f64::consts::PI;
 
 use ndarray::Array2;
 
-use super::coefficients::TractionCoefficients;
 use crate::grid::Grid;
 use crate::material::Elastic;
 
-/// Coefficients in closed form: sums over the corners of a cell of functions f, by Cerruti's solution (Johnson, Contact
+/// Coefficients xx, xy, yy, zx and zy in closed form: sums over the corners of a cell of functions f, by Cerruti's solution (Johnson, Contact
 /// Mechanics, 1985, §3.6, doi:10.1017/CBO9781139171731).
 ///
 /// ```text
@@ -16,7 +15,7 @@ use crate::material::Elastic;
 /// f_A = x asinh(y/|x|) + y asinh(x/|y|)  f_xx = y asinh(x/|y|)    f_xy = −√(x² + y²)
 /// f_x = ½ y ln(x² + y²) + x atan(y/x)
 /// ```
-pub(super) fn of_cells(material: Elastic, grid: &Grid) -> TractionCoefficients {
+pub(super) fn of_cells(material: Elastic, grid: &Grid) -> [Array2<f64>; 5] {
     let (nu, unit) = (material.poisson(), 2.0 * PI * material.shear());
     let [dx, dy] = grid.spacing();
     let along = move |[x, y]: [f64; 2]| ((1.0 - nu) * times_asinh(x, y) + times_asinh(y, x)) / unit;
@@ -30,13 +29,13 @@ pub(super) fn of_cells(material: Elastic, grid: &Grid) -> TractionCoefficients {
             (f([right, high]) - f([left, high])) - (f([right, low]) - f([left, low]))
         })
     };
-    TractionCoefficients {
-        xx: cells(&along),
-        xy: cells(&across),
-        yy: cells(&|at| turned(&along, at)),
-        zx: cells(&lift),
-        zy: cells(&|at| turned(&lift, at)),
-    }
+    [
+        cells(&along),
+        cells(&across),
+        cells(&|at| turned(&along, at)),
+        cells(&lift),
+        cells(&|at| turned(&lift, at)),
+    ]
 }
 
 /// x asinh(y/|x|)

@@ -3,6 +3,7 @@
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
+use super::bare::of_cells;
 use crate::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -114,7 +115,7 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
         return Ok(of_strips(body, grid, &place));
     }
     if let (Substrate::Elastic(material), []) = (body.substrate(), body.layers()) {
-        return Ok(with_parities(super::bare::of_cells(material, grid)));
+        return Ok(with_parities(of_cells(material, grid)));
     }
     let spacing = grid.spacing();
     let [lx, ly] = grid.size();
@@ -158,24 +159,18 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
         rows
     };
     let component = |axis: usize, k: usize| threads.run(|| component(axis, k));
-    Ok(with_parities(TractionCoefficients {
-        xx: component(0, 0),
-        xy: component(0, 1),
-        yy: component(1, 1),
-        zx: component(0, 2),
-        zy: component(1, 2),
-    }))
+    let five = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2)];
+    Ok(with_parities(five.map(|(axis, k)| component(axis, k))))
 }
 
 /// What is odd vanishes on its axis, where rounding leaves a rest.
-fn with_parities(mut c: TractionCoefficients) -> TractionCoefficients {
-    let TractionCoefficients { xy, zx, zy, .. } = &mut c;
+fn with_parities([xx, mut xy, yy, mut zx, mut zy]: [Array2<f64>; 5]) -> TractionCoefficients {
     let (along_x, along_y) = (Axis(0), Axis(1));
-    for (odd, axis) in [(&mut *xy, along_x), (zx, along_x), (zy, along_y)] {
+    for (odd, axis) in [(&mut xy, along_x), (&mut zx, along_x), (&mut zy, along_y)] {
         odd.index_axis_mut(axis, 0).fill(0.0);
     }
     xy.index_axis_mut(along_y, 0).fill(0.0);
-    c
+    TractionCoefficients { xx, xy, yy, zx, zy }
 }
 
 /// Rows of coefficients that are computed together.

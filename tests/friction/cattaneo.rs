@@ -144,21 +144,15 @@ fn loops_dissipate() -> Result<()> {
             let (old, new) = (&pair[0], &pair[1]);
             let moved = slid(new).0[0] - slid(old).0[0];
             let stored = new.tangential_energy() - old.tangential_energy();
-            let over = |f: &dyn Fn([f64; 2], [f64; 2], f64) -> f64| -> f64 {
-                let each = (0..2).flat_map(|k| {
-                    let q = old.traction[k].iter().zip(&new.traction[k]);
-                    let u = old.displacement[k].iter().zip(&new.displacement[k]);
-                    q.zip(u).zip(&new.slip[k])
-                });
-                let of = |((q, u), s): (((&f64, &f64), (&f64, &f64)), &f64)| {
-                    f([*q.0, *q.1], [*u.0, *u.1], *s)
-                };
-                each.map(of).sum::<f64>() * area
-            };
-            let cross = 0.5 * over(&|q, u, _| (q[1] - q[0]) * (u[1] - u[0]));
+            let (mut cross, mut mean) = (0.0, 0.0);
+            for k in 0..2 {
+                let dq = &new.traction[k] - &old.traction[k];
+                let du = &new.displacement[k] - &old.displacement[k];
+                cross += 0.5 * (&dq * &du).sum() * area;
+                mean += 0.5 * ((&old.traction[k] + &new.traction[k]) * &new.slip[k]).sum() * area;
+            }
             let lost = new.dissipated();
             let first = new.force()[0] * moved - stored - lost - cross;
-            let mean = 0.5 * over(&|q, _, s| (q[0] + q[1]) * s);
             let second = 0.5 * (old.force()[0] + new.force()[0]) * moved - stored - mean;
             assert!(
                 first.abs() < 1e-8 * lost && second.abs() < 1e-8 * lost,

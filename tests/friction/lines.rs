@@ -103,11 +103,13 @@ const CELLS: [usize; 3] = [100, 200, 400];
 /// Calls `check` with the grids of each coated pair, and its cases.
 fn each_pair(key: &str, check: impl Fn(&[Line; 3], &Value) -> Result<()>) -> Result<()> {
     let reference = read("friction/line_contact.json");
-    let mut pairs: Vec<([f64; 2], [Line; 3])> = Vec::new();
+    let mut pairs: Vec<([String; 2], [Line; 3])> = Vec::new();
     for case in list(&reference, key) {
-        let which = [number(case, "E1_over_E2"), number(case, "h_over_b")];
+        let names = ["E1_over_E2", "h_over_b"];
+        let which = names.map(|name| case[name].to_string());
         if pairs.last().is_none_or(|(last, _)| *last != which) {
-            let [a, b, c] = CELLS.map(|cells| Line::new(which[0], which[1], cells));
+            let [ratio, thickness] = names.map(|name| number(case, name));
+            let [a, b, c] = CELLS.map(|cells| Line::new(ratio, thickness, cells));
             pairs.push((which, [a?, b?, c?]));
         }
         let (_, lines) = pairs.last().expect("a pair");

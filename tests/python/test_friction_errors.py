@@ -99,7 +99,7 @@ VALUE_ERRORS = {
     # coefficients
     "coefficients(STEEL, STEEL, (1e-3, 0.0))": r"semi_axes must be finite and above 0, got 0",
     "coefficients(STEEL, STEEL, (NAN, 1.0))": r"semi_axes must be finite and above 0, got NaN",
-    "coefficients(STEEL, STEEL, (1.0, 1.0), cells=4)": r"cells must be an integer of at least 8, got 4",
+    "coefficients(STEEL, STEEL, (1.0, 1.0), cells=4)": r"cells must be .* at least 8, got 4",
     "coefficients(LOOSE, STEEL, (1.0, 1.0))": r"without frictionless interfaces",
     # results
     "LAST.save('a.txt')": r"path must end in \.nc, \.vtr, \.csv.*got 'a\.txt'",
@@ -216,7 +216,7 @@ def test_an_error_in_a_step_keeps_the_steps_before_it(wrong: Any, message: str) 
 
 
 OTHER_ERRORS: dict[str, tuple[type[Exception], str]] = {
-    "OTHER.slide(BALL, initial=LAST, **HELD)": (ValueError, "initial must be a solution on the grid"),
+    "OTHER.slide(BALL, initial=LAST, **HELD)": (ValueError, "initial must be a solution on"),
     "slide(shift=(1e300, None))": (ValueError, "shift must be at most a million times"),
     "roll(creepage=(1e300, None))": (ValueError, "creepage must be at most a million"),
     "roll(spin=1e300)": (ValueError, "spin must be at most a million over"),

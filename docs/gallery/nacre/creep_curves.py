@@ -10,6 +10,8 @@ slope follows from Kalker's coefficient C11.
 *Right*: Kalker's coefficients of a circular contact over those without coatings.
 """
 
+from typing import Any
+
 import numpy as np
 from matplotlib import pyplot as plt
 
@@ -22,7 +24,7 @@ grid = nacre.Grid(shape=(64, 64), size=(4.4e-4, 4.4e-4))
 creepages = np.geomspace(1e-4, 8e-3, 12)
 
 
-def coated(ratio, thickness):
+def coated(ratio: float, thickness: float) -> nacre.HalfSpace:
     """Return steel under a layer."""
     layer = nacre.Layer(nacre.Elastic(ratio * 210e9, 0.3), thickness)
     return nacre.HalfSpace(steel, [layer])
@@ -35,7 +37,7 @@ bodies = {
     "soft coating, 1 : 4": coated(0.25, 0.2 * a),
 }
 for name, body in bodies.items():
-    held = {"load": load, "friction": friction, "direction": "+x", "grid": grid}
+    held: dict[str, Any] = {"load": load, "friction": friction, "direction": "+x", "grid": grid}
     curve = nacre.friction.creep_curve(wheel, body, body, creepages=creepages, **held)
     nacre.plot.creep_curve(curve, axes=left, label=name)
 left.legend(fontsize="small")
@@ -43,8 +45,8 @@ left.legend(fontsize="small")
 thicknesses = np.array([0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0])
 bare = nacre.creep_coefficients(steel, steel, (a, a), cells=32)
 for ratio, colour in ((4, "C0"), (0.25, "C1")):
-    bodies = [coated(ratio, thickness * a) for thickness in thicknesses]
-    found = [nacre.creep_coefficients(body, body, (a, a), cells=32) for body in bodies]
+    pairs = [(coated(ratio, h), coated(ratio, h)) for h in thicknesses * a]
+    found = [nacre.creep_coefficients(*pair, (a, a), cells=32) for pair in pairs]
     kind = "4 : 1" if ratio > 1 else "1 : 4"
     for name, style in (("c11", "o-"), ("c22", "s--"), ("c23", "^:")):
         values = [getattr(one, name) / getattr(bare, name) for one in found]

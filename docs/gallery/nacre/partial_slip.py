@@ -12,6 +12,8 @@ tangential compliance to the normal one depends on the wavelength, and the super
 across the middle of the contact with a hard coating, and that of the superposition.
 """
 
+from typing import Any
+
 import numpy as np
 from matplotlib import pyplot as plt
 
@@ -24,7 +26,7 @@ ball = nacre.Sphere(RADIUS)
 grid = nacre.Grid(shape=(120, 120), size=(5e-4, 5e-4))
 
 
-def pulled(ratio, thickness):
+def pulled(ratio: float, thickness: float) -> tuple[Any, Any, float]:
     """Solve, and superpose."""
     layer = nacre.Layer(nacre.Elastic(ratio * 210e9, POISSON), thickness)
     body = nacre.HalfSpace(steel, [layer])
