@@ -13,6 +13,7 @@ import typer
 import nacre
 from nacre import _reference
 from nacre._commands import app
+from nacre._friction_display import shown
 from nacre._outputs import ERROR, FRICTION, check_direction
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES, PICTURES
@@ -156,8 +157,8 @@ def _history(steps: list[nacre.FrictionSolution]) -> str:
     for number, step in enumerate(steps):
         motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
         assert motion is not None
-        said = [f"{part:.4g}" if rolls else written(part, "m") for part in motion]
-        forces = [written(part, force) for part in step.force]
+        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
+        forces = [written(part, force) for part in shown(step.force)]
         row = [str(number), *forces, *said, written(step.dissipated, energy)]
         lines.append([*row, step.report.termination])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]

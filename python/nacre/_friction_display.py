@@ -8,7 +8,7 @@ import nacre._core as core
 from nacre._display import numbers as normal_numbers
 from nacre.units import symbol, written
 
-NOISE = 1e-9
+NOISE = 1e-8
 """Share of a vector below which a component is printed as 0."""
 
 
@@ -50,11 +50,15 @@ def numbers(solution: core.FrictionSolution) -> list[tuple[str, str]]:
     return rows
 
 
-def _pair(values: tuple[float, float], unit: str) -> str:
+def shown(values: tuple[float, float]) -> list[float]:
     """Return two components; one that is rounding beside the other is 0."""
     largest = max(abs(value) for value in values)
-    shown = [value if abs(value) > NOISE * largest else 0.0 for value in values]
-    return f"({written(shown[0], unit)}, {written(shown[1], unit)})"
+    return [value if abs(value) > NOISE * largest else 0.0 for value in values]
+
+
+def _pair(values: tuple[float, float], unit: str) -> str:
+    first, second = shown(values)
+    return f"({written(first, unit)}, {written(second, unit)})"
 
 
 def line(solution: core.FrictionSolution) -> str:

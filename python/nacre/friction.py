@@ -141,8 +141,8 @@ def creep_curve(
     -------
     xarray.Dataset
         Force along and across rolling, torque, share of the contact that sticks, and power over
-        the speed of rolling, over ``creepage``; the force over friction times load as
-        ``traction_ratio``, NaN where there is neither.
+        the speed of rolling, over ``creepage``; the force along the creepage over friction
+        times load as ``traction_ratio``, NaN where there is neither.
 
     Raises
     ------
@@ -190,6 +190,8 @@ def creep_curve(
     area = [s.normal.load / (s.pressure.sum() or 1.0) for s in solutions]
     bears = np.array([s.bound.sum() * cell for s, cell in zip(solutions, area, strict=True)])
     bears[bears <= 0] = np.nan  # there is no ratio
+    driven = across if lateral else (axis, sign)
+    pulled = driven[1] * forces[:, driven[0]]
     line = contact.grid.is_line
     unit = symbol("N/m" if line else "N")
     touching = np.array([np.count_nonzero(s.pressure) for s in solutions])
@@ -197,7 +199,7 @@ def creep_curve(
         "longitudinal_force": (sign * forces[:, axis], unit),
         "lateral_force": (across[1] * forces[:, across[0]], unit),
         "torque": ([s.torque for s in solutions], symbol("N" if line else "N m")),
-        "traction_ratio": (np.hypot(*forces.T) / bears, "1"),
+        "traction_ratio": (pulled / bears, "1"),
         "stick_share": ([s.stick.sum() for s in solutions] / np.maximum(touching, 1), "1"),
         "power_over_speed": ([s.dissipated for s in solutions], unit),
     }

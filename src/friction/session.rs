@@ -3,6 +3,7 @@
 //! Where the bodies differ, tractions lift the surfaces and pressure moves them along each other. Pressure and tractions
 //! are found in turn, each for the other (Panagiotopoulos, Ing.-Arch. 44 (1975) 421, doi:10.1007/BF00534623).
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -250,7 +251,7 @@ impl<'a> Session<'a> {
                 stopped |= answer.is_break();
                 !stopped
             };
-            let given = (grid, &bound, &normal.pressure);
+            let given = (grid, &bound, &*self.spreading(&normal.pressure));
             let solved = task.solve(&self.tangential, given, &starts, effort, &mut watch);
             if let Some(solved) = &solved {
                 report.convolutions = counted + solved.outcome.convolutions;
@@ -266,7 +267,7 @@ impl<'a> Session<'a> {
         let bound = bounds(&normal.pressure, friction);
         let fields = task.fields(
             &self.tangential,
-            (grid, &bound, &normal.pressure),
+            (grid, &bound, &*self.spreading(&normal.pressure)),
             solved.as_ref(),
         );
         report.violation = fields.violation;
@@ -293,6 +294,15 @@ impl<'a> Session<'a> {
             motion: fields.motion,
             report,
         })
+    }
+
+    /// The pressure that displaces the surfaces along each other: all of it, or none without coupling.
+    fn spreading<'p>(&self, pressure: &'p Array2<f64>) -> Cow<'p, Array2<f64>> {
+        if self.coupled {
+            Cow::Borrowed(pressure)
+        } else {
+            Cow::Owned(Array2::zeros(pressure.dim()))
+        }
     }
 
     /// The pressure for given tractions.

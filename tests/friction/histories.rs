@@ -268,6 +268,10 @@ fn coupling_is_there_where_bodies_differ() -> Result<()> {
         let solution = &alone.slide(&ball()?, &[step()], &options, None)?[0];
         assert!(solution.report.converged());
         assert_eq!(solution.report.coupled, coupling);
+        // Without coupling, pressure alone does not rub.
+        let pressed = &alone.slide(&ball()?, &[press(load(0.3))], &options, None)?[0];
+        let rubbed = pressed.traction.iter().flatten().any(|q| *q != 0.0);
+        assert_eq!(rubbed, coupling);
     }
     Ok(())
 }
