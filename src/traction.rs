@@ -10,7 +10,7 @@
 //!
 //! q acts on the body, −q on the counterbody, p on both. The displacement of the body relative to the counterbody
 //! has the sums of c22 and c_t of both, and the difference of c12, as the gap has. Coefficients are exact, as those
-//! of stresses are ([`crate::stress`]).
+//! of stresses are ([`mod@crate::stress`]).
 //!
 //! | file | what |
 //! |---|---|
