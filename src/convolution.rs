@@ -98,6 +98,16 @@ impl Convolution {
     }
 
     pub(crate) fn plan_on(coefficients: &ArrayRef2<f64>, threads: Arc<Threads>) -> Result<Self> {
+        Self::plan_repeated(coefficients, [false; 2], threads)
+    }
+
+    /// Plans the convolution of pressures that repeat along directions that are `periodic`, with coefficients of the
+    /// period, C\[n − i\] = C\[i\].
+    pub(crate) fn plan_repeated(
+        coefficients: &ArrayRef2<f64>,
+        periodic: [bool; 2],
+        threads: Arc<Threads>,
+    ) -> Result<Self> {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         if coefficients.is_empty() {
             return Err(Error::Shape {
@@ -112,7 +122,7 @@ impl Convolution {
                 index: [index.0, index.1],
             });
         }
-        let transform = PaddedTransform::plan(shape, &threads);
+        let transform = PaddedTransform::plan_repeated(shape, periodic, &threads);
         Ok(Self::with(
             coefficients,
             transform,
@@ -166,11 +176,11 @@ impl Convolution {
         }
     }
 
-    /// A convolution with other `coefficients`, which shares threads, memory and clock with this one.
+    /// A convolution with other `coefficients`, which repeats along directions that are `periodic`, and shares threads, memory and clock with this one.
     /// Windows and coarser grids have such companions.
-    pub(crate) fn companion(&self, coefficients: &ArrayRef2<f64>) -> Self {
+    pub(crate) fn companion(&self, coefficients: &ArrayRef2<f64>, periodic: [bool; 2]) -> Self {
         let shape = [coefficients.nrows(), coefficients.ncols()];
-        let transform = PaddedTransform::plan(shape, &self.threads);
+        let transform = PaddedTransform::plan_repeated(shape, periodic, &self.threads);
         Self::with(
             coefficients,
             transform,
@@ -197,7 +207,7 @@ impl Convolution {
         let rows = first..first + coefficients.nrows();
         let additions = self.additions.iter();
         let additions = additions.map(|a| a.on_rows(rows.clone())).collect();
-        self.companion(coefficients).plus(additions)
+        self.companion(coefficients, [false; 2]).plus(additions)
     }
 
     /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.

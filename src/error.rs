@@ -140,6 +140,17 @@ pub enum Error {
         /// Width from which on the approach can be prescribed, estimated.
         needed: f64,
     },
+    /// A shape that does not repeat with its grid.
+    #[error(
+        "shape must repeat along {axis} as the grid does: its gap is {:e} at the one end of the period and {:e} at the \
+         other; a periodic height map must say so", gaps[0], gaps[1]
+    )]
+    Seam {
+        /// `x` or `y`.
+        axis: &'static str,
+        /// Gaps at both ends of the period \[m\].
+        gaps: [f64; 2],
+    },
     /// A tangential force or torque that friction does not bear.
     #[error(
         "{name} must be below what friction bears, {bears:.4e}, was {value:.4e}: the contact would slide as a whole"

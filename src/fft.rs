@@ -127,6 +127,24 @@ impl PaddedTransform {
         Self::on(shape, shape.map(fast_length), threads)
     }
 
+    /// [`Self::plan_periodic`] with n as the period along directions that repeat.
+    pub(crate) fn plan_unpadded(shape: [usize; 2], repeats: [bool; 2], threads: &Threads) -> Self {
+        let length = |k: usize| match repeats[k] {
+            true => shape[k],
+            false => fast_length(shape[k]),
+        };
+        Self::on(shape, [length(0), length(1)], threads)
+    }
+
+    /// Transforms that are padded, but along directions that are `periodic`, with n as the period.
+    pub(crate) fn plan_repeated(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
+        let length = |k: usize| match periodic[k] {
+            true => shape[k],
+            false => fast_length(2 * shape[k] - 1),
+        };
+        Self::on(shape, [length(0), length(1)], threads)
+    }
+
     fn on(shape: [usize; 2], padded: [usize; 2], threads: &Threads) -> Self {
         let mut real = RealFftPlanner::new();
         let mut complex = FftPlanner::new();

@@ -25,6 +25,7 @@ pub struct Grid {
     size: [f64; 2],
     center: [f64; 2],
     plane_strain: bool,
+    periodic: [bool; 2],
 }
 
 impl Grid {
@@ -73,6 +74,7 @@ impl Grid {
             size,
             center: [0.0; 2],
             plane_strain: false,
+            periodic: [false; 2],
         })
     }
 
@@ -97,6 +99,30 @@ impl Grid {
             plane_strain: true,
             ..grid
         })
+    }
+
+    /// This grid, repeated along x, along y, or both: shape, pressure and displacement are periodic, with the sides of
+    /// the rectangle as periods. Forces are those of one rectangle.
+    ///
+    /// Where both directions are periodic and no base is rigid, a mean pressure would displace the half-space without
+    /// limit. Displacement is therefore relative to its mean, and the approach is that of the mean plane of the deformed
+    /// surface. Where one direction is periodic, the datum is that of [`Grid::line`], with the width of the other one.
+    ///
+    /// # Errors
+    /// On a grid for line contact.
+    pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
+        if self.plane_strain && periodic != [false; 2] {
+            return Err(Error::Inconsistent(
+                "a grid for line contact must not be periodic: give a grid of two or more cells along x that is periodic \
+                 along x",
+            ));
+        }
+        Ok(Self { periodic, ..self })
+    }
+
+    /// Directions in which the grid repeats.
+    pub fn is_periodic(&self) -> [bool; 2] {
+        self.periodic
     }
 
     /// Whether this is a grid for line contact in plane strain.
@@ -176,6 +202,12 @@ impl Grid {
 
 /// A rectangle of cells of a grid: rows i0..i1 and columns j0..j1.
 pub(crate) type Window = [Range<usize>; 2];
+
+/// Directions along which a window of a grid is a whole period.
+pub(crate) fn repeating(grid: &Grid, window: &Window) -> [bool; 2] {
+    let (shape, periodic) = (grid.shape(), grid.is_periodic());
+    [0, 1].map(|k| periodic[k] && window[k].len() == shape[k])
+}
 
 /// The window of all cells of a grid of `shape`.
 pub(crate) fn full_window(shape: [usize; 2]) -> Window {

@@ -20,6 +20,7 @@ mod conversion;
 mod exact;
 mod line;
 mod method;
+mod periodic;
 
 pub use exact::CellInfluence;
 pub use method::Method;
@@ -61,6 +62,15 @@ pub(crate) fn coefficients_on(
     check(body)?;
     let mut coefficients = match method {
         Method::Exact if grid.is_line() => line::coefficients(body, grid, threads)?,
+        Method::Exact if grid.is_periodic() != [false; 2] => {
+            periodic::coefficients(body, grid, threads)?
+        }
+        Method::Spectral => periodic::sampled(body, grid, threads)?,
+        _ if grid.is_periodic() != [false; 2] => {
+            return Err(Error::Inconsistent(
+                "method must be \"exact\" or \"spectral\" on a periodic grid",
+            ));
+        }
         _ if grid.is_line() => {
             return Err(Error::Inconsistent(
                 "method must be \"exact\" on the grid of a line contact",

@@ -83,6 +83,11 @@ fn goes_on(ends: &[Option<f64>; 2]) -> bool {
     *ends == [None; 2]
 }
 
+/// Whether a grid repeats in no direction.
+fn is_open(periodic: &[bool; 2]) -> bool {
+    *periodic == [false; 2]
+}
+
 value! {
     // A line has one cell along x.
     Grid by GridData {
@@ -90,13 +95,15 @@ value! {
         size: [f64; 2] = of.size();
         #[serde(default)]
         center: [f64; 2] = of.center();
+        #[serde(default, skip_serializing_if = "is_open")]
+        periodic: [bool; 2] = of.is_periodic();
     }
     of, given => {
         let grid = match given.shape {
             [1, cells] => Self::line(cells, given.size[1])?,
             shape => Self::new(shape, given.size)?,
         };
-        grid.centered_at(given.center)
+        grid.centered_at(given.center)?.periodic(given.periodic)
     }
 }
 
@@ -191,13 +198,17 @@ value! {
         spacing: [f64; 2] = of.spacing();
         #[serde(default)]
         center: [f64; 2] = of.center();
+        #[serde(default, skip_serializing_if = "is_open")]
+        periodic: [bool; 2] = of.is_periodic();
     }
     of, given => {
         let shape = [given.heights.len(), given.heights.first().map_or(0, Vec::len)];
         let heights = Array2::from_shape_vec(shape, given.heights.concat()).map_err(|_| {
             Error::Inconsistent("heights must be rows of the same length")
         })?;
-        Self::new(heights, given.spacing)?.centered_at(given.center)
+        Self::new(heights, given.spacing)?
+            .centered_at(given.center)?
+            .periodic(given.periodic)
     }
 }
 
@@ -240,6 +251,7 @@ mod tests {
         kept(HalfSpace::new(steel, layers.clone())?.with_ends([Some(-1e-2 / 3.0), None])?)?;
         kept(HalfSpace::new(Substrate::Rigid, layers)?)?;
         kept(Grid::new([4, 3], [0.1, 0.2])?.centered_at([0.3, -0.4])?)?;
+        kept(Grid::new([4, 3], [0.1, 0.2])?.periodic([true, false])?)?;
         kept(Grid::line(5, 0.1)?.centered_at([0.0, 0.3])?)?;
         kept(Sphere::new(5e-3)?.with_counter_radii([Some(-6e-3), None])?)?;
         kept(Paraboloid::new(5e-3, 1.0)?)?;

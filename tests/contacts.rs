@@ -21,6 +21,7 @@ mod contact {
     mod fuzz;
     mod invariants;
     mod line;
+    mod periodic;
     mod stiffness;
     mod thin_layers;
     mod two_bodies;

@@ -20,7 +20,7 @@ use super::solver::{Outcome, StopCriteria, Termination, Watch};
 use crate::grid::full_window;
 use crate::surface::Surface;
 use discretisation::GridResult;
-use levels::{Level, Levels, halved};
+use levels::{Level, Levels};
 
 /// Tolerance on level 1, with which the finest grid is compared; chosen by trial.
 const COARSE_TOLERANCE: f64 = 1e-5;
@@ -85,7 +85,7 @@ impl Coarser {
     /// where coarse cells cannot carry the moments that fine ones can.
     fn start(&mut self, level: &Level) -> Option<Patch> {
         let shape = level.shape();
-        let halved = halved(shape);
+        let halved = level.halved();
         if (halved.iter().zip(shape)).any(|(halved, n)| !halved && n > 1) {
             // Results are comparable only between grids of which all directions were halved.
             self.results.clear();

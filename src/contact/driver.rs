@@ -22,7 +22,7 @@ use super::solution::gap::Gap;
 use super::solution::report::{Progress, Report};
 use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
-use super::start::{Sampled, checked_gaps, given_pressure, uniform_pressure};
+use super::start::{Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure};
 use crate::ends::check_carried;
 use crate::error::Result;
 use crate::parallel::Rows;
@@ -45,6 +45,7 @@ impl Plan {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
         check_carried(self.setup.counterbody.as_ref(), shape)?;
+        check_seam(shape, &self.grid)?;
         let limited = self.ends.limit(shape);
         let (given, shape): (_, &dyn Surface) = match self.ends.any() {
             true => (shape, &limited),

@@ -46,10 +46,17 @@ impl Plan {
         check_memory(grid.shape(), Self::memory(&grid))?;
         let ends = Ends::of(&bodies(&body, &setup));
         ends.check(&grid)?;
+        if ends.any() && grid.is_periodic()[0] {
+            return Err(Error::Inconsistent(
+                "bodies must go on along x where the grid is periodic along x: leave out their ends",
+            ));
+        }
         let threads = Arc::new(Threads::new(setup.threads)?);
         let (finest, datum) = operator(&body, &setup, &grid, &threads)?;
         let additions = ends.additions(&grid, &threads)?;
-        let convolution = Convolution::plan_on(&finest, Arc::clone(&threads))?.plus(additions);
+        let convolution =
+            Convolution::plan_repeated(&finest, grid.is_periodic(), Arc::clone(&threads))?
+                .plus(additions);
         let levels = Levels::plan(grid, finest, &convolution, |grid| {
             let coefficients = total_coefficients(&body, &setup, grid, &threads)?;
             let local = LocalDisplacement::new(&bodies(&body, &setup), grid);
@@ -82,6 +89,11 @@ impl Plan {
         }
         if self.ends.any() {
             return Err(Error::Inconsistent(crate::traction::GO_ON));
+        }
+        if self.grid.is_periodic() != [false; 2] {
+            return Err(Error::Inconsistent(
+                "friction needs a grid that is not periodic: give a wider grid",
+            ));
         }
         let counterbody = self.setup.counterbody.as_ref();
         let threads = Arc::new(Threads::new(Some(self.convolution.threads()))?);

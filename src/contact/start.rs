@@ -66,6 +66,35 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
     Ok(gaps)
 }
 
+/// An error where the gap of `shape` jumps at the seam of a grid that repeats.
+///
+/// # Errors
+/// [`Error::Seam`].
+pub(super) fn check_seam(shape: &dyn Surface, grid: &Grid) -> Result<()> {
+    let (center, size) = (grid.center(), grid.size());
+    for axis in (0..2).filter(|&axis| grid.is_periodic()[axis]) {
+        let ends = [-0.5, 0.5].map(|half| center[axis] + half * size[axis]);
+        for across in grid.coordinates(1 - axis) {
+            let at = |along: f64| match axis {
+                0 => shape.gap(along, across),
+                _ => shape.gap(across, along),
+            };
+            let [low, high] = ends.map(at);
+            let middle = at(center[axis]);
+            let range = [low, high, middle].map(|h| if h.is_finite() { h.abs() } else { 0.0 });
+            let most = range.into_iter().fold(0.0, f64::max);
+            let jumps = !((low - high).abs() <= 1e-6 * most);
+            if jumps && (low.is_finite() || high.is_finite()) {
+                return Err(Error::Seam {
+                    axis: ["x", "y"][axis],
+                    gaps: [low, high],
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The pressure that the caller gave to start from, balanced; `None` where it cannot carry the load.
 pub(super) fn given_pressure(
     problem: &Problem,

@@ -18,7 +18,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use ndarray::{Array2, ArrayRef2};
+use ndarray::{Array2, ArrayRef2, Axis};
 
 use super::Convolution;
 use crate::fft::PaddedTransform;
@@ -27,7 +27,14 @@ impl Convolution {
     /// A periodic convolution that approximates the one with `coefficients`, and its inverse, which is
     /// symmetric and positive definite and preconditions the exact convolution. The mesh is not padded,
     /// and each of them costs a fifth of an exact convolution.
-    pub(crate) fn preconditioner(&self, coefficients: &ArrayRef2<f64>) -> [Self; 2] {
+    ///
+    /// Where pressures repeat along directions that are `periodic`, the mesh does too; along both, it is the convolution
+    /// itself.
+    pub(crate) fn preconditioner(
+        &self,
+        coefficients: &ArrayRef2<f64>,
+        repeats: [bool; 2],
+    ) -> [Self; 2] {
         // Bound on the smallest entry of the spectrum, as a share of the largest, so that the inverse
         // is positive for any coefficients, and rounding does not grow further.
         const FLOOR: f64 = 1e-6;
@@ -35,14 +42,18 @@ impl Convolution {
         // trusted. Measured for coatings 0.1 to 1e5 times as hard as the body: above 0.95, or below 0.
         const TRUSTED: f64 = 0.5;
         let shape = [coefficients.nrows(), coefficients.ncols()];
-        let transform = PaddedTransform::plan_periodic(shape, &self.threads);
+        let transform = PaddedTransform::plan_unpadded(shape, repeats, &self.threads);
         let with = |coefficients: &ArrayRef2<f64>| {
             let (idle, clock) = (self.idle.clone(), Arc::clone(&self.clock));
             Self::with(coefficients, transform.clone(), &self.threads, idle, clock)
         };
+        let raised = (repeats == [true; 2]).then(|| raised(coefficients));
+        let coefficients = raised.as_deref().unwrap_or(coefficients);
         let mut periodic = with(coefficients);
         let [smallest, mut largest] = transform.extremes(&periodic.spectrum);
-        if smallest * transform.points() < TRUSTED * shortest_waves(coefficients) {
+        if repeats != [true; 2]
+            && smallest * transform.points() < TRUSTED * shortest_waves(coefficients)
+        {
             periodic = with(&tapered(coefficients, transform.periods()));
             [_, largest] = transform.extremes(&periodic.spectrum);
         }
@@ -59,6 +70,22 @@ impl Convolution {
         };
         [periodic, inverse]
     }
+}
+
+/// Coefficients of a grid that repeats in both directions with a mean displacement, which they lack on an elastic base:
+/// that of the longest wave. Under a given load it changes no pressure.
+fn raised(coefficients: &ArrayRef2<f64>) -> Array2<f64> {
+    let cells = coefficients.len() as f64;
+    let wave = |axis: usize| {
+        let lines = coefficients.sum_axis(Axis(1 - axis));
+        let n = lines.len() as f64;
+        let terms = lines.iter().enumerate();
+        terms
+            .map(|(i, c)| c * (2.0 * PI * i as f64 / n).cos())
+            .sum::<f64>()
+    };
+    let mean = coefficients.sum();
+    coefficients + (wave(0).max(wave(1)).max(mean) - mean) / cells
 }
 
 /// Weights w\[d\] of the offsets 0, …, n − 1 between `n` cells: with θ = π/n, the sum of the products of sines is
@@ -157,7 +184,7 @@ mod tests {
                     let grid = Grid::new(shape, shape.map(|n| n as f64))?;
                     let coefficients = influence_coefficients(body, &grid, Method::Exact)?;
                     let convolution = Convolution::plan(&coefficients, Some(1))?;
-                    let [periodic, inverse] = convolution.preconditioner(&coefficients);
+                    let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
                     let [smallest, largest] = periodic.transform.extremes(&periodic.spectrum);
                     assert!(
                         smallest > 0.0,

@@ -59,7 +59,9 @@ pub(super) fn coefficients(
     let (zero, with_cell): (f64, bool) = match method {
         Method::Difference { .. } => (rest * mean + limits.constant, true),
         Method::Image { .. } => (limits.constant + rest * image_depth, true),
-        Method::Plain { .. } | Method::Exact => (limits.long * mean + limits.constant, false),
+        Method::Plain { .. } | Method::Exact | Method::Spectral => {
+            (limits.long * mean + limits.constant, false)
+        }
     };
     let value = |k: usize, l: usize| {
         if k == 0 && l == 0 {
@@ -71,7 +73,7 @@ pub(super) fn coefficients(
         let sampled = match method {
             Method::Difference { .. } => response - limits.short,
             Method::Image { .. } => response - limits.short - rest * (-alpha * image_depth).exp(),
-            Method::Plain { .. } | Method::Exact => response,
+            Method::Plain { .. } | Method::Exact | Method::Spectral => response,
         } / alpha;
         if with_cell {
             sampled * sinc(0.5 * m * dx) * sinc(0.5 * n * dy)

@@ -35,6 +35,9 @@ pub enum Method {
         /// Refinement χ of the spectral mesh.
         refinement: usize,
     },
+    /// The response, sampled at the wave numbers of a grid that is periodic in both directions: exact for pressures that
+    /// are sums of these waves, as other programs for periodic contacts take them.
+    Spectral,
 }
 
 /// Bytes that the coefficients of a grid take.

@@ -75,6 +75,22 @@ impl HeightMap {
         })
     }
 
+    /// This surface, repeated along x, along y, or both: its period is its size.
+    ///
+    /// # Errors
+    /// None today.
+    pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
+        Ok(Self {
+            grid: self.grid.periodic(periodic)?,
+            ..self
+        })
+    }
+
+    /// Directions in which it repeats.
+    pub fn is_periodic(&self) -> [bool; 2] {
+        self.grid.is_periodic()
+    }
+
     /// Heights, (nx, ny) \[m\].
     pub fn heights(&self) -> &ArrayRef2<f64> {
         &self.heights
@@ -95,29 +111,38 @@ impl HeightMap {
 /// whose centre lies on the rim of the map.
 const ROUNDING: f64 = 1e-9;
 
-/// Index of the sample at or below `coordinate`, and the weight of the next sample; `None` outside
-/// the map.
-fn locate(coordinate: f64, center: f64, n: usize, spacing: f64) -> Option<(usize, f64)> {
+/// Indices of the samples below and above `coordinate`, and the weight of the latter; `None` outside the map.
+fn locate(
+    coordinate: f64,
+    center: f64,
+    (n, spacing, periodic): (usize, f64, bool),
+) -> Option<([usize; 2], f64)> {
     let position = (coordinate - center) / spacing + 0.5 * (n - 1) as f64;
+    if periodic {
+        let below = position.floor();
+        let index = below.rem_euclid(n as f64) as usize % n;
+        return Some(([index, (index + 1) % n], position - below));
+    }
     // The map ends half a cell beyond the outermost samples.
     if !(-0.5 - ROUNDING..=n as f64 - 0.5 + ROUNDING).contains(&position) {
         return None;
     }
     let position = position.clamp(0.0, (n - 1) as f64);
     let below = (position as usize).min(n - 2);
-    Some((below, position - below as f64))
+    Some(([below, below + 1], position - below as f64))
 }
 
 impl Surface for HeightMap {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        let ([nx, ny], [dx, dy], [cx, cy]) =
-            (self.grid.shape(), self.grid.spacing(), self.grid.center());
-        let (Some((i, s)), Some((j, t))) = (locate(x, cx, nx, dx), locate(y, cy, ny, dy)) else {
+        let (shape, spacing, center) = (self.grid.shape(), self.grid.spacing(), self.grid.center());
+        let periodic = self.grid.is_periodic();
+        let along = |k: usize, at: f64| locate(at, center[k], (shape[k], spacing[k], periodic[k]));
+        let (Some(([a, b], s)), Some(([c, d], t))) = (along(0, x), along(1, y)) else {
             return f64::INFINITY;
         };
         let at = |i: usize, j: usize| self.highest - self.heights[[i, j]];
-        (1.0 - s) * ((1.0 - t) * at(i, j) + t * at(i, j + 1))
-            + s * ((1.0 - t) * at(i + 1, j) + t * at(i + 1, j + 1))
+        (1.0 - s) * ((1.0 - t) * at(a, c) + t * at(a, d))
+            + s * ((1.0 - t) * at(b, c) + t * at(b, d))
     }
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
@@ -139,7 +164,11 @@ impl Surface for HeightMap {
 
     fn extent(&self) -> [Extent; 2] {
         let (center, size) = (self.grid.center(), self.grid.size());
-        [0, 1].map(|k| Extent::CutOff([center[k] - 0.5 * size[k], center[k] + 0.5 * size[k]]))
+        let periodic = self.grid.is_periodic();
+        [0, 1].map(|k| match periodic[k] {
+            true => Extent::Rising,
+            false => Extent::CutOff([center[k] - 0.5 * size[k], center[k] + 0.5 * size[k]]),
+        })
     }
 
     fn grid(&self) -> Option<Grid> {

@@ -17,7 +17,7 @@ use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_s
 use crate::contact::start::checked_gaps;
 use crate::convolution::{Addition, Convolution};
 use crate::error::Result;
-use crate::grid::{Grid, full_window};
+use crate::grid::{Grid, full_window, repeating};
 use crate::parallel::{Pool, Rows, all, update, update_with_largest};
 use crate::surface::Surface;
 
@@ -25,9 +25,11 @@ use crate::surface::Surface;
 /// not halved; chosen by trial.
 const COARSEST_CELLS: usize = 32;
 
-/// Directions of a grid that are halved for the next coarser one; none at the coarsest.
-pub(crate) fn halved(shape: [usize; 2]) -> [bool; 2] {
-    shape.map(|n| n >= 2 * COARSEST_CELLS)
+/// Directions of a grid that are halved for the next coarser one; none at the coarsest. A period of an odd number of
+/// cells is not halved.
+fn halved(grid: &Grid) -> [bool; 2] {
+    let (shape, periodic) = (grid.shape(), grid.is_periodic());
+    [0, 1].map(|k| shape[k] >= 2 * COARSEST_CELLS && !(periodic[k] && shape[k] % 2 == 1))
 }
 
 /// The grid whose cells are twice as long in the directions of `halved`; it starts where `fine` does.
@@ -46,7 +48,7 @@ fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
     let grid = if fine.is_line() {
         Grid::line(cells[1], sides[1])?
     } else {
-        Grid::new(cells, sides)?
+        Grid::new(cells, sides)?.periodic(fine.is_periodic())?
     };
     grid.centered_at([0, 1].map(|k| center[k] + grown[k]))
 }
@@ -77,11 +79,12 @@ impl Levels {
         let (mut coefficients, mut grids) = (vec![coefficients], vec![finest]);
         let (mut convolutions, mut locals) = (Vec::new(), Vec::new());
         let mut fine = finest;
-        while halved(fine.shape()) != [false; 2] {
-            fine = coarse_grid(&fine, halved(fine.shape()))?;
+        while halved(&fine) != [false; 2] {
+            fine = coarse_grid(&fine, halved(&fine))?;
             let (coarse, additions, local) = of(&fine)?;
             locals.push(local);
-            convolutions.push(convolution.companion(&coarse).plus(additions));
+            let companion = convolution.companion(&coarse, fine.is_periodic());
+            convolutions.push(companion.plus(additions));
             coefficients.push(coarse);
             grids.push(fine);
         }
@@ -112,6 +115,7 @@ impl Levels {
             coefficients: &self.coefficients[0],
             convolution: problem.convolution,
             local: problem.local,
+            grid: &self.grids[0],
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
             memory: self.memory(),
@@ -128,7 +132,7 @@ impl Levels {
     ) -> Option<Vec<Level<'_>>> {
         let mut levels: Vec<Level> = Vec::new();
         let coarser = self.coefficients.iter().zip(&self.grids).skip(1);
-        let finer = self.grids.iter().map(Grid::shape);
+        let finer = self.grids.iter();
         let locals = self.locals.iter();
         for ((((coefficients, grid), convolution), local), finer) in
             coarser.zip(&self.convolutions).zip(locals).zip(finer)
@@ -151,6 +155,7 @@ impl Levels {
                 coefficients,
                 convolution,
                 local,
+                grid,
                 freedoms,
                 gap: Cow::Owned(gap),
                 memory: self.memory(),
@@ -197,6 +202,7 @@ pub(crate) struct Level<'a> {
     coefficients: &'a Array2<f64>,
     convolution: &'a Convolution,
     local: &'a LocalDisplacement,
+    grid: &'a Grid,
     pub(crate) freedoms: Freedoms,
     pub(crate) gap: Cow<'a, Array2<f64>>,
     /// Memory of iterations, and the largest number of cells of one.
@@ -207,6 +213,11 @@ impl Level<'_> {
     /// Numbers of cells.
     pub(crate) fn shape(&self) -> [usize; 2] {
         [self.gap.nrows(), self.gap.ncols()]
+    }
+
+    /// Directions that are halved for the next coarser grid.
+    pub(crate) fn halved(&self) -> [bool; 2] {
+        halved(self.grid)
     }
 
     /// Peak pressure, approach and load of a solution on this grid.
@@ -247,6 +258,7 @@ impl Level<'_> {
             let window = &patch.window;
             let whole = *window == full_window(shape);
             let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
+            let repeats = repeating(self.grid, window);
             let freedoms = self.freedoms.in_window(window.clone());
             let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
             // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
@@ -254,7 +266,7 @@ impl Level<'_> {
                 || {
                     let first = window[0].start;
                     let windowed = (!whole).then(|| self.convolution.on_window(&corner, first));
-                    (windowed, self.convolution.preconditioner(&corner))
+                    (windowed, self.convolution.preconditioner(&corner, repeats))
                 },
                 || {
                     let (memory, most) = self.memory;

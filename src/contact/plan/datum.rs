@@ -35,7 +35,7 @@ const TOLERANCE: f64 = 1e-6;
 /// The datum that contacts on a line grid are solved with.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Datum {
-    /// A of both bodies \[1/Pa\]; 0 where there is no datum.
+    /// A of both bodies \[1/Pa\], over the period where a grid repeats in one direction; 0 where there is no datum.
     compliance: f64,
     /// ℓ' \[m\].
     distance: f64,
@@ -56,12 +56,14 @@ impl Datum {
         coefficients: &Array2<f64>,
         threads: &Arc<Threads>,
     ) -> Result<Self> {
-        if !grid.is_line() {
+        let Some(open) = open_direction(grid) else {
             return Ok(Self::default());
-        }
-        let width = grid.size()[1];
+        };
+        let (width, period) = (grid.size()[open], grid.size()[1 - open]);
+        let period = if grid.is_line() { 1.0 } else { period };
+        let compliance: f64 = bodies.iter().map(|body| body.asymptotes().long).sum();
         let near = Self {
-            compliance: bodies.iter().map(|body| body.asymptotes().long).sum(),
+            compliance: compliance / period,
             distance: width,
             width,
             least: 0.0,
@@ -75,7 +77,7 @@ impl Datum {
                 distance: width * FARTHER.powi(trial),
                 ..near
             };
-            let total = total_pressure(&datum.moved(coefficients.clone(), grid), threads)?;
+            let total = total_pressure(&datum.moved(coefficients.clone(), grid), grid, threads)?;
             let Some(total) = total.filter(|&total| total > 0.0) else {
                 continue;
             };
@@ -83,7 +85,7 @@ impl Datum {
                 return Ok(near);
             }
             // K − s 1ᵀ1 is positive definite as long as s 1ᵀK⁻¹1 < 1.
-            let nearer = PI / (near.compliance * grid.spacing()[1] * total);
+            let nearer = PI / (near.compliance * grid.cell_area() * total);
             return Ok(Self {
                 distance: FARTHER * datum.distance,
                 least: datum.distance * (-nearer).exp(),
@@ -95,10 +97,11 @@ impl Datum {
 
     /// Coefficients on `grid`, whose datum is its own width, with this datum.
     pub(crate) fn moved(&self, mut coefficients: Array2<f64>, grid: &Grid) -> Array2<f64> {
-        let [_, spacing] = grid.spacing();
-        let [_, width] = grid.size();
-        if self.compliance > 0.0 {
-            coefficients += self.compliance * spacing / PI * (self.distance / width).ln();
+        if let Some(open) = open_direction(grid)
+            && self.compliance > 0.0
+        {
+            let width = grid.size()[open];
+            coefficients += self.compliance * grid.cell_area() / PI * (self.distance / width).ln();
         }
         coefficients
     }
@@ -128,11 +131,26 @@ impl Datum {
     }
 }
 
+/// The direction across a line contact, or the open one of a grid that repeats along the other.
+fn open_direction(grid: &Grid) -> Option<usize> {
+    match grid.is_periodic() {
+        _ if grid.is_line() => Some(1),
+        [true, false] => Some(1),
+        [false, true] => Some(0),
+        _ => None,
+    }
+}
+
 /// Sum of the pressure that displaces all cells by 1 \[1/m\], 1ᵀK⁻¹1. It is above 0 where K, which is
 /// positive definite for pressures of sum 0, is so for all; `None` where the system shows that it is not.
-fn total_pressure(coefficients: &Array2<f64>, threads: &Arc<Threads>) -> Result<Option<f64>> {
-    let convolution = Convolution::plan_on(coefficients, Arc::clone(threads))?;
-    let [_, inverse] = convolution.preconditioner(coefficients);
+fn total_pressure(
+    coefficients: &Array2<f64>,
+    grid: &Grid,
+    threads: &Arc<Threads>,
+) -> Result<Option<f64>> {
+    let repeats = grid.is_periodic();
+    let convolution = Convolution::plan_repeated(coefficients, repeats, Arc::clone(threads))?;
+    let [_, inverse] = convolution.preconditioner(coefficients, repeats);
     let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
     let pressure = linear_cg::solve(
         &vec![1.0; coefficients.len()],

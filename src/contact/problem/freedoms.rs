@@ -35,6 +35,12 @@ const DIRECTIONS: [&str; 2] = [
     "along y at most one of eccentricity, moment and tilt can be a number",
 ];
 
+/// Messages for a direction in which the grid repeats.
+const PERIODIC: [&str; 2] = [
+    "along x the grid is periodic: eccentricity, moment and tilt must be None there",
+    "along y the grid is periodic: eccentricity, moment and tilt must be None there",
+];
+
 /// The error for numbers that are too large to be computed with.
 pub(crate) const OVERFLOW: Error = Error::Inconsistent(
     "load, lengths and moduli must be in units in which their products do not overflow",
@@ -63,6 +69,10 @@ impl Freedoms {
         // Under a load the columns may be centred, which keeps them independent.
         let origin = if loaded[0] { grid.center() } else { [0.0; 2] };
         for k in 0..2 {
+            let given = [motion.eccentricity[k], motion.moment[k], motion.tilt[k]];
+            if grid.is_periodic()[k] && given != [None; 3] {
+                return Err(Error::Inconsistent(PERIODIC[k]));
+            }
             let moment = match (motion.eccentricity[k], motion.moment[k], motion.tilt[k]) {
                 (None, None, None) => continue,
                 (None, None, Some(tilt)) => {

@@ -12,7 +12,7 @@ use crate::contact::solver::linear_cg;
 use crate::convolution::{Convolution, Workspace};
 use crate::ends::Ends;
 use crate::error::Result;
-use crate::grid::{Window, full_window};
+use crate::grid::{Window, full_window, repeating};
 use crate::influence::memory;
 use crate::parallel::{Threads, check_memory, dot};
 
@@ -117,8 +117,10 @@ impl Tangent {
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, &threads)?;
         let additions = additions.iter().map(|addition| addition.on_rows(x.clone()));
-        let convolution = Convolution::plan_on(&corner, threads)?.plus(additions.collect());
-        let [_, inverse] = convolution.preconditioner(&corner);
+        let repeats = repeating(grid, &window);
+        let convolution = Convolution::plan_repeated(&corner, repeats, threads)?;
+        let convolution = convolution.plus(additions.collect());
+        let [_, inverse] = convolution.preconditioner(&corner, repeats);
         let contact = block(&solution.pressure, &window);
         let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
         let coordinates = [part(0), part(1)];

@@ -220,7 +220,9 @@ pub(crate) fn warnings(
         let cells = touching().count();
         let (first, last) = (touching().next(), touching().next_back());
         let [low, high] = [first, last].map(|end| end.unwrap_or(0.0));
-        if let Extent::CutOff(ends) = extent[axis] {
+        if let Extent::CutOff(ends) = extent[axis]
+            && !grid.is_periodic()[axis]
+        {
             let reached = [low - spacing < ends[0], high + spacing > ends[1]];
             let on_map = on_map_rim(ends, axis, shape);
             let sharp = |k: usize| {
@@ -240,7 +242,10 @@ pub(crate) fn warnings(
             warnings.push(Warning::Coarse { axis, cells });
         }
         let half_width = 0.5 * (high - low + spacing);
-        let ratio = half_width / radii[axis];
+        let ratio = match grid.is_periodic()[axis] {
+            true => 0.0,
+            false => half_width / radii[axis],
+        };
         if ratio > LARGE_CONTACT {
             warnings.push(Warning::LargeContact { axis, ratio });
         }
@@ -298,11 +303,12 @@ impl Rim {
                 rim.ends |= !goes_on;
             }
         };
-        for i in 0..nx {
+        let repeats = grid.is_periodic();
+        for i in (0..nx).filter(|_| !repeats[1]) {
             look(i, 0, [0.0, -dy]);
             look(i, ny - 1, [0.0, dy]);
         }
-        if !grid.is_line() {
+        if !grid.is_line() && !repeats[0] {
             for j in 0..ny {
                 look(0, j, [-dx, 0.0]);
                 look(nx - 1, j, [dx, 0.0]);

@@ -112,7 +112,7 @@ fn cases() -> Result<[Case; 6]> {
 fn with_both<R>(case: &Case, work: impl FnOnce(Preconditioned, Textbook, Field) -> R) -> Result<R> {
     let coefficients = influence_coefficients(case.body.clone(), &case.grid, Method::Exact)?;
     let convolution = Convolution::plan(&coefficients, Some(1))?;
-    let [periodic, inverse] = convolution.preconditioner(&coefficients);
+    let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
     let approximation = Approximation { inverse, periodic };
     let freedoms = Freedoms::new(&case.motion, &case.grid)?;
     let (x, y) = (case.grid.x(), case.grid.y());
