@@ -6,7 +6,7 @@
 //! period L, and cells of length rL,
 //!
 //! ```text
-//! Σ K(x + kL) = const − (1 + (r² − 1) δ²/24 + (r² − 1)(r² − 9) δ⁴/1920) U        sinh(r asinh s)/(r s), s = δ/2
+//! Σ K(x + kL) = const − (1 + (r² − 1) δ²/24 + (r² − 1)(r² − 9) δ⁴/1920 + …) U     from sinh(r asinh s)/(r s), s = δ/2
 //! ```
 //!
 //! along each direction. A constant is left, which the mean displacement fixes: under a pressure everywhere it is
@@ -25,11 +25,12 @@ use crate::grid::Grid;
 use crate::parallel::Threads;
 use crate::response::Response;
 
-/// Distance of the end of the sums, in longest lengths of what is summed. The next difference would leave (1/M)⁶/2000.
-const RINGS: f64 = 8.0;
+/// Distance of the end of the sums, in longest lengths of what is summed. What the differences leave falls as its ninth
+/// power, and is 1e-10 of the coefficient of the loaded cell.
+const RINGS: f64 = 16.0;
 
 /// Chebyshev nodes along each direction: images that are summed lie as far away as the interval is long.
-const NODES: usize = 24;
+const NODES: usize = 20;
 
 /// Coefficients (nx, ny) \[m/Pa\] without the local compliance; C\[n − i\] = C\[i\] along periodic directions.
 pub(super) fn coefficients(
@@ -155,8 +156,8 @@ struct Block {
     /// Area of a cell over that of a period.
     share: f64,
     periods: [f64; 2],
-    /// Weights of 1, δ² and δ⁴.
-    weights: [[f64; 3]; 2],
+    /// Weights of 1, δ², δ⁴ and δ⁶.
+    weights: [[f64; 4]; 2],
 }
 
 impl Block {
@@ -174,15 +175,23 @@ impl Block {
             cell: CellInfluence::plan_on(body, sides, NEAREST, reach, threads)?,
             share: spacing[0] * spacing[1] / (periods[0] * periods[1]),
             periods,
-            weights: ratios.map(|r| [1.0, (r - 1.0) / 24.0, (r - 1.0) * (r - 9.0) / 1920.0]),
+            weights: ratios.map(|r| {
+                let [second, fourth] = [(r - 1.0) / 24.0, (r - 9.0) / 80.0];
+                [
+                    1.0,
+                    second,
+                    second * fourth,
+                    second * fourth * (r - 25.0) / 168.0,
+                ]
+            }),
         })
     }
 
     fn at(&self, at: [f64; 2]) -> f64 {
         let [along, across] = self.weights.map(stencil);
         let mut sum = 0.0;
-        for (k, a) in (-2..=2).zip(along) {
-            for (l, b) in (-2..=2).zip(across) {
+        for (k, a) in (-3..=3).zip(along) {
+            for (l, b) in (-3..=3).zip(across) {
                 if a * b != 0.0 {
                     let place = [
                         at[0] + f64::from(k) * self.periods[0],
@@ -199,16 +208,12 @@ impl Block {
 /// Distance of the offsets from the corners of a block, in its shorter sides, at least.
 const NEAREST: f64 = 1e-3;
 
-/// Weights of the places −2, …, 2 for those of 1, δ² and δ⁴.
-fn stencil([one, second, fourth]: [f64; 3]) -> [f64; 5] {
-    let outer = second - 4.0 * fourth;
-    [
-        fourth,
-        outer,
-        one - 2.0 * second + 6.0 * fourth,
-        outer,
-        fourth,
-    ]
+/// Weights of the places −3, …, 3 for those of 1, δ², δ⁴ and δ⁶.
+fn stencil([one, second, fourth, sixth]: [f64; 4]) -> [f64; 7] {
+    let middle = one - 2.0 * second + 6.0 * fourth - 20.0 * sixth;
+    let first = second - 4.0 * fourth + 15.0 * sixth;
+    let next = fourth - 6.0 * sixth;
+    [sixth, next, first, middle, first, next, sixth]
 }
 
 /// Chebyshev nodes on \[0, span\].
