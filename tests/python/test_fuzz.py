@@ -181,7 +181,8 @@ def test_wrong_arguments_are_refused_or_answered(data: st.DataObject) -> None:
     try:
         said = repr(call(*arguments))
     except REFUSALS as refusal:
-        said = str(refusal)
+        assert str(refusal)
+        return  # a refusal may show the NaN that it refuses
     assert said
     assert not said.endswith("nan")
 
