@@ -1,12 +1,14 @@
 //! The contact problem: g = h + u − δ − s_x x − s_y y ≥ 0, p ≥ 0, p g = 0.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::response::Body;
 use crate::surface::Surface;
+use crate::traction::Tangential;
 
 mod automatic;
 mod batch;
@@ -81,6 +83,19 @@ impl Contact {
     /// raises the displacement everywhere by the same; solutions have the datum of the grid.
     pub fn convolution(&self) -> &Convolution {
         &self.0.convolution
+    }
+
+    /// The operators of tractions, made when they are first needed.
+    ///
+    /// # Errors
+    /// Bodies without layers and substrate, and such with free ends.
+    pub(crate) fn tangential(&self) -> Result<Arc<Tangential>> {
+        self.0.tangential()
+    }
+
+    /// Calls `work` on the plan's threads.
+    pub(crate) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        self.0.run(work)
     }
 
     /// Presses `shape` into the body. The solution says whether it converged.

@@ -140,9 +140,21 @@ pub enum Error {
         /// Width from which on the approach can be prescribed, estimated.
         needed: f64,
     },
+    /// A tangential force or torque that friction does not bear.
+    #[error(
+        "{name} must be below what friction bears, {bears:.4e}, was {value:.4e}: the contact would slide as a whole"
+    )]
+    FullSlip {
+        /// `force` or `torque`.
+        name: &'static str,
+        /// The force \[N\] or torque \[N m\].
+        value: f64,
+        /// Σ μp dA \[N\], or Σ μp r dA \[N m\].
+        bears: f64,
+    },
     /// An iteration that ended before the tolerance was met.
     #[error(
-        "not converged after {iterations} iterations: {}; raise max_iterations or the tolerance",
+        "not converged after {iterations} iterations: {}; raise {limit} or the tolerance",
         missed([*residual, *overlap, *balance], *tolerance)
     )]
     NotConverged {
@@ -156,6 +168,8 @@ pub enum Error {
         balance: f64,
         /// Requested tolerance.
         tolerance: f64,
+        /// Option that limits the number of iterations.
+        limit: &'static str,
     },
 }
 

@@ -19,11 +19,13 @@ mod parity;
 mod quarter;
 mod series;
 mod stages;
+mod tensor;
 
 pub(crate) use parity::Transformed;
 pub(crate) use quarter::{Keep, KernelRows, QuarterTransform};
 pub(crate) use series::{fourier_coefficients, inverse_even};
 pub(crate) use stages::HalfSpectra;
+pub(crate) use tensor::{ParitySpectrum, Term};
 
 /// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
 /// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value

@@ -58,8 +58,16 @@ impl Grid {
         }
         // At least one array of f64 must fit.
         check_memory(shape, 8 * shape[0] as u64 * shape[1] as u64)?;
-        positive("size", size[0])?;
-        positive("size", size[1])?;
+        for length in size {
+            positive("size", length)?;
+            if !(1e-100..=1e100).contains(&length) {
+                return Err(Error::Parameter {
+                    name: "size",
+                    requirement: "between 1e-100 and 1e100, so that products of lengths do not overflow",
+                    value: length,
+                });
+            }
+        }
         Ok(Self {
             shape,
             size,

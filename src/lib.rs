@@ -33,8 +33,10 @@
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`ends`] | free ends of bodies |
+//! | [`traction`] | influence coefficients of tractions, and their convolution |
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
 //! | [`mod@stress`] | stress and displacement below the surface |
+//! | [`friction`] | partial slip, histories and rolling |
 //!
 //! # Features
 //!
@@ -79,9 +81,13 @@ pub mod convolution;
 
 pub mod ends;
 
+pub mod traction;
+
 pub mod contact;
 
 pub mod stress;
+
+pub mod friction;
 
 #[cfg(feature = "serde")]
 mod serial;
@@ -106,6 +112,7 @@ pub use surface::{
     Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Roller, SampledProfile, Sphere,
     Superposition, Surface,
 };
+pub use traction::{TractionCoefficients, traction_coefficients};
 
 /// The Rust program of the README, which runs as a test.
 #[cfg(doctest)]

@@ -28,7 +28,10 @@ mod core {
         surface_compliance,
     };
     #[pymodule_export]
-    use super::contact::{PyContact, solve};
+    use super::contact::{
+        PyContact, PyCreepCoefficients, PyFrictionReport, PyFrictionSolution, creep_coefficients,
+        roll, slide, solve,
+    };
     #[pymodule_export]
     use super::errors::{ConvergenceError, NacreWarning};
     #[pymodule_export]

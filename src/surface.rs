@@ -13,6 +13,7 @@ use crate::parallel::each_row;
 
 mod counterpart;
 mod height_map;
+mod lifted;
 mod limited;
 mod profile;
 mod quadric;
@@ -20,6 +21,7 @@ mod roller;
 mod superposition;
 
 pub use height_map::HeightMap;
+pub(crate) use lifted::Lifted;
 pub(crate) use limited::Limited;
 pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};

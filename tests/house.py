@@ -31,12 +31,14 @@ from typing import NamedTuple
 
 CHAIN = [
     *("error", "parallel", "material", "body", "hertz", "grid", "surface", "response", "graded"),
-    *("fft", "kernel", "influence", "convolution", "ends", "contact", "stress", "serial", "python"),
+    *("fft", "kernel", "influence", "convolution", "ends", "traction", "contact", "stress"),
+    *("friction", "serial", "python"),
 ]
 FILES = 12
 LINES = 400
 LONGER = {
     "python/nacre/_core.pyi": "one stub for one compiled module",
+    "src/python/contact/friction/solution.rs": "the docstrings of FrictionSolution",
     "src/python/solution.rs": "the docstrings of the class Solution, which Python shows",
 }
 

@@ -220,6 +220,20 @@ class Bench:
                     continue
             last = self.solve(Problem(name, cells), program, threads)
 
+    def friction(self, program: str, sizes: list[int]) -> None:
+        """Measure a ball that is pulled, on one thread, until a grid takes too long."""
+        for cells in sizes:
+            row = Row("friction", cells, program, 1, tolerance=TOLERANCE)
+            self.rows.append(row)
+            request = {"task": "friction", "program": program, "cells": cells, "threads": 1}
+            try:
+                keep(row, self.work(request | {"seconds": 10.0}), TOLERANCE)
+            except Failure as failure:
+                row.note = str(failure)
+            show(row)
+            if row.seconds is None:
+                break
+
     def gaps(self, problem: Problem) -> Path:
         """Return the file of the undeformed gap, which every program reads."""
         file = self.folder / f"{problem.name}_{problem.cells}.npy"

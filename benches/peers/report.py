@@ -20,6 +20,7 @@ TITLES = {
     "batch": "1000 coated spheres, load by load; on several threads by `Contact.solve_many`",
     "roller": "Roller of Spinu et al., E1/E2 = 4, e/L = 0.3, with an eighth of the cells across",
 }
+FRICTION = "A ball pulled by half of the force that friction bears"
 CONVOLUTION = "One zero-padded convolution"
 
 
@@ -78,6 +79,8 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         )
         if rows:
             lines += ["", f"## {title}", "", *table(HEADER, [cells(row) for row in rows])]
+    if rows := [row for row in bench.rows if row.problem == "friction"]:
+        lines += ["", f"## {FRICTION}", "", *friction(rows)]
     rows = [row for row in bench.rows if row.problem == "convolution"]
     if rows:
         lines += ["", f"## {CONVOLUTION}", "", *convolutions(rows)]
@@ -130,6 +133,26 @@ def cells(row: Row) -> tuple[str, ...]:
         form(row.bytes_per_cell, ".0f"),
         row.note,
     )
+
+
+def friction(rows: list[Row]) -> list[str]:
+    """Return the table of tractions, and what is compared."""
+    ours = {row.cells: row.seconds for row in rows if row.program == "nacre"}
+    lines: list[tuple[str, ...]] = []
+    for row in rows:
+        times = row.seconds, ours.get(row.cells)
+        share = "–" if None in times else f"{(times[0] or 0) / (times[1] or 1):.3g}"
+        work = "–" if row.work is None else f"{row.work:.0f}"
+        seconds = "–" if row.seconds is None else f"{row.seconds:.3g}"
+        lines.append((f"{row.cells}²", row.program, seconds, share, work, row.note))
+    header = ("cells", "program", "solve [s]", "time over nacre's", "convolutions", "")
+    return [
+        "On one thread. nacre solves Coulomb's law on a half-space, pressure included; Tamaas its",
+        "associated form on a periodic one: the effort is compared, not the tractions. Each stops",
+        "at 1e-8 by its own account.",
+        "",
+        *table(header, lines),
+    ]
 
 
 def convolutions(rows: list[Row]) -> list[str]:

@@ -13,12 +13,14 @@ from pathlib import Path
 
 from peers import report
 from peers.figures import all_figures
+from peers.friction import PLANS
 from peers.measure import Bench
 from peers.problems import Problem
 from peers.programs import PROGRAMS, release
 
 ROOT = Path(__file__).parents[2]
 SIZES = [256, 512, 1024, 2048]
+FRICTION_SIZES = [64, 128, 256]
 TURNS = 64
 """Processes of each of what is measured in turn."""
 
@@ -95,6 +97,9 @@ def main() -> None:
                 bench.convolutions(chosen.convolution, cells, threads)
         by_itself(bench, sizes, large=usual)
         compare(bench, programs, sizes, soft)
+        for plan in PLANS:
+            if plan.split()[0] in programs:
+                bench.friction(plan, FRICTION_SIZES)
     if chosen.out or not usual:
         out = chosen.out or chosen.work
         files = out / "peers.md", out / "peers.png", out / "peers.csv"

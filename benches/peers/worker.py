@@ -1,8 +1,8 @@
 """One measurement, in a process of its own: ``python -m peers.worker JSON`` prints JSON.
 
-A request holds `task`, "solve", "batch" or "convolution", `cells` and `threads`; to solve also
-`problem`, `program`, `tolerance`, the file of `gaps`, and `seconds` for repetitions; for a batch
-its `cases`.
+A request holds `task`, "solve", "batch", "convolution" or "friction", `cells` and `threads`; to
+solve also `problem`, `program`, `tolerance`, the file of `gaps`, and `seconds` for repetitions; for
+a batch its `cases`, and for friction `program` and `seconds`.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 import nacre
+from peers import friction
 from peers.judge import Convolution, judge
 from peers.problems import Problem
 from peers.programs import PROGRAMS, Answer
@@ -136,7 +137,13 @@ def main() -> None:
     request = json.loads(sys.argv[1])
     # A rough surface touches up to the edge of its map.
     warnings.simplefilter("ignore", nacre.NacreWarning)
-    result = {"solve": solve, "batch": batch, "convolution": convolution}[request["task"]](request)
+    tasks = {
+        "solve": solve,
+        "batch": batch,
+        "convolution": convolution,
+        "friction": friction.measure,
+    }
+    result = tasks[request["task"]](request)
     print(json.dumps(result))
 
 

@@ -28,6 +28,7 @@ from nacre.units import display_units
 if TYPE_CHECKING:
     from nacre import case as case
     from nacre import design as design
+    from nacre import friction as friction
     from nacre import hertz as hertz
     from nacre import paper as paper
     from nacre import plot as plot
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
 
-LAZY = ("case", "design", "hertz", "paper", "plot")
+LAZY = ("case", "design", "friction", "hertz", "paper", "plot")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

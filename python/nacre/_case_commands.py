@@ -13,10 +13,11 @@ import typer
 import nacre
 from nacre import _reference
 from nacre._commands import app
-from nacre._outputs import ERROR, check_direction
+from nacre._friction_display import shown
+from nacre._outputs import ERROR, FRICTION, check_direction
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES, PICTURES
-from nacre.units import system
+from nacre.units import system, written
 
 CaseFile = Annotated[
     Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
@@ -50,7 +51,7 @@ def solve(
     except ValueError as error:
         raise CaseError(f"{case}: stress: {error}") from error
     with nacre.display_units(described.units):
-        _solve(case, arguments, asked, save or [], as_json)
+        _solve(case, described.friction, arguments, asked, save or [], as_json)
 
 
 def _read(case: Path, units: str | None) -> Case:
@@ -61,6 +62,7 @@ def _read(case: Path, units: str | None) -> Case:
 
 def _solve(
     case: Path,
+    friction: str | None,
     arguments: dict[str, Any],
     asked: dict[str, Any] | None,
     save: list[Path],
@@ -70,19 +72,25 @@ def _solve(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
-            solution = nacre.solve(**arguments)
+            solved = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
-            raise CaseError(f"{case}: solve: {error}") from error
+            raise CaseError(f"{case}: {friction or 'solve'}: {error}") from error
+        # Of a history, the last step is printed and saved.
+        solution = solved[-1] if isinstance(solved, list) else solved
         try:
             stress = None if asked is None else solution.stress_summary(**asked)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: stress: {error}") from error
     for path in save:
         solution.save(path)
+    steps = solved if isinstance(solved, list) else []
     if as_json:
         extremes = {} if stress is None else {"stress": stress.to_dict()}
-        print(json.dumps(_plain(_numbers(solution) | extremes), indent=2))
+        history = {"steps": [_tangential(step) for step in steps]} if steps else {}
+        print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
     else:
+        if steps:
+            print(f"{_history(steps)}\n\nlast step")
         print(solution if stress is None else f"{solution}\n\n{stress}")
 
 
@@ -129,8 +137,41 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _numbers(solution: nacre.Solution) -> dict[str, Any]:
+def _tangential(solution: nacre.FrictionSolution) -> dict[str, Any]:
+    """Return the main numbers of friction and the named state of its report."""
+    numbers = {name: getattr(solution, name) for name in FRICTION}
+    return {name: value for name, value in numbers.items() if value is not None} | {
+        "friction_report": {
+            name: value for name, value in solution.report.to_dict().items() if name != "kind"
+        }
+    }
+
+
+def _history(steps: list[nacre.FrictionSolution]) -> str:
+    """Return a table of the steps of a history."""
+    line, rolls = steps[0].grid.is_line, steps[0].shift is None
+    force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
+    energy = force if rolls else ("N" if line else "N m")
+    lines = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
+    lines[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
+    for number, step in enumerate(steps):
+        motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
+        assert motion is not None
+        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
+        forces = [written(part, force) for part in shown(step.force)]
+        row = [str(number), *forces, *said, written(step.dissipated, energy)]
+        lines.append([*row, step.report.termination])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True))
+        for row in lines
+    )
+
+
+def _numbers(solution: nacre.Solution | nacre.FrictionSolution) -> dict[str, Any]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
+    if isinstance(solution, nacre.FrictionSolution):
+        return _numbers(solution.normal) | _tangential(solution)
     state = solution.report.to_dict()
     state["units"] = system().name
     state.pop("kind")

@@ -70,6 +70,8 @@ def assembled(
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     units = LINE_UNITS if any(record.get("line") for record in records) else UNITS
+    if any(record.get("rolls") for record in records):
+        units = units | {"dissipated": units["force"]}  # over the distance rolled
     for name, output in outputs.items():
         arrays = [np.array(r["values"][name]) if "values" in r else None for r in records]
         found = [a.shape for a in arrays if a is not None]

@@ -10,7 +10,7 @@ import numpy as np
 
 import nacre._core as core
 
-Output = str | Callable[[core.Solution], Any]
+Output = str | Callable[[Any], Any]
 
 OUTPUTS = (
     "load",
@@ -21,7 +21,7 @@ OUTPUTS = (
     "peak_position",
     "contact_area",
 )
-AXES = {"tilt", "eccentricity", "moment", "peak_position"}
+AXES = {"tilt", "eccentricity", "moment", "peak_position", "force", "shift", "creepage"}
 """Outputs with a value along x and one along y."""
 
 NUMBERS = sorted(
@@ -30,6 +30,18 @@ NUMBERS = sorted(
     if isinstance(value, types.GetSetDescriptorType) and name != "report"
 )
 """Attributes of a solution: numbers and arrays of them."""
+
+FRICTION = (
+    "force",
+    "torque",
+    "shift",
+    "twist",
+    "creepage",
+    "spin",
+    "dissipated",
+    "tangential_energy",
+)
+"""Attributes of a `FrictionSolution` that are numbers."""
 
 STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
@@ -58,10 +70,11 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
     for name, output in items:
-        known = isinstance(output, str) and (output in NUMBERS or output in STRESSES)
+        known = isinstance(output, str) and output in (*NUMBERS, *FRICTION, *STRESSES)
         if not (known or callable(output)):
             raise ValueError(
                 f"outputs must be attributes of Solution that hold numbers ({', '.join(NUMBERS)}), "
+                f"or of FrictionSolution ({', '.join(FRICTION)}), "
                 f"stresses ({', '.join(STRESSES)}), or functions, got {output!r}"
             )
         if name in ("error", "warnings"):
@@ -83,7 +96,7 @@ def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str
 
 
 def evaluated(
-    solution: core.Solution,
+    solution: core.Solution | core.FrictionSolution,
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],
     unresolved: list[str],
@@ -104,13 +117,35 @@ def evaluated(
                 unresolved += summary.warnings
             value = max(STRESSES[output](summary), default=np.nan)
         else:
-            value = getattr(solution, output)
+            value = _number(solution, output)
         found[name] = np.asarray(value, dtype=np.float64).tolist()
-    estimates = solution.report.discretisation or {}
+    normal = solution.normal if isinstance(solution, core.FrictionSolution) else solution
+    estimates = normal.report.discretisation or {}
     for name, quantity in errors(outputs, outputs).items():
         estimate = estimates.get(quantity)
         found[name] = np.nan if estimate is None else float(estimate)
     return found
+
+
+def _number(solution: core.Solution | core.FrictionSolution, name: str) -> Any:
+    """Return an attribute of a solution, or of the normal contact of one with friction."""
+    if not isinstance(solution, core.FrictionSolution):
+        if name in FRICTION:
+            raise ValueError(f"the output {name} needs friction in the case")
+        return getattr(solution, name)
+    if name not in FRICTION:
+        return getattr(solution.normal, name)
+    value = getattr(solution, name)
+    if value is None:
+        raise ValueError(
+            f"the output {name} is not one of {'rolling' if rolls(solution) else 'sliding'}"
+        )
+    return value
+
+
+def rolls(solution: core.FrictionSolution) -> bool:
+    """Return whether a solution is one of rolling."""
+    return solution.shift is None
 
 
 def check_direction(

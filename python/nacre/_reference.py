@@ -12,7 +12,8 @@ from difflib import SequenceMatcher
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from nacre._case_tables import Table, Words
-from nacre._schema import Along, Body, CaseTable, Grid, Layer, Material, Range, Solve, Stress, Sweep
+from nacre._friction_tables import Along, Roll, Rolling, Slide, Step
+from nacre._schema import Body, CaseTable, Grid, Layer, Material, Range, Solve, Stress, Sweep
 from nacre._shape_tables import PROFILE_TABLES, TABLES
 
 WIDTH = 88
@@ -54,6 +55,8 @@ def words(hint: Any, metadata: Iterable[Any] = ()) -> str:
         return alternatives(dict.fromkeys(words(one) for one in parts if one is not type(None)))
     if isinstance(hint, type) and issubclass(hint, Table):
         return "a table"
+    if hint is bool:
+        return "true or false"
     return "any value"
 
 
@@ -81,6 +84,11 @@ def sections() -> Iterator[Section]:
     yield _section("`[grid]`", Grid)
     yield _section("`[solve]`", Solve)
     yield _section("`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", Along)
+    yield _section("`[slide]`", Slide)
+    yield _section("`[[slide.steps]]`", Step)
+    yield _section("`[slide.shift]` and `[slide.force]`", Along)
+    yield _section("`[roll]`", Roll)
+    yield _section("`[roll.creepage]` and `[roll.force]`", Rolling)
     yield _section("`[stress]`", Stress)
     yield _section("`[sweep]`", Sweep)
     yield _section('Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', Range)

@@ -15,6 +15,7 @@ from pydantic import Field, create_model, field_validator, model_validator
 import nacre
 from nacre import _keywords
 from nacre._case_tables import Count, Counts, Number, Pair, Table, Text, Words, described
+from nacre._friction_tables import Along, Roll, Slide
 from nacre._outputs import OUTPUTS
 from nacre._shape_tables import AnyShape
 from nacre.units import System
@@ -108,13 +109,6 @@ class Grid(Table):
         if self.cells is not None:
             return nacre.Grid.line(self.cells, self.width or 0.0, **center)
         return nacre.Grid(self.shape, self.size, **center)  # type: ignore[arg-type]
-
-
-class Along(Table):
-    """A value along x, along y, or both."""
-
-    x: Number | None = Field(None, description="Value along x.")
-    y: Number | None = Field(None, description="Value along y.")
 
 
 KNOWN = {
@@ -248,6 +242,8 @@ class CaseTable(Table):
     )
     grid: Grid | None = Field(None, description=SOLVE["grid"])
     solve: Solve = Field(description="What presses, and how the contact is solved.")
+    slide: Slide | None = Field(None, description="Friction, in one step or in a history.")
+    roll: Roll | None = Field(None, description="Rolling with friction; without slide.")
     stress: Stress | None = Field(
         None, description="Stresses below the surface; the table may be empty."
     )
@@ -270,7 +266,24 @@ class CaseTable(Table):
         if self.grid is not None:
             with at("grid"):
                 found["grid"] = self.grid.make()
-        return found | self.solve.keywords()
+        return found | self.solve.keywords() | self._friction()
+
+    def _friction(self) -> dict[str, Any]:
+        """Return the arguments of `nacre.slide` or `nacre.roll` beside those of `nacre.solve`."""
+        asked = self.slide or self.roll
+        if asked is None:
+            return {}
+        name = "roll" if self.slide is None else "slide"
+        if self.slide is not None and self.roll is not None:
+            raise WrongValue("roll", "must not be given beside the table slide")
+        for key in ("algorithm", "max_iterations"):
+            if key in self.solve.model_fields_set:
+                raise WrongValue(f"solve.{key}", f"must not be given beside the table {name}")
+        if self.stress is not None and self.stress.friction:
+            raise WrongValue(
+                "stress.friction", f"must be 0 beside the table {name}: its tractions are known"
+            )
+        return asked.keywords()
 
     def limits(self) -> dict[str, list[float | None]]:
         """Return yield stresses and strengths of the layers and the substrate."""

@@ -52,7 +52,7 @@ with extra("cli"):
 
 SHOWN = 60
 """Largest number of characters of a wrong value that an error shows."""
-SOLVED = ("materials", "shape", "body", "counterbody", "grid", "solve")
+SOLVED = ("materials", "shape", "body", "counterbody", "grid", "solve", "slide", "roll")
 """Tables that describe a solve, whose values a study can change."""
 
 
@@ -109,8 +109,16 @@ class Case:
         """Return the case with its numbers in other units."""
         return Case({**self.data, "units": units}, self.name, self.folder)
 
+    @property
+    def friction(self) -> str | None:
+        """Name of the table of friction, "slide" or "roll"; None without one."""
+        return "slide" if self._table.slide else "roll" if self._table.roll else None
+
     def arguments(self) -> dict[str, Any]:
-        """Return the arguments of `nacre.solve` that the case describes."""
+        """Return the arguments that the case describes.
+
+        They are those of `nacre.solve`, or with friction of `nacre.slide` or `nacre.roll`.
+        """
         try:
             return self._table.arguments(self.folder)
         except WrongValue as error:
@@ -119,7 +127,12 @@ class Case:
     def stress(self) -> dict[str, Any] | None:
         """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
         asked = self._table.stress
-        return None if asked is None else asked.keywords() | self._table.limits()
+        if asked is None:
+            return None
+        found = asked.keywords() | self._table.limits()
+        if self.friction is not None:
+            found = {name: found[name] for name in found if name not in ("friction", "direction")}
+        return found
 
     def __call__(self, **values: Any) -> dict[str, Any]:
         """Return the arguments with other values at some keys, ``{"solve.load": 10.0}``."""
@@ -156,7 +169,10 @@ class Case:
         if sweep.store is not None:
             found["store"] = self.folder / sweep.store
         if self._table.stress is not None:
-            found["stress"] = self._table.stress.keywords()
+            asked = self._table.stress.keywords()
+            if self.friction is not None:
+                asked = {"body": asked["body"]}
+            found["stress"] = asked
         return found
 
     def _place(self, data: Any, key: str) -> tuple[Any, Any]:

@@ -60,6 +60,8 @@ STATE = "nacre_solution"
 """Attribute that holds the rest of the state, as JSON."""
 CHECKSUM = "nacre_checksum"
 """Attribute that holds the SHA-256 of all that `load` reads; files of older versions lack it."""
+FRICTION = ("traction", "slip", "normal_displacement", "friction")
+"""Further variables of contacts with friction."""
 PICTURES = (".png", ".pdf", ".svg")
 ROUNDING = 1e-9
 """Share of a side by which a coordinate in a file may differ from that of its cell's centre."""
@@ -145,8 +147,8 @@ def save(
     return path
 
 
-def load(path: AnyPath) -> core.Solution:
-    """Solution from a file that `Solution.save` wrote, bit for bit; needs ``nacre-contact[files]``.
+def load(path: AnyPath) -> Any:
+    """Solution from a file that its `save` wrote, bit for bit; needs ``nacre-contact[files]``.
 
     Parameters
     ----------
@@ -155,7 +157,7 @@ def load(path: AnyPath) -> core.Solution:
 
     Returns
     -------
-    Solution
+    Solution or FrictionSolution
         Solution that was saved.
 
     Raises
@@ -240,7 +242,7 @@ def _read(content: bytes) -> tuple[Any, dict[str, Variable]]:
                     tuple(d[0].name.rpartition("/")[2] if len(d) else "" for d in file[name].dims),
                     np.asarray(file[name][()]),
                 )
-                for name in (*FIELDS, "x", "y")
+                for name in (*FIELDS, *FRICTION, "x", "y")
                 if name in file
             }
     except Exception as error:  # whatever HDF5 says of a damaged file
@@ -248,17 +250,24 @@ def _read(content: bytes) -> tuple[Any, dict[str, Variable]]:
     return attributes, variables
 
 
-def _solution(attributes: Mapping[str, Any], variables: Mapping[str, Variable]) -> core.Solution:
+def _solution(
+    attributes: Mapping[str, Any], variables: Mapping[str, Variable]
+) -> core.Solution | core.FrictionSolution:
     text = attributes[STATE]
     if not isinstance(text, str):
         raise ValueError(f"the attribute {STATE} must be a text, got {text!r:.60}")
-    fields = {name: _field(name, variables) for name in FIELDS}
     try:
         state = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"the attribute {STATE} must hold JSON: {error}") from error
     if not isinstance(state, dict):
         raise ValueError(f"the attribute {STATE} must hold named fields, got {text!r:.60}")
+    if state.get("kind") == "FrictionSolution":
+        from nacre._friction_state import restored
+
+        arrays = {name: _as_saved(name, variables) for name in variables if name not in "xy"}
+        return restored(state, text, attributes[CHECKSUM], arrays)
+    fields = {name: _field(name, variables) for name in FIELDS}
     written, found = state.get("format", 0), attributes[CHECKSUM]
     is_newer = isinstance(written, int) and written > FORMAT  # `from_dict` says so
     if found is not None and not is_newer and found != _checksum(text, fields):
@@ -291,6 +300,15 @@ def _field(name: str, variables: Mapping[str, Variable]) -> Array:
     if values.dtype.kind != "f":
         raise ValueError(f"{name} must hold real numbers, got {values.dtype}")
     return values if dimensions == ("x", "y") else values.T
+
+
+def _as_saved(name: str, variables: Mapping[str, Variable]) -> Array:
+    """Return a field of a contact with friction, its dimensions in the order of the state."""
+    dimensions, values = variables[name]
+    order = ("component", "x", "y") if "component" in dimensions else ("x", "y")
+    if set(dimensions) != set(order) or len(dimensions) != len(order) or values.dtype.kind != "f":
+        raise ValueError(f"{name} must hold real numbers over {', '.join(order)}")
+    return values.transpose([dimensions.index(name) for name in order])
 
 
 def _load_format0(state: dict[str, Any], fields: Mapping[str, Array]) -> core.Solution:

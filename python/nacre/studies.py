@@ -19,7 +19,7 @@ from nacre._dataset import assembled, counted, laid_out
 from nacre._extras import extra
 from nacre._identity import identified, key_of
 from nacre._journal import Journal, Record
-from nacre._outputs import OUTPUTS, STRESSES, Output, check_direction, evaluated, named
+from nacre._outputs import OUTPUTS, STRESSES, Output, check_direction, evaluated, named, rolls
 from nacre._progress import shown
 
 if TYPE_CHECKING:
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 
 ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
+SLIDE = frozenset(inspect.signature(core.slide).parameters) - ARGUMENTS
+ROLL = frozenset(inspect.signature(core.roll).parameters) - ARGUMENTS
+"""Arguments of contacts with friction besides those of `nacre.solve`."""
 
 
 def sweep(
@@ -52,7 +55,8 @@ def sweep(
     case : callable or mapping
         Function that takes the parameters by name and returns the arguments of `nacre.solve` as a
         dictionary; it runs in this process, the solves in `executor`. Or a mapping of those
-        arguments, some of which the parameters replace.
+        arguments, some of which the parameters replace. Arguments of `nacre.slide` or `nacre.roll`
+        make contacts with friction; of a history, the last step counts.
     parameters : mapping
         Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
         labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
@@ -64,7 +68,8 @@ def sweep(
         are the largest values anywhere, ``"von_mises"``, ``"tension"`` (principal) and
         ``"max_shear"``; the largest tension in a layer, ``"coating_tension"``; and the largest
         tractions at an interface, ``"interface_shear"`` and ``"interface_tension"``. The last three
-        are NaN without layers.
+        are NaN without layers. With friction, attributes of `FrictionSolution` are outputs, too:
+        ``"force"``, ``"torque"``, ``"shift"``, ``"twist"``, ``"creepage"``, ``"dissipated"``.
     stress : mapping, optional
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
         ``direction``, ``residual``.
@@ -196,8 +201,12 @@ def _describe(
     except (ValueError, ArithmeticError) as error:
         return {}, _reason(error)
     unknown = set(arguments) - ARGUMENTS
-    if unknown:
-        raise TypeError(f"case must give arguments of nacre.solve, got {sorted(unknown)}")
+    frictionless = unknown and not {"friction", "steps"} & unknown
+    if frictionless or (unknown - SLIDE and unknown - ROLL):
+        raise TypeError(
+            f"case must give arguments of nacre.solve, nacre.slide or nacre.roll, "
+            f"got {sorted(unknown)}"
+        )
     return {"threads": 1, **arguments}, None
 
 
@@ -279,19 +288,32 @@ def _solve(
     if os.getpid() != parent:
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the record has them
     try:
-        solution = core.solve(**arguments)
+        solution = _solution(arguments)
+        normal = solution.normal if isinstance(solution, core.FrictionSolution) else solution
         unresolved: list[str] = []
         threads = {"threads": arguments["threads"]}
         values = evaluated(solution, outputs, threads | stress, unresolved)
-        kinds = [warning["kind"] for warning in solution.report.to_dict()["warnings"]]
+        kinds = [warning["kind"] for warning in normal.report.to_dict()["warnings"]]
         record = {
             "values": values,
-            "warnings": solution.report.warnings + unresolved,
+            "warnings": normal.report.warnings + unresolved,
             "kinds": kinds + ["unresolved stress"] * len(unresolved),
         }
-        return record | ({"line": True} if solution.report.grid.is_line else {})
+        rolling = isinstance(solution, core.FrictionSolution) and rolls(solution)
+        marks = {"line": normal.report.grid.is_line, "rolls": rolling}
+        return record | {name: True for name, holds in marks.items() if holds}
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
+
+
+def _solution(arguments: dict[str, Any]) -> core.Solution | core.FrictionSolution:
+    """Return the solution of a case: with friction where it has any, and the last of a history."""
+    own = set(arguments) - ARGUMENTS
+    if not own:
+        return core.solve(**arguments)
+    solved = core.slide(**arguments) if own <= SLIDE else core.roll(**arguments)
+    found: core.FrictionSolution = solved[-1] if isinstance(solved, list) else solved
+    return found
 
 
 def _reason(error: Exception) -> str:

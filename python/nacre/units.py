@@ -22,6 +22,12 @@ UNITS = {
     "central_pressure": "Pa",
     "contact_area": "m²",
     "eccentricity": "m",
+    "force": "N",
+    "torque": "N m",
+    "shift": "m",
+    "twist": "rad",
+    "dissipated": "N m",
+    "tangential_energy": "N m",
     "von_mises": "Pa",
     "tension": "Pa",
     "max_shear": "Pa",
@@ -30,7 +36,10 @@ UNITS = {
     "interface_tension": "Pa",
 }
 """SI units of a solution's quantities, and of the stresses that studies keep."""
-LINE_UNITS = UNITS | {"load": "N/m", "moment": "N", "contact_area": "m"}
+LINE_UNITS = UNITS | {
+    **{"load": "N/m", "force": "N/m", "moment": "N", "contact_area": "m"},
+    **{"torque": "N", "dissipated": "N", "tangential_energy": "N"},
+}
 """SI units of the same quantities of a line contact, whose loads and areas are per length."""
 PARAMETERS = {
     "load": "N",
@@ -38,6 +47,8 @@ PARAMETERS = {
     "eccentricity": "m",
     "moment": "N m",
     "tilt": "rad",
+    "twist": "rad",
+    "torque": "N m",
     "young": "Pa",
     "thickness": "m",
     "radius": "m",

@@ -50,14 +50,20 @@ RESULTS = (
     | core.StressSummary
     | core.LayerStress
     | core.InterfaceStress
+    | core.FrictionSolution
+    | core.FrictionReport
+    | core.CreepCoefficients
 )
+BEGUN = ("traction", "displacement", "friction", "motion")
+"""Fields of a contact with friction on which a history depends that goes on from it."""
 
 
 def encode(value: Any, *, digest: bool = False) -> Any:
     """Return plain data (numbers, text, lists, dictionaries) that stands for `value`.
 
-    With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure,
-    which is enough to compare. A value that is neither one of nacre's nor plain is a `TypeError`.
+    With `digest`, an array is replaced by its shape and SHA-256, and a solution by its pressure or
+    what a history needs to go on, which is enough to compare. A value that is neither one of
+    nacre's nor plain is a `TypeError`.
     """
 
     def of(value: Any) -> Any:
@@ -93,6 +99,11 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             }
         if digest and isinstance(value, core.Solution):
             return {"Solution": of(value.pressure)}
+        if digest and isinstance(value, core.FrictionSolution):
+            state, normal = value.to_dict(), value.normal
+            begun = {name: of(state[name]) for name in BEGUN}
+            begun |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
+            return {"FrictionSolution": begun}
         if isinstance(value, RESULTS):
             return of(value.to_dict())
         if type(value) in FIELDS:

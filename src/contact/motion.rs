@@ -38,6 +38,23 @@ impl Motion {
         }
     }
 
+    /// This motion, with what it leaves open as in one `before`: load or approach, and on each axis the eccentricity,
+    /// moment or tilt.
+    pub(crate) fn after(mut self, before: &Self) -> Self {
+        if self.load.is_none() && self.approach.is_none() {
+            (self.load, self.approach) = (before.load, before.approach);
+        }
+        for axis in 0..2 {
+            let given = [self.eccentricity[axis], self.moment[axis], self.tilt[axis]];
+            if given == [None; 3] {
+                self.eccentricity[axis] = before.eccentricity[axis];
+                self.moment[axis] = before.moment[axis];
+                self.tilt[axis] = before.tilt[axis];
+            }
+        }
+        self
+    }
+
     /// A prescribed `approach` \[m\], with both tilts locked at 0.
     pub fn approach(approach: f64) -> Self {
         Self {

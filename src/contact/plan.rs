@@ -2,7 +2,7 @@
 
 mod datum;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use ndarray::Array2;
 
@@ -13,11 +13,12 @@ use super::problem::INDEFINITE;
 use super::problem::scale::LocalDisplacement;
 use crate::convolution::Convolution;
 use crate::ends::Ends;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::{Method, coefficients_on};
 use crate::parallel::{Threads, check_memory};
 use crate::response::Body;
+use crate::traction::Tangential;
 use datum::Datum;
 
 /// Arrays of a solve, as many as there are on one cell at the same time. Measured: 135 bytes a cell in all
@@ -36,6 +37,8 @@ pub(super) struct Plan {
     pub(super) datum: Datum,
     pub(super) unresolved: Unresolved,
     pub(super) ends: Ends,
+    /// Operators of tractions, made when friction first needs them.
+    pub(super) tangential: OnceLock<Arc<Tangential>>,
 }
 
 impl Plan {
@@ -65,7 +68,25 @@ impl Plan {
             datum,
             unresolved,
             ends,
+            tangential: OnceLock::new(),
         })
+    }
+
+    /// The operators of tractions.
+    ///
+    /// # Errors
+    /// Bodies without layers and substrate, and such with free ends.
+    pub(super) fn tangential(&self) -> Result<Arc<Tangential>> {
+        if let Some(known) = self.tangential.get() {
+            return Ok(Arc::clone(known));
+        }
+        if self.ends.any() {
+            return Err(Error::Inconsistent(crate::traction::GO_ON));
+        }
+        let counterbody = self.setup.counterbody.as_ref();
+        let threads = Arc::new(Threads::new(Some(self.convolution.threads()))?);
+        let new = Tangential::plan(&self.body, counterbody, &self.grid, &threads)?;
+        Ok(Arc::clone(self.tangential.get_or_init(|| Arc::new(new))))
     }
 
     /// This plan on other threads; all large arrays are shared.
@@ -81,6 +102,7 @@ impl Plan {
             local: self.local.clone(),
             datum: self.datum,
             ends: self.ends.clone(),
+            tangential: self.tangential.clone(),
         }
     }
 

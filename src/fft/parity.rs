@@ -133,7 +133,7 @@ impl PaddedTransform {
 
 /// Sets `column` to weight · kernel · `data`, or adds this product where `add`. `values` is the lower
 /// half of the kernel's column, less the factor i for each direction in which the kernel is odd.
-fn multiply_add(
+pub(super) fn multiply_add(
     column: &mut [Complex64],
     data: &[Complex64],
     values: &[f64],

@@ -13,7 +13,12 @@ use crate::parallel::{Threads, each_chunk, join};
 /// Half spectra of consecutive rows, stored by blocks of columns.
 pub(crate) struct HalfSpectra<'a>(ArrayViewMut2<'a, [Complex64; BLOCK]>);
 
-impl HalfSpectra<'_> {
+impl<'a> HalfSpectra<'a> {
+    /// The half spectra in `memory`: blocks of columns, and rows.
+    pub(super) fn of(memory: ArrayViewMut2<'a, [Complex64; BLOCK]>) -> Self {
+        Self(memory)
+    }
+
     /// The first `rows` of these half spectra, and the remaining ones.
     pub(crate) fn split(self, rows: usize) -> (Self, Self) {
         let (near, far) = self.0.split_at(Axis(1), rows);
@@ -23,7 +28,7 @@ impl HalfSpectra<'_> {
 
 /// Divides `rows` into groups of `length` rows or fewer, and calls `work` for each with the index of its
 /// first row; `first` is the index of the first of all.
-fn each_group(
+pub(super) fn each_group(
     rows: HalfSpectra,
     length: usize,
     first: usize,

@@ -239,6 +239,30 @@ impl Load<6> for TractionStress {
     }
 }
 
+/// Unit traction along x, without its stresses.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TractionDisplacement;
+
+impl Load<3> for TractionDisplacement {
+    const ORDERS: [Order; 3] = [displacement(1.0), displacement(0.0), displacement(2.0)];
+
+    const IS_TRACTION: bool = true;
+
+    fn radial(fields: &Fields, material: Elastic) -> [f64; 3] {
+        let [.., w, m, n] = Traction::radial(fields, material);
+        [w, m, n]
+    }
+
+    fn components(h: &[f64; 3], x: f64, y: f64) -> [f64; COMPONENTS] {
+        let [w, m, n] = *h;
+        Traction::components(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, w, m, n], x, y)
+    }
+
+    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
+        cerruti::components(material, half, at, z)
+    }
+}
+
 /// Radial functions h_ν = H_ν/r^ν of a point load on a homogeneous half-space, at depth z.
 ///
 /// D there is (c0 + c1 αz) e^{−αz}, and

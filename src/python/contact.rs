@@ -6,21 +6,31 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::arguments::keywords::{
-    self, Keywords, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
-    search_signature, single_docs, single_signature,
+    self, Keywords, motion_docs, motion_signature, plan_docs, search_docs, search_signature,
+    single_docs, single_signature,
 };
 use super::arguments::remade;
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
-use super::shapes::{Shape, shape};
-use super::solution::{PyReport, PySolution};
+use super::solution::PySolution;
 use super::words::method_words;
 use crate::body::HalfSpace;
-use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
-use crate::response::Body;
+use crate::contact::Contact;
 
 mod batch;
+mod friction;
+mod single;
+
+pub(super) use friction::{
+    PyCreepCoefficients, PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide,
+};
+use friction::{
+    found_docs, found_signature, roll_docs, roll_signature, rolled_docs, slid_docs, slide_docs,
+    slide_signature,
+};
+pub(super) use single::solve;
+use single::{Call, setup};
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
@@ -51,15 +61,6 @@ mod batch;
 #[pyclass(name = "Contact", module = "nacre", frozen)]
 pub(super) struct PyContact {
     contact: Arc<Contact>,
-}
-
-fn setup(counterbody: Option<&Bound<'_, PyAny>>, keywords: &Keywords) -> PyResult<Setup> {
-    let (method, threads) = keywords::plan(keywords)?;
-    Ok(Setup {
-        counterbody: counterbody.map(body).transpose()?.map(Body::from),
-        method,
-        threads,
-    })
 }
 
 #[pymethods]
@@ -231,6 +232,70 @@ impl PyContact {
         batch::solve_many(py, &self.contact, cases, options, progress, check)
     }
 
+    #[doc = concat!("slide($self, shape, steps=None, *, ", motion_signature!(), ", ", slide_signature!(), ", ", found_signature!(), ")\n--\n")]
+    /// Presses `shape` into the body and moves it tangentially, with friction: in one step, or step after step.
+    ///
+    /// Parameters
+    /// ----------
+    /// shape : Shape
+    ///     Shape that is pressed in.
+    #[doc = slide_docs!()]
+    #[doc = found_docs!()]
+    #[doc = slid_docs!()]
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
+    /// >>> ball = contact.slide(nacre.Sphere(5e-3), load=10.0, friction=0.3, force=(1.5, None))
+    /// >>> round(ball.force[0], 6), ball.report.full_slip
+    /// (1.5, False)
+    #[pyo3(signature = (shape, steps=None, **keywords), text_signature = None)]
+    fn slide<'py>(
+        &self,
+        py: Python<'py>,
+        shape: &Bound<'py, PyAny>,
+        steps: Option<&Bound<'py, PyAny>>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let keywords = Keywords::new(py, keywords)?;
+        let sliding = friction::Sliding::new(shape, steps, &keywords)?;
+        keywords.finish("keywords of Contact.slide")?;
+        sliding.run(py, &self.contact)
+    }
+
+    #[doc = concat!("roll($self, shape, *, ", motion_signature!(), ", ", roll_signature!(), ", ", found_signature!(), ")\n--\n")]
+    /// Presses `shape` into the body, which rolls: at constant speed, or cell by cell from a given state.
+    ///
+    /// Parameters
+    /// ----------
+    /// shape : Shape
+    ///     Shape that is pressed in.
+    #[doc = roll_docs!()]
+    #[doc = found_docs!()]
+    #[doc = rolled_docs!()]
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
+    /// >>> ball = nacre.Sphere(5e-3)
+    /// >>> wheel = contact.roll(ball, load=10.0, friction=0.3, creepage=(0.02, None), direction="+x")
+    /// >>> wheel.report.full_slip, round(wheel.force[0], 3)
+    /// (True, 3.0)
+    #[pyo3(signature = (shape, **keywords), text_signature = None)]
+    fn roll<'py>(
+        &self,
+        py: Python<'py>,
+        shape: &Bound<'py, PyAny>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let keywords = Keywords::new(py, keywords)?;
+        let rolling = friction::Rolled::new(shape, &keywords)?;
+        keywords.finish("keywords of Contact.roll")?;
+        rolling.run(py, &self.contact)
+    }
+
     fn __eq__(&self, other: &Self) -> bool {
         let (a, b) = (&self.contact, &other.contact);
         (a.grid(), a.body(), a.setup()) == (b.grid(), b.body(), b.setup())
@@ -264,126 +329,5 @@ impl PyContact {
         keywords.set_item("threads", setup.threads)?;
         let arguments = (self.body(), self.grid(), self.counterbody());
         remade(py.get_type::<Self>(), arguments, keywords)
-    }
-}
-
-#[doc = concat!("solve(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
-/// Presses a shape into a body, in one call: chooses a grid where none is given, plans, solves.
-///
-/// By default the grid of a height map is its own. Any other shape gets a grid that holds the whole
-/// contact, with 64 cells across its narrower width, oblong where the contact is long, and a margin of a
-/// quarter of the contact on every side. The cells are divided until the estimated error of the peak
-/// pressure (``report.discretisation``) is at most 1 %; where that needs more than 2²² cells, or does
-/// not lower the estimate, a warning says so.
-///
-/// Parameters
-/// ----------
-/// shape : Shape
-///     Shape that is pressed in.
-/// body : HalfSpace or Elastic
-///     Body that it is pressed into.
-/// counterbody : HalfSpace or Elastic, optional
-///     Body that carries the shape; rigid where there is none. A roller of finite length ends on both
-///     sides: ``HalfSpace(steel, ends=roller.ends)``.
-/// grid : Grid, optional
-///     Cells of the pressure. An endless shape, such as a cylinder, needs a grid.
-#[doc = plan_docs!()]
-#[doc = motion_docs!()]
-#[doc = search_docs!()]
-#[doc = single_docs!()]
-///
-/// Returns
-/// -------
-/// Solution
-///     Pressure, gap, displacement, approach and tilt.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If an argument is out of range, the arguments contradict each other, no grid is found, a free end of a
-///     body lies within a cell, or the counterbody ends within the shape that it carries.
-/// ConvergenceError
-///     If the tolerance was not met; the unfinished solution is its `solution`.
-///
-/// See Also
-/// --------
-/// Contact.solve : explains the degrees of freedom of the motion.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
-/// >>> body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=40e-6)])
-/// >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
-/// >>> solution = nacre.solve(roller, body, load=1e3, eccentricity=(2.87e-3, None))
-/// >>> round(solution.eccentricity[0], 8)
-/// 0.00287
-#[pyfunction]
-#[pyo3(signature = (shape, body, counterbody=None, **keywords), text_signature = None)]
-pub(super) fn solve<'py>(
-    py: Python<'py>,
-    shape: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = body)] body: HalfSpace,
-    counterbody: Option<&Bound<'py, PyAny>>,
-    keywords: Option<&Bound<'py, PyDict>>,
-) -> PyResult<PySolution> {
-    let keywords = Keywords::new(py, keywords)?;
-    let grid: Option<PyGrid> = keywords.object("grid", "a nacre.Grid")?;
-    let setup = setup(counterbody, &keywords)?;
-    let call = Call::new(shape, &keywords)?;
-    keywords.finish("keywords of solve")?;
-    let body = Body::from(body);
-    call.run(py, move |shape, motion, options, progress| match grid {
-        Some(PyGrid(grid)) => {
-            Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
-        }
-        None => solve_watched(shape, &body, &setup, motion, options, progress),
-    })
-}
-
-/// Arguments that `solve` and `Contact.solve` share.
-struct Call {
-    shape: Shape,
-    motion: Motion,
-    options: Options,
-    progress: Option<Py<PyAny>>,
-    check: bool,
-}
-
-impl Call {
-    fn new(shape: &Bound<'_, PyAny>, keywords: &Keywords) -> PyResult<Self> {
-        let motion = keywords::motion(keywords)?;
-        let (options, progress, check) = keywords::single(keywords)?;
-        Ok(Self {
-            shape: self::shape(shape)?.get().0.clone(),
-            motion,
-            options,
-            progress,
-            check,
-        })
-    }
-
-    /// Runs `work` in the background; Ctrl-C and the callback can stop it.
-    fn run(
-        self,
-        py: Python<'_>,
-        work: impl FnOnce(&Shape, &Motion, &Options, &mut Progress) -> crate::Result<Solution>
-        + Send
-        + 'static,
-    ) -> PyResult<PySolution> {
-        let Self {
-            shape,
-            motion,
-            options,
-            progress,
-            check,
-        } = self;
-        let tolerance = options.tolerance;
-        let solution = background::run(py, progress, move |caller| {
-            work(&shape, &motion, &options, &mut |report| {
-                caller.ask(|| (PyReport(report.clone()),))
-            })
-        })?;
-        PySolution::finished(py, solution?, tolerance, check)
     }
 }

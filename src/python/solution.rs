@@ -58,6 +58,11 @@ impl From<Solution> for PySolution {
 }
 
 impl PySolution {
+    /// The solution itself.
+    pub(super) fn inner(self) -> Solution {
+        Arc::unwrap_or_clone(self.solution)
+    }
+
     /// Solution whose warnings were issued.
     ///
     /// # Errors

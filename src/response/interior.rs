@@ -27,6 +27,18 @@ pub(crate) struct Place {
     pub(crate) material: Elastic,
 }
 
+impl Place {
+    /// Place of the surface of `body`.
+    pub(crate) fn surface(body: &HalfSpace) -> Self {
+        Self {
+            layer: 0,
+            below_top: 0.0,
+            depth: 0.0,
+            material: body.surface_material(),
+        }
+    }
+}
+
 /// Traction and displacement (times α) at a depth, under an in-plane load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct InPlane {

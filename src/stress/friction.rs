@@ -11,6 +11,8 @@ pub(super) struct Sliding {
     pub(super) sign: f64,
     /// Direction of the traction where the options have none.
     pub(super) direction: Option<[f64; 2]>,
+    /// Whether the tractions of the contact are known, and no others may be added.
+    pub(super) is_known: bool,
 }
 
 impl Sliding {
@@ -31,6 +33,11 @@ impl Sliding {
         let given = options.direction.map(check_direction).transpose()?;
         if friction <= 0.0 {
             return Ok([0.0; 2]);
+        }
+        if self.is_known {
+            return Err(Error::Inconsistent(
+                "friction must be 0: the tractions of this contact are known, and their stress is part of the result",
+            ));
         }
         let slips = |layer: &Layer| layer.interface() == Interface::Frictionless;
         if body.layers().iter().any(slips) {

@@ -4,8 +4,10 @@ mod coefficients;
 mod plan;
 mod plane;
 mod points;
+mod tractions;
 
 pub(super) use coefficients::components;
 pub(super) use plan::{Form, HalfSpacePlan, MAGNITUDES, Source};
 pub(super) use plane::PlaneEvaluator;
 pub(super) use points::PointEvaluator;
+pub(super) use tractions::{TractionPlanes, TractionPoints, Tractions};

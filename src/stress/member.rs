@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use ndarray::Array2;
+
 use super::field::Stress;
 use super::friction::Sliding;
 use super::half_space::{Form, Source};
@@ -112,6 +114,31 @@ impl Solution {
         self.source(member)?.complete(threads, progress)
     }
 
+    /// A plan of the stress under the pressure and the `tractions` (q_x, q_y) on the body; on the counterbody, their
+    /// opposites act. They are uniform over each cell. `progress` is told 0 while planning; when it breaks, there is no
+    /// plan.
+    ///
+    /// # Errors
+    /// As [`Solution::stress_plan`], and tractions of another shape than the grid's.
+    pub(crate) fn stress_plan_with(
+        &self,
+        member: Member,
+        tractions: [&Array2<f64>; 2],
+        threads: Option<usize>,
+        progress: &mut StressProgress,
+    ) -> Result<Option<StressPlan>> {
+        let source = self.source(member)?;
+        let source = Source {
+            sliding: Sliding {
+                is_known: true,
+                ..source.sliding
+            },
+            tractions: Some(tractions.map(|traction| &**traction)),
+            ..source
+        };
+        source.complete(threads, progress)
+    }
+
     /// The layers of one of the bodies.
     ///
     /// # Errors
@@ -141,7 +168,9 @@ impl Solution {
                     Member::Counterbody => -1.0,
                 },
                 direction: self.report.rolling_direction,
+                is_known: false,
             },
+            tractions: None,
         })
     }
 }

@@ -5,7 +5,10 @@ use std::ops::ControlFlow;
 use ndarray::{Array1, ArrayRef2};
 
 use super::ends::{EndPlanes, EndPoints, EndStress};
-use super::half_space::{HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source};
+use super::half_space::{
+    HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source, TractionPlanes, TractionPoints,
+    Tractions,
+};
 use super::options::StressProgress;
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
@@ -39,6 +42,8 @@ pub struct StressPlan {
     pub(super) whole: HalfSpacePlan,
     /// Present where the body has free ends, and bears pressure.
     ends: Option<EndStress>,
+    /// Present where tractions are known.
+    tractions: Option<Tractions>,
 }
 
 impl Source<'_> {
@@ -51,11 +56,17 @@ impl Source<'_> {
         let Some(whole) = self.plan(threads, progress)? else {
             return Ok(None);
         };
-        let ends = EndStress::plan(&whole, progress)?;
-        Ok(match ends {
-            ControlFlow::Continue(ends) => Some(StressPlan { whole, ends }),
-            ControlFlow::Break(()) => None,
-        })
+        let ControlFlow::Continue(ends) = EndStress::plan(&whole, progress)? else {
+            return Ok(None);
+        };
+        let (sign, count) = (self.sliding.sign, &whole.threads);
+        let planned = |tractions| Tractions::plan(self.body, self.grid, tractions, sign, count);
+        let tractions = self.tractions.map(planned).transpose()?;
+        Ok(Some(StressPlan {
+            whole,
+            ends,
+            tractions,
+        }))
     }
 
     /// [`Source::complete`] without a callback.
@@ -111,14 +122,16 @@ impl StressPlan {
 pub(super) struct PlaneStress<'a> {
     whole: PlaneEvaluator<'a>,
     ends: Option<EndPlanes<'a>>,
+    tractions: Option<TractionPlanes<'a>>,
 }
 
 impl<'a> PlaneStress<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2], displacement: bool) -> Self {
-        let ends = plan.ends.as_ref();
+        let (ends, tractions) = (plan.ends.as_ref(), plan.tractions.as_ref());
         Self {
             whole: PlaneEvaluator::new(&plan.whole, friction, displacement),
             ends: ends.map(|ends| EndPlanes::new(ends, displacement)),
+            tractions: tractions.map(|tractions| TractionPlanes::new(tractions, displacement)),
         }
     }
 
@@ -136,8 +149,11 @@ impl<'a> PlaneStress<'a> {
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
         self.whole.evaluate(place, outputs, progress)?;
-        match &mut self.ends {
-            Some(ends) => ends.add(place, outputs, progress),
+        if let Some(ends) = &mut self.ends {
+            ends.add(place, outputs, progress)?;
+        }
+        match &mut self.tractions {
+            Some(tractions) => tractions.add(place, outputs, progress),
             None => ControlFlow::Continue(()),
         }
     }
@@ -148,6 +164,7 @@ impl<'a> PlaneStress<'a> {
 pub(super) struct PointStress<'a> {
     whole: PointEvaluator<'a>,
     ends: Option<EndPoints<'a>>,
+    tractions: Option<TractionPoints<'a>>,
 }
 
 impl<'a> PointStress<'a> {
@@ -157,9 +174,11 @@ impl<'a> PointStress<'a> {
         displacement: bool,
         cells: Vec<[usize; 2]>,
     ) -> Self {
-        let ends = plan.ends.as_ref();
+        let (ends, tractions) = (plan.ends.as_ref(), plan.tractions.as_ref());
         Self {
             ends: ends.map(|ends| EndPoints::new(ends, displacement, &cells)),
+            tractions: tractions
+                .map(|tractions| TractionPoints::new(tractions, displacement, &cells)),
             whole: PointEvaluator::new(&plan.whole, friction, displacement, cells),
         }
     }
@@ -178,6 +197,9 @@ impl<'a> PointStress<'a> {
         let mut sums = self.whole.evaluate(place, progress)?;
         if let Some(ends) = &self.ends {
             ends.add(place, &mut sums, progress)?;
+        }
+        if let Some(tractions) = &self.tractions {
+            tractions.add(place, &mut sums, progress)?;
         }
         ControlFlow::Continue(sums)
     }

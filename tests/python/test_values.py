@@ -25,6 +25,7 @@ THIRDS = np.arange(12).reshape(3, 4) / 3e6  # no finite number of decimals gives
 LOGARITHMIC = nacre.LogarithmicProfile(1e-5 / 3, 20e-3, flat_length=5e-3, end_factor=0.9)
 SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1e-6 / 7])
 SOLUTION = nacre.solve(SPHERE, COATED, load=10.0, grid=GRID)
+SLID = nacre.slide(SPHERE, COATED, STEEL, load=10.0, grid=GRID, friction=0.1, force=(0.3, None))
 SUMMARY = SOLUTION.stress_summary(strength={0: 1e9}, threads=1)
 
 MADE_BY_A_CALL: dict[str, Any] = {
@@ -82,6 +83,9 @@ VALUES = MADE_BY_A_CALL | {
         [0.0, 1e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
     ),
     "stress plan": SOLUTION.stress_plan(threads=1),
+    "friction solution": SLID,
+    "friction report": SLID.report,
+    "creep coefficients": nacre.creep_coefficients(STEEL, STEEL, (1e-3, 2e-3), cells=8),
     "stress summary": SUMMARY,
     "layer stress": SUMMARY.layers[0],
     "interface stress": SUMMARY.interfaces[0],

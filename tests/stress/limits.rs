@@ -94,7 +94,7 @@ fn lengths_and_moduli_out_of_range_are_refused() -> Result<()> {
             .map(|error| error.to_string())
             .unwrap_or_default())
     };
-    for side in [1e-200, 1e-100, 1e100, 1e200] {
+    for side in [1e-99, 1e-80, 1e80, 1e99] {
         assert!(refused(&material.into(), side)?.contains("between 1e-60 and 1e60"));
     }
     for (young, thickness) in [(1e-200, 1.0), (1e200, 1.0), (1.0, 1e-300), (1.0, 1e300)] {

@@ -6,10 +6,14 @@ use serde_json::Value;
 
 /// Cases of a reference file.
 pub(crate) fn cases(name: &str) -> Vec<Value> {
+    list(&read(name), "cases").clone()
+}
+
+/// A reference file.
+pub(crate) fn read(name: &str) -> Value {
     let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    let file: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"));
-    list(&file, "cases").clone()
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
 /// List of numbers `value[key]`.

@@ -5,6 +5,7 @@ carry units with a prefix, SI or those of `nacre.display_units`. `nacre.Solution
 functions as methods.
 """
 
+from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
 from nacre.plot.relief import relief, view
@@ -17,8 +18,11 @@ __all__ = [
     "STYLE",
     "chart",
     "compare",
+    "creep_curve",
     "curve",
+    "friction",
     "interface_map",
+    "loop",
     "overview",
     "pressure_map",
     "relief",

@@ -87,6 +87,7 @@ impl Report {
             overlap: self.overlap,
             balance: force.max(x).max(y),
             tolerance,
+            limit: "max_iterations",
         }
     }
 

@@ -61,5 +61,6 @@ pub(crate) fn solve(
         overlap: 0.0,
         balance: 0.0,
         tolerance,
+        limit: "max_iterations",
     })
 }

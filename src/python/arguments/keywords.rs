@@ -238,6 +238,17 @@ impl<'py> Keywords<'py> {
         self.typed(name, "a str", default.to_owned())
     }
 
+    /// Text that may be missing.
+    pub(in crate::python) fn optional_text(&self, name: &str) -> PyResult<Option<String>> {
+        let value = self.given(name)?;
+        let text = |value: Bound<'_, PyAny>| {
+            value.extract::<String>().map_err(|_| {
+                PyTypeError::new_err(format!("{name} must be a str, got {}", Repr(&value)))
+            })
+        };
+        value.map(text).transpose()
+    }
+
     /// Value that the argument [`Word::ARGUMENT`] names by a word.
     pub(in crate::python) fn word<W: Word>(&self, default: &str) -> PyResult<W> {
         W::from_word(&self.text(W::ARGUMENT, default)?)

@@ -61,6 +61,8 @@ pub(in crate::stress) struct Source<'a> {
     pub(in crate::stress) pressure: &'a ArrayRef2<f64>,
     pub(in crate::stress) form: Form<'a>,
     pub(in crate::stress) sliding: Sliding,
+    /// Tractions along x and y on the body itself, where they are known.
+    pub(in crate::stress) tractions: Option<[&'a ArrayRef2<f64>; 2]>,
 }
 
 impl<'a> Source<'a> {
@@ -78,7 +80,9 @@ impl<'a> Source<'a> {
             sliding: Sliding {
                 sign: 1.0,
                 direction: grid.rolling_direction(),
+                is_known: false,
             },
+            tractions: None,
         }
     }
 

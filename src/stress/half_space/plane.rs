@@ -41,15 +41,26 @@ impl<'a> PlaneEvaluator<'a> {
         friction: [f64; 2],
         displacement: bool,
     ) -> Self {
+        Self {
+            friction,
+            ..Self::under(plan, SurfaceLoad::all(friction), displacement)
+        }
+    }
+
+    /// The plan under `loads` in proportion to its pressure, which may leave out the pressure itself.
+    pub(super) fn under(
+        plan: &'a HalfSpacePlan,
+        loads: Vec<SurfaceLoad>,
+        displacement: bool,
+    ) -> Self {
         let components = components(displacement);
-        let loads = SurfaceLoad::all(friction);
         let rows = |load: &SurfaceLoad| {
             let odd = load.odd()[..components].to_vec();
             plan.transform.kernel_rows(plan.offsets, odd)
         };
         Self {
             plan,
-            friction,
+            friction: [0.0; 2],
             components,
             rows: loads.iter().map(rows).collect(),
             loads,

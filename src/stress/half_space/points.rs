@@ -36,6 +36,19 @@ impl<'a> PointEvaluator<'a> {
         displacement: bool,
         cells: Vec<[usize; 2]>,
     ) -> Self {
+        Self {
+            friction,
+            ..Self::under(plan, SurfaceLoad::all(friction), displacement, cells)
+        }
+    }
+
+    /// The plan under `loads` in proportion to its pressure, which may leave out the pressure itself.
+    pub(super) fn under(
+        plan: &'a HalfSpacePlan,
+        loads: Vec<SurfaceLoad>,
+        displacement: bool,
+        cells: Vec<[usize; 2]>,
+    ) -> Self {
         let [nx, ny] = plan.grid.shape();
         let loaded = loaded_cells([nx, ny], &[plan.stress_pressure(), &plan.pressure]);
         // From a cell to the loaded cell that is farthest from it.
@@ -47,9 +60,9 @@ impl<'a> PointEvaluator<'a> {
         });
         Self {
             plan,
-            friction,
+            friction: [0.0; 2],
             displacement,
-            loads: SurfaceLoad::all(friction),
+            loads,
             cells,
             offsets,
         }

@@ -1,0 +1,176 @@
+"""Files of contacts with friction: NetCDF to come back to, VTK, CSV, pictures."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import nacre._core as core
+from nacre._extras import extra
+from nacre._friction_display import numbers
+from nacre._friction_state import NORMAL, VECTORS, Array, checksum, named
+from nacre.units import symbol
+
+if TYPE_CHECKING:
+    import xarray
+
+    from nacre.files import AnyPath
+
+
+def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
+    """Return the fields with coordinates, units and the whole problem."""
+    with extra("files"):
+        import xarray
+    from nacre.files import CHECKSUM, STATE
+    from nacre.units import system
+
+    normal, report = solution.normal, solution.report
+    rolls = solution.shift is None
+    plane, vector = ("x", "y"), ("component", "x", "y")
+    fields: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
+        "pressure": (plane, normal.pressure, symbol("Pa"), "pressure"),
+        "gap": (plane, normal.gap, symbol("m"), "gap; infinite where the shape cannot touch"),
+        "normal_displacement": (
+            plane,
+            normal.displacement,
+            symbol("m"),
+            "normal displacement of both bodies together",
+        ),
+        "traction": (vector, solution.traction, symbol("Pa"), "traction on the body"),
+        "displacement": (
+            vector,
+            solution.displacement,
+            symbol("m"),
+            "tangential displacement of the body relative to the counterbody",
+        ),
+        "slip": (
+            vector,
+            solution.slip,
+            "1" if rolls else symbol("m"),
+            "slip velocity over the speed of rolling" if rolls else "slip in the step",
+        ),
+        "stick": (plane, solution.stick.astype(np.int8), "1", "whether a cell sticks"),
+    }
+    if isinstance(solution.friction, np.ndarray):
+        fields["friction"] = (plane, solution.friction, "1", "coefficient of friction")
+    dataset = xarray.Dataset(
+        {name: (dims, values) for name, (dims, values, _, _) in fields.items()},
+        coords={"x": solution.x, "y": solution.y, "component": ["x", "y"]},
+    )
+    for name, (_, _, unit, words) in fields.items():
+        dataset[name].attrs = {"units": unit, "long_name": words}
+    for name in plane:
+        dataset[name].attrs = {"units": symbol("m"), "long_name": f"{name} of the cell centre"}
+    state, arrays = _split(solution)
+    motion = ("shift", "twist") if not rolls else ("creepage", "spin", "direction")
+    dataset.attrs = {
+        "title": "contact of coated bodies with friction",
+        "source": f"nacre {core.__version__}",
+        "unit_system": system().name,
+        "load": normal.load,
+        "approach": normal.approach,
+        "force": np.array(solution.force),
+        "torque": solution.torque,
+        "dissipated": solution.dissipated,
+        **{name: getattr(solution, name) for name in motion},
+        "termination": report.termination,
+        "violation": report.violation,
+        "imbalance": report.imbalance,
+        "tolerance": report.tolerance,
+        "warnings": "\n".join(normal.report.warnings),
+        STATE: json.dumps(state),
+    }
+    if not isinstance(solution.friction, np.ndarray):
+        dataset.attrs["friction"] = solution.friction
+    dataset.attrs[CHECKSUM] = checksum(dataset.attrs[STATE], arrays)
+    return dataset
+
+
+def _split(solution: core.FrictionSolution) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Return the named state without its arrays, and these by the names of a Dataset."""
+    state = solution.to_dict()
+    arrays = {name: np.asarray(state.pop(name)) for name in VECTORS}
+    if isinstance(solution.friction, np.ndarray):
+        arrays["friction"] = np.asarray(state.pop("friction"))
+    normal = dict(state["normal"])
+    for name in NORMAL:
+        arrays[named(name)] = np.asarray(normal.pop(name))
+    return state | {"normal": normal}, arrays
+
+
+def save(solution: core.FrictionSolution, path: AnyPath) -> Path:
+    """Write a file, whole or not at all; its ending chooses the kind."""
+    from nacre.files import PICTURES, replacing, write_dataset
+
+    path = Path(path)
+    kinds = (".nc", ".vtr", ".csv", *PICTURES)
+    if path.suffix not in kinds:
+        raise ValueError(f"path must end in {', '.join(kinds)}, got {str(path)!r}")
+    with replacing(path) as temporary:
+        if path.suffix == ".nc":
+            write_dataset(to_xarray(solution), temporary)
+        elif path.suffix == ".vtr":
+            _write_vtk(solution, temporary)
+        elif path.suffix == ".csv":
+            _write_cells(solution, temporary)
+        else:
+            _write_picture(solution, temporary)
+    return path
+
+
+def _write_cells(solution: core.FrictionSolution, path: Path) -> None:
+    """Write every cell, after a block of comments with the main numbers."""
+    slip = "slip {} [1]" if solution.shift is None else f"slip {{}} [{symbol('m')}]"
+    heads = [
+        *(f"{name} [{symbol('m')}]" for name in "xy"),
+        f"pressure [{symbol('Pa')}]",
+        *(f"traction {name} [{symbol('Pa')}]" for name in "xy"),
+        *(slip.format(name) for name in "xy"),
+        "stick",
+    ]
+    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
+    fields = [x, y, solution.pressure, *solution.traction, *solution.slip]
+    columns = [np.ravel(field).tolist() for field in fields]
+    columns.append(np.ravel(solution.stick).astype(int).tolist())
+    with path.open("w", newline="", encoding="utf-8") as file:
+        file.write(f"# source: nacre {core.__version__}\n")
+        file.writelines(f"# {name}: {value}\n" for name, value in numbers(solution))
+        writer = csv.writer(file)
+        writer.writerow(heads)
+        writer.writerows(zip(*columns, strict=True))
+
+
+def _write_vtk(solution: core.FrictionSolution, path: Path) -> None:
+    """Write the fields as the cells of a plane, for ParaView."""
+    with extra("files"):
+        from pyevtk.hl import gridToVTK
+
+    grid = solution.grid
+    edges = [
+        c + side * (np.arange(cells + 1) / cells - 0.5)
+        for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
+    ]
+    cells: dict[str, Any] = {
+        "pressure": np.asfortranarray(solution.pressure[..., np.newaxis]),
+        "stick": np.asfortranarray(solution.stick.astype(np.int8)[..., np.newaxis]),
+    }
+    zero = np.zeros((*grid.shape, 1), order="F")
+    for name in VECTORS:
+        parts = [np.asfortranarray(part[..., np.newaxis]) for part in getattr(solution, name)]
+        cells[name] = (*parts, zero)
+    gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
+
+
+def _write_picture(solution: core.FrictionSolution, path: Path) -> None:
+    """Write the picture that `FrictionSolution.plot` draws."""
+    axes: Any = solution.plot()
+    try:
+        axes.figure.savefig(path, dpi=300)
+    finally:
+        from matplotlib import pyplot
+
+        pyplot.close(axes.figure)

@@ -1,0 +1,217 @@
+"""Studies of friction: histories and creep curves, to one Dataset.
+
+`nacre.slide` and `nacre.roll` make the solutions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre._extras import extra
+from nacre.units import symbol
+
+if TYPE_CHECKING:
+    import xarray
+
+PLAN = ("method", "refinement", "threads")
+"""Keywords of a plan."""
+MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
+"""Keywords of the motion along z."""
+
+
+def checked(solutions: object) -> list[core.FrictionSolution]:
+    """Return solutions as a list, with one of them at least, and all of one kind.
+
+    Raises
+    ------
+    TypeError
+        If they are no sequence of FrictionSolution.
+    ValueError
+        If there is none, or some slide and some roll, or some are line contacts.
+    """
+    found: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
+    if not all(isinstance(solution, core.FrictionSolution) for solution in found):
+        raise TypeError(f"solutions must be a sequence of FrictionSolution, got {solutions!r}")
+    if not found:
+        raise ValueError("solutions must hold at least one solution, got none")
+    if len({(s.shift is None, s.grid.is_line) for s in found}) > 1:
+        raise ValueError(
+            "solutions must all slide or all roll, in line contact or not, got some of each"
+        )
+    return found
+
+
+def history(solutions: Sequence[core.FrictionSolution]) -> xarray.Dataset:
+    """Dataset of the main numbers of a history, step by step; needs ``nacre-contact[files]``.
+
+    Parameters
+    ----------
+    solutions : sequence of FrictionSolution
+        Steps that `nacre.slide` or `Contact.roll` returned.
+
+    Returns
+    -------
+    xarray.Dataset
+        Load, force, torque, dissipated energy, share of the contact that sticks and the number of
+        convolutions over ``step``; shift and twist of sliding, creepage of rolling.
+
+    Raises
+    ------
+    TypeError
+        If they are no sequence of FrictionSolution.
+    ValueError
+        If there is none, or some slide and some roll.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> steps = [{"force": (force, None)} for force in (2.0, -2.0, 2.0)]
+    >>> loop = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, steps=steps)
+    >>> study = nacre.friction.history(loop)
+    >>> study.force.dims, bool((study.dissipated >= 0).all())
+    (('step', 'component'), True)
+    """
+    with extra("files"):
+        import xarray
+
+    solutions = checked(solutions)
+    line = solutions[0].grid.is_line
+    force, rolls = "N/m" if line else "N", solutions[0].shift is None
+    touching = [np.count_nonzero(s.pressure) for s in solutions]
+    values: dict[str, tuple[tuple[str, ...], Any, str]] = {
+        "load": (("step",), [s.normal.load for s in solutions], symbol(force)),
+        "force": (("step", "component"), [s.force for s in solutions], symbol(force)),
+        "torque": (("step",), [s.torque for s in solutions], symbol("N" if line else "N m")),
+        "dissipated": (
+            ("step",),
+            [s.dissipated for s in solutions],
+            symbol(force if rolls else ("N" if line else "N m")),
+        ),
+        "stick_share": (
+            ("step",),
+            [s.stick.sum() / max(cells, 1) for s, cells in zip(solutions, touching, strict=True)],
+            "1",
+        ),
+        "convolutions": (("step",), [s.report.convolutions for s in solutions], "1"),
+    }
+    if all(s.shift is not None for s in solutions):
+        values["shift"] = (("step", "component"), [s.shift for s in solutions], symbol("m"))
+        values["twist"] = (("step",), [s.twist for s in solutions], "rad")
+    if all(s.creepage is not None for s in solutions):
+        values["creepage"] = (("step", "component"), [s.creepage for s in solutions], "1")
+    dataset = xarray.Dataset(
+        {name: (dims, np.asarray(data)) for name, (dims, data, _) in values.items()},
+        coords={"step": np.arange(len(solutions)), "component": ["x", "y"]},
+    )
+    for name, (_, _, unit) in values.items():
+        dataset[name].attrs = {"units": unit}
+    dataset.attrs = {"title": "history of a contact with friction"}
+    dataset.attrs["source"] = f"nacre {core.__version__}"
+    return dataset
+
+
+def creep_curve(
+    shape: core.Shape,
+    body: core.HalfSpace | core.Elastic,
+    counterbody: core.HalfSpace | core.Elastic | None = None,
+    *,
+    creepages: npt.ArrayLike,
+    lateral: bool = False,
+    **keywords: Any,
+) -> xarray.Dataset:
+    """Roll at several creepages, and return the forces; needs ``nacre-contact[files]``.
+
+    Parameters
+    ----------
+    shape, body, counterbody
+        As `nacre.roll`.
+    creepages : array_like
+        Creepages, one after the other.
+    lateral : bool, optional
+        Whether they are lateral ones, eta, instead of longitudinal ones, xi.
+    **keywords
+        Other keywords of `nacre.roll`: load, friction, direction, spin, grid, tolerance.
+
+    Returns
+    -------
+    xarray.Dataset
+        Force along and across rolling, torque, share of the contact that sticks, and power over
+        the speed of rolling, over ``creepage``; the force along the creepage over friction
+        times load as ``traction_ratio``, NaN where there is neither.
+
+    Raises
+    ------
+    TypeError
+        If creepages are not real numbers.
+    ValueError
+        If creepages are not a sequence of numbers, or `nacre.roll` would raise.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> curve = nacre.friction.creep_curve(
+    ...     nacre.Sphere(5e-3), steel, steel, creepages=[1e-4, 1e-2], load=10.0, friction=0.3,
+    ...     direction="+x",
+    ... )
+    >>> curve.traction_ratio.round(3).values[-1]
+    np.float64(1.0)
+    """
+    with extra("files"):
+        import xarray
+
+    if np.ma.isMaskedArray(creepages) or np.asarray(creepages).dtype.kind not in "biuf":
+        raise TypeError(f"creepages must be real numbers without a mask, got {creepages!r}")
+    values = np.asarray(creepages, dtype=np.float64)
+    if values.ndim != 1 or values.size == 0:
+        raise ValueError(f"creepages must be a sequence of numbers, got shape {values.shape}")
+    for name in ("creepage", "force", "cells", "initial"):
+        if name in keywords:
+            raise ValueError(f"{name} must not be given: creepages say what is asked")
+    plan = {name: keywords.pop(name) for name in PLAN if name in keywords}
+    grid = keywords.pop("grid", None)
+    if grid is None:
+        motion = {name: keywords[name] for name in MOTION if name in keywords}
+        grid = core.solve(shape, body, counterbody, **plan, **motion).report.grid
+    contact = core.Contact(body, grid, counterbody, **plan)
+    solutions = [
+        contact.roll(shape, creepage=(None, value) if lateral else (value, None), **keywords)
+        for value in values.tolist()
+    ]
+    along = {"+x": (0, 1), "-x": (0, -1), "+y": (1, 1), "-y": (1, -1)}
+    axis, sign = along[solutions[0].direction]
+    # z x e: along +y for rolling towards +x, along -x for rolling towards +y.
+    across = 1 - axis, sign if axis == 0 else -sign
+    forces = np.array([s.force for s in solutions])
+    area = [s.normal.load / (s.pressure.sum() or 1.0) for s in solutions]
+    bears = np.array([s.bound.sum() * cell for s, cell in zip(solutions, area, strict=True)])
+    bears[bears <= 0] = np.nan  # there is no ratio
+    driven = across if lateral else (axis, sign)
+    pulled = driven[1] * forces[:, driven[0]]
+    line = contact.grid.is_line
+    unit = symbol("N/m" if line else "N")
+    touching = np.array([np.count_nonzero(s.pressure) for s in solutions])
+    columns: dict[str, tuple[Any, str]] = {
+        "longitudinal_force": (sign * forces[:, axis], unit),
+        "lateral_force": (across[1] * forces[:, across[0]], unit),
+        "torque": ([s.torque for s in solutions], symbol("N" if line else "N m")),
+        "traction_ratio": (pulled / bears, "1"),
+        "stick_share": ([s.stick.sum() for s in solutions] / np.maximum(touching, 1), "1"),
+        "power_over_speed": ([s.dissipated for s in solutions], unit),
+    }
+    dataset = xarray.Dataset(
+        {name: ("creepage", np.asarray(data)) for name, (data, _) in columns.items()},
+        coords={"creepage": values},
+    )
+    for name, (_, unit) in columns.items():
+        dataset[name].attrs = {"units": unit}
+    dataset["creepage"].attrs = {
+        "units": "1",
+        "long_name": "lateral creepage" if lateral else "longitudinal creepage",
+    }
+    dataset.attrs = {"title": "creep curve", "source": f"nacre {core.__version__}"}
+    return dataset

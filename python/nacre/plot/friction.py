@@ -1,0 +1,260 @@
+"""Pictures of friction: stick and slip, loops of force and shift, creep curves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nacre._core import FrictionSolution
+from nacre._extras import extra
+from nacre.friction import checked
+from nacre.plot.style import lengths, new_axes, next_look, styled
+from nacre.units import Scale
+
+with extra("plot"):
+    from matplotlib.axes import Axes
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+if TYPE_CHECKING:
+    import xarray
+
+STICK, SLIP = "#56B4E9", "#E69F00"
+"""Colours of cells that stick and slip: blue and orange of the palette of Okabe and Ito."""
+ARROWS = 17
+"""Arrows along the longer side of the contact."""
+
+
+def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
+    """Draw where the contact sticks and slips, with arrows of the traction on the body.
+
+    In line contact the tractions are drawn along y, within their bounds.
+
+    Parameters
+    ----------
+    solution
+        Solution of `nacre.slide` or `nacre.roll`.
+    axes
+        Axes to draw into; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    TypeError
+        If `solution` is not one, or `axes` are not axes.
+    """
+    if not isinstance(solution, FrictionSolution):
+        raise TypeError(f"solution must be a FrictionSolution, got {solution!r}")
+    _check(axes)
+    with styled():
+        if solution.grid.is_line:
+            return _line(solution, axes or new_axes(0.6, 0.4))
+        return _map(solution, axes or new_axes(0.6, 0.5))
+
+
+def _check(axes: object) -> None:
+    """Raise a `TypeError` unless `axes` are axes or None."""
+    if axes is not None and not isinstance(axes, Axes):
+        raise TypeError(f"axes must be axes of Matplotlib, got {axes!r}")
+
+
+def _map(solution: FrictionSolution, axes: Axes) -> Axes:
+    grid, touching = solution.grid, solution.pressure > 0
+    ends = np.array(
+        [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]
+    )
+    window = ends
+    if touching.any():
+        contact = np.array(solution.normal.contact_extent)
+        margin = 0.15 * np.diff(contact) + np.array(grid.spacing)[:, np.newaxis]
+        window = np.clip(contact + margin * [-1, 1], ends[:, :1], ends[:, 1:])
+    scales, same = lengths(window)
+    corners = [
+        scale.factor * np.linspace(low, high, cells + 1)
+        for scale, (low, high), cells in zip(scales, ends, grid.shape, strict=True)
+    ]
+    kinds = np.where(touching, np.where(solution.stick, 0.0, 1.0), np.nan)
+    colours = ListedColormap([STICK, SLIP])
+    axes.pcolormesh(*corners, kinds.T, cmap=colours, vmin=0, vmax=1, rasterized=True)
+    axes.grid(visible=False)
+    _arrows(solution, axes, [scale.factor for scale in scales], touching)
+    axes.set(
+        xlabel=f"x [{scales[0].unit}]",
+        ylabel=f"y [{scales[1].unit}]",
+        xlim=scales[0].factor * window[0],
+        ylim=scales[1].factor * window[1],
+    )
+    _legend(axes)
+    axes.set_title(
+        "arrows: traction on the body" + ("" if same else "; x and y to different scales")
+    )
+    if same:
+        axes.set_aspect("equal")
+    return axes
+
+
+def _arrows(
+    solution: FrictionSolution, axes: Axes, factors: Sequence[float], touching: Any
+) -> None:
+    """Draw arrows in some cells; the largest is as long as their distance."""
+    if not touching.any():
+        return
+    rows, columns = (np.flatnonzero(touching.any(axis=1 - axis)) for axis in (0, 1))
+    step = max(1, round(max(np.ptp(rows), np.ptp(columns)) / ARROWS))
+    # Symmetrical about the middle of the contact.
+    picked = [side[(side - (side[0] + side[-1]) // 2) % step == 0] for side in (rows, columns)]
+    some = np.ix_(*picked)
+    qx, qy = (np.where(touching, part, np.nan)[some] for part in solution.traction)
+    largest = np.nanmax(np.hypot(qx, qy), initial=0.0)
+    if largest <= 0:
+        return
+    x, y = factors[0] * solution.x[picked[0]], factors[1] * solution.y[picked[1]]
+    length = step * max(f * d for f, d in zip(factors, solution.grid.spacing, strict=True))
+    axes.quiver(
+        *(x, y, qx.T, qy.T),
+        angles="xy",
+        scale_units="xy",
+        scale=largest / length,
+        pivot="mid",
+        width=0.004,
+        color="black",
+    )
+
+
+def _line(solution: FrictionSolution, axes: Axes) -> Axes:
+    touching = solution.pressure[0] > 0
+    length = Scale.of(float(np.abs(solution.y).max()), "m")
+    bound = solution.bound[0]
+    scale = Scale.of(float(bound.max()) or 1.0, "Pa")
+    y = length.factor * solution.y
+    for sign in (-1, 1):
+        axes.plot(y, sign * scale.factor * bound, color="0.6", linewidth=0.8)
+    for name, traction in zip("xy", solution.traction, strict=True):
+        if np.abs(traction).max() > 1e-12 * (bound.max() or 1.0):
+            axes.plot(
+                y, scale.factor * traction[0], **next_look(axes), label=f"traction along {name}"
+            )
+    for state, colour in ((solution.stick[0], STICK), (touching & ~solution.stick[0], SLIP)):
+        axes.fill_between(
+            y,
+            0,
+            1,
+            where=state,
+            color=colour,
+            alpha=0.35,
+            linewidth=0,
+            step="mid",
+            transform=axes.get_xaxis_transform(),
+        )
+    inside = y[touching] if touching.any() else y
+    margin = 0.1 * np.ptp(inside) + 1e-12
+    axes.set(
+        xlabel=f"y [{length.unit}]",
+        ylabel=f"traction [{scale.unit}]",
+        xlim=(inside.min() - margin, inside.max() + margin),
+    )
+    axes.set_title("grey: bounds")
+    _legend(axes)
+    return axes
+
+
+def _legend(axes: Axes) -> None:
+    """Explain the colours above the picture, on the right."""
+    patches = [Patch(color=STICK, label="sticks"), Patch(color=SLIP, label="slips")]
+    handles, _ = axes.get_legend_handles_labels()
+    axes.legend(
+        handles=[*handles, *patches],
+        loc="upper left",
+        bbox_to_anchor=(1.01, 1.0),
+        borderaxespad=0.0,
+    )
+
+
+def loop(
+    solutions: Sequence[FrictionSolution], along: str = "x", axes: Axes | None = None, **style: Any
+) -> Axes:
+    """Draw the force of a history as a function of the shift.
+
+    Parameters
+    ----------
+    solutions
+        Steps that `nacre.slide` returned.
+    along
+        Axis of force and shift, "x" or "y".
+    axes
+        Axes to draw into; a new figure by default.
+    **style
+        Look of the curve, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    TypeError
+        If they are no sequence of FrictionSolution, or `axes` are not axes.
+    ValueError
+        If there is no solution, one is of rolling, or the axis is another.
+    """
+    _check(axes)
+    solutions = checked(solutions)
+    if along not in ("x", "y"):
+        raise ValueError(f"along must be 'x' or 'y', got {along!r}")
+    axis = "xy".index(along)
+    shifts = [solution.shift for solution in solutions]
+    if any(shift is None for shift in shifts):
+        raise ValueError("solutions must be steps of sliding, got one of rolling")
+    shift = np.array([shift[axis] for shift in shifts if shift is not None])
+    force = np.array([solution.force[axis] for solution in solutions])
+    line = solutions[0].grid.is_line
+    length = Scale.of(float(np.abs(shift).max()), "m")
+    scale = Scale.of(float(np.abs(force).max()), "N/m" if line else "N")
+    with styled():
+        axes = axes or new_axes(0.5, 0.4)
+        look = next_look(axes) | style
+        axes.plot(length.factor * shift, scale.factor * force, marker=".", **look)
+        axes.set(
+            xlabel=f"shift along {along} [{length.unit}]",
+            ylabel=f"force along {along} [{scale.unit}]",
+        )
+    return axes
+
+
+def creep_curve(dataset: xarray.Dataset, axes: Axes | None = None, **style: Any) -> Axes:
+    """Draw the traction ratio as a function of the creepage.
+
+    Parameters
+    ----------
+    dataset
+        Dataset of `nacre.friction.creep_curve`.
+    axes
+        Axes to draw into; a new figure by default.
+    **style
+        Look of the curve, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    TypeError
+        If `axes` are not axes.
+    """
+    _check(axes)
+    with styled():
+        axes = axes or new_axes(0.5, 0.4)
+        look = next_look(axes) | style
+        axes.plot(1e3 * dataset.creepage, dataset.traction_ratio, marker=".", **look)
+        name = dataset.creepage.attrs.get("long_name", "creepage")
+        axes.set(xlabel=f"{name} [10⁻³]", ylabel="force over friction times load")
+    return axes

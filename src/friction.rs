@@ -1,0 +1,182 @@
+//! Friction in the contact: partial slip, load histories and rolling.
+//!
+//! Tractions q keep Coulomb's law in each cell: |q| ≤ μp; no slip where |q| < μp; slip against the traction on the body
+//! where |q| = μp. With the rigid motion w of the counterbody over the body, and the displacements u of the body less
+//! those of the counterbody, both from the first touch on, the slip of the counterbody over the body in a step is
+//!
+//! ```text
+//! s = Δw − Δu      u = K q + K_tz p      w = (δ_x − ω y, δ_y + ω x)
+//! ```
+//!
+//! and in rolling at constant speed, d being the length of a cell and W the creepages,
+//!
+//! ```text
+//! s/V = W − [u(x) − u(x + d)]/d          W = ξ e + η z × e + φ (−y, x)
+//! ```
+//!
+//! Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990), doi:10.1007/978-94-015-7889-9. Bodies are
+//! half-spaces with any layers ([`crate::traction`]).
+//!
+//! | file | what |
+//! |---|---|
+//! | `step` | what is asked for |
+//! | `law` | Coulomb's law in cells |
+//! | `operator` | the operators of sliding and of rolling |
+//! | `linear` | Newton's linear systems |
+//! | `newton` | tractions for a pressure |
+//! | `task` | sliding in one step, rolling |
+//! | `fields` | fields of the whole grid, and their errors |
+//! | `session` | pressure and tractions in turn |
+//! | `starts` | tractions from which an iteration starts |
+//! | `solution` | what comes out |
+//! | `creep` | Kalker's coefficients |
+
+use std::ops::ControlFlow;
+
+use crate::contact::Contact;
+use crate::error::Result;
+use crate::surface::Surface;
+
+mod creep;
+mod fields;
+mod law;
+mod linear;
+mod newton;
+mod operator;
+mod session;
+mod solution;
+mod starts;
+mod step;
+mod task;
+
+pub use creep::{CreepCoefficients, creep_coefficients, creep_coefficients_watched};
+pub use session::FrictionProgress;
+pub use solution::{FrictionReport, FrictionSolution, TangentialMotion};
+pub use step::{Friction, FrictionOptions, Rolling, RollingDirection, Step};
+
+use session::Session;
+
+impl Contact {
+    /// Presses `shape` into the body and moves it tangentially, step after step, from `last` on or from the first touch.
+    /// Each step's solution says whether it converged.
+    ///
+    /// # Errors
+    /// Bad input, bodies without layers and substrate or with free ends, a force that friction cannot bear.
+    ///
+    /// ```
+    /// use nacre::friction::{FrictionOptions, Step};
+    /// use nacre::{Contact, Elastic, Grid, Motion, Paraboloid, Setup};
+    /// let steel = Elastic::new(1.0, 0.0)?;
+    /// let setup = Setup { counterbody: Some(steel.into()), ..Setup::default() };
+    /// let contact = Contact::plan(steel, Grid::new([64, 64], [0.24, 0.24])?, setup)?;
+    /// let load = 1e-6;
+    /// let pull = Step { force: [Some(0.15 * load), None], ..Step::press(Motion::load(load), 0.3) };
+    /// let solutions = contact.slide(&Paraboloid::new(1e3, 1e3)?, &[pull], &FrictionOptions::default(), None)?;
+    /// // Cattaneo and Mindlin: the radius that sticks is (1 − Q/μP)^{1/3} of the contact's.
+    /// let [stick, contact] = [solutions[0].stick(), solutions[0].normal.in_contact()];
+    /// let count = |cells: &ndarray::Array2<bool>| cells.iter().filter(|cell| **cell).count() as f64;
+    /// assert!(((count(&stick) / count(&contact)).sqrt() / 0.5_f64.cbrt() - 1.0).abs() < 0.05);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn slide(
+        &self,
+        shape: &dyn Surface,
+        steps: &[Step],
+        options: &FrictionOptions,
+        last: Option<&FrictionSolution>,
+    ) -> Result<Vec<FrictionSolution>> {
+        self.slide_watched(shape, steps, options, last, &mut |_, _| {
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// [`Contact::slide`] that calls `progress` with the number of the step and its report so far. Its break ends the
+    /// history: the last solution is then unfinished, with [`Termination::Stopped`](crate::Termination::Stopped).
+    ///
+    /// # Errors
+    /// As [`Contact::slide`].
+    pub fn slide_watched(
+        &self,
+        shape: &dyn Surface,
+        steps: &[Step],
+        options: &FrictionOptions,
+        last: Option<&FrictionSolution>,
+        progress: &mut FrictionProgress,
+    ) -> Result<Vec<FrictionSolution>> {
+        self.run(|| {
+            let session = Session::new(self, shape, *options)?;
+            let mut solutions: Vec<FrictionSolution> = Vec::new();
+            for (number, step) in steps.iter().enumerate() {
+                let mut watch = |report: &FrictionReport| progress(number, report);
+                let solution = session.step(step, solutions.last().or(last), &mut watch)?;
+                let stopped = solution.report.termination == crate::contact::Termination::Stopped;
+                solutions.push(solution);
+                if stopped {
+                    break;
+                }
+            }
+            Ok(solutions)
+        })
+    }
+
+    /// Presses `shape` into the body, which rolls at constant speed.
+    ///
+    /// # Errors
+    /// As [`Contact::slide`].
+    pub fn roll(
+        &self,
+        shape: &dyn Surface,
+        rolling: &Rolling,
+        options: &FrictionOptions,
+    ) -> Result<FrictionSolution> {
+        self.roll_watched(shape, rolling, options, &mut |_, _| {
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// [`Contact::roll`] that calls `progress` with the report so far.
+    ///
+    /// # Errors
+    /// As [`Contact::slide`].
+    pub fn roll_watched(
+        &self,
+        shape: &dyn Surface,
+        rolling: &Rolling,
+        options: &FrictionOptions,
+        progress: &mut FrictionProgress,
+    ) -> Result<FrictionSolution> {
+        self.run(|| {
+            let session = Session::new(self, shape, *options)?;
+            session.roll(rolling, None, &mut |report| progress(0, report))
+        })
+    }
+
+    /// Rolls cell by cell from `last` on, or from the first touch, one solution for each of `rolling`.
+    ///
+    /// # Errors
+    /// As [`Contact::slide`].
+    pub fn roll_transient(
+        &self,
+        shape: &dyn Surface,
+        rolling: &[Rolling],
+        options: &FrictionOptions,
+        last: Option<&FrictionSolution>,
+        progress: &mut FrictionProgress,
+    ) -> Result<Vec<FrictionSolution>> {
+        self.run(|| {
+            let session = Session::new(self, shape, *options)?;
+            let mut solutions: Vec<FrictionSolution> = Vec::new();
+            for (number, rolling) in rolling.iter().enumerate() {
+                let mut watch = |report: &FrictionReport| progress(number, report);
+                let solution =
+                    session.roll(rolling, Some(solutions.last().or(last)), &mut watch)?;
+                let stopped = solution.report.termination == crate::contact::Termination::Stopped;
+                solutions.push(solution);
+                if stopped {
+                    break;
+                }
+            }
+            Ok(solutions)
+        })
+    }
+}

@@ -1,0 +1,249 @@
+//! The solution of a contact with friction.
+
+use std::ops::ControlFlow;
+
+use ndarray::Array2;
+
+use super::step::{Friction, RollingDirection};
+use crate::contact::{Solution, Termination};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::stress::{Member, Stress, StressOptions, StressPlan, StressProgress};
+
+/// Tangential motion of the counterbody over the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TangentialMotion {
+    /// Sliding, counted from the first touch.
+    Slide {
+        /// Shift (δ_x, δ_y) \[m\].
+        shift: [f64; 2],
+        /// Twist about the origin \[rad\].
+        twist: f64,
+    },
+    /// Rolling at constant speed.
+    Roll {
+        /// Creepages (ξ, η), along the direction of rolling e and along z × e.
+        creepage: [f64; 2],
+        /// Spin about +z \[1/m\].
+        spin: f64,
+        /// The direction.
+        direction: RollingDirection,
+    },
+}
+
+/// Course and quality of a solve. All errors are computed afresh from the tractions, with the operator of the whole
+/// grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionReport {
+    /// How the iteration ended.
+    pub termination: Termination,
+    /// Tangential convolutions of the window of the contact: from two components to two.
+    pub convolutions: usize,
+    /// Solves of the pressure for given tractions, and of tractions for given pressure.
+    pub sweeps: usize,
+    /// Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
+    pub violation: f64,
+    /// Largest error of a given force or torque, over the largest that friction bears.
+    pub imbalance: f64,
+    /// Largest |q| − μp over the largest μp.
+    pub excess: f64,
+    /// Change of the pressure in the last sweep over the peak; 0 without coupling.
+    pub pressure_change: f64,
+    /// Whether tractions and pressure act on each other.
+    pub coupled: bool,
+    /// Whether all cells in contact slip.
+    pub full_slip: bool,
+    /// The tolerance.
+    pub tolerance: f64,
+    /// Seconds that the step took, without planning.
+    pub seconds: f64,
+}
+
+impl FrictionReport {
+    /// Whether the tolerance was met.
+    pub fn converged(&self) -> bool {
+        self.termination == Termination::Converged
+    }
+}
+
+/// A contact with friction: one step of a history, or steady rolling. Arrays are (nx, ny), at cell centres.
+///
+/// Tractions act on the body; on the counterbody their opposites do. Displacements are those of the body less those of
+/// the counterbody.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionSolution {
+    /// Pressure, gap and approach.
+    pub normal: Solution,
+    /// Coefficient of friction.
+    pub friction: Friction,
+    /// Tractions (q_x, q_y) on the body \[Pa\].
+    pub traction: [Array2<f64>; 2],
+    /// Tangential displacements (u_x, u_y) of the body relative to the counterbody \[m\].
+    pub displacement: [Array2<f64>; 2],
+    /// Slip (s_x, s_y) of the counterbody over the body: in the step \[m\], or in rolling over the speed; 0 outside the
+    /// contact.
+    pub slip: [Array2<f64>; 2],
+    /// Tangential motion.
+    pub motion: TangentialMotion,
+    /// Course and quality.
+    pub report: FrictionReport,
+}
+
+impl FrictionSolution {
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        self.normal.grid()
+    }
+
+    /// The solution itself, if the tolerance was met.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where it was not met.
+    pub fn require_converged(self) -> Result<Self> {
+        let report = &self.report;
+        if report.converged() {
+            return Ok(self);
+        }
+        Err(Error::NotConverged {
+            iterations: report.convolutions,
+            residual: report.violation.max(report.pressure_change),
+            overlap: self.normal.report.overlap,
+            balance: report.imbalance,
+            tolerance: report.tolerance,
+            limit: "max_convolutions",
+        })
+    }
+
+    /// Stress at `depths` in one of the bodies, under the pressure and the tractions. The pressure is reconstructed
+    /// within cells, as [`Solution::stress`](crate::Solution::stress) does; tractions are uniform over cells.
+    ///
+    /// # Errors
+    /// As [`Solution::stress`](crate::Solution::stress); friction among the `options`.
+    pub fn stress(
+        &self,
+        depths: &[f64],
+        member: Member,
+        options: &StressOptions,
+    ) -> Result<Stress> {
+        let mut progress = |_| ControlFlow::Continue(());
+        let plan = self.stress_plan(member, options.threads, &mut progress)?;
+        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
+        plan.ok_or(stopped)?.stress(depths, options)
+    }
+
+    /// A plan of the stress in one of the bodies under the pressure and the tractions, evaluated any number of times,
+    /// also for a [`StressPlan::summary`]. `progress` is told 0 while planning; when it breaks, there is no plan.
+    ///
+    /// # Errors
+    /// A counterbody that is rigid, no threads, or too little memory.
+    pub fn stress_plan(
+        &self,
+        member: Member,
+        threads: Option<usize>,
+        progress: &mut StressProgress,
+    ) -> Result<Option<StressPlan>> {
+        let tractions = self.traction.each_ref();
+        self.normal
+            .stress_plan_with(member, tractions, threads, progress)
+    }
+
+    /// The solution itself, if its fields fit the grid and are finite.
+    ///
+    /// # Errors
+    /// A field of another shape, or one that is not finite; a coefficient of friction below 0.
+    pub fn checked(self) -> Result<Self> {
+        self.friction.check(self.grid())?;
+        let expected = self.grid().shape();
+        let named = [
+            ("traction", &self.traction),
+            ("displacement", &self.displacement),
+            ("slip", &self.slip),
+        ];
+        for (name, field) in named
+            .into_iter()
+            .flat_map(|(name, [x, y])| [(name, x), (name, y)])
+        {
+            let found = [field.nrows(), field.ncols()];
+            if found != expected {
+                return Err(Error::Shape {
+                    name,
+                    expected,
+                    found,
+                });
+            }
+            if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
+                return Err(Error::NonFinite {
+                    name,
+                    index: index.into(),
+                });
+            }
+        }
+        Ok(self)
+    }
+
+    /// Forces (Σ q_x dA, Σ q_y dA) of the tractions on the body \[N\].
+    pub fn force(&self) -> [f64; 2] {
+        let area = self.grid().cell_area();
+        self.traction.each_ref().map(|q| q.sum() * area)
+    }
+
+    /// Torque Σ (x q_y − y q_x) dA of the tractions on the body, about the origin \[N m\].
+    pub fn torque(&self) -> f64 {
+        let (x, y, [qx, qy]) = (self.grid().x(), self.grid().y(), &self.traction);
+        let along = qy.sum_axis(ndarray::Axis(1)).dot(&x);
+        let across = qx.sum_axis(ndarray::Axis(0)).dot(&y);
+        (along - across) * self.grid().cell_area()
+    }
+
+    /// Bound μp of the traction \[Pa\].
+    pub fn bound(&self) -> Array2<f64> {
+        let mut bound = self.normal.pressure.clone();
+        for ((i, j), p) in bound.indexed_iter_mut() {
+            *p *= self.friction.at([i, j]);
+        }
+        bound
+    }
+
+    /// Size |q| of the traction \[Pa\].
+    pub fn traction_size(&self) -> Array2<f64> {
+        size(&self.traction)
+    }
+
+    /// Cells in contact that stick: their traction is below the bound.
+    pub fn stick(&self) -> Array2<bool> {
+        let (bound, size) = (self.bound(), self.traction_size());
+        let sticks =
+            |(index, p): ((usize, usize), &f64)| *p > 0.0 && size[index] < AT_BOUND * bound[index];
+        let cells: Vec<bool> = self.normal.pressure.indexed_iter().map(sticks).collect();
+        Array2::from_shape_fn(bound.dim(), |(i, j)| cells[i * bound.ncols() + j])
+    }
+
+    /// Energy that friction dissipates in the step, by area: q · s \[J/m²\]; in rolling, over the distance rolled
+    /// \[J/m³\].
+    pub fn dissipation(&self) -> Array2<f64> {
+        let ([qx, qy], [sx, sy]) = (&self.traction, &self.slip);
+        qx * sx + qy * sy
+    }
+
+    /// Energy that friction dissipates in the step \[J\]; in rolling, over the distance rolled \[N\]: times the speed it is
+    /// the power.
+    pub fn dissipated(&self) -> f64 {
+        self.dissipation().sum() * self.grid().cell_area()
+    }
+
+    /// Elastic energy ½ Σ q · u dA of tractions and their displacements \[J\].
+    pub fn tangential_energy(&self) -> f64 {
+        let ([qx, qy], [ux, uy]) = (&self.traction, &self.displacement);
+        0.5 * (qx * ux + qy * uy).sum() * self.grid().cell_area()
+    }
+}
+
+/// Traction relative to its bound from which on a cell slips, but for rounding.
+const AT_BOUND: f64 = 1.0 - 1e-9;
+
+/// Lengths of vectors.
+pub(super) fn size([x, y]: &[Array2<f64>; 2]) -> Array2<f64> {
+    let mut size = x.clone();
+    size.zip_mut_with(y, |x, y| *x = x.hypot(*y));
+    size
+}

@@ -1,0 +1,151 @@
+//! One solve: `nacre.solve`, and the arguments that it shares with `Contact.solve`.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::body::HalfSpace;
+use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
+use crate::python::arguments::keywords::{
+    self, Keywords, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
+    search_signature, single_docs, single_signature,
+};
+use crate::python::background;
+use crate::python::bodies::body;
+use crate::python::grid::PyGrid;
+use crate::python::shapes::{Shape, shape};
+use crate::python::solution::{PyReport, PySolution};
+use crate::response::Body;
+
+/// Setup of a plan.
+pub(super) fn setup(
+    counterbody: Option<&Bound<'_, PyAny>>,
+    keywords: &Keywords,
+) -> PyResult<Setup> {
+    let (method, threads) = keywords::plan(keywords)?;
+    Ok(Setup {
+        counterbody: counterbody.map(body).transpose()?.map(Body::from),
+        method,
+        threads,
+    })
+}
+
+#[doc = concat!("solve(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
+/// Presses a shape into a body, in one call: chooses a grid where none is given, plans, solves.
+///
+/// By default the grid of a height map is its own. Any other shape gets a grid that holds the whole
+/// contact, with 64 cells across its narrower width, oblong where the contact is long, and a margin of a
+/// quarter of the contact on every side. The cells are divided until the estimated error of the peak
+/// pressure (``report.discretisation``) is at most 1 %; where that needs more than 2²² cells, or does
+/// not lower the estimate, a warning says so.
+///
+/// Parameters
+/// ----------
+/// shape : Shape
+///     Shape that is pressed in.
+/// body : HalfSpace or Elastic
+///     Body that it is pressed into.
+/// counterbody : HalfSpace or Elastic, optional
+///     Body that carries the shape; rigid where there is none. A roller of finite length ends on both
+///     sides: ``HalfSpace(steel, ends=roller.ends)``.
+/// grid : Grid, optional
+///     Cells of the pressure. An endless shape, such as a cylinder, needs a grid.
+#[doc = plan_docs!()]
+#[doc = motion_docs!()]
+#[doc = search_docs!()]
+#[doc = single_docs!()]
+///
+/// Returns
+/// -------
+/// Solution
+///     Pressure, gap, displacement, approach and tilt.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If an argument is out of range, the arguments contradict each other, no grid is found, a free end of a
+///     body lies within a cell, or the counterbody ends within the shape that it carries.
+/// ConvergenceError
+///     If the tolerance was not met; the unfinished solution is its `solution`.
+///
+/// See Also
+/// --------
+/// Contact.solve : explains the degrees of freedom of the motion.
+///
+/// Examples
+/// --------
+/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+/// >>> dlc = nacre.Elastic(young=420e9, poisson=0.3)
+/// >>> body = nacre.HalfSpace(steel, layers=[nacre.Layer(dlc, thickness=40e-6)])
+/// >>> roller = nacre.Roller(radius=5e-3, flat_length=19.13e-3, crown_radius=7.5)
+/// >>> solution = nacre.solve(roller, body, load=1e3, eccentricity=(2.87e-3, None))
+/// >>> round(solution.eccentricity[0], 8)
+/// 0.00287
+#[pyfunction]
+#[pyo3(signature = (shape, body, counterbody=None, **keywords), text_signature = None)]
+pub(in crate::python) fn solve<'py>(
+    py: Python<'py>,
+    shape: &Bound<'py, PyAny>,
+    #[pyo3(from_py_with = body)] body: HalfSpace,
+    counterbody: Option<&Bound<'py, PyAny>>,
+    keywords: Option<&Bound<'py, PyDict>>,
+) -> PyResult<PySolution> {
+    let keywords = Keywords::new(py, keywords)?;
+    let grid: Option<PyGrid> = keywords.object("grid", "a nacre.Grid")?;
+    let setup = setup(counterbody, &keywords)?;
+    let call = Call::new(shape, &keywords)?;
+    keywords.finish("keywords of solve")?;
+    let body = Body::from(body);
+    call.run(py, move |shape, motion, options, progress| match grid {
+        Some(PyGrid(grid)) => {
+            Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
+        }
+        None => solve_watched(shape, &body, &setup, motion, options, progress),
+    })
+}
+
+/// Arguments that `solve` and `Contact.solve` share.
+pub(super) struct Call {
+    shape: Shape,
+    motion: Motion,
+    options: Options,
+    progress: Option<Py<PyAny>>,
+    check: bool,
+}
+
+impl Call {
+    pub(super) fn new(shape: &Bound<'_, PyAny>, keywords: &Keywords) -> PyResult<Self> {
+        let motion = keywords::motion(keywords)?;
+        let (options, progress, check) = keywords::single(keywords)?;
+        Ok(Self {
+            shape: self::shape(shape)?.get().0.clone(),
+            motion,
+            options,
+            progress,
+            check,
+        })
+    }
+
+    /// Runs `work` in the background; Ctrl-C and the callback can stop it.
+    pub(super) fn run(
+        self,
+        py: Python<'_>,
+        work: impl FnOnce(&Shape, &Motion, &Options, &mut Progress) -> crate::Result<Solution>
+        + Send
+        + 'static,
+    ) -> PyResult<PySolution> {
+        let Self {
+            shape,
+            motion,
+            options,
+            progress,
+            check,
+        } = self;
+        let tolerance = options.tolerance;
+        let solution = background::run(py, progress, move |caller| {
+            work(&shape, &motion, &options, &mut |report| {
+                caller.ask(|| (PyReport(report.clone()),))
+            })
+        })?;
+        PySolution::finished(py, solution?, tolerance, check)
+    }
+}

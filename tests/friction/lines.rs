@@ -1,0 +1,182 @@
+//! Line contact of coated cylinders, against two independent programs that agree to 8e-12: Chebyshev coefficients with
+//! Bessel transforms, and nodes of Erdogan and Gupta.
+
+use nacre::friction::{FrictionOptions, FrictionSolution, Rolling, RollingDirection, Step};
+use nacre::{Contact, Cylinder, Grid, Motion, Options, Result};
+use serde_json::Value;
+
+use crate::support::pairs::{RADIUS, coated, creepage, equal, slid};
+use crate::support::reference::{list, number, read};
+
+const FRICTION: f64 = 0.3;
+
+const POISSON: f64 = 0.3;
+
+/// Two equal coated bodies whose contact is 2 wide, on `cells` across it.
+struct Line {
+    contact: Contact,
+    shape: Cylinder,
+    load: f64,
+    width: f64,
+}
+
+impl Line {
+    /// The load at which the pressures of the last two cells stand as the mean values of a root that begins at the
+    /// edge, (2^{3/2} − 1) : 1. This fixes the half width but for a part of a cell that is the same for all grids.
+    fn new(ratio: f64, thickness: f64, cells: usize) -> Result<Self> {
+        let all = cells + 20;
+        let width = 2.0 * all as f64 / cells as f64;
+        let contact = equal(coated(ratio, thickness)?, Grid::line(all, width)?)?;
+        let shape = Cylinder::new(RADIUS)?;
+        let excess = |load: f64| -> Result<f64> {
+            let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
+            let p: Vec<f64> = solution
+                .pressure
+                .iter()
+                .copied()
+                .filter(|p| *p > 0.0)
+                .collect();
+            Ok(match p.len().cmp(&cells) {
+                std::cmp::Ordering::Less => -1.0,
+                std::cmp::Ordering::Greater => 1.0,
+                std::cmp::Ordering::Equal => p[0] / p[1] - 1.0 / (2.0_f64.powf(1.5) - 1.0),
+            })
+        };
+        let (mut low, mut high) = (1e-3 / RADIUS, 1e2 / RADIUS);
+        while high / low > 1.0 + 1e-8 {
+            let middle = (low * high).sqrt();
+            if excess(middle)? > 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Ok(Self {
+            contact,
+            shape,
+            load: low,
+            width,
+        })
+    }
+
+    /// μP
+    fn bears(&self) -> f64 {
+        FRICTION * self.load
+    }
+
+    fn pull(&self, share: f64) -> Result<FrictionSolution> {
+        let step = Step {
+            force: [None, Some(share * self.bears())],
+            ..Step::press(Motion::load(self.load), FRICTION)
+        };
+        let solutions = self.contact.slide(&self.shape, &[step], &options(), None)?;
+        Ok(solutions.into_iter().next().expect("one step"))
+    }
+
+    fn roll(
+        &self,
+        friction: f64,
+        creepage: Option<f64>,
+        force: Option<f64>,
+    ) -> Result<FrictionSolution> {
+        let rolling = Rolling {
+            creepage: [creepage, None],
+            force: [force, None],
+            ..Rolling::new(Motion::load(self.load), friction, RollingDirection::PlusY)
+        };
+        let solution = self.contact.roll(&self.shape, &rolling, &options())?;
+        assert!(solution.report.converged());
+        Ok(solution)
+    }
+}
+
+fn options() -> FrictionOptions {
+    FrictionOptions {
+        tolerance: 1e-9,
+        ..FrictionOptions::default()
+    }
+}
+
+/// Cells across the contact.
+const CELLS: [usize; 3] = [100, 200, 400];
+
+/// Calls `check` with the grids of each coated pair, and its cases.
+fn each_pair(key: &str, check: impl Fn(&[Line; 3], &Value) -> Result<()>) -> Result<()> {
+    let reference = read("friction/line_contact.json");
+    let mut pairs: Vec<([String; 2], [Line; 3])> = Vec::new();
+    for case in list(&reference, key) {
+        let names = ["E1_over_E2", "h_over_b"];
+        let which = names.map(|name| case[name].to_string());
+        if pairs.last().is_none_or(|(last, _)| *last != which) {
+            let [ratio, thickness] = names.map(|name| number(case, name));
+            let [a, b, c] = CELLS.map(|cells| Line::new(ratio, thickness, cells));
+            pairs.push((which, [a?, b?, c?]));
+        }
+        let (_, lines) = pairs.last().expect("a pair");
+        check(lines, case)?;
+    }
+    Ok(())
+}
+
+/// Extrapolated from the grids: errors of first and of second order in the cells.
+fn extrapolated([coarse, middle, fine]: [f64; 3]) -> f64 {
+    (8.0 * fine - 6.0 * middle + coarse) / 3.0
+}
+
+/// Partial slip: width of the stick zone and shift. The reference counts the shift with the datum of a half-space of
+/// width b; nacre with that of the grid.
+#[test]
+fn partial_slip() -> Result<()> {
+    each_pair("cattaneo", |lines, case| {
+        let share = number(case, "Q_over_muP");
+        let mut shifts = [0.0; 3];
+        for (line, shift) in lines.iter().zip(&mut shifts) {
+            let solution = line.pull(share)?;
+            assert!(solution.report.converged());
+            let datum = 2.0 / std::f64::consts::PI * share * line.width.ln();
+            *shift = slid(&solution).0[1] / ((1.0 - POISSON) * line.bears()) - datum;
+            let cell = line.contact.grid().spacing()[1];
+            let stuck = solution.stick().iter().filter(|stick| **stick).count();
+            let half = 0.5 * stuck as f64 * cell;
+            assert!(
+                (half - number(case, "c_over_b")).abs() < cell,
+                "{case}: {half}"
+            );
+        }
+        let (found, exact) = (extrapolated(shifts), number(case, "shift"));
+        assert!((found - exact).abs() < 2e-4, "{case}: {found}");
+        Ok(())
+    })
+}
+
+/// Rolling with full adhesion: force over creepage.
+#[test]
+fn full_adhesion() -> Result<()> {
+    each_pair("carter_full", |lines, case| {
+        let bare = std::f64::consts::PI / (2.0 * (1.0 - POISSON));
+        let mut ratios = [0.0; 3];
+        for (line, ratio) in lines.iter().zip(&mut ratios) {
+            *ratio = line.roll(1e4, Some(1e-6), None)?.force()[1] / 1e-6 / bare;
+        }
+        let (found, exact) = (extrapolated(ratios), number(case, "ratio"));
+        assert!((found / exact - 1.0).abs() < 2e-4, "{case}: {found}");
+        Ok(())
+    })
+}
+
+/// Rolling with partial slip: creepage for a force.
+#[test]
+fn partial_slip_in_rolling() -> Result<()> {
+    each_pair("carter_partial", |lines, case| {
+        let share = number(case, "Q_over_muP");
+        let mut creepages = [0.0; 3];
+        for (line, found) in lines.iter().zip(&mut creepages) {
+            let solution = line.roll(FRICTION, None, Some(share * line.bears()))?;
+            *found = creepage(&solution)[0] / line.bears();
+        }
+        let found = extrapolated(creepages);
+        let exact = number(case, "creep_times_G2b_over_muP");
+        assert!((found / exact - 1.0).abs() < 1e-3, "{case}: {found}");
+        Ok(())
+    })
+}

@@ -1,0 +1,165 @@
+//! Random histories: every one converges or says that it did not, and keeps Coulomb's law. `make fuzz` tries many more.
+
+use nacre::friction::{FrictionOptions, Rolling, RollingDirection, Step};
+use nacre::{Contact, Elastic, Error, Grid, HalfSpace, Layer, Motion, Options, Result, Setup};
+use ndarray::Array2;
+use proptest::prelude::*;
+
+use crate::support::pairs::{RADIUS, ball};
+use crate::support::seeded::seeded;
+
+/// Numbers from which a history is made.
+#[derive(Debug, Clone)]
+struct Case {
+    /// Moduli over the substrate's, Poisson's ratios, thicknesses over the radius of the contact.
+    layers: Vec<(f64, f64, f64)>,
+    /// Rigid, equal, or a body without layers of this modulus.
+    counterbody: Option<Option<f64>>,
+    friction: [f64; 2],
+    /// Forces over what friction bears, and their directions.
+    pulls: Vec<(f64, f64)>,
+    /// Approach of each pull over that of a contact without layers with a radius of 1.
+    approaches: [f64; 3],
+    twist: f64,
+    creepage: [f64; 2],
+    spin: f64,
+    direction: RollingDirection,
+}
+
+fn power(low: f64, high: f64) -> impl Strategy<Value = f64> {
+    (low..high).prop_map(|power| 10.0_f64.powf(power))
+}
+
+fn case() -> impl Strategy<Value = Case> {
+    let layer = (power(-1.0, 1.0), 0.0..0.49, power(-1.5, 0.3));
+    let pull = (
+        prop_oneof![0.0..0.9, 0.9..0.999],
+        0.0..std::f64::consts::TAU,
+    );
+    let directions = prop_oneof![
+        Just(RollingDirection::PlusX),
+        Just(RollingDirection::MinusX),
+        Just(RollingDirection::PlusY),
+        Just(RollingDirection::MinusY)
+    ];
+    (
+        (
+            prop::collection::vec(layer, 0..3),
+            prop::option::of(prop::option::of(power(-1.0, 1.0))),
+            [power(-2.0, 0.3), power(-2.0, 0.3)],
+            prop::collection::vec(pull, 3),
+            [0.3..1.0, 0.3..1.0, 0.3..1.0],
+        ),
+        -1.0..1.0,
+        [-2.0..2.0, -2.0..2.0],
+        -1.0..1.0,
+        directions,
+    )
+        .prop_map(|(first, twist, creepage, spin, direction)| Case {
+            layers: first.0,
+            counterbody: first.1,
+            friction: first.2,
+            pulls: first.3,
+            approaches: first.4,
+            twist,
+            creepage,
+            spin,
+            direction,
+        })
+}
+
+impl Case {
+    fn contact(&self) -> Result<Contact> {
+        let layers: Result<Vec<Layer>> = self
+            .layers
+            .iter()
+            .map(|(ratio, nu, thickness)| Layer::new(Elastic::new(2.6 * ratio, *nu)?, *thickness))
+            .collect();
+        let body = HalfSpace::new(Elastic::new(2.6, 0.3)?, layers?)?;
+        let counterbody = match self.counterbody {
+            None => None,
+            Some(None) => Some(body.clone().into()),
+            Some(Some(ratio)) => Some(Elastic::new(2.6 * ratio, 0.2)?.into()),
+        };
+        let setup = Setup {
+            counterbody,
+            threads: Some(1),
+            ..Setup::default()
+        };
+        Contact::plan(body, Grid::new([24, 24], [3.2, 3.2])?, setup)
+    }
+
+    /// Pulls, each with a load, and the friction of the second different from the first; the last also twists.
+    fn steps(&self, loads: [f64; 3]) -> Vec<Step> {
+        let each = self.pulls.iter().zip(loads).enumerate();
+        each.map(|(k, ((share, angle), load))| {
+            let friction = self.friction[k.min(1)];
+            let force = share * friction * load;
+            Step {
+                force: [Some(force * angle.cos()), Some(force * angle.sin())],
+                twist: (k == 2).then_some(self.twist * friction * load),
+                ..Step::press(Motion::load(load), friction)
+            }
+        })
+        .collect()
+    }
+
+    fn rolling(&self, load: f64) -> Rolling {
+        let friction = self.friction[0];
+        let unit = friction * load;
+        Rolling {
+            creepage: self.creepage.map(|creepage| Some(creepage * unit)),
+            spin: self.spin * unit,
+            ..Rolling::new(Motion::load(load), friction, self.direction)
+        }
+    }
+}
+
+/// Cases: those of `NACRE_FUZZ`, or 40.
+fn cases_to_try() -> u32 {
+    let asked = std::env::var("NACRE_FUZZ").ok();
+    asked.and_then(|cases| cases.parse().ok()).unwrap_or(40)
+}
+
+proptest! {
+    #![proptest_config(seeded(cases_to_try()))]
+
+    #[test]
+    fn fuzz_histories_keep_the_law(case in case()) {
+        let contact = case.contact().expect("a contact");
+        let options = FrictionOptions { tolerance: 1e-7, ..FrictionOptions::default() };
+        let shape = ball().expect("a ball");
+        let loads = case.approaches.map(|part| {
+            let motion = Motion::approach(part / RADIUS);
+            let pressed = contact.solve(&shape, &motion, &Options::default());
+            pressed.expect("a solution").load()
+        });
+        let slid = contact.slide(&shape, &case.steps(loads), &options, None);
+        let rolled = contact.roll(&shape, &case.rolling(loads[0]), &options).map(|solution| vec![solution]);
+        for solutions in [slid, rolled] {
+            let solutions = match solutions {
+                Ok(solutions) => solutions,
+                // The first pressure of a coupled contact may be more than the last.
+                Err(Error::FullSlip { .. }) => continue,
+                Err(error) => return Err(TestCaseError::fail(format!("{error}"))),
+            };
+            for solution in solutions {
+                let report = &solution.report;
+                prop_assert!(report.converged(), "{report:?}");
+                prop_assert!(report.violation <= 1.001e-7 && report.excess <= 1e-12, "{report:?}");
+                let (bound, size) = (solution.bound(), solution.traction_size());
+                for (bound, size) in bound.iter().zip(&size) {
+                    prop_assert!(*size <= bound * (1.0 + 1e-12));
+                }
+                let fields = solution.slip.iter().chain(&solution.displacement).flatten();
+                prop_assert!(fields.chain([&solution.dissipated()]).all(|value| value.is_finite()));
+                // A slip within the tolerance may be along the traction.
+                let largest = |fields: &[Array2<f64>; 2]| {
+                    fields.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()))
+                };
+                let noise = 2e-7 * largest(&solution.displacement) * largest(&solution.traction);
+                prop_assert!(solution.dissipation().iter().all(|lost| *lost >= -noise));
+            }
+        }
+    }
+}

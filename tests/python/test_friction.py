@@ -1,0 +1,396 @@
+"""Sliding and rolling from Python: known numbers, histories, and what interrupts them."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from math import pi, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+
+STEEL = nacre.Elastic(210e9, 0.3)
+SOFT = nacre.Elastic(70e9, 0.2)
+BALL = nacre.Sphere(5e-3)
+GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4))
+CONTACT = nacre.Contact(STEEL, GRID, STEEL)
+HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
+"""Friction bears 3 N."""
+
+
+def unit(poisson: float) -> nacre.Elastic:
+    """Return a material of shear modulus 1."""
+    return nacre.Elastic(2 * (1 + poisson), poisson)
+
+
+def pulled(*forces: float) -> list[dict[str, Any]]:
+    """Return the steps of a history of forces along x."""
+    return [{"force": (force, None)} for force in forces]
+
+
+# Known numbers.
+
+RADIUS, WIDTH = 50.0, 2 / 0.83
+"""Radius of the ball, and width of a grid whose contact has radius 1."""
+FRICTION, RATIO = 0.4, 0.875
+"""Coefficient of friction, and share of the force that it bears."""
+
+
+def test_cattaneo_and_mindlin() -> None:
+    # Two equal bodies with nu = 0, G = 1: the contact has radius 1 at this load.
+    load = 4 / 3 / RADIUS
+    contact = nacre.Contact(unit(0), nacre.Grid((128, 128), (WIDTH, WIDTH)), unit(0))
+    shape = nacre.Paraboloid(RADIUS, RADIUS)
+    force = RATIO * FRICTION * load
+    pull = contact.slide(shape, load=load, friction=FRICTION, force=(force, None))
+    # Cells of 1/53 of the radius: the pressure's steps at the edge change the shift by 1e-4.
+    shift = 3 * FRICTION * load * 4 / 16 * (1 - (1 - RATIO) ** (2 / 3))
+    assert pull.shift == pytest.approx((shift, 0), rel=1e-3, abs=1e-9 * shift)
+    # The sticking disc has half the contact's radius; each edge is known to half a cell.
+    radius = [sqrt(cells.sum() * WIDTH**2 / 128**2 / pi) for cells in (pull.stick, pull.bound > 0)]
+    assert radius == pytest.approx([0.5, 1.0], abs=0.5 * WIDTH / 128)
+    # Cell by cell the traction is friction times the pressure less that of the load (1 - x) P.
+    inner = contact.solve(shape, load=(1 - RATIO) * load)
+    expected = FRICTION * (pull.pressure - inner.pressure)
+    rounding = 1e-6 * pull.bound.max()
+    np.testing.assert_allclose(pull.traction[0], expected, rtol=0, atol=rounding)
+    np.testing.assert_allclose(pull.traction[1], 0, rtol=0, atol=rounding)
+
+
+def test_carter() -> None:
+    # The case of CONTACT: half-width 1, 50 cells across it. In the limit the force is 0.64.
+    poisson, radius, friction = 0.28, 500.0, 0.3
+    load = pi / (1 - poisson) / (4 * radius)
+    contact = nacre.Contact(unit(poisson), nacre.Grid.line(62, 2.48), unit(poisson))
+    shape = nacre.Cylinder(radius)
+    rolled = contact.roll(shape, load=load, friction=friction, creepage=(2.4e-4, None))
+    assert rolled.direction == "+y"
+    along = rolled.force[1] / (friction * load)
+    assert along == pytest.approx(0.6445, abs=3e-4)
+    assert rolled.force[0] == 0
+    # The same force asks for the same creepage, and the stick zone leads.
+    asked = contact.roll(shape, load=load, friction=friction, force=(rolled.force[1], None))
+    assert asked.creepage == pytest.approx((2.4e-4, 0), rel=1e-6)
+    sticks, touches = np.flatnonzero(rolled.stick[0]), np.flatnonzero(rolled.bound[0])
+    assert sticks[-1] == touches[-1]
+    assert sticks.size == pytest.approx(sqrt(1 - 0.64) * touches.size, abs=1)
+    # Rolling the other way is the mirror image.
+    back = contact.roll(
+        shape, load=load, friction=friction, creepage=(2.4e-4, None), direction="-y"
+    )
+    np.testing.assert_allclose(
+        back.traction[1], -rolled.traction[1, :, ::-1], rtol=0, atol=1e-7 * rolled.bound.max()
+    )
+
+
+TABLE = json.loads(
+    (Path(__file__).parents[1] / "data/friction/kalker_table_E3.json").read_text(encoding="utf-8")
+)
+
+
+@pytest.mark.parametrize("ratio", [0.7, 1.0])
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_kalkers_coefficients(ratio: float, column: int) -> None:
+    poisson = TABLE["nu"][column]
+    row = next(r for r in TABLE["rows"] if (r["ratio"], r["value"]) == ("a/b", ratio))
+    body = unit(poisson)
+    found = nacre.creep_coefficients(body, body, (ratio * 1e-3, 1e-3))
+    # The table has three digits. Its last one is in doubt by 1, as that of C11 of the circle.
+    for name in ("C11", "C22"):
+        assert getattr(found, name.lower()) == pytest.approx(row[name][column], abs=0.015)
+    digit = 1e-3 if row["C23"][column] < 1 else 1e-2
+    assert found.c23 == pytest.approx(row["C23"][column], abs=1.5 * digit)
+    assert found.shear == pytest.approx(1.0)
+    assert found.semi_axes == (ratio * 1e-3, 1e-3)
+    assert all(0 < error < 0.01 for error in found.errors)
+
+
+def test_a_small_creepage_makes_the_force_of_kalkers_coefficients() -> None:
+    body = unit(0.25)
+    creep = nacre.creep_coefficients(body, body, (1.0, 1.0))
+    contact = nacre.Contact(body, nacre.Grid((76, 76), (76 / 32, 76 / 32)), body)
+    load = 4 / 3 / 0.75 / RADIUS
+    for axis, coefficient in enumerate((creep.c11, creep.c22)):
+        keywords: dict[str, Any] = {"load": load, "friction": 1e3, "direction": "+x"}
+        keywords["creepage"] = (1e-6, None) if axis == 0 else (None, 1e-6)
+        rolled = contact.roll(nacre.Paraboloid(RADIUS, RADIUS), **keywords)
+        area = np.count_nonzero(rolled.pressure) / 32**2 / pi
+        # 64 cells across: 0.45 % above the limit, of the first order.
+        assert rolled.force[axis] / (1e-6 * area) == pytest.approx(coefficient, rel=6e-3)
+
+
+# Fields.
+
+
+def test_fields_say_the_same_as_the_numbers() -> None:
+    pull = CONTACT.slide(BALL, **HELD, force=(2.0, -1.0), twist=1e-4)
+    area = np.prod(GRID.spacing)
+    x, y = np.meshgrid(pull.x, pull.y, indexing="ij")
+    qx, qy = pull.traction
+    assert pull.force == pytest.approx((2.0, -1.0), abs=1e-8 * 3.0)
+    assert pull.force == pytest.approx(tuple(pull.traction.sum(axis=(1, 2)) * area))
+    assert pull.torque == pytest.approx((x * qy - y * qx).sum() * area)
+    assert pull.twist == 1e-4
+    assert pull.dissipated == pytest.approx((pull.traction * pull.slip).sum() * area)
+    assert pull.dissipation.sum() * area == pytest.approx(pull.dissipated)
+    energy = 0.5 * (pull.traction * pull.displacement).sum() * area
+    assert pull.tangential_energy == pytest.approx(energy)
+    np.testing.assert_array_equal(pull.bound, 0.3 * pull.pressure)
+    # Coulomb's law and the law of slip, cell by cell.
+    size = np.hypot(qx, qy)
+    assert (size <= pull.bound * (1 + 1e-12)).all()
+    slips = (pull.bound > 0) & ~pull.stick
+    np.testing.assert_allclose(size[slips], pull.bound[slips], rtol=1e-9)
+    largest = np.abs(pull.displacement).max()
+    assert np.abs(pull.slip[:, pull.stick]).max() <= 1.01e-8 * largest
+    moved = np.stack([pull.shift[0] - 1e-4 * y, pull.shift[1] + 1e-4 * x])
+    rest = (moved - pull.displacement - pull.slip)[:, pull.bound > 0]
+    assert np.abs(rest).max() <= 1e-12 * largest
+    assert pull.normal.load == pytest.approx(10.0)
+    assert pull.grid == GRID
+
+
+def test_fields_are_read_only_arrays_of_the_grid() -> None:
+    pull = CONTACT.slide(BALL, **HELD, force=(1.0, None))
+    assert pull.stick.dtype == np.bool_
+    for name in ("traction", "displacement", "slip", "bound", "dissipation", "stick", "x", "y"):
+        field = getattr(pull, name)
+        assert field.shape[-1] in GRID.shape
+        assert field.flags.c_contiguous
+        assert not field.flags.writeable
+
+
+def test_friction_of_each_cell() -> None:
+    even = CONTACT.slide(BALL, **HELD, force=(1.0, None))
+    cells = CONTACT.slide(BALL, load=10.0, friction=np.full(GRID.shape, 0.3), force=(1.0, None))
+    assert cells.friction.shape == GRID.shape
+    assert even.friction == 0.3
+    np.testing.assert_array_equal(cells.traction, even.traction)
+    # A lubricated half, in any dtype and order.
+    half = np.full(GRID.shape, 3, dtype=np.int8, order="F")
+    half[20:] = 0
+    slid = CONTACT.slide(BALL, load=10.0, friction=half, shift=(1e-4, 0.0))
+    np.testing.assert_array_equal(slid.friction, half)
+    np.testing.assert_array_equal(slid.bound, half * slid.pressure)
+    np.testing.assert_allclose(np.hypot(*slid.traction), slid.bound, rtol=1e-9)
+    # The contact is symmetrical. Slip turns aside by 1e-3, which takes 1e-6 of the force.
+    assert slid.force[0] == pytest.approx(3 * 10.0 / 2, rel=1e-5)
+    assert slid.report.full_slip
+
+
+def test_stress_below_carries_the_tractions() -> None:
+    pull = CONTACT.slide(BALL, **HELD, force=(2.0, 1.0))
+    rounding = 1e-9 * pull.bound.max()
+    for body, sign in (("body", -1), ("counterbody", 1)):
+        surface = pull.stress(0.0, body=body)
+        np.testing.assert_allclose(surface.xz, sign * pull.traction[0], rtol=0, atol=rounding)
+        np.testing.assert_allclose(surface.yz, sign * pull.traction[1], rtol=0, atol=rounding)
+    plan = pull.stress_plan()
+    assert plan.stress(1e-5) == pull.stress(1e-5)
+    assert plan.summary() == pull.stress_summary()
+    # Below, stress is that of the pressure and that of the tractions: opposite ones cancel.
+    back = CONTACT.slide(BALL, **HELD, force=(-2.0, -1.0))
+    pressed, here, there = (s.stress(1e-5) for s in (pull.normal, pull, back))
+    for name in ("xx", "zz", "xz", "xy"):
+        mean = 0.5 * (getattr(here, name) + getattr(there, name))
+        # The tractions are found to 1e-8, and stress is not larger.
+        atol = 1e-7 * pull.bound.max()
+        np.testing.assert_allclose(mean, getattr(pressed, name), rtol=0, atol=atol)
+        assert np.abs(getattr(here, name) - mean).max() > 0.1 * pull.bound.max()
+
+
+# Histories.
+
+
+def test_a_history_keeps_what_a_step_does_not_give() -> None:
+    steps: list[dict[str, Any]] = [{"force": (1.0, None)}, {}, {"load": 12.0}]
+    steps.append({"friction": 0.5, "shift": (0.0, 1e-8)})
+    loop = CONTACT.slide(BALL, steps, **HELD)
+    assert [s.normal.load for s in loop] == pytest.approx([10, 10, 12, 12])
+    assert [s.friction for s in loop] == [0.3, 0.3, 0.3, 0.5]
+    first = loop[0].shift
+    # What is neither moved nor loaded stays.
+    assert [s.shift for s in loop] == [first, first, first, (0.0, 1e-8)]
+    np.testing.assert_allclose(loop[1].force, loop[0].force, atol=1e-7)
+    assert loop[1].dissipated == pytest.approx(0, abs=1e-9 * loop[0].dissipated + 1e-20)
+
+
+def test_a_resumed_history_is_the_same_to_the_bit() -> None:
+    steps = pulled(2.0, -2.0, 1.0, 2.5)
+    contact = nacre.Contact(STEEL, GRID, SOFT)  # pressure and tractions act on each other
+    whole = contact.slide(BALL, steps, **HELD)
+    first = contact.slide(BALL, steps[:2], **HELD)
+    rest = contact.slide(BALL, iter(steps[2:]), initial=first[-1])
+    singly = contact.slide(BALL, force=(1.0, None), initial=first[-1])
+    called = nacre.slide(BALL, STEEL, SOFT, grid=GRID, steps=steps, **HELD)
+    for some in (first + rest, called, [*whole[:2], singly]):
+        for found, expected in zip(some, whole, strict=False):
+            for name in ("traction", "displacement", "slip", "pressure"):
+                assert getattr(found, name).tobytes() == getattr(expected, name).tobytes()
+            assert (found.shift, found.twist) == (expected.shift, expected.twist)
+    assert whole[0].report.coupled
+    assert whole[0].report.sweeps > 1
+
+
+def test_rolling_cell_by_cell_tends_to_the_steady_state_and_can_be_resumed() -> None:
+    keywords: dict[str, Any] = {**HELD, "creepage": (1e-3, None), "direction": "-x"}
+    steady = CONTACT.roll(BALL, **keywords)
+    rolled = CONTACT.roll(BALL, cells=100, **keywords)
+    assert len(rolled) == 100
+    # A contact length, of 22 cells, takes four fifths of the difference: 4e-4 are left.
+    assert rolled[-1].force[0] == pytest.approx(steady.force[0], rel=1e-3)
+    assert rolled[0].force[0] == pytest.approx(0, abs=0.2 * abs(steady.force[0]))
+    assert steady.force[0] < 0
+    again = CONTACT.roll(BALL, cells=2, initial=rolled[3], **keywords)
+    assert [s.traction.tobytes() for s in again] == [s.traction.tobytes() for s in rolled[4:6]]
+
+
+# How a solve ends.
+
+
+def test_what_does_not_converge_is_an_error_with_the_solution() -> None:
+    with pytest.raises(nacre.ConvergenceError, match="not converged") as caught:
+        CONTACT.slide(BALL, **HELD, force=(2.0, None), max_convolutions=2)
+    unfinished = caught.value.solution
+    assert (unfinished.report.termination, unfinished.report.converged) == (
+        "iteration limit",
+        False,
+    )
+    assert unfinished.report.violation > unfinished.report.tolerance == 1e-8
+    same = CONTACT.slide(BALL, **HELD, force=(2.0, None), max_convolutions=2, check=False)
+    np.testing.assert_array_equal(same.traction, unfinished.traction)
+    steps = [{"force": (0.0, None)}, {"force": (2.0, None)}]
+    with pytest.raises(nacre.ConvergenceError) as caught:
+        CONTACT.slide(BALL, steps, **HELD, max_convolutions=2)
+    finished = getattr(caught.value, "solutions")  # noqa: B009
+    assert [s.report.converged for s in finished] == [True]
+    assert not caught.value.solution.report.converged
+
+
+def test_the_report_certifies_the_solution() -> None:
+    pull = CONTACT.slide(BALL, **HELD, force=(2.0, None), torque=1e-5, tolerance=1e-6)
+    report = pull.report
+    assert (report.converged, report.termination, report.full_slip) == (True, "converged", False)
+    assert report.tolerance == 1e-6
+    assert 0 <= report.violation <= 1.01e-6
+    assert 0 <= report.imbalance <= 1.01e-6
+    assert -1e-12 <= report.excess <= 1e-12
+    assert (report.coupled, report.sweeps, report.pressure_change) == (False, 1, 0.0)
+    assert report.convolutions > 1
+    assert report.seconds > 0
+    assert pull.torque == pytest.approx(1e-5, rel=1e-4)
+    assert CONTACT.slide(BALL, **HELD, shift=(1e-3, None)).report.full_slip
+    uncoupled = nacre.slide(BALL, STEEL, SOFT, grid=GRID, coupling=False, **HELD)
+    assert not uncoupled.report.coupled
+
+
+BEARS = r"force must be below what friction bears, (3|2\.9999)"
+
+
+def test_the_force_that_friction_does_not_bear() -> None:
+    for force in [(3.0, None), (None, -3.0), (2.2, 2.2)]:
+        with pytest.raises(ValueError, match=BEARS):
+            CONTACT.slide(BALL, **HELD, force=force)
+        with pytest.raises(ValueError, match=BEARS):
+            CONTACT.roll(BALL, **HELD, force=force, direction="+x")
+    with pytest.raises(ValueError, match=r"friction bears, 0\.0000e0, was 1\.0000e0") as caught:
+        CONTACT.slide(BALL, [*pulled(2.0), {"approach": -1e-6, "force": (1.0, None)}], **HELD)
+    assert len(getattr(caught.value, "solutions")) == 1  # noqa: B009
+    assert CONTACT.slide(BALL, **HELD, force=(2.99, None)).force[0] == pytest.approx(2.99)
+
+
+def test_without_contact_there_is_no_traction() -> None:
+    apart = CONTACT.slide(BALL, approach=-1e-6, friction=0.3, shift=(1e-6, 0.0), twist=1e-3)
+    assert (apart.force, apart.torque, apart.dissipated) == ((0.0, 0.0), 0.0, 0.0)
+    assert (apart.shift, apart.twist) == ((1e-6, 0.0), 1e-3)
+    assert not apart.stick.any()
+    assert "nothing touches" in str(apart)
+    bare = CONTACT.slide(BALL, load=10.0, friction=0, shift=(1e-6, 0.0))
+    assert not bare.traction.any()
+
+
+# Progress and interrupts.
+
+
+def test_progress_gets_the_step_and_a_report() -> None:
+    told: list[tuple[int, nacre.FrictionReport]] = []
+    CONTACT.slide(BALL, pulled(1.0, 2.0), **HELD, progress=lambda *got: told.append(got))
+    assert [number for number, _ in told] == sorted(number for number, _ in told)
+    assert {number for number, _ in told} == {0, 1}
+    assert all(report.termination == "running" for _, report in told)
+    counts = [report.convolutions for number, report in told if number == 1]
+    assert counts == sorted(counts)
+
+
+@pytest.mark.parametrize("no", [False, np.False_], ids=["bool", "numpy.bool"])
+def test_progress_that_returns_false_stops(no: object) -> None:
+    steps = pulled(1.0, 2.0, 1.0)
+    found = CONTACT.slide(BALL, steps, **HELD, progress=lambda n, _: no if n == 1 else None)
+    assert [s.report.termination for s in found] == ["converged", "stopped"]
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("mine"), KeyboardInterrupt(), SystemExit(3)])
+def test_an_exception_of_progress_carries_the_finished_steps(error: BaseException) -> None:
+    def progress(number: int, report: nacre.FrictionReport) -> None:
+        if number == 2:
+            raise error
+
+    whole = CONTACT.slide(BALL, pulled(1.0, 2.0), **HELD)
+    with pytest.raises(type(error)) as caught:
+        CONTACT.slide(BALL, pulled(1.0, 2.0, 1.0), **HELD, progress=progress)
+    assert caught.value is error
+    found = getattr(error, "solutions")  # noqa: B009
+    assert [s.traction.tobytes() for s in found] == [s.traction.tobytes() for s in whole]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a signal to a process")
+@pytest.mark.parametrize(
+    "solve",
+    [
+        "contact.slide(ball, 10**4 * [{'force': (f, None)} for f in (2.0, -2.0)], KEYWORDS)",
+        "contact.roll(ball, cells=10**6, creepage=(1e-3, None), direction='+x', KEYWORDS)",
+        "contact.roll(ball, spin=30.0, direction='+x', max_convolutions=10**9, KEYWORDS)",
+    ],
+    ids=["slide", "cells", "steady"],
+)
+def test_ctrl_c_stops_and_keeps_the_finished_steps(solve: str) -> None:
+    tolerance = ", tolerance=1e-300" if "max" in solve else ""
+    call = solve.replace("KEYWORDS", f"load=10.0, friction=0.3, progress=told{tolerance}")
+    script = f"""
+import time, nacre
+steel, ball = nacre.Elastic(210e9, 0.3), nacre.Sphere(5e-3)
+contact = nacre.Contact(steel, nacre.Grid((96, 96), (2.4e-4, 2.4e-4)), steel)
+calls = 0
+def told(number, report):
+    global calls
+    calls += 1
+    if number == 3 or calls == 2000:
+        print("solving", flush=True)
+try:
+    {call}
+except KeyboardInterrupt as error:
+    now = time.monotonic()
+    print(now, len(getattr(error, "solutions", [])))
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "solving\n"
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=30)[0].splitlines()[-1].split()
+        finally:
+            process.kill()
+    # It is looked for every 50 ms; the rest is for a busy machine.
+    assert float(said[0]) - start < 0.5
+    assert int(said[1]) >= 3 or "max" in solve
