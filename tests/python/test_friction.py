@@ -301,7 +301,7 @@ def test_the_force_that_friction_does_not_bear() -> None:
             CONTACT.slide(BALL, **HELD, force=force)
         with pytest.raises(ValueError, match=BEARS):
             CONTACT.roll(BALL, **HELD, force=force, direction="+x")
-    with pytest.raises(ValueError, match="friction bears, 0.0000e0, was 1.0000e0") as caught:
+    with pytest.raises(ValueError, match=r"friction bears, 0\.0000e0, was 1\.0000e0") as caught:
         CONTACT.slide(BALL, [*pulled(2.0), {"approach": -1e-6, "force": (1.0, None)}], **HELD)
     assert len(getattr(caught.value, "solutions")) == 1  # noqa: B009
     assert CONTACT.slide(BALL, **HELD, force=(2.99, None)).force[0] == pytest.approx(2.99)
