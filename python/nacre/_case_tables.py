@@ -29,6 +29,8 @@ Counts = Annotated[
     list[PositiveInt], Field(min_length=2, max_length=2), Words("a pair of integers above 0")
 ]
 
+Flags = Annotated[list[bool], Field(min_length=2, max_length=2), Words("a pair of true or false")]
+
 
 class Table(BaseModel):
     """A table with the named keys and no others."""

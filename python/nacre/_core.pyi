@@ -60,7 +60,7 @@ _Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
 _Pair: TypeAlias = tuple[float, float]
 _Ends: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
-_Method: TypeAlias = Literal["exact", "plain", "difference", "image"]
+_Method: TypeAlias = Literal["exact", "plain", "difference", "image", "spectral"]
 _Peak: TypeAlias = tuple[float, tuple[float, float, float]]
 
 class _Topography(Protocol):
@@ -169,7 +169,13 @@ class HalfSpace:
 
 @final
 class Grid:
-    def __new__(cls, shape: tuple[int, int], size: _Pair, center: _Pair = (0.0, 0.0)) -> Self: ...
+    def __new__(
+        cls,
+        shape: tuple[int, int],
+        size: _Pair,
+        center: _Pair = (0.0, 0.0),
+        periodic: tuple[bool, bool] = (False, False),
+    ) -> Self: ...
     @staticmethod
     def line(cells: int, width: float, center: float = 0.0) -> Grid: ...
     @property
@@ -180,6 +186,8 @@ class Grid:
     def size(self) -> _Pair: ...
     @property
     def center(self) -> _Pair: ...
+    @property
+    def periodic(self) -> tuple[bool, bool]: ...
     @property
     def spacing(self) -> _Pair: ...
     @property
@@ -415,7 +423,11 @@ class FlatPunch(Shape):
 @final
 class HeightMap(Shape):
     def __new__(
-        cls, heights: _Matrix, spacing: float | _Pair, center: _Pair = (0.0, 0.0)
+        cls,
+        heights: _Matrix,
+        spacing: float | _Pair,
+        center: _Pair = (0.0, 0.0),
+        periodic: tuple[bool, bool] = (False, False),
     ) -> Self: ...
     @staticmethod
     def read(
@@ -426,6 +438,7 @@ class HeightMap(Shape):
         detrend: Literal["none", "mean", "plane", "quadratic"] = "plane",
         channel: str | int | None = None,
         transpose: bool = False,
+        periodic: tuple[bool, bool] = (False, False),
     ) -> HeightMap: ...
     @property
     def heights(self) -> _Field: ...
@@ -433,6 +446,8 @@ class HeightMap(Shape):
     def spacing(self) -> _Pair: ...
     @property
     def center(self) -> _Pair: ...
+    @property
+    def periodic(self) -> tuple[bool, bool]: ...
 
 @final
 class Contact:

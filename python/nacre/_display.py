@@ -58,6 +58,8 @@ def numbers(solution: Solution) -> list[tuple[str, str]]:
     sides = [written(high - low, "m") for low, high in extent]
     touching = solution.contact_area > 0
     nx, ny = report.grid.shape
+    repeats = [name for name, is_so in zip("xy", report.grid.periodic, strict=True) if is_so]
+    period = f", periodic along {' and '.join(repeats)}" if repeats else ""
     rows = [
         ("load", written(solution.load, force)),
         ("acts at", _pair(solution.eccentricity, "m", arms) if touching else "nothing touches"),
@@ -72,10 +74,14 @@ def numbers(solution: Solution) -> list[tuple[str, str]]:
         *_body("body", report.body),
         *_body("counterbody", report.counterbody),
         *_moduli(report.body, report.counterbody),
-        ("grid", f"{nx} × {ny} cells"),
+        ("grid", f"{nx} × {ny} cells{period}"),
         ("ended", f"{report.termination}{_fallback(report)}, residual {report.residual:.0e}"),
     ]
-    return rows if touching else [row for row in rows if row[0] not in ("at", "contact", "area")]
+    left = set() if touching else {"at", "contact", "area"}
+    if len(repeats) == 2:
+        # The load of one period acts nowhere in particular.
+        left |= {"acts at", "moment", "tilt"}
+    return [row for row in rows if row[0] not in left]
 
 
 def _fallback(report: Report) -> str:

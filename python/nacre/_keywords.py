@@ -24,7 +24,7 @@ ByLayer = Mapping[int | str, float] | Sequence[float | None]
 class Plan(TypedDict, total=False):
     """Keywords that say how coefficients are planned."""
 
-    method: Literal["exact", "plain", "difference", "image"]
+    method: Literal["exact", "plain", "difference", "image", "spectral"]
     refinement: int | None
     threads: int | None
 

@@ -14,7 +14,7 @@ from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
 from nacre import _keywords
-from nacre._case_tables import Count, Counts, Number, Pair, Table, Text, Words, described
+from nacre._case_tables import Count, Counts, Flags, Number, Pair, Table, Text, Words, described
 from nacre._friction_tables import Along, Roll, Slide
 from nacre._outputs import OUTPUTS
 from nacre._shape_tables import AnyShape
@@ -90,6 +90,7 @@ class Grid(Table):
     center: Pair | Number | None = Field(
         None, description="Centre [m]: a pair for an area, a number for a line. By default 0."
     )
+    periodic: Flags | None = Field(None, description=GRID["periodic"])
     cells: Count | None = Field(None, description=LINE["cells"])
     width: Number | None = Field(None, description=LINE["width"])
 
@@ -98,6 +99,8 @@ class Grid(Table):
         area, line = (self.shape, self.size), (self.cells, self.width)
         if (None in area or line != (None, None)) and (None in line or area != (None, None)):
             raise ValueError("must have shape and size or, for a line contact, cells and width")
+        if self.periodic is not None and self.cells is not None:
+            raise ValueError("periodic must not be given for a line contact")
         if self.center is not None and isinstance(self.center, list) != (self.cells is None):
             asked = "a pair of numbers" if self.cells is None else "a number for a line contact"
             raise ValueError(f"center must be {asked}, got {self.center!r}")
@@ -108,7 +111,8 @@ class Grid(Table):
         center: dict[str, Any] = {} if self.center is None else {"center": self.center}
         if self.cells is not None:
             return nacre.Grid.line(self.cells, self.width or 0.0, **center)
-        return nacre.Grid(self.shape, self.size, **center)  # type: ignore[arg-type]
+        repeats = {} if self.periodic is None else {"periodic": tuple(self.periodic)}
+        return nacre.Grid(self.shape, self.size, **center, **repeats)  # type: ignore[arg-type]
 
 
 KNOWN = {

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 from pydantic import Field
 
 import nacre
-from nacre._case_tables import Number, Numbers, Pair, Table, Text, Words, described, table_of
+from nacre._case_tables import Flags, Number, Numbers, Pair, Table, Text, Words, described, table_of
 
 PROFILES: dict[str, Any] = {
     "logarithmic": nacre.LogarithmicProfile,
@@ -94,6 +94,7 @@ class HeightMap(Shape):
     channel: Text | Annotated[int, Words("an integer")] | None = Field(
         None, description=READ["channel"]
     )
+    periodic: Flags | None = Field(None, description=READ["periodic"])
 
     def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
         """Return the shape without its shift, in the unit of length of the case."""
@@ -104,8 +105,8 @@ class HeightMap(Shape):
         read = nacre.HeightMap.read(folder / self.path, **given)
         if metres == 1.0:
             return read
-        scaled = (tuple(value / metres for value in pair) for pair in (read.spacing, read.center))
-        return nacre.HeightMap(read.heights / metres, *scaled)  # type: ignore[arg-type]
+        spacing, center = ((x / metres, y / metres) for x, y in (read.spacing, read.center))
+        return nacre.HeightMap(read.heights / metres, spacing, center, read.periodic)
 
 
 class Sum(Shape):

@@ -29,6 +29,7 @@ def read(
     detrend: str = "plane",
     channel: str | int | None = None,
     transpose: bool = False,
+    periodic: tuple[bool, bool] = (False, False),
 ) -> core.HeightMap:
     """Read a measured surface; see `HeightMap.read`."""
     if detrend not in TRENDS:
@@ -51,7 +52,7 @@ def read(
         _check_size(name, heights, spacing)
     heights = _filled(name, heights)
     try:
-        return core.HeightMap(_without_trend(heights, detrend), spacing)
+        return core.HeightMap(_without_trend(heights, detrend), spacing, periodic=periodic)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from error
 

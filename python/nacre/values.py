@@ -38,10 +38,10 @@ FIELDS: dict[type, tuple[str, ...]] = {
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
 KINDS = {kind.__name__: kind for kind in FIELDS}
-LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends"}
+LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends", "periodic"}
 """Arguments that format 1 had not at first. Where they are None they are left out: older data are
 still read, and older studies found again. Versions that do not know them refuse them by name."""
-ABSENT = (None, (None, None))
+ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
 RESULTS = (
     core.Report
@@ -90,13 +90,10 @@ def encode(value: Any, *, digest: bool = False) -> Any:
                 return {
                     "Grid.line": {"cells": value.shape[1], "width": value.size[1], "center": center}
                 }
-            return {
-                "Grid": {
-                    "shape": of(value.shape),
-                    "size": of(value.size),
-                    "center": of(value.center),
-                }
-            }
+            made = {"shape": value.shape, "size": value.size, "center": value.center}
+            if any(value.periodic):
+                made["periodic"] = value.periodic
+            return {"Grid": of(made)}
         if digest and isinstance(value, core.Solution):
             return {"Solution": of(value.pressure)}
         if digest and isinstance(value, core.FrictionSolution):
@@ -159,7 +156,7 @@ def _decoded(data: Any) -> Any:
         if name == "Grid.line":
             return _made(name, core.Grid.line, ("cells", "width", "center"), content)
         if name == "Grid":
-            return _made(name, core.Grid, ("shape", "size", "center"), content)
+            return _made(name, core.Grid, ("shape", "size", "center", "periodic"), content)
         if name in KINDS:
             return _made(name, KINDS[name], FIELDS[KINDS[name]], content)
     return {key: _decoded(item) for key, item in data.items()}

@@ -194,6 +194,24 @@ pub(super) fn pair(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[Op
     Ok(pair.map(|number| number.map(|number| number.0)))
 }
 
+/// Pair of truth values; `False` where `value` is `None`.
+pub(super) fn flags(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[bool; 2]> {
+    let Some(value) = value else {
+        return Ok([false; 2]);
+    };
+    value.extract().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "{name} must be a pair of bools, got {}",
+            Repr(value)
+        ))
+    })
+}
+
+/// Python's word for a truth value.
+pub(super) fn truth(value: bool) -> &'static str {
+    if value { "True" } else { "False" }
+}
+
 /// Coordinates of the free ends of a body; it goes on where one is `None`, or infinite on its own side.
 pub(super) fn ends(value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2]> {
     let [low, high] = pair("ends", value)?;

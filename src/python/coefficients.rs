@@ -138,13 +138,14 @@ pub(super) fn surface_compliance<'py>(
 ///     Body under the pressure; its free ends are not counted.
 /// grid : Grid
 ///     Grid with that cell; there is an offset for each of its cells.
-/// method : {"exact", "plain", "difference", "image"}, optional
+/// method : {"exact", "plain", "difference", "image", "spectral"}, optional
 ///     ``"exact"`` has no aliasing, for any thickness and any cell. The other methods sample a
 ///     frequency response and transform it back: ``"plain"`` the response of the body;
 ///     ``"difference"`` its difference from the response of a half-space of the coating's material;
 ///     ``"image"`` the remainder of that difference beside an image potential. ``"plain"`` and
 ///     ``"difference"`` are inaccurate on long thin domains; ``"image"`` needs layers thicker than a
-///     cell.
+///     cell. On a periodic grid, ``"exact"`` sums over the images of the cell; ``"spectral"`` samples the response at
+///     the waves of a grid that repeats in both directions, as other programs do.
 /// refinement : int, optional
 ///     Refinement of the spectral mesh of the conversions.
 ///

@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::arguments::{Pair, Real, count, hash, read_only};
+use super::arguments::{Pair, Real, count, flags, hash, read_only, truth};
 use crate::grid::Grid;
 
 /// A uniform grid of rectangular cells, with constant pressure over each.
@@ -19,6 +19,11 @@ use crate::grid::Grid;
 ///     Side lengths ``(lx, ly)`` [m].
 /// center : tuple of float, optional
 ///     Centre [m].
+/// periodic : tuple of bool, optional
+///     Whether shape, pressure and displacement repeat along x and along y, with the sides as periods. Forces are
+///     those of one period. Where both directions repeat and no base is rigid, displacement is relative to its mean,
+///     and the approach is that of the mean plane of the deformed surface. Where one repeats, the datum is that of
+///     `Grid.line`, with the width of the other.
 ///
 /// Raises
 /// ------
@@ -36,10 +41,19 @@ pub(super) struct PyGrid(pub(super) Grid);
 #[pymethods]
 impl PyGrid {
     #[new]
-    #[pyo3(signature = (shape, size, center=Pair([0.0; 2])), text_signature = "(shape, size, center=(0.0, 0.0))")]
-    fn new(shape: [Bound<'_, PyAny>; 2], size: Pair, center: Pair) -> PyResult<Self> {
+    #[pyo3(
+        signature = (shape, size, center=Pair([0.0; 2]), periodic=None),
+        text_signature = "(shape, size, center=(0.0, 0.0), periodic=(False, False))"
+    )]
+    fn new(
+        shape: [Bound<'_, PyAny>; 2],
+        size: Pair,
+        center: Pair,
+        periodic: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
         let shape = [count("shape", 2, &shape[0])?, count("shape", 2, &shape[1])?];
-        Ok(Self(Grid::new(shape, size.0)?.centered_at(center.0)?))
+        let grid = Grid::new(shape, size.0)?.centered_at(center.0)?;
+        Ok(Self(grid.periodic(flags("periodic", periodic)?)?))
     }
 
     /// Grid of a line contact: strips side by side along y, endless along x, in plane strain.
@@ -106,6 +120,12 @@ impl PyGrid {
         self.0.center().into()
     }
 
+    /// Whether the grid repeats along x and along y.
+    #[getter]
+    fn periodic(&self) -> (bool, bool) {
+        self.0.is_periodic().into()
+    }
+
     /// Side lengths of a cell ``(dx, dy)`` [m].
     #[getter]
     fn spacing(&self) -> (f64, f64) {
@@ -129,7 +149,13 @@ impl PyGrid {
         if self.0.is_line() {
             format!("Grid.line(cells={ny}, width={ly:?}, center={y:?})")
         } else {
-            format!("Grid(shape=({nx}, {ny}), size=({lx:?}, {ly:?}), center=({x:?}, {y:?}))")
+            let repeats = match self.0.is_periodic() {
+                [false, false] => String::new(),
+                [x, y] => format!(", periodic=({}, {})", truth(x), truth(y)),
+            };
+            format!(
+                "Grid(shape=({nx}, {ny}), size=({lx:?}, {ly:?}), center=({x:?}, {y:?}){repeats})"
+            )
         }
     }
 
@@ -147,11 +173,13 @@ impl PyGrid {
         if grid.0.is_line() {
             let ([_, cells], [_, width], [_, y]) = (grid.0.shape(), grid.0.size(), grid.0.center());
             Ok((class.getattr("line")?, (cells, width, y).into_pyobject(py)?))
+        } else if grid.0.is_periodic() == [false; 2] {
+            // Earlier versions read it.
+            let arguments = (grid.shape(), grid.size(), grid.center());
+            Ok((class, arguments.into_pyobject(py)?))
         } else {
-            Ok((
-                class,
-                (grid.shape(), grid.size(), grid.center()).into_pyobject(py)?,
-            ))
+            let arguments = (grid.shape(), grid.size(), grid.center(), grid.periodic());
+            Ok((class, arguments.into_pyobject(py)?))
         }
     }
 }

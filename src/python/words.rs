@@ -128,8 +128,9 @@ pub(super) fn method(word: &str, refinement: usize) -> PyResult<Method> {
         "plain" => Method::Plain { refinement },
         "difference" => Method::Difference { refinement },
         "image" => Method::Image { refinement },
+        "spectral" => Method::Spectral,
         other => {
-            let words = ["exact", "plain", "difference", "image"];
+            let words = ["exact", "plain", "difference", "image", "spectral"];
             return Err(unknown("method", &words, other));
         }
     })
@@ -139,6 +140,7 @@ pub(super) fn method(word: &str, refinement: usize) -> PyResult<Method> {
 pub(super) fn method_words(method: Method) -> (&'static str, usize) {
     match method {
         Method::Exact => ("exact", REFINEMENT),
+        Method::Spectral => ("spectral", REFINEMENT),
         Method::Plain { refinement } => ("plain", refinement),
         Method::Difference { refinement } => ("difference", refinement),
         Method::Image { refinement } => ("image", refinement),

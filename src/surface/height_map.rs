@@ -78,7 +78,7 @@ impl HeightMap {
     /// This surface, repeated along x, along y, or both: its period is its size.
     ///
     /// # Errors
-    /// None today.
+    /// None: every map has two samples or more along each direction.
     pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
         Ok(Self {
             grid: self.grid.periodic(periodic)?,

@@ -24,7 +24,8 @@ impl Solution {
     /// discrete contact: symmetric, in N/m, N and N m.
     ///
     /// In a line contact δ is counted from the datum of [`Grid::line`](crate::Grid::line): below a stiff layer
-    /// that is wider than the grid, δ may fall as the load grows.
+    /// that is wider than the grid, δ may fall as the load grows. There is no tilt along directions in which the grid
+    /// repeats: rows and columns of these are 0.
     ///
     /// The second row is the couple about y in which force at positive x is positive. While the
     /// contact C stays, K p = δ + s_x x + s_y y − h on it, so that the tangent is
@@ -81,7 +82,12 @@ impl Solution {
             }
         }
         tangent.lower_datum(&mut stiffness);
-        Ok(Some(tangent.about_origin(stiffness)))
+        let mut stiffness = tangent.about_origin(stiffness);
+        for axis in (0..2).filter(|&axis| self.grid().is_periodic()[axis]) {
+            stiffness[axis + 1] = [0.0; 3];
+            stiffness.iter_mut().for_each(|row| row[axis + 1] = 0.0);
+        }
+        Ok(Some(stiffness))
     }
 }
 

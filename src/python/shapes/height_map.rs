@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::base::{Kind, PyShape, held, object};
-use crate::python::arguments::{Pair, Real, Repr, read_only, real_matrix};
+use crate::python::arguments::{Pair, Real, Repr, flags, read_only, real_matrix};
 use crate::surface::HeightMap;
 
 /// A measured surface: heights at cell centres, positive towards the other body.
@@ -21,6 +21,9 @@ use crate::surface::HeightMap;
 ///     Distances between samples ``(dx, dy)`` [m], or one for both.
 /// center : tuple of float, optional
 ///     Centre [m].
+/// periodic : tuple of bool, optional
+///     Whether the surface repeats along x and along y; its period is its size. It is then pressed on a grid that
+///     repeats too.
 ///
 /// Raises
 /// ------
@@ -49,6 +52,9 @@ impl Kind for HeightMap {
         )?;
         arguments.set_item("spacing", (dx, dy))?;
         arguments.set_item("center", (x, y))?;
+        if self.is_periodic() != [false; 2] {
+            arguments.set_item("periodic", <(bool, bool)>::from(self.is_periodic()))?;
+        }
         Ok(arguments)
     }
 }
@@ -57,13 +63,14 @@ impl Kind for HeightMap {
 impl PyHeightMap {
     #[new]
     #[pyo3(
-        signature = (heights, spacing, center=Pair([0.0; 2])),
-        text_signature = "(heights, spacing, center=(0.0, 0.0))"
+        signature = (heights, spacing, center=Pair([0.0; 2]), periodic=None),
+        text_signature = "(heights, spacing, center=(0.0, 0.0), periodic=(False, False))"
     )]
     fn new(
         heights: &Bound<'_, PyAny>,
         spacing: &Bound<'_, PyAny>,
         center: Pair,
+        periodic: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let both = spacing.extract::<Real>().map(|spacing| [spacing.0; 2]);
         let spacing = both
@@ -75,7 +82,8 @@ impl PyHeightMap {
                 ))
             })?;
         let map = HeightMap::new(real_matrix("heights", heights)?, spacing)?;
-        Ok(object(Self, map.centered_at(center.0)?))
+        let map = map.centered_at(center.0)?;
+        Ok(object(Self, map.periodic(flags("periodic", periodic)?)?))
     }
 
     /// Reads a measured surface from a file, or takes one from SurfaceTopography.
@@ -105,6 +113,8 @@ impl PyHeightMap {
     ///     Whether to swap x and y of the file. Instruments export a ``.csv`` as an image, with one line
     ///     for each y: that needs ``transpose=True``. The first line then has the smallest y. A
     ///     `spacing` that is given is not swapped.
+    /// periodic : tuple of bool, optional
+    ///     Whether the surface repeats along x and along y.
     ///
     /// Returns
     /// -------
@@ -129,24 +139,17 @@ impl PyHeightMap {
     /// ...     nacre.HeightMap.read(f"{folder}/flat.npy", spacing=1e-6, unit="nm").heights.shape
     /// (4, 3)
     #[staticmethod]
-    #[pyo3(signature = (path, *, spacing=None, unit=None, detrend="plane", channel=None, transpose=false))]
+    #[pyo3(
+        signature = (path, **keywords),
+        text_signature = "(path, *, spacing=None, unit=None, detrend='plane', channel=None, transpose=False, periodic=(False, False))"
+    )]
     fn read<'py>(
         py: Python<'py>,
         path: &Bound<'py, PyAny>,
-        spacing: Option<&Bound<'py, PyAny>>,
-        unit: Option<&str>,
-        detrend: &str,
-        channel: Option<&Bound<'py, PyAny>>,
-        transpose: bool,
+        keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let options = PyDict::new(py);
-        options.set_item("spacing", spacing)?;
-        options.set_item("unit", unit)?;
-        options.set_item("detrend", detrend)?;
-        options.set_item("channel", channel)?;
-        options.set_item("transpose", transpose)?;
         let surfaces = py.import("nacre.surfaces")?;
-        surfaces.call_method("read", (path,), Some(&options))
+        surfaces.call_method("read", (path,), keywords)
     }
 
     /// Heights ``(nx, ny)`` [m].
@@ -160,6 +163,12 @@ impl PyHeightMap {
     #[getter]
     fn spacing(slf: &Bound<'_, Self>) -> (f64, f64) {
         held::<_, HeightMap>(slf).spacing().into()
+    }
+
+    /// Whether the surface repeats along x and along y.
+    #[getter]
+    fn periodic(slf: &Bound<'_, Self>) -> (bool, bool) {
+        held::<_, HeightMap>(slf).is_periodic().into()
     }
 
     /// Centre [m].

@@ -1,0 +1,131 @@
+"""Grids that repeat, from Python."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import k0
+
+import nacre
+from nacre.case import Case, CaseError
+
+BODY = nacre.Elastic(1.0, 0.0)
+GRID = nacre.Grid((32, 24), (1.0, 0.75), periodic=(True, True))
+X, Y = np.meshgrid(GRID.x, GRID.y, indexing="ij")
+HEIGHTS = 1e-3 * np.cos(2 * np.pi * X) + 5e-4 * np.cos(2 * np.pi * Y / 0.75)
+MAP = nacre.HeightMap(HEIGHTS, 1 / 32, periodic=(True, True))
+
+
+def test_a_wave_along_the_period_falls_off_as_bessels_function() -> None:
+    """Along y it repeats: û = (2/πE*) ∫ K0(q|x|) dx sinc(q dy/2) over the strip, for all aliases q.
+
+    Abramowitz & Stegun 9.6.21 gives the transform of 1/r.
+    """
+    n, m, dx, dy = 12, 24, 1.0, 0.5
+    grid = nacre.Grid((n, m), (n * dx, m * dy), periodic=(False, True))
+    coefficients = nacre.influence_coefficients(BODY, grid)
+    for wave in (1, 5):
+        found = coefficients @ np.cos(2 * np.pi * wave * np.arange(m) / m)
+        for i in (1, 3):
+            due = 0.0
+            for alias in range(-8, 9):
+                q = 2 * np.pi * (wave + alias * m) / (m * dy)
+                strip, _ = quad(lambda x, q=q: k0(abs(q) * x), (i - 0.5) * dx, (i + 0.5) * dx)
+                due += 2 / np.pi * strip * np.sinc(q * dy / 2 / np.pi)
+            assert found[i] == pytest.approx(due, abs=1e-10)
+
+
+def test_the_map_says_once_that_it_repeats() -> None:
+    """Its own grid repeats, so that `solve` needs nothing else; the mean pressure is the load."""
+    solution = nacre.solve(MAP, BODY, load=1e-3)
+    assert solution.report.grid == GRID
+    assert solution.pressure.mean() * 0.75 == pytest.approx(1e-3, rel=1e-12)
+    # The mean of the displacement is the datum.
+    assert abs(solution.displacement.mean()) < 1e-9 * abs(solution.displacement).max()
+    farther = nacre.Grid((32, 24), (1.0, 0.75), (1.0, -0.75))
+    np.testing.assert_allclose(MAP.gaps(farther), MAP.gaps(GRID), atol=1e-15)
+    assert solution.report.warnings == []
+
+
+def test_the_spectral_method_has_waves_exactly() -> None:
+    contact = nacre.Contact(BODY, GRID, method="spectral")
+    full = contact.solve(MAP, load=0.006, tolerance=1e-12)
+    wave = np.pi * 1e-3 * np.cos(2 * np.pi * X) + np.pi * 5e-4 / 0.75 * np.cos(2 * np.pi * Y / 0.75)
+    np.testing.assert_allclose(full.pressure, 0.008 + wave, rtol=1e-11)
+
+
+def test_it_keeps_its_period_everywhere(tmp_path: Path) -> None:
+    solution = nacre.solve(MAP, BODY, load=1e-3)
+    for value in (GRID, MAP, MAP.shifted(0.1, 0.2), nacre.Contact(BODY, GRID), solution):
+        assert pickle.loads(pickle.dumps(value)) == value
+    assert eval(repr(GRID), {"Grid": nacre.Grid}) == GRID
+    assert "periodic" not in repr(nacre.Grid((4, 4), (1.0, 1.0)))
+    solution.save(tmp_path / "wave.nc")
+    assert nacre.load(tmp_path / "wave.nc") == solution
+    case = {"shape": MAP, "body": BODY, "grid": GRID}
+    study = nacre.sweep(case, {"load": [1e-3, 2e-3]}, store=tmp_path / "s.nc")
+    assert study.approach.diff("load").item() > 0
+
+
+def test_the_table_leaves_out_what_makes_no_sense() -> None:
+    text = str(nacre.solve(MAP, BODY, load=1e-3))
+    assert "periodic" in text
+    for row in ("acts at", "moment", "\ntilt"):
+        assert row not in text
+
+
+ERRORS: dict[str, tuple[type[Exception], str]] = {
+    "nacre.Grid((4, 4), (1.0, 1.0), periodic=True)": (
+        TypeError,
+        "periodic must be a pair of bools",
+    ),
+    "nacre.Grid((4, 4), (1.0, 1.0), periodic=(1, 0))": (TypeError, "periodic must be a pair"),
+    "nacre.HeightMap(HEIGHTS, 1.0, periodic=(True,))": (TypeError, "periodic must be a pair"),
+    "nacre.solve(MAP, BODY, load=1.0, tilt=(1e-3, None))": (ValueError, "along x the grid is"),
+    "nacre.Contact(BODY, GRID).solve(nacre.Sphere(9.0).shifted(0.2, 0), load=1e-3)": (
+        ValueError,
+        "shape must repeat along x",
+    ),
+    "nacre.Contact(BODY, GRID, method='image')": (
+        ValueError,
+        '"exact" or "spectral" on a periodic',
+    ),
+    "nacre.Contact(BODY, nacre.Grid((4, 4), (1.0, 1.0)), method='spectral')": (
+        ValueError,
+        "periodic along x and along y",
+    ),
+    "nacre.solve(MAP, BODY, load=1e-3).stress([0.1])": (ValueError, "not periodic"),
+    "nacre.slide(MAP, BODY, BODY, load=1e-3, friction=0.1)": (ValueError, "not periodic"),
+}
+
+
+@pytest.mark.parametrize("call", ERRORS)
+def test_what_does_not_fit_is_refused(call: str) -> None:
+    kind, message = ERRORS[call]
+    with pytest.raises(kind, match=message):
+        eval(call, globals())
+
+
+def test_case_files(tmp_path: Path) -> None:
+    np.save(tmp_path / "wave.npy", HEIGHTS)
+    case: dict[str, Any] = {
+        "shape": {
+            "kind": "height_map",
+            "path": "wave.npy",
+            "spacing": 1 / 32,
+            "detrend": "none",
+            "periodic": [True, True],
+        },
+        "body": {"substrate": {"young": 1.0, "poisson": 0.0}},
+        "solve": {"load": 1e-3},
+    }
+    found = nacre.solve(**Case(case, folder=tmp_path).arguments())
+    assert found.pressure.tobytes() == nacre.solve(MAP, BODY, load=1e-3).pressure.tobytes()
+    line = case | {"grid": {"cells": 8, "width": 1.0, "periodic": [False, True]}}
+    with pytest.raises(CaseError, match="periodic must not be given"):
+        Case(line, folder=tmp_path).arguments()
