@@ -99,10 +99,17 @@ impl Task<'_> {
         }
     }
 
-    /// The smallest window that holds all cells with friction, and in rolling a cell more on both sides.
-    pub(super) fn window(&self, bound: &Array2<f64>) -> Option<Window> {
+    /// The smallest window that holds all cells with friction or pressure, and in rolling a cell more on both sides; none
+    /// where no cell has friction.
+    pub(super) fn window(&self, bound: &Array2<f64>, pressure: &Array2<f64>) -> Option<Window> {
+        if bound.iter().all(|bound| *bound <= 0.0) {
+            return None;
+        }
         let mut window: Option<[[usize; 2]; 2]> = None;
-        for ((i, j), _) in bound.indexed_iter().filter(|(_, bound)| **bound > 0.0) {
+        // Pressure spreads the surfaces also where there is no friction.
+        let cells = bound.indexed_iter().zip(pressure);
+        let used = cells.filter(|((_, bound), p)| **bound > 0.0 || **p > 0.0);
+        for (((i, j), _), _) in used {
             let [[x0, x1], [y0, y1]] = window.unwrap_or([[i, i], [j, j]]);
             window = Some([[x0.min(i), x1.max(i)], [y0.min(j), y1.max(j)]]);
         }
@@ -191,7 +198,7 @@ impl Task<'_> {
         effort: Effort,
         watch: &mut Watch,
     ) -> Option<Solved> {
-        let window = self.window(bound)?;
+        let window = self.window(bound, pressure)?;
         let operators = tangential.window([window[0].len(), window[1].len()]);
         let law = Law {
             bound: cut(bound, &window),

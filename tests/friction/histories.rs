@@ -142,6 +142,30 @@ fn friction_may_differ_from_cell_to_cell() -> Result<()> {
     Ok(())
 }
 
+/// Cells without friction: none of them bears a traction, and their pressure still moves the surfaces of the others where
+/// bodies differ. The certificate, with the operator of the whole grid, shows it.
+#[test]
+fn cells_may_have_no_friction() -> Result<()> {
+    let grid = Grid::new([40, 40], [2.6, 2.6])?;
+    let setup = Setup {
+        counterbody: Some(material(0.2)?.into()),
+        threads: Some(1),
+        ..Setup::default()
+    };
+    let contact = Contact::plan(coated(3.0, 0.2)?, grid, setup)?;
+    let cells = Array2::from_shape_fn((40, 40), |(_, j)| if j < 20 { 0.0 } else { FRICTION });
+    let step = Step {
+        force: [Some(0.3 * FRICTION * load(0.3)), None],
+        ..Step::press(Motion::load(load(0.3)), cells)
+    };
+    let solution = &contact.slide(&ball()?, &[step], &FrictionOptions::default(), None)?[0];
+    assert!(solution.report.converged() && solution.report.violation < 1.001e-8);
+    for ((_, j), q) in solution.traction_size().indexed_iter() {
+        assert!(j >= 20 || *q <= 0.0);
+    }
+    Ok(())
+}
+
 /// Pulls along +x, −x, +y, −y are one by mirror and exchange, with layers and coupling.
 #[test]
 fn directions_are_equal() -> Result<()> {
