@@ -151,6 +151,16 @@ pub enum Error {
         /// Gaps at both ends of the period \[m\].
         gaps: [f64; 2],
     },
+    /// A load above what the surfaces bear at their hardness.
+    #[error(
+        "load must be below what the hardness bears on the cells that can touch, {bears:.6e}, was {load:.6e}"
+    )]
+    Overload {
+        /// The load \[N\].
+        load: f64,
+        /// Σ H dA over the cells that can touch \[N\].
+        bears: f64,
+    },
     /// A tangential force or torque that friction does not bear.
     #[error(
         "{name} must be below what friction bears, {bears:.4e}, was {value:.4e}: the contact would slide as a whole"

@@ -97,8 +97,8 @@ mod python;
 
 pub use body::{HalfSpace, Interface, Layer, Substrate};
 pub use contact::{
-    Algorithm, Case, Contact, Discretisation, Motion, Options, Report, Setup, Solution, Solver,
-    Termination, Warning, solve,
+    Algorithm, Case, Contact, Discretisation, Hardness, Motion, Options, Report, Setup, Solution,
+    Solver, Termination, Warning, solve,
 };
 pub use convolution::Convolution;
 pub use error::{Error, Result};

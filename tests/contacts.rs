@@ -6,6 +6,7 @@ mod support {
     pub(crate) mod messages;
     pub(crate) mod random;
     pub(crate) mod reference;
+    pub(crate) mod rings;
     pub(crate) mod seeded;
 }
 
@@ -19,6 +20,7 @@ mod contact {
     mod few_cells;
     mod foundation;
     mod fuzz;
+    mod hardness;
     mod invariants;
     mod line;
     mod periodic;

@@ -38,12 +38,20 @@ def solve(
         list[Path] | None,
         typer.Option(help="File to write: .nc, .vtr, .csv, or a picture. May be repeated."),
     ] = None,
+    initial: Annotated[
+        Path | None,
+        typer.Option(
+            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation."
+        ),
+    ] = None,
     units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Solve the contact that a case file describes."""
     described = _read(case, units)
     arguments, asked = described.arguments(), described.stress()
+    if initial is not None:
+        arguments["initial"] = nacre.load(initial)
     for path in save or []:
         _check_ending(path)
     try:

@@ -71,6 +71,7 @@ def numbers(solution: Solution) -> list[tuple[str, str]]:
         ("at", _pair(solution.peak_position, "m", arms)),
         ("contact", sides[1] if line else f"{sides[0]} × {sides[1]}"),
         ("area", written(solution.contact_area, "m" if line else "m²")),
+        *_yielded(solution),
         *_body("body", report.body),
         *_body("counterbody", report.counterbody),
         *_moduli(report.body, report.counterbody),
@@ -82,6 +83,19 @@ def numbers(solution: Solution) -> list[tuple[str, str]]:
         # The load of one period acts nowhere in particular.
         left |= {"acts at", "moment", "tilt"}
     return [row for row in rows if row[0] not in left]
+
+
+def _yielded(solution: Solution) -> list[tuple[str, str]]:
+    """Return the hardness, and the permanent indentation where there is one."""
+    hardness, deepest = solution.hardness, solution.indentation.max()
+    rows = []
+    if hardness is not None:
+        ends = np.min(hardness), np.max(hardness)
+        words = [written(float(end), "Pa") for end in ends]
+        rows.append(("hardness", words[0] if ends[0] == ends[1] else " to ".join(words)))
+    if deepest > 0:
+        rows.append(("indentation", f"{written(float(deepest), 'm')} at most, permanent"))
+    return rows
 
 
 def _fallback(report: Report) -> str:

@@ -42,6 +42,7 @@ class Motion(TypedDict, total=False):
 class Search(TypedDict, total=False):
     """Keywords that say how a solution is found."""
 
+    hardness: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
     tolerance: float
     max_iterations: int | None
     algorithm: Literal["cascade", "polonsky-keer"]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import inspect
 import types
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from pydantic import Field, create_model, field_validator, model_validator
@@ -126,8 +126,9 @@ KNOWN = {
 
 
 def _checked(hint: Any) -> Any:
-    """Return the type that a case file has for a keyword."""
+    """Return the type that a case file has for a keyword; it has none for arrays."""
     parts = get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
+    parts = tuple(part for part in parts if get_origin(part) not in (Sequence, np.ndarray))
     return Union[(*(KNOWN.get(part, part) for part in parts),)]
 
 

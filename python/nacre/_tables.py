@@ -16,12 +16,19 @@ if TYPE_CHECKING:
     from _csv import Writer
 
 FIELDS = ("pressure", "gap", "displacement")
-"""Fields of a solution's state."""
+"""Fields of every solution's state."""
+YIELDED = ("indentation", "hardness")
+"""Further fields of the state of surfaces that have yielded, or of which each cell has a hardness."""
 
 
-def columns() -> list[str]:
+def shown(solution: core.Solution) -> tuple[str, ...]:
+    """Return the fields that tables and pictures show."""
+    return (*FIELDS, "indentation") if solution.indentation.any() else FIELDS
+
+
+def columns(fields: Iterable[str]) -> list[str]:
     """Return the headings of x, y and the fields, with the units that are set."""
-    units = {"x": "m", "y": "m", **{name: UNITS[name] for name in FIELDS}}
+    units = {"x": "m", "y": "m", **{name: UNITS[name] for name in fields}}
     return [f"{name} [{symbol(unit)}]" for name, unit in units.items()]
 
 
@@ -33,7 +40,7 @@ def write_sections(solution: core.Solution, path: Path) -> None:
     )
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(["along", *columns()])
+        writer.writerow(["along", *columns(shown(solution))])
         _write(writer, solution, ((k, j) for k in range(solution.x.size)), "x")
         _write(writer, solution, ((i, k) for k in range(solution.y.size)), "y")
 
@@ -56,7 +63,7 @@ def write_cells(solution: core.Solution, path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         file.writelines(f"# {name}: {value}\n" for name, value in head.items())
         writer = csv.writer(file)
-        writer.writerow(columns())
+        writer.writerow(columns(shown(solution)))
         _write(writer, solution, ((i, j) for i in range(nx) for j in range(ny)))
 
 
@@ -64,5 +71,5 @@ def _write(
     writer: Writer, solution: core.Solution, cells: Iterable[tuple[int, int]], *first: str
 ) -> None:
     x, y = solution.x.tolist(), solution.y.tolist()
-    fields = [getattr(solution, name).tolist() for name in FIELDS]
+    fields = [getattr(solution, name).tolist() for name in shown(solution)]
     writer.writerows([*first, x[i], y[j], *(f[i][j] for f in fields)] for i, j in cells)

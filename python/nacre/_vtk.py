@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
+from nacre._tables import shown
 
 Array = npt.NDArray[np.float64]
 
-SURFACE = ("pressure", "gap", "displacement")
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 OPTIONS = ("body", "friction", "direction", "residual", "displacement", "threads")
 """Keywords of `Solution.stress` that `Solution.save` takes."""
@@ -32,7 +32,7 @@ def write_surface(solution: core.Solution, path: Path) -> None:
         c + side * (np.arange(cells + 1) / cells - 0.5)
         for c, side, cells in zip(grid.center, grid.size, grid.shape, strict=True)
     ]
-    fields = {name: getattr(solution, name)[..., np.newaxis] for name in SURFACE}
+    fields = {name: getattr(solution, name)[..., np.newaxis] for name in shown(solution)}
     cells = {name: np.asfortranarray(field) for name, field in fields.items()}
     gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
 

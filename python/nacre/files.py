@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
-from nacre._tables import FIELDS, write_cells, write_sections
+from nacre._tables import FIELDS, YIELDED, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS, symbol, system
 from nacre.values import FORMAT, decode, encode
@@ -54,6 +54,8 @@ NAMES = {
     "pressure": "pressure",
     "gap": "gap; infinite where the shape cannot touch",
     "displacement": "normal displacement of both bodies together",
+    "indentation": "permanent indentation",
+    "hardness": "largest pressure that the surfaces bear",
     "line_load": "force per length along x",
 }
 STATE = "nacre_solution"
@@ -77,12 +79,15 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
         import xarray
 
     report = solution.report
-    fields = {name: (("x", "y"), getattr(solution, name)) for name in FIELDS}
+    state, arrays = _split(solution)
+    fields = {name: (("x", "y"), values) for name, values in arrays.items()}
     dataset = xarray.Dataset(
         {**fields, "line_load": (("x",), solution.line_load)},
         coords={"x": solution.x, "y": solution.y},
     )
     for name, words in NAMES.items():
+        if name not in dataset:
+            continue
         dataset[name].attrs = {"units": symbol(UNITS[name]), "long_name": words}
     for name in ("x", "y"):
         dataset[name].attrs = {"units": symbol("m"), "long_name": f"{name} of the cell centre"}
@@ -105,9 +110,8 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
         "balance": np.array(report.balance),
         "iterations": report.iterations,
         "warnings": "\n".join(report.warnings),
-        STATE: json.dumps(_state(solution)),
+        STATE: json.dumps(state),
     }
-    arrays = {name: getattr(solution, name) for name in FIELDS}
     dataset.attrs[CHECKSUM] = _checksum(dataset.attrs[STATE], arrays)
     for name in FIGURES:
         if dataset.attrs[name].size == 1:
@@ -217,14 +221,17 @@ def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
     path.write_bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
-def _state(solution: core.Solution) -> dict[str, Any]:
-    """Return the named state of a solution without its fields."""
-    return {name: value for name, value in solution.to_dict().items() if name not in FIELDS}
+def _split(solution: core.Solution) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Return the named state of a solution without its fields, and the fields."""
+    state = solution.to_dict()
+    names = [name for name in (*FIELDS, *YIELDED) if isinstance(state.get(name), np.ndarray)]
+    fields = {name: state.pop(name) for name in names}
+    return state, fields
 
 
 def _checksum(state: str, fields: Mapping[str, Array]) -> str:
     digest = hashlib.sha256(state.encode())
-    for name in FIELDS:
+    for name in fields:
         digest.update(np.ascontiguousarray(fields[name], dtype="<f8").tobytes())
     return digest.hexdigest()
 
@@ -242,7 +249,7 @@ def _read(content: bytes) -> tuple[Any, dict[str, Variable]]:
                     tuple(d[0].name.rpartition("/")[2] if len(d) else "" for d in file[name].dims),
                     np.asarray(file[name][()]),
                 )
-                for name in (*FIELDS, *FRICTION, "x", "y")
+                for name in (*FIELDS, *YIELDED, *FRICTION, "x", "y")
                 if name in file
             }
     except Exception as error:  # whatever HDF5 says of a damaged file
@@ -267,7 +274,8 @@ def _solution(
 
         arrays = {name: _as_saved(name, variables) for name in variables if name not in "xy"}
         return restored(state, text, attributes[CHECKSUM], arrays)
-    fields = {name: _field(name, variables) for name in FIELDS}
+    yielded = [name for name in YIELDED if name in variables]
+    fields = {name: _field(name, variables) for name in (*FIELDS, *yielded)}
     written, found = state.get("format", 0), attributes[CHECKSUM]
     is_newer = isinstance(written, int) and written > FORMAT  # `from_dict` says so
     if found is not None and not is_newer and found != _checksum(text, fields):

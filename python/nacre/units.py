@@ -14,6 +14,9 @@ UNITS = {
     "pressure": "Pa",
     "gap": "m",
     "displacement": "m",
+    "indentation": "m",
+    "hardness": "Pa",
+    "plastic_work": "N m",
     "line_load": "N/m",
     "load": "N",
     "approach": "m",
@@ -38,6 +41,7 @@ UNITS = {
 """SI units of a solution's quantities, and of the stresses that studies keep."""
 LINE_UNITS = UNITS | {
     **{"load": "N/m", "force": "N/m", "moment": "N", "contact_area": "m"},
+    "plastic_work": "N",
     **{"torque": "N", "dissipated": "N", "tangential_energy": "N"},
 }
 """SI units of the same quantities of a line contact, whose loads and areas are per length."""
@@ -55,6 +59,7 @@ PARAMETERS = {
     "crown_radius": "m",
     "flat_length": "m",
     "depth": "m",
+    "hardness": "Pa",
 }
 """SI units of a study's parameters, by the name of the argument."""
 

@@ -12,6 +12,7 @@ mod task;
 
 use std::ops::ControlFlow;
 
+use super::hardness::Hardness;
 use super::motion::Motion;
 use super::options::{Algorithm, Options, Setup};
 use super::plan::bodies;
@@ -95,6 +96,12 @@ pub fn solve_watched(
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
+        hardness: options
+            .hardness
+            .as_ref()
+            .and_then(Hardness::uniform)
+            .cloned(),
+        indentation: None,
         ..options.clone()
     };
     let (mut solution, warning) = solve_on_fit_grid(task, &plain, &mut watched)?;

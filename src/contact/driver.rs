@@ -10,10 +10,11 @@ use ndarray::Array2;
 use super::cascade::corners;
 use super::cascade::discretisation::{GridResult, estimate};
 use super::cascade::{Cascade, Coarser};
+use super::hardness::{Elastic, Yielding, check_indentation, check_load};
 use super::motion::Motion;
 use super::options::{Algorithm, Options};
 use super::plan::{Plan, bodies};
-use super::problem::fields::{Fields, slice};
+use super::problem::fields::{Fields, array, slice};
 use super::problem::freedoms::{Freedoms, OVERFLOW};
 use super::problem::{Problem, Quality};
 use super::solution::Solution;
@@ -26,7 +27,7 @@ use super::start::{Sampled, check_seam, checked_gaps, given_pressure, uniform_pr
 use crate::ends::check_carried;
 use crate::error::Result;
 use crate::parallel::Rows;
-use crate::surface::Surface;
+use crate::surface::{Lifted, Surface};
 
 /// Certificates that may fail on a window that need not open, by rounding of the displacement.
 const RETRIES: usize = 2;
@@ -42,10 +43,36 @@ impl Plan {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        let start = Instant::now();
-        let freedoms = Freedoms::new(motion, &self.grid)?;
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
+        let Some(before) = &options.indentation else {
+            return self.press(shape, sampled, motion, options, progress);
+        };
+        check_indentation(before, &self.grid)?;
+        let dented = Lifted::new(shape, &self.grid, before.clone());
+        let mut solution =
+            self.press(&dented, &mut Sampled::default(), motion, options, progress)?;
+        solution.indentation = Some(match solution.indentation {
+            Some(deeper) => deeper + before,
+            None => before.clone(),
+        });
+        Ok(solution)
+    }
+
+    /// Presses a shape into the body that has the indentations of earlier solves.
+    fn press<'a>(
+        &self,
+        shape: &'a dyn Surface,
+        sampled: &mut Sampled<'a>,
+        motion: &Motion,
+        options: &Options,
+        progress: &mut Progress,
+    ) -> Result<Solution> {
+        let start = Instant::now();
+        let freedoms = Freedoms::new(motion, &self.grid)?;
+        if let Some(hardness) = &options.hardness {
+            hardness.check(&self.grid)?;
+        }
         let limited = self.ends.limit(shape);
         let (given, shape): (_, &dyn Surface) = match self.ends.any() {
             true => (shape, &limited),
@@ -80,7 +107,12 @@ impl Plan {
             freedoms: &freedoms,
             gap: slice(&gap),
             local: &self.local,
+            dent: 0.0,
         };
+
+        if let Some(hardness) = &options.hardness {
+            check_load(&problem, hardness)?;
+        }
 
         // The start: a given pressure, or the coarser solutions.
         let initial = given_pressure(&problem, options.initial.as_deref())?;
@@ -94,12 +126,46 @@ impl Plan {
 
         // The iteration.
         let mut results = Vec::new();
-        let outcome = if let Some(mut cascade) = cascade {
+        let mut outcome = if let Some(mut cascade) = cascade {
             results = std::mem::take(&mut cascade.results);
             solve_in_window(&problem, cascade, &mut fields, criteria, &mut watch)?
         } else {
             fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
             polonsky_keer::solve(&problem, &mut fields, criteria, &mut watch)?
+        };
+
+        // The cells that yield: where there are any, the coarser grids say nothing.
+        let mut indentation = None;
+        if let Some(hardness) = &options.hardness {
+            let mut elastic: Box<Elastic> =
+                Box::new(|problem, gap, start, fields, criteria, watch| match start {
+                    Some(start) if cascades => {
+                        let cascade = Cascade::from(&start, problem, gap, &self.levels);
+                        solve_in_window(problem, cascade, fields, criteria, watch)
+                    }
+                    start => {
+                        fields.pressure = start.map_or_else(|| uniform_pressure(problem), Ok)?;
+                        polonsky_keer::solve(problem, fields, criteria, watch)
+                    }
+                });
+            let mut yielding = Yielding::new(&problem, hardness);
+            indentation = yielding.solve(
+                &mut fields,
+                &mut outcome,
+                criteria,
+                &mut elastic,
+                &mut watch,
+            )?;
+        }
+        let indentation = indentation.map(|deeper| array(self.grid.shape(), deeper));
+        let gap = match &indentation {
+            Some(deeper) => Arc::new(&*gap + deeper),
+            None => Arc::clone(&gap),
+        };
+        let problem = Problem {
+            gap: slice(&gap),
+            dent: (indentation.iter().flatten()).fold(0.0, |a: f64, w| a.max(*w)),
+            ..problem
         };
 
         // The certificate: everything that is reported is computed afresh from the pressure.
@@ -121,7 +187,7 @@ impl Plan {
             _ => Termination::IterationLimit,
         };
         report.solver = Some(outcome.solver);
-        if report.converged() {
+        if report.converged() && indentation.is_none() {
             results.push(GridResult {
                 peak_pressure: carried.peak,
                 approach,
@@ -148,6 +214,8 @@ impl Plan {
             displacement: fields.displacement,
             approach: approach - raised,
             tilt,
+            hardness: options.hardness.clone(),
+            indentation,
             report,
             gap: Gap::Computed {
                 undeformed: gap,

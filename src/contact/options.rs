@@ -2,6 +2,7 @@
 
 use ndarray::Array2;
 
+use super::hardness::Hardness;
 use crate::error::{Error, Result};
 use crate::influence::Method;
 use crate::response::Body;
@@ -41,6 +42,11 @@ pub struct Options {
     pub algorithm: Algorithm,
     /// Pressure to start from (nx, ny) \[Pa\]. Default: uniform.
     pub initial: Option<Array2<f64>>,
+    /// Largest pressure that the surfaces bear. Default: they do not yield.
+    pub hardness: Option<Hardness>,
+    /// Permanent indentation (nx, ny) \[m\] that the surfaces have already: that of the solution before, in a
+    /// history of loads. Default: none.
+    pub indentation: Option<Array2<f64>>,
 }
 
 impl Default for Options {
@@ -50,6 +56,8 @@ impl Default for Options {
             max_iterations: None,
             algorithm: Algorithm::default(),
             initial: None,
+            hardness: None,
+            indentation: None,
         }
     }
 }

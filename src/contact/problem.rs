@@ -41,6 +41,8 @@ pub(super) struct Problem<'a> {
     /// h, less the prescribed motion; +∞ where the shape cannot touch.
     pub(super) gap: &'a [f64],
     pub(super) local: &'a LocalDisplacement,
+    /// Deepest permanent indentation that is part of h, which counts as a displacement.
+    pub(super) dent: f64,
 }
 
 /// How well a pressure solves the problem.
@@ -249,9 +251,9 @@ impl Problem<'_> {
             (false, _) => 0.0,
         };
         let [force, ..] = fit.moments;
-        let far = sums.displacement;
+        let far = sums.displacement.max(self.dent);
         let local = (self.local.under(force, fit.cells())).max(SMALLEST_SCALE * far);
-        let work = sums.work.abs().min(local * force);
+        let work = (sums.work.abs() + self.dent * force).min(local * force);
         Quality {
             residual: relative(sums.mismatch, work),
             overlap: relative(sums.overlap, local.min(far)),

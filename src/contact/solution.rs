@@ -9,6 +9,7 @@ pub(super) mod warnings;
 
 use ndarray::{Array1, Array2};
 
+use super::hardness::{Hardness, check_indentation};
 use super::problem::constraint::NonNegative;
 use crate::error::{Error, Result, finite};
 use crate::grid::Grid;
@@ -26,6 +27,11 @@ pub struct Solution {
     pub approach: f64,
     /// Tilt (s_x, s_y).
     pub tilt: [f64; 2],
+    /// Largest pressure that the surfaces bear; `None` where they do not yield.
+    pub hardness: Option<Hardness>,
+    /// Permanent indentation \[m\], ≥ 0, with that of the solves before; `None` where no cell has one. The gap
+    /// contains it.
+    pub indentation: Option<Array2<f64>>,
     /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
@@ -38,6 +44,8 @@ impl PartialEq for Solution {
             && self.report == other.report
             && self.pressure == other.pressure
             && self.displacement == other.displacement
+            && self.hardness == other.hardness
+            && self.indentation == other.indentation
             && self.gap() == other.gap()
     }
 }
@@ -106,8 +114,33 @@ impl Solution {
             displacement,
             approach,
             tilt,
+            hardness: None,
+            indentation: None,
             report,
             gap: Gap::Known(gap),
+        })
+    }
+
+    /// The solution with the hardness and the permanent indentation that it has in a file.
+    ///
+    /// # Errors
+    /// An array of another shape than the grid, a hardness that is not above 0, an indentation that is negative or not
+    /// finite.
+    pub fn yielding(
+        self,
+        hardness: Option<Hardness>,
+        indentation: Option<Array2<f64>>,
+    ) -> Result<Self> {
+        if let Some(hardness) = &hardness {
+            hardness.check(self.grid())?;
+        }
+        if let Some(indentation) = &indentation {
+            check_indentation(indentation, self.grid())?;
+        }
+        Ok(Self {
+            hardness,
+            indentation,
+            ..self
         })
     }
 
@@ -164,6 +197,17 @@ impl Solution {
     pub fn contact_area(&self) -> f64 {
         let cells = self.pressure.iter();
         cells.filter(|p| NonNegative.is_free(**p)).count() as f64 * self.grid().cell_area()
+    }
+
+    /// Energy that the permanent indentation w has taken \[J\], Σ H w dA; 0 where the surfaces do not yield.
+    ///
+    /// It is the work that a history of loads with one hardness leaves when the load is taken away.
+    pub fn plastic_work(&self) -> f64 {
+        let (Some(hardness), Some(indentation)) = (&self.hardness, &self.indentation) else {
+            return 0.0;
+        };
+        let deeper = indentation.iter().enumerate().filter(|(_, w)| **w > 0.0);
+        deeper.map(|(k, w)| hardness.at(k) * w).sum::<f64>() * self.grid().cell_area()
     }
 
     /// Largest pressure of a cell \[Pa\].

@@ -22,7 +22,7 @@ use super::stress::keywords::{
 };
 use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
 use super::words::Word;
-use crate::contact::{Solution, Termination};
+use crate::contact::{Hardness, Solution, Termination};
 use crate::stress::Member;
 
 mod named;
@@ -44,6 +44,7 @@ pub(super) struct PySolution {
     pressure: PyOnceLock<Py<PyArray2<f64>>>,
     gap: PyOnceLock<Py<PyArray2<f64>>>,
     displacement: PyOnceLock<Py<PyArray2<f64>>>,
+    indentation: PyOnceLock<Py<PyArray2<f64>>>,
 }
 
 impl From<Solution> for PySolution {
@@ -53,11 +54,17 @@ impl From<Solution> for PySolution {
             pressure: PyOnceLock::new(),
             gap: PyOnceLock::new(),
             displacement: PyOnceLock::new(),
+            indentation: PyOnceLock::new(),
         }
     }
 }
 
 impl PySolution {
+    /// The solution.
+    pub(super) fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
     /// The solution itself.
     pub(super) fn inner(self) -> Solution {
         Arc::unwrap_or_clone(self.solution)
@@ -119,6 +126,31 @@ impl PySolution {
         cached(py, &self.displacement, || {
             self.solution.displacement.clone()
         })
+    }
+
+    /// Largest pressure that the surfaces bear [Pa], of all cells or of each; None where they do not yield.
+    #[getter]
+    fn hardness<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Ok(match &self.solution.hardness {
+            None => None,
+            Some(Hardness::Uniform(value)) => Some(value.into_pyobject(py)?.into_any()),
+            Some(Hardness::Cells(values)) => Some(read_only(py, values.clone())?.into_any()),
+        })
+    }
+
+    /// Permanent indentation of the surfaces [m], at least 0, with that of the solutions before; the gap contains it.
+    #[getter]
+    fn indentation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        cached(py, &self.indentation, || {
+            let zeros = || Array2::zeros(self.solution.pressure.dim());
+            self.solution.indentation.clone().unwrap_or_else(zeros)
+        })
+    }
+
+    /// Energy that the permanent indentation has taken [N m], ``sum H w dA``; 0 without hardness.
+    #[getter]
+    fn plastic_work(&self) -> f64 {
+        self.solution.plastic_work()
     }
 
     /// Whether each cell is in contact: its pressure is above 0.
@@ -506,7 +538,7 @@ impl PySolution {
     ///     Direction of the section.
     /// at : float, optional
     ///     Position of the section in the other direction [m]; through the largest pressure by default.
-    /// quantity : {"pressure", "gap", "displacement", "line_load"}, optional
+    /// quantity : {"pressure", "gap", "displacement", "indentation", "line_load"}, optional
     ///     Quantity to draw.
     /// axes : matplotlib.axes.Axes, optional
     ///     Axes to draw into; a new figure by default.

@@ -18,7 +18,7 @@ with extra("plot"):
 
 Array = npt.NDArray[np.float64]
 Direction = Literal["x", "y"]
-QUANTITIES = ("pressure", "gap", "displacement", "line_load")
+QUANTITIES = ("pressure", "gap", "displacement", "indentation", "line_load")
 
 
 def section(
@@ -41,7 +41,7 @@ def section(
         Its place in the other direction [m]; the row of the largest pressure by default. Values are
         those of the nearest row of cells.
     quantity
-        "pressure", "gap", "displacement" or "line_load".
+        "pressure", "gap", "displacement", "indentation" or "line_load".
     axes
         Axes to draw into; a new figure by default.
     style

@@ -66,6 +66,7 @@ impl<'a> Search<'a> {
             options: Options {
                 tolerance: FRAME_TOLERANCE,
                 initial: None,
+                indentation: None,
                 algorithm: Algorithm::default(),
                 ..options.clone()
             },

@@ -281,6 +281,7 @@ impl Level<'_> {
                 freedoms: &freedoms,
                 gap: &gap,
                 local: self.local,
+                dent: 0.0,
             };
             let mut solver = Preconditioned::new(&problem, &approximation, memory);
             let before = *work;

@@ -10,9 +10,11 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
-use super::{Real, Repr, count, number, pair, real_matrix};
-use crate::contact::{Motion, Options};
+use super::{Real, Repr, count, number, pair, real_array, real_matrix};
+use crate::contact::{Hardness, Motion, Options};
+use crate::grid::Grid;
 use crate::influence::Method;
+use crate::python::solution::PySolution;
 use crate::python::words::{REFINEMENT, Word, method};
 
 /// Signature of the keywords that say how coefficients are planned.
@@ -71,7 +73,7 @@ tilt : tuple of float or None, optional
 /// Signature of the keywords that say how a solution is found.
 macro_rules! search_signature {
     () => {
-        "tolerance=1e-8, max_iterations=None, algorithm='cascade'"
+        "hardness=None, tolerance=1e-8, max_iterations=None, algorithm='cascade'"
     };
 }
 
@@ -79,6 +81,9 @@ macro_rules! search_signature {
 macro_rules! search_docs {
     () => {
         "\
+hardness : float or array_like, optional
+    Largest pressure H that the surfaces bear [Pa], above 0, of all cells or of each, ``(nx, ny)``: cells that would
+    bear more yield, and keep a permanent indentation (``Solution.indentation``). By default they do not yield.
 tolerance : float, optional
     Largest `Report.residual` and `Report.overlap` of a converged solution, both relative, above 0
     and below 1.
@@ -103,7 +108,8 @@ macro_rules! single_docs {
         "\
 initial : Solution or array_like, optional
     Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution near the one that is
-    sought, such as the previous one of a series. The result does not depend on it.
+    sought, such as the previous one of a series. The result does not depend on it, but that the surfaces keep
+    the permanent indentation of a solution: a history of loads goes from one to the next.
 progress : callable, optional
     Function that is called with a `Report` at each iteration; returning False stops, and gives
     the unfinished solution.
@@ -143,20 +149,50 @@ pub(in crate::python) fn options(keywords: &Keywords) -> PyResult<Options> {
         max_iterations: keywords.count("max_iterations", 0)?,
         algorithm: keywords.word("cascade")?,
         initial: None,
+        hardness: hardness(keywords)?,
+        indentation: None,
     })
 }
 
+/// Largest pressure that the surfaces bear.
+fn hardness(keywords: &Keywords) -> PyResult<Option<Hardness>> {
+    let Some(given) = keywords.given("hardness")? else {
+        return Ok(None);
+    };
+    let values = real_array("hardness", &given)?;
+    Ok(Some(match values.ndim() {
+        0 => Hardness::Uniform(values.sum()),
+        _ => Hardness::Cells(real_matrix("hardness", &given)?),
+    }))
+}
+
+/// What only a single solve takes.
+pub(in crate::python) struct Single {
+    pub(in crate::python) options: Options,
+    /// Grid of the permanent indentation that the surfaces have already.
+    pub(in crate::python) dented: Option<Grid>,
+    pub(in crate::python) progress: Option<Py<PyAny>>,
+    pub(in crate::python) check: bool,
+}
+
 /// Options, callback and check of a single solve.
-pub(in crate::python) fn single(
-    keywords: &Keywords,
-) -> PyResult<(Options, Option<Py<PyAny>>, bool)> {
-    let mut options = options(keywords)?;
+pub(in crate::python) fn single(keywords: &Keywords) -> PyResult<Single> {
+    let (mut options, mut dented) = (options(keywords)?, None);
     if let Some(initial) = keywords.given("initial")? {
+        if let Ok(before) = initial.cast::<PySolution>() {
+            let before = before.get().solution();
+            options.indentation.clone_from(&before.indentation);
+            dented = before.indentation.as_ref().map(|_| *before.grid());
+        }
         let pressure = initial.getattr_opt("pressure")?.unwrap_or(initial);
         options.initial = Some(real_matrix("initial", &pressure)?);
     }
-    let progress = keywords.callable("progress")?;
-    Ok((options, progress, keywords.flag("check", true)?))
+    Ok(Single {
+        options,
+        dented,
+        progress: keywords.callable("progress")?,
+        check: keywords.flag("check", true)?,
+    })
 }
 
 /// Keyword arguments of one call. Each is taken once; [`Keywords::finish`] refuses the others.

@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use crate::body::HalfSpace;
 use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
 use crate::python::arguments::keywords::{
-    self, Keywords, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
+    self, Keywords, Single, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
     search_signature, single_docs, single_signature,
 };
 use crate::python::background;
@@ -48,7 +48,8 @@ pub(super) fn setup(
 ///     Body that carries the shape; rigid where there is none. A roller of finite length ends on both
 ///     sides: ``HalfSpace(steel, ends=roller.ends)``.
 /// grid : Grid, optional
-///     Cells of the pressure. An endless shape, such as a cylinder, needs a grid.
+///     Cells of the pressure; by default those of an `initial` solution whose surfaces have a permanent indentation.
+///     An endless shape, such as a cylinder, needs a grid.
 #[doc = plan_docs!()]
 #[doc = motion_docs!()]
 #[doc = search_docs!()]
@@ -95,8 +96,9 @@ pub(in crate::python) fn solve<'py>(
     let call = Call::new(shape, &keywords)?;
     keywords.finish("keywords of solve")?;
     let body = Body::from(body);
+    let grid = grid.map(|grid| grid.0).or(call.single.dented);
     call.run(py, move |shape, motion, options, progress| match grid {
-        Some(PyGrid(grid)) => {
+        Some(grid) => {
             Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
         }
         None => solve_watched(shape, &body, &setup, motion, options, progress),
@@ -107,21 +109,17 @@ pub(in crate::python) fn solve<'py>(
 pub(super) struct Call {
     shape: Shape,
     motion: Motion,
-    options: Options,
-    progress: Option<Py<PyAny>>,
-    check: bool,
+    single: Single,
 }
 
 impl Call {
     pub(super) fn new(shape: &Bound<'_, PyAny>, keywords: &Keywords) -> PyResult<Self> {
         let motion = keywords::motion(keywords)?;
-        let (options, progress, check) = keywords::single(keywords)?;
+        let single = keywords::single(keywords)?;
         Ok(Self {
             shape: self::shape(shape)?.get().0.clone(),
             motion,
-            options,
-            progress,
-            check,
+            single,
         })
     }
 
@@ -136,10 +134,14 @@ impl Call {
         let Self {
             shape,
             motion,
+            single,
+        } = self;
+        let Single {
             options,
             progress,
             check,
-        } = self;
+            ..
+        } = single;
         let tolerance = options.tolerance;
         let solution = background::run(py, progress, move |caller| {
             work(&shape, &motion, &options, &mut |report| {

@@ -1,10 +1,12 @@
 //! Named state of a solution.
 
+use ndarray::IxDyn;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::PySolution;
 use super::report::PyReport;
-use crate::contact::Solution;
+use crate::contact::{Hardness, Solution};
 use crate::python::state::{Fields, State};
 
 impl State for PySolution {
@@ -17,6 +19,15 @@ impl State for PySolution {
         fields.set_array("displacement", &solution.displacement)?;
         fields.set("approach", solution.approach)?;
         fields.set("tilt", solution.tilt)?;
+        // Left out where the surfaces do not yield, as in states of earlier versions.
+        match &solution.hardness {
+            None => {}
+            Some(Hardness::Uniform(value)) => fields.set("hardness", value)?,
+            Some(Hardness::Cells(values)) => fields.set_array("hardness", values)?,
+        }
+        if let Some(indentation) = &solution.indentation {
+            fields.set_array("indentation", indentation)?;
+        }
         fields.set_fields("report", |report| self.report().write(report))
     }
 
@@ -28,6 +39,16 @@ impl State for PySolution {
         ];
         let (approach, tilt) = (fields.get("approach")?, fields.get("tilt")?);
         let report = fields.get_fields("report")?.read(PyReport::read)?;
-        Ok(Solution::from_fields(arrays, approach, tilt, report.0)?.into())
+        let hardness = fields.get_newer_array::<IxDyn>("hardness")?;
+        let hardness = hardness.map(|values| match values.ndim() {
+            0 => Ok(Hardness::Uniform(values.sum())),
+            _ => values.into_dimensionality().map(Hardness::Cells),
+        });
+        let hardness = hardness
+            .transpose()
+            .map_err(|error| PyValueError::new_err(format!("hardness: {error}")))?;
+        let indentation = fields.get_newer_array("indentation")?;
+        let solution = Solution::from_fields(arrays, approach, tilt, report.0)?;
+        Ok(solution.yielding(hardness, indentation)?.into())
     }
 }

@@ -124,6 +124,7 @@ fn with_both<R>(case: &Case, work: impl FnOnce(Preconditioned, Textbook, Field) 
         freedoms: &freedoms,
         gap: &gap,
         local: &LocalDisplacement::new(&[&case.body], &case.grid),
+        dent: 0.0,
     };
     let pressed = |(i, j): (usize, usize)| x[i].hypot(y[j]) < case.start;
     let pressed = Array2::from_shape_fn(coefficients.dim(), pressed);
