@@ -148,14 +148,10 @@ impl Plan {
                         polonsky_keer::solve(problem, fields, criteria, watch)
                     }
                 });
-            let mut yielding = Yielding::new(&problem, hardness);
-            indentation = yielding.solve(
-                &mut fields,
-                &mut outcome,
-                criteria,
-                &mut elastic,
-                &mut watch,
-            )?;
+            let tools: (&mut Elastic, &mut Watch) = (&mut *elastic, &mut watch);
+            let cells = problem.gap.len();
+            let yielding = Yielding::new(hardness, cells, criteria, outcome, tools);
+            (outcome, indentation) = yielding.solve(&problem, &mut fields)?;
         }
         let indentation = indentation.map(|deeper| array(self.grid.shape(), deeper));
         let gap = match &indentation {
@@ -180,10 +176,11 @@ impl Plan {
             || warnings(pressure, window, &gap, &self.grid, shape, &self.ends),
         );
         report.count(outcome.iterations, outcome.work / unit, quality);
+        let borne = (options.hardness.as_ref()).is_none_or(|hardness| hardness.bears(pressure));
         // One rule decides, on the numbers that are reported.
         report.termination = match outcome.termination {
             Termination::Stopped => Termination::Stopped,
-            _ if quality.meets(criteria.tolerance) => Termination::Converged,
+            _ if quality.meets(criteria.tolerance) && borne => Termination::Converged,
             _ => Termination::IterationLimit,
         };
         report.solver = Some(outcome.solver);

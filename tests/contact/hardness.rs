@@ -138,7 +138,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
             } else {
                 &sphere
             };
-            let load = if grid.is_line() { 1e-3 } else { 2e-3 };
+            let load = if grid.is_line() { 6e-4 } else { 2e-3 };
             let mut motions = vec![Motion::load(load)];
             if !py {
                 let eccentricity = [None, Some(0.05)];
@@ -404,6 +404,24 @@ fn wrong_input_is_refused() -> Result<()> {
     assert_eq!(
         message(&limited(1e-4)),
         "load must be below what the hardness bears on the cells that can touch, 4.000000e-4, was 1.000000e-3"
+    );
+    // A punch that bears 99 % of what it can has 1 % of its area left to shift the force with: by 1 % of its radius, not
+    // by a tenth.
+    let punch = FlatPunch::new(0.9)?;
+    let touching = punch
+        .gaps(contact.grid())?
+        .iter()
+        .filter(|h| h.is_finite())
+        .count();
+    let area = touching as f64 * contact.grid().cell_area();
+    let eccentric = Motion {
+        eccentricity: [Some(0.1), None],
+        ..Motion::load(0.99 * 1e-3 * area)
+    };
+    let refused = contact.solve(&punch, &eccentric, &limited(1e-3));
+    assert_eq!(
+        refused.expect_err("it must be refused").to_string(),
+        "no pressure up to the hardness has this eccentricity or moment: give a larger hardness or a smaller load"
     );
     for wrong in [0.0, -1.0, f64::NAN] {
         assert_eq!(

@@ -35,7 +35,7 @@ impl Rings {
     pub(crate) fn solve(&self, radius: f64, load: f64, hardness: f64) -> (Vec<f64>, f64) {
         let count = self.middles.len();
         let gap = |k: usize| self.middles[k].powi(2) / (2.0 * radius);
-        let (mut p, mut approach) = (vec![0.0; count], 0.0);
+        let mut p = vec![0.0; count];
         // From Hertz' contact on.
         let a = (0.75 * load * radius).cbrt();
         let mut open: Vec<bool> = self.middles.iter().map(|r| *r > a).collect();
@@ -61,7 +61,7 @@ impl Rings {
             last.extend([0.0, load - borne]);
             rows.push(last);
             let solution = eliminated(rows);
-            approach = solution[free.len()];
+            let approach = solution[free.len()];
             p.fill(0.0);
             for k in 0..count {
                 p[k] = if held[k] { hardness } else { 0.0 };
