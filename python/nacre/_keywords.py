@@ -6,11 +6,10 @@ The compiled module has the signatures with the defaults; a test compares the tw
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import Literal, TypedDict
 
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+import numpy as np
+import numpy.typing as npt
 
 Along = tuple[float | None, float | None]
 """Values along x and y; None where one is not given."""

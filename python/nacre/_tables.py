@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 FIELDS = ("pressure", "gap", "displacement")
 """Fields of every solution's state."""
 YIELDED = ("indentation", "hardness")
-"""Further fields of the state of surfaces that have yielded, or of which each cell has a hardness."""
+"""Further fields, of surfaces that have yielded or whose cells each have a hardness."""
 
 
 def shown(solution: core.Solution) -> tuple[str, ...]:

@@ -215,12 +215,17 @@ impl Solution {
         self.pressure.fold(0.0, |peak, &p| peak.max(p))
     }
 
-    /// Centre of the cell of the largest pressure \[m\]; the first of several.
+    /// Centre of the cell of the largest pressure \[m\]; of several, the one of the deepest indentation, or the first.
     pub fn peak_position(&self) -> [f64; 2] {
         let peak = self.peak_pressure();
-        let found = self.pressure.indexed_iter().find(|(_, p)| **p >= peak);
-        let (i, j) = found.map_or((0, 0), |(index, _)| index);
-        [self.grid().x()[i], self.grid().y()[j]]
+        let mut highest = self.pressure.indexed_iter().filter(|(_, p)| **p >= peak);
+        let depth = |at: (usize, usize)| self.indentation.as_ref().map_or(0.0, |w| w[at]);
+        let first = highest.next().map_or((0, 0), |(at, _)| at);
+        let deepest = highest.fold(first, |best, (at, _)| match depth(at) > depth(best) {
+            true => at,
+            false => best,
+        });
+        [self.grid().x()[deepest.0], self.grid().y()[deepest.1]]
     }
 
     /// Pressure at the origin \[Pa\], by cubic interpolation between cell centres; 0 off the grid.

@@ -220,7 +220,7 @@ impl PySolution {
         self.solution.peak_pressure()
     }
 
-    /// Centre of the cell of the largest pressure [m].
+    /// Centre of the cell of the largest pressure [m]; of several, that of the deepest indentation.
     #[getter]
     fn peak_position(&self) -> (f64, f64) {
         self.solution.peak_position().into()

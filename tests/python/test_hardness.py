@@ -1,0 +1,224 @@
+"""Surfaces that yield, from Python: what `solve` takes, histories, files, tables, case files."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nacre
+import nacre.cli
+from nacre.case import Case, CaseError
+
+STEEL = nacre.Elastic(210e9, 0.3)
+BALL = nacre.Sphere(5e-3)
+GRID = nacre.Grid((48, 48), (5e-4, 5e-4))
+CONTACT = nacre.Contact(STEEL, GRID)
+LIMIT = 2e9
+LOADED = CONTACT.solve(BALL, load=100.0, hardness=LIMIT)
+"""Its elastic peak would be 3.5 GPa."""
+
+
+def test_the_pressure_ends_at_the_hardness() -> None:
+    assert LOADED.pressure.max() == LIMIT == LOADED.hardness
+    assert LOADED.load == pytest.approx(100.0, rel=1e-12)
+    dented = LOADED.indentation > 0
+    assert (LOADED.pressure[dented] == LIMIT).all()
+    assert dented.sum() > 100
+    # Where they touch, the gap is closed: it contains the indentation.
+    assert LOADED.gap[dented] == pytest.approx(0.0, abs=1e-8 * LOADED.displacement.max())
+    work = LIMIT * LOADED.indentation.sum() * GRID.spacing[0] * GRID.spacing[1]
+    assert LOADED.plastic_work == pytest.approx(work, rel=1e-12)
+
+
+def test_elastic_surfaces_have_no_hardness() -> None:
+    elastic = CONTACT.solve(BALL, load=10.0)
+    assert elastic.hardness is None
+    assert elastic.plastic_work == 0
+    assert elastic.indentation.shape == (48, 48)
+    assert not elastic.indentation.any()
+    same = CONTACT.solve(BALL, load=10.0, hardness=np.inf)
+    assert (same.pressure == elastic.pressure).all()
+
+
+def test_unloading_keeps_the_dent() -> None:
+    """The result does not depend on how many steps lead to it, up to the tolerance of 1e-8."""
+    steps = [LOADED]
+    for load in (40.0, 70.0, 20.0):
+        steps.append(CONTACT.solve(BALL, load=load, hardness=LIMIT, initial=steps[-1]))
+        assert (steps[-1].indentation == LOADED.indentation).all()
+    direct = CONTACT.solve(BALL, load=20.0, hardness=LIMIT, initial=LOADED)
+    peak = direct.peak_pressure
+    assert steps[-1].pressure == pytest.approx(direct.pressure, abs=1e-7 * peak)
+    # A dented surface is flatter: an elastic ball has a higher peak.
+    assert peak < 0.9 * CONTACT.solve(BALL, load=20.0).peak_pressure
+    # An array is a pressure to start from, without a dent.
+    fresh = CONTACT.solve(BALL, load=20.0, initial=LOADED.pressure)
+    assert not fresh.indentation.any()
+
+
+def test_a_history_keeps_the_grid_of_its_dent() -> None:
+    first = nacre.solve(BALL, STEEL, load=100.0, hardness=LIMIT)
+    second = nacre.solve(BALL, STEEL, load=10.0, hardness=LIMIT, initial=first)
+    assert second.report.grid == first.report.grid
+    with pytest.raises(ValueError, match=r"initial: expected shape \[48, 48\]|indentation"):
+        CONTACT.solve(BALL, load=10.0, hardness=LIMIT, initial=first)
+
+
+def test_each_cell_may_have_its_hardness() -> None:
+    cells = np.full(GRID.shape, LIMIT)
+    cells[:24] = np.inf
+    half = CONTACT.solve(BALL, load=100.0, hardness=cells)
+    np.testing.assert_array_equal(half.hardness, cells)
+    assert (half.pressure <= cells).all()
+    assert half.pressure[:24].max() > 1.5 * LIMIT
+    assert half.indentation[:24].max() == 0 < half.indentation[24:].max()
+
+
+def test_many_cases_have_the_same_hardness() -> None:
+    cases = [{"shape": BALL, "load": load} for load in (10.0, 100.0)]
+    solutions = CONTACT.solve_many(cases, hardness=LIMIT)
+    assert [s.plastic_work > 0 for s in solutions] == [False, True]
+    assert (solutions[1].pressure == LOADED.pressure).all()
+
+
+@pytest.mark.parametrize("wrong", [0.0, -1.0, np.nan, "hard", np.ones((3, 3)), np.zeros((48, 48))])
+def test_wrong_hardness_is_refused(wrong: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match=r"^hardness"):
+        CONTACT.solve(BALL, load=10.0, hardness=wrong)
+
+
+def test_too_much_load_is_refused_with_both_numbers() -> None:
+    with pytest.raises(ValueError, match=r"hardness bears .* 2\.5\d*e1, was 1\.0\d*e2"):
+        CONTACT.solve(BALL, load=100.0, hardness=1e8)
+
+
+def test_stresses_are_those_of_the_limited_pressure() -> None:
+    """σ_zz at the surface is minus the pressure; far below, only the force counts, 3W/2πz²."""
+    surface = LOADED.stress(0.0)
+    assert surface.zz == pytest.approx(-LOADED.pressure, abs=1e-9 * LIMIT)
+    deep = 4e-3
+    below = LOADED.stress(deep, x=0.0, y=0.0)
+    # The force acts on a radius of a thirtieth of the depth, which changes (a/z)² at most.
+    assert float(below.zz.ravel()[0]) == pytest.approx(-150 / np.pi / deep**2, rel=5e-3)
+    summary = LOADED.stress_summary(friction=0.1, direction=(1, 0))
+    assert summary.layers[0].von_mises[0] > 0.5 * LIMIT
+
+
+@pytest.mark.parametrize("hardness", [LIMIT, np.full(GRID.shape, LIMIT)], ids=["number", "cells"])
+def test_files_and_pickles_keep_everything(hardness: Any, tmp_path: Path) -> None:
+    solution = CONTACT.solve(BALL, load=100.0, hardness=hardness)
+    assert nacre.load(solution.save(tmp_path / "dent.nc")) == solution
+    assert pickle.loads(pickle.dumps(solution)) == solution
+    again = CONTACT.solve(BALL, load=30.0, initial=nacre.load(tmp_path / "dent.nc"))
+    assert (again.indentation == solution.indentation).all()
+    assert again.hardness is None
+    assert nacre.load(again.save(tmp_path / "elastic.nc")) == again
+    dataset = solution.to_xarray()
+    assert (dataset["indentation"].values == solution.indentation).all()
+    assert ("hardness" in dataset) == isinstance(hardness, np.ndarray)
+    solution.save(tmp_path / "dent.csv")
+    header = (tmp_path / "dent.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert header.endswith("indentation [m]")
+    solution.save(tmp_path / "dent.vtr")
+    assert b"indentation" in (tmp_path / "dent.vtr").read_bytes()
+
+
+def test_a_file_without_its_dent_is_refused(tmp_path: Path) -> None:
+    import h5py
+
+    path = LOADED.save(tmp_path / "dent.nc")
+    with h5py.File(path, "r+") as file:
+        del file["indentation"]
+    with pytest.raises(ValueError, match="not what was saved"):
+        nacre.load(path)
+
+
+def test_tables_and_pictures_show_the_dent() -> None:
+    text = str(LOADED)
+    assert "hardness       2 GPa" in text
+    assert "at most, permanent" in text
+    assert "hardness" not in str(CONTACT.solve(BALL, load=10.0))
+    spread = np.linspace(2e9, 3e9, GRID.shape[0] * GRID.shape[1]).reshape(GRID.shape)
+    assert "2 GPa to 3 GPa" in str(CONTACT.solve(BALL, load=100.0, hardness=spread))
+    from nacre import plot
+
+    axes = plot.section(LOADED, "x", quantity="indentation")
+    assert axes.get_ylabel() == "indentation [nm]"
+    highest = max(np.max(line.get_ydata()) for line in axes.get_lines())
+    assert highest == pytest.approx(1e9 * LOADED.indentation.max(), rel=1e-9)
+
+
+CASE: dict[str, Any] = {
+    "materials": {"steel": {"young": 210e9, "poisson": 0.3}},
+    "shape": {"kind": "sphere", "radius": 5e-3},
+    "body": {"substrate": "steel"},
+    "grid": {"shape": [48, 48], "size": [5e-4, 5e-4]},
+    "solve": {"load": 100.0, "hardness": LIMIT},
+}
+
+
+def test_case_files_have_a_hardness() -> None:
+    arguments = Case(CASE).arguments()
+    assert (nacre.solve(**arguments).pressure == LOADED.pressure).all()
+    with pytest.raises(CaseError, match=r"solve\.hardness"):
+        Case({**CASE, "solve": {"load": 1.0, "hardness": "hard"}})
+    study = Case(
+        {
+            **CASE,
+            "sweep": {
+                "parameters": {"solve.hardness": [2e9, 3e9]},
+                "outputs": ["peak_pressure", "plastic_work"],
+            },
+        }
+    )
+    found = nacre.sweep(study, **study.study())
+    assert found["peak_pressure"].values == pytest.approx([2e9, 3e9], rel=1e-12)
+    assert found["plastic_work"].values[0] > found["plastic_work"].values[1] > 0
+
+
+def test_the_command_line_goes_on_from_a_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def write(name: str, load: float) -> Path:
+        path = tmp_path / name
+        path.write_text(
+            f"""
+            [materials]
+            steel = {{ young = 210e9, poisson = 0.3 }}
+            [shape]
+            kind = "sphere"
+            radius = 5e-3
+            [body]
+            substrate = "steel"
+            [grid]
+            shape = [48, 48]
+            size = [5e-4, 5e-4]
+            [solve]
+            load = {load}
+            hardness = 2e9
+            """,
+            encoding="utf-8",
+        )
+        return path
+
+    def run(*arguments: str) -> tuple[int, str]:
+        with pytest.raises(SystemExit) as error:
+            nacre.cli.main(arguments)
+        assert isinstance(error.value.code, int)
+        return error.value.code, capsys.readouterr().out
+
+    saved = str(tmp_path / "loaded.nc")
+    code, out = run("solve", str(write("loaded.toml", 100)), "--save", saved)
+    assert code == 0
+    assert "permanent" in out
+    less = str(write("less.toml", 20))
+    code, out = run("solve", less, "--initial", saved, "--json")
+    assert code == 0
+    direct = CONTACT.solve(BALL, load=20.0, hardness=LIMIT, initial=LOADED)
+    assert json.loads(out)["peak_pressure"] == pytest.approx(direct.peak_pressure)
+    assert run("solve", less, "--initial", "nothing.nc")[0] == 1
