@@ -116,8 +116,13 @@ def hertz(bench: Bench) -> Iterator[Figure]:
 
 
 def rough(bench: Bench) -> Iterator[Figure]:
-    """Return the quantities of the rough surface."""
+    """Return the quantities of the rough surfaces."""
     yield from against(bench, "rough", (("ASPHER", 1 / 3, 1 / 6), ("Tamaas", 1 / 50, None)))
+    limits = (("Tamaas", 1 / 10, 1 / 20), ("ContactMechanics", 1 / 10, None))
+    yield from against(bench, "periodic", limits)
+    ours, open_one = (bench.find(name, 1024, "nacre", 1) for name in ("periodic", "rough"))
+    what = "periodic 1024², 1 thread: time relative to nacre's open one"
+    yield Figure(what, 1 / 2, None, ratio(ours, open_one))
 
 
 def others(bench: Bench) -> Iterator[Figure]:

@@ -15,7 +15,7 @@ import nacre
 
 Array = npt.NDArray[np.float64]
 Waves = npt.NDArray[np.complex128]
-Name = Literal["hertz", "coated", "rough", "roller"]
+Name = Literal["hertz", "coated", "rough", "periodic", "roller"]
 
 SIDE = 2.0
 """Side of the domain."""
@@ -40,6 +40,7 @@ SEED = 2026
 class Problem:
     """One problem on one grid.
 
+    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `method`.
     `coated` is `hertz` on a layer as thick as the contact radius, of four times the modulus;
     `roller` is that of Spinu et al., on 1024 × 128 cells, under a force at e/L = 0.3. nacre alone
     solves these two.
@@ -53,7 +54,18 @@ class Problem:
         """The grid."""
         if self.name == "roller":
             return nacre.Grid(shape=(self.cells, self.cells // 8), size=(29e-3, 0.16e-3))
-        return nacre.Grid(shape=(self.cells, self.cells), size=(SIDE, SIDE))
+        repeats = (self.repeats, self.repeats)
+        return nacre.Grid(shape=(self.cells, self.cells), size=(SIDE, SIDE), periodic=repeats)
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the surface repeats along both sides."""
+        return self.name == "periodic"
+
+    @property
+    def method(self) -> Literal["exact", "spectral"]:
+        """How nacre's influence coefficients are made."""
+        return "spectral" if self.repeats else "exact"
 
     @property
     def body(self) -> nacre.HalfSpace:
@@ -72,7 +84,8 @@ class Problem:
         """The force."""
         if self.name == "roller":
             return 1e3
-        return MEAN_PRESSURE * SIDE**2 if self.name == "rough" else HERTZ_LOAD
+        is_rough = self.name in ("rough", "periodic")
+        return MEAN_PRESSURE * SIDE**2 if is_rough else HERTZ_LOAD
 
     @property
     def eccentricity(self) -> tuple[float, float] | None:
@@ -84,16 +97,18 @@ class Problem:
         match self.name:
             case "roller":
                 return nacre.Roller(5e-3, flat_length=19.13e-3, crown_radius=7.5)
-            case "rough":
+            case "rough" | "periodic":
                 gaps = self.gaps() if gaps is None else gaps
-                return nacre.HeightMap(-gaps, spacing=SIDE / self.cells)
+                spacing, repeats = SIDE / self.cells, (self.repeats, self.repeats)
+                return nacre.HeightMap(-gaps, spacing=spacing, periodic=repeats)
             case "hertz" | "coated":
                 return nacre.Paraboloid(HERTZ_RADIUS, HERTZ_RADIUS)
 
     def gaps(self) -> Array:
         """Return the undeformed gap at cell centres, that of the highest point 0 when rough."""
-        if self.name == "rough":
-            heights = rough_heights(self.cells)
+        if self.name in ("rough", "periodic"):
+            make = rough_heights if self.name == "rough" else periodic_heights
+            heights = make(self.cells)
             return np.asarray(heights.max() - heights)
         return self.shape().gaps(self.grid)
 
@@ -105,7 +120,7 @@ def rough_heights(cells: int, seed: int = SEED) -> Array:
     of the derivatives of the waves.
     """
     n = 2 * cells
-    waves, qx, qy = rough_waves(cells, seed)
+    waves, qx, qy = rough_waves(n, SIDE / cells, seed)
 
     def quarter(spectrum: Waves) -> Array:
         return np.asarray(np.fft.irfft2(spectrum, s=(n, n))[:cells, :cells])
@@ -114,14 +129,22 @@ def rough_heights(cells: int, seed: int = SEED) -> Array:
     return np.ascontiguousarray(quarter(waves) / slope)
 
 
-def rough_waves(cells: int, seed: int) -> tuple[Waves, Array, Array]:
-    """Return waves of a periodic surface of side 2 × SIDE, and their wavenumbers along x and y.
+def periodic_heights(cells: int, seed: int = SEED) -> Array:
+    """Return a self-affine surface (cells, cells) of rms slope 1 and period SIDE."""
+    waves, qx, qy = rough_waves(cells, SIDE / cells, seed)
+    shape = (cells, cells)
+    parts = [np.fft.irfft2(1j * q * waves, s=shape) for q in (qx, qy)]
+    slope = np.sqrt(sum(np.mean(part**2) for part in parts))
+    return np.ascontiguousarray(np.fft.irfft2(waves, s=shape) / slope)
+
+
+def rough_waves(n: int, spacing: float, seed: int) -> tuple[Waves, Array, Array]:
+    """Return waves of a periodic surface of n × n points, and their wavenumbers along x and y.
 
     Their phases are random, and their amplitudes those of the spectral density
 
-        C(q) ~ q^(−2(H+1))    for 2π/LONGEST_WAVE ≤ q ≤ 2π/(SHORTEST_CELLS cells), else 0.
+        C(q) ~ q^(−2(H+1))    for 2π/LONGEST_WAVE ≤ q ≤ 2π/(SHORTEST_CELLS spacings), else 0.
     """
-    n, spacing = 2 * cells, SIDE / cells
     qx = np.asarray(2 * np.pi * np.fft.fftfreq(n, spacing)[:, None], np.float64)
     qy = np.asarray(2 * np.pi * np.fft.rfftfreq(n, spacing)[None, :], np.float64)
     q = np.hypot(qx, qy)

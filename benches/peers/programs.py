@@ -40,6 +40,8 @@ class Program(Protocol):
 
     parallel: ClassVar[bool]
     """Whether it runs on more than one thread, as pip installs it."""
+    repeats: ClassVar[bool]
+    """Whether it solves surfaces that repeat."""
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         """Import and convert: not timed."""
@@ -55,6 +57,7 @@ class Nacre:
     """nacre, by default."""
 
     parallel: ClassVar[bool] = True
+    repeats: ClassVar[bool] = True
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         self.problem, self.threads = problem, threads
@@ -62,7 +65,8 @@ class Nacre:
 
     def plan(self) -> None:
         """Coefficients and their transform."""
-        self.contact = nacre.Contact(self.body, self.grid, threads=self.threads)
+        method = self.problem.method
+        self.contact = nacre.Contact(self.body, self.grid, method=method, threads=self.threads)
 
     def solve(self, tolerance: float) -> Callable[[], Answer]:
         """Residual and overlap below the tolerance."""
@@ -82,6 +86,7 @@ class Aspher:
     """ASPHER, nested grids with its exact convolution by FFT, in double precision."""
 
     parallel: ClassVar[bool] = True
+    repeats: ClassVar[bool] = False
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         import aspher
@@ -112,9 +117,10 @@ class Aspher:
 
 
 class Tamaas:
-    """Tamaas, Polonsky and Keer's iteration over its convolution that is not periodic."""
+    """Tamaas, Polonsky and Keer's iteration over its convolutions, periodic or not."""
 
     parallel: ClassVar[bool] = False
+    repeats: ClassVar[bool] = True
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         import tamaas
@@ -130,22 +136,25 @@ class Tamaas:
             self.module.model_type.basic_2d, [SIDE, SIDE], [cells, cells]
         )
         self.model.E, self.model.nu = 1.0, 0.0
-        self.module.ModelFactory.registerNonPeriodic(self.model, "dcfft")
+        if not self.problem.repeats:
+            self.module.ModelFactory.registerNonPeriodic(self.model, "dcfft")
 
     def solve(self, tolerance: float) -> Callable[[], Answer]:
         """Tolerance of its complementarity."""
         self.model.traction[:] = 0.0
         solver = self.module.PolonskyKeerRey(self.model, self.heights, tolerance)
-        solver.setIntegralOperator("dcfft")
+        if not self.problem.repeats:
+            solver.setIntegralOperator("dcfft")
         solver.max_iter = 20000
         solver.solve(self.problem.load / SIDE**2)
         return lambda: Answer(np.array(self.model.traction))
 
 
 class ContactMechanics:
-    """ContactMechanics, Polonsky and Keer's iteration over its free half-space."""
+    """ContactMechanics, Polonsky and Keer's iteration over its half-spaces, free or periodic."""
 
     parallel: ClassVar[bool] = False
+    repeats: ClassVar[bool] = True
 
     def __init__(self, problem: Problem, gaps: Array, threads: int) -> None:
         import ContactMechanics as module
@@ -153,12 +162,14 @@ class ContactMechanics:
 
         self.module: Any = module
         self.problem = problem
-        self.topography = Topography(-gaps, physical_sizes=(SIDE, SIDE))
+        sizes = (SIDE, SIDE)
+        self.topography = Topography(-gaps, physical_sizes=sizes, periodic=problem.repeats)
 
     def plan(self) -> None:
         """Substrate and system."""
         cells = self.problem.cells
-        substrate = self.module.FreeFFTElasticHalfSpace((cells, cells), 1.0, (SIDE, SIDE))
+        kind = "PeriodicFFTElasticHalfSpace" if self.problem.repeats else "FreeFFTElasticHalfSpace"
+        substrate = getattr(self.module, kind)((cells, cells), 1.0, (SIDE, SIDE))
         self.system = self.module.make_system(substrate=substrate, surface=self.topography)
 
     def solve(self, tolerance: float) -> Callable[[], Answer]:

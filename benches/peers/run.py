@@ -52,9 +52,11 @@ def available(names: list[str]) -> list[str]:
 
 
 def compare(bench: Bench, programs: list[str], sizes: list[int], soft: float) -> None:
-    """Every program on both problems, with one thread and with two."""
-    for problem in ("hertz", "rough"):
+    """Every program on all problems that it solves, with one thread and with two."""
+    for problem in ("hertz", "rough", "periodic"):
         for program in programs:
+            if problem == "periodic" and not PROGRAMS[program].repeats:
+                continue
             bench.sweep(problem, program, 1, sizes, soft=soft)
             if PROGRAMS[program].parallel:
                 bench.sweep(problem, program, 2, sizes, soft=soft)

@@ -14,7 +14,7 @@ from peers import report
 from peers.figures import Figure, all_figures
 from peers.judge import Convolution, judge
 from peers.measure import Bench, Row, mean
-from peers.problems import HURST, Problem, rough_heights, rough_waves
+from peers.problems import HURST, Problem, periodic_heights, rough_heights, rough_waves
 
 # Sums of some thousand terms, and transforms, in double precision.
 ROUNDING = 1e-13
@@ -22,7 +22,8 @@ ROUNDING = 1e-13
 
 def solve(problem: Problem) -> nacre.Solution:
     """Return nacre's solution."""
-    return nacre.Contact(problem.body, problem.grid).solve(problem.shape(), load=problem.load)
+    contact = nacre.Contact(problem.body, problem.grid, method=problem.method)
+    return contact.solve(problem.shape(), load=problem.load)
 
 
 def test_the_convolution_of_the_judge_is_the_double_sum() -> None:
@@ -62,8 +63,40 @@ def test_the_judge_finds_the_error_of_a_pressure_that_is_one_per_cent_too_large(
     assert verdict.balance == pytest.approx(0.01, rel=1e-9)
 
 
+def test_the_judge_of_what_repeats_knows_the_waves() -> None:
+    """The solution is judged good; 1 % more pressure has a gap of 1 % of u, less its mean."""
+    problem = Problem("periodic", 64)
+    solution, gaps = solve(problem), problem.gaps()
+    args = (gaps, problem.body, problem.grid, problem.load)
+    good = judge(solution.pressure, *args)
+    # nacre's tolerance is relative to the displacement, which is of the size of the heights.
+    assert good.residual < 1e-7
+    assert good.balance < ROUNDING
+    wrong = judge(1.01 * solution.pressure, *args)
+    u, p = solution.displacement, solution.pressure
+    excess = 0.01 * np.abs(u - u[p > 0].mean())
+    assert wrong.residual == pytest.approx(np.sum(p * excess) / p.sum() / gaps.std(), rel=1e-3)
+
+
+def test_the_periodic_surface_repeats_and_has_slope_one() -> None:
+    heights = periodic_heights(128)
+    spectrum = np.fft.rfft2(heights)
+    q = (
+        2
+        * np.pi
+        * np.hypot(np.fft.fftfreq(128, 2 / 128)[:, None], np.fft.rfftfreq(128, 2 / 128)[None, :])
+    )
+    kept = np.abs(spectrum) > 1e-9 * np.abs(spectrum).max()
+    # Waves from half the side to eight cells: a jump at the seam would have others.
+    assert q[kept].min() == pytest.approx(2 * np.pi / 1.0)
+    assert q[kept].max() <= 2 * np.pi / (8 * 2 / 128) * (1 + ROUNDING)
+    double = np.where(np.isin(np.arange(65), (0, 64)), 1, 2)[None, :]
+    slope = np.sqrt(np.sum(double * (q * np.abs(spectrum)) ** 2)) / 128**2
+    assert slope == pytest.approx(1, rel=1e-10)
+
+
 def test_the_rough_surface_has_the_spectrum_it_states() -> None:
-    waves, qx, qy = rough_waves(64, seed=3)
+    waves, qx, qy = rough_waves(128, 2 / 64, seed=3)
     q, amplitude = np.hypot(qx, qy), np.abs(waves)
     inside = amplitude > 0
     slope, _ = np.polyfit(np.log(q[inside]), np.log(amplitude[inside]), 1)

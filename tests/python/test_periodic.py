@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 from pathlib import Path
 from typing import Any
@@ -129,3 +130,32 @@ def test_case_files(tmp_path: Path) -> None:
     line = case | {"grid": {"cells": 8, "width": 1.0, "periodic": [False, True]}}
     with pytest.raises(CaseError, match="periodic must not be given"):
         Case(line, folder=tmp_path).arguments()
+
+
+@pytest.mark.parametrize("name", ["contact_mechanics", "tamaas", "contact_mechanics_layer"])
+def test_other_programs_find_the_same_pressure(name: str) -> None:
+    """ContactMechanics 1.8.3, also with its layer on a rigid base, and Tamaas 2.9.0.
+
+    Their discretisation is the spectral method; their pressures stand in tests/data, which
+    make_periodic_peers.py made. They meet 1e-12 or so of the energy, the square of which is the
+    error of a pressure.
+    """
+    path = Path(__file__).parents[1] / "data" / "periodic_peers.json"
+    data = json.loads(path.read_text(encoding="utf-8"))
+    cells, side, layer = data["cells"], data["side"], data["layer"]
+    at = (np.arange(cells) + 0.5) / cells
+    heights = sum(
+        a * np.cos(2 * np.pi * (k * at[:, None] + m * at[None, :]) + phase)
+        for k, m, a, phase in data["waves"]
+    )
+    shape = nacre.HeightMap(heights - heights.max(), side / cells, periodic=(True, True))
+    body = nacre.HalfSpace(BODY)
+    if name.endswith("layer"):
+        elastic = nacre.Elastic(layer["young"], layer["poisson"])
+        body = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(elastic, layer["thickness"])])
+    grid = nacre.Grid((cells, cells), (side, side), periodic=(True, True))
+    contact = nacre.Contact(body, grid, method="spectral")
+    found = contact.solve(shape, load=data["mean_pressure"] * side**2, tolerance=1e-12)
+    theirs = np.array(data[name])
+    assert 0.02 < (theirs > 0).mean() < 0.9
+    assert found.pressure == pytest.approx(theirs, abs=1e-6 * theirs.max())
