@@ -75,6 +75,8 @@ mod fft;
 
 mod kernel;
 
+mod images;
+
 pub mod influence;
 
 pub mod convolution;

@@ -15,6 +15,7 @@ mod stress {
     mod invariants;
     mod limits;
     mod patch;
+    mod periodic;
     mod plan;
     mod resolution;
     mod threads;

@@ -33,7 +33,17 @@ impl Kernels {
         if grid.is_line() {
             return Self::Line(LinePlan::new(body, grid, finest));
         }
-        let plan = Plan::new(body, grid.spacing(), finest, reach);
+        Self::of_cells::<N, P>(body, grid.spacing(), finest, reach)
+    }
+
+    /// [`Kernels::new`] for cells of sides `spacing`.
+    pub(crate) fn of_cells<const N: usize, P: Load<N>>(
+        body: &HalfSpace,
+        spacing: [f64; 2],
+        finest: f64,
+        reach: f64,
+    ) -> Self {
+        let plan = Plan::new(body, spacing, finest, reach);
         Self::Plane {
             pressure: plan.multipliers::<N, P>(),
             traction: OnceLock::new(),

@@ -4,6 +4,7 @@ mod coefficients;
 mod plan;
 mod plane;
 mod points;
+mod repeats;
 mod tractions;
 
 pub(super) use coefficients::components;

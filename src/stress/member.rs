@@ -27,11 +27,6 @@ pub enum Member {
     Counterbody,
 }
 
-/// The refusal of grids that repeat.
-const PERIODIC: Error = Error::Inconsistent(
-    "stresses need a grid that is not periodic: what images of the pressure add to them is not known",
-);
-
 impl Solution {
     /// Stress at `depths` in one of the bodies. The direction of friction is that of the traction on the
     /// body; the counterbody gets the opposite. Without a direction, friction acts along the direction in
@@ -160,9 +155,6 @@ impl Solution {
 
     /// The pressure on one of the bodies, with the sign of friction there.
     fn source(&self, member: Member) -> Result<Source<'_>> {
-        if self.grid().is_periodic() != [false; 2] {
-            return Err(PERIODIC);
-        }
         let (body, counterbody) = (&self.report.body, &self.report.counterbody);
         let bodies = std::iter::once(body).chain(counterbody);
         Ok(Source {

@@ -49,6 +49,7 @@
 //! | `edge` | the cells near the edge where a polynomial is certain enough |
 //! | `cut` | cells cut into rectangles |
 //! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots |
+//! | `margin` | images around the cells of a grid that repeats |
 //! | `near` | the sum of the third part over the cells around |
 //! | `scale` | whether cells resolve the law of the pressure at an edge |
 //! | `uncertainty` | the error that the size of the cells leaves, at a depth |
@@ -57,6 +58,7 @@
 mod cut;
 mod edge;
 mod fit;
+mod margin;
 mod near;
 mod neighbours;
 mod reconstruction;

@@ -12,6 +12,7 @@ use crate::kernel::plans::Kernels;
 use crate::kernel::strip::{self, LinePlan};
 use crate::response::interior::Place;
 use crate::stress::half_space::plan::HalfSpacePlan;
+use crate::stress::half_space::repeats::{Repeats, rows_of};
 use crate::stress::subcell::STRESSES;
 
 /// A load on the surface, in proportion to the pressure.
@@ -124,6 +125,10 @@ impl Coefficients<'_> {
         let (offsets, spacing) = (self.offsets, self.plan.grid.spacing());
         let half @ [a, b] = spacing.map(|d| 0.5 * d);
         let depth = self.place.depth;
+        // Where the grid repeats, all offsets are computed at once, from those of one cell at the near ones.
+        let repeats = self.plan.repeats.as_ref();
+        let block = repeats.and_then(|repeats| repeats.block_kernel::<N, L>(self.place));
+        let needed = repeats.map_or(offsets, Repeats::extents);
         let of_kind = |load: &SurfaceLoad| load.axis.is_some() == L::IS_TRACTION;
         for (number, load) in loads.iter().enumerate().filter(|(_, load)| of_kind(load)) {
             let odd = load.odd();
@@ -132,24 +137,53 @@ impl Coefficients<'_> {
                 // Traction along y is traction along x with both exchanged.
                 let exchanged = |values: [f64; COMPONENTS]| EXCHANGED.map(|k| values[k]);
                 let source = Source {
-                    offsets,
+                    offsets: needed,
                     spacing,
                     depth,
                     odd,
                     mean: |x, y| exchanged(kernel.at::<L>([y, x], [b, a])),
                     point: |x, y| exchanged(kernel.far::<L>(y, x)),
                 };
-                take(number, &|rows, keep| source.rows(rows, keep));
+                let of_block = |[x, y]: [f64; 2], [a, b]: [f64; 2]| {
+                    let at = |block: &Kernel<N>| exchanged(block.at::<L>([y, x], [b, a]));
+                    block.as_ref().map_or([0.0; COMPONENTS], at)
+                };
+                self.give(number, *load, &source, of_block, take);
             } else {
                 let source = Source {
-                    offsets,
+                    offsets: needed,
                     spacing,
                     depth,
                     odd,
                     mean: |x, y| kernel.at::<L>([x, y], half),
                     point: |x, y| kernel.far::<L>(x, y),
                 };
-                take(number, &|rows, keep| source.rows(rows, keep));
+                let of_block = |at: [f64; 2], half: [f64; 2]| {
+                    let at = |block: &Kernel<N>| block.at::<L>(at, half);
+                    block.as_ref().map_or([0.0; COMPONENTS], at)
+                };
+                self.give(number, *load, &source, of_block, take);
+            }
+        }
+    }
+
+    /// Gives the coefficients of a load to `take`, summed over images where the grid repeats.
+    fn give<M, P, const C: usize>(
+        &self,
+        number: usize,
+        load: SurfaceLoad,
+        source: &Source<M, P, C>,
+        block: impl Fn([f64; 2], [f64; 2]) -> [f64; COMPONENTS] + Sync,
+        take: &mut dyn FnMut(usize, &RowSource),
+    ) where
+        M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
+        P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
+    {
+        match &self.plan.repeats {
+            None => take(number, &|rows, keep| source.rows(rows, keep)),
+            Some(repeats) => {
+                let summed = repeats.coefficients(source, block, (self.place, load.axis));
+                take(number, &*rows_of(&summed, self.offsets[1]));
             }
         }
     }

@@ -4,10 +4,12 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array1, ArrayRef2};
 
+use super::repeats::Repeats;
 use crate::body::{HalfSpace, Substrate};
 use crate::error::{Error, Result};
 use crate::fft::{PaddedTransform, QuarterTransform, Transformed};
 use crate::grid::{Grid, Window};
+use crate::kernel::COMPONENTS;
 use crate::kernel::loads;
 use crate::kernel::plans::Kernels;
 use crate::parallel::{Threads, check_memory};
@@ -25,6 +27,8 @@ pub(in crate::stress) struct HalfSpacePlan {
     /// Half the width of the loaded cells along their shorter side \[m\].
     pub(in crate::stress) half_width: f64,
     pub(in crate::stress) kernels: Kernels,
+    /// Present where the grid repeats.
+    pub(in crate::stress) repeats: Option<Repeats>,
     /// Number of offsets along x and y between a loaded cell and any other.
     pub(in crate::stress) offsets: [usize; 2],
     /// The pressure \[Pa\], in C order.
@@ -95,7 +99,13 @@ impl<'a> Source<'a> {
         } else {
             24
         };
-        transforms_memory(self.grid, arrays)
+        // The coefficients of a component, at all offsets.
+        let repeated = if self.grid.is_periodic() == [false; 2] {
+            0
+        } else {
+            2 * COMPONENTS as u64
+        };
+        transforms_memory(self.grid, arrays + repeated)
     }
 
     /// The plan, without a callback.
@@ -130,8 +140,9 @@ impl<'a> Source<'a> {
             }
         };
         let [lx, ly] = grid.size();
+        let repeats = threads.run(|| Repeats::plan(body, grid));
         // One per cent more than the diagonal, for rounding.
-        let reach = 1.01 * lx.hypot(ly);
+        let reach = (repeats.as_ref()).map_or(1.01 * lx.hypot(ly), Repeats::reach);
         let kernels = threads.run(|| Kernels::new::<6, loads::Pressure>(body, grid, 1.0, reach));
         let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
         let offsets = offsets(grid.shape(), [&pressure, uniform]);
@@ -147,8 +158,9 @@ impl<'a> Source<'a> {
             body: body.clone(),
             grid: *grid,
             sliding: self.sliding,
-            half_width: half_width(grid, loaded_cells(grid.shape(), &[&pressure])),
+            half_width: half_width(grid, &pressure),
             kernels,
+            repeats,
             offsets,
             quarter: transform.quarter_transform(),
             pressure,
@@ -265,10 +277,24 @@ fn offsets(shape: [usize; 2], pressures: [&[f64]; 2]) -> [usize; 2] {
     })
 }
 
-/// Half the width of the `loaded` cells along their shorter side; of the whole grid if there are none.
-fn half_width(grid: &Grid, loaded: Option<[[usize; 2]; 2]>) -> f64 {
+/// Half the width of the cells with a `pressure` along their shorter side; of the whole grid if there are none. Along
+/// directions that repeat, which have no first cell, the lines with a pressure count.
+fn half_width(grid: &Grid, pressure: &[f64]) -> f64 {
+    let [nx, ny] = grid.shape();
+    let loaded = loaded_cells([nx, ny], &[pressure]);
+    let lines = |axis: usize| -> usize {
+        let touches = |line: &usize| match axis {
+            0 => (0..ny).any(|j| pressure[line * ny + j] != 0.0),
+            _ => (0..nx).any(|i| pressure[i * ny + line] != 0.0),
+        };
+        (0..[nx, ny][axis]).filter(touches).count()
+    };
     let width = |axis: usize| {
-        let cells = loaded.map_or(grid.shape()[axis], |ends| ends[axis][1] - ends[axis][0] + 1);
+        let cells = match loaded {
+            None => grid.shape()[axis],
+            Some(_) if grid.is_periodic()[axis] => lines(axis),
+            Some(ends) => ends[axis][1] - ends[axis][0] + 1,
+        };
         0.5 * cells as f64 * grid.spacing()[axis]
     };
     if grid.is_line() {

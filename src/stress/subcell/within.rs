@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::cut::Cuts;
+use super::margin::Margin;
 use super::near::{Components, NearPlan, NearTable};
 use super::scale::Pair;
 use super::uncertainty::{LocalSteps, Uncertainty};
@@ -25,6 +26,10 @@ pub(in crate::stress) struct SubcellStress {
     uncertainty: Uncertainty,
     /// The solver's pressure: tractions at the surface are those of it.
     given: Vec<f64>,
+    /// Where the grid repeats, the pressure is reconstructed with a margin of its images.
+    margin: Margin,
+    /// Pressure that is taken as uniform over the cells of the grid.
+    uniform: Vec<f64>,
 }
 
 impl SubcellStress {
@@ -39,12 +44,17 @@ impl SubcellStress {
         let [dx, dy] = grid.spacing();
         let side = if grid.is_line() { dy } else { dx.min(dy) };
         let edges = pair.root_law_holds(side);
-        let near = NearPlan::new(pressure, grid, edges, threads, progress)?;
+        let margin = Margin::of(grid);
+        let wide = margin.wide(grid);
+        let pressure = &*margin.around(pressure);
+        let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
         let reach = near.farthest();
         let kernels =
             threads.run(|| Kernels::new::<4, PressureStress>(body, grid, Cuts::SMALLEST, reach));
-        let uncertainty = Uncertainty::new((body, pair), grid, pressure, &near.reconstruction);
+        let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
         ControlFlow::Continue(Self {
+            uniform: margin.middle(&near.reconstruction.uniform),
+            margin,
             kernels,
             uncertainty,
             near,
@@ -54,7 +64,8 @@ impl SubcellStress {
 
     /// Largest steps of the pressure that are felt in the cells of `window`.
     pub(in crate::stress) fn steps(&self, window: &Window) -> LocalSteps {
-        self.uncertainty.steps(&self.given, window)
+        self.uncertainty
+            .steps(&self.given, &self.margin.window(window))
     }
 
     /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells, where the
@@ -71,7 +82,7 @@ impl SubcellStress {
 
     /// Pressure that is taken as uniform over cells.
     pub(in crate::stress) fn uniform(&self) -> &[f64] {
-        &self.near.reconstruction.uniform
+        &self.uniform
     }
 
     /// Stresses of pieces of cells at `place`, under pressure and `friction` times it. On the threads of
@@ -132,10 +143,12 @@ impl SubcellStress {
         friction: [f64; 2],
         stresses: &mut [&mut [f64]],
     ) {
-        self.near.add(near, stresses);
+        self.margin
+            .add(stresses, |stresses| self.near.add(near, stresses));
         if near.at_surface() {
+            let given = self.margin.middle(&self.given);
             for (k, factor) in tractions(friction) {
-                let tractions = stresses[k].iter_mut().zip(&self.given);
+                let tractions = stresses[k].iter_mut().zip(&given);
                 tractions.for_each(|(stress, p)| *stress = -factor * p);
             }
         }
@@ -149,6 +162,7 @@ impl SubcellStress {
         cell: [usize; 2],
         stresses: &mut [f64],
     ) {
+        let cell = self.margin.cell(cell);
         let added = self.near.sum_at(near, cell);
         stresses.iter_mut().zip(added).for_each(|(s, d)| *s += d);
         if near.at_surface() {
