@@ -22,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test check bench fuzz peers develop stubs docs publishable
+.PHONY: help demo test check bench fuzz peers kappa develop stubs docs publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -63,6 +63,9 @@ fuzz: $(WHEEL) $(DEV) ## random contacts and calls, ten thousand in all: CASES=1
 # The other solvers are installed into a separate environment under target/peers.
 peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
 	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
+
+kappa: $(WHEEL) $(DEV) ## area of rough contacts of bare and coated bodies: docs/kappa.csv and its picture, in ten minutes
+	$(BIN)/python benches/kappa.py
 
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)

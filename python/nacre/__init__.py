@@ -32,11 +32,12 @@ if TYPE_CHECKING:
     from nacre import hertz as hertz
     from nacre import paper as paper
     from nacre import plot as plot
+    from nacre import rough as rough
 
 __all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
 
-LAZY = ("case", "design", "friction", "hertz", "paper", "plot")
+LAZY = ("case", "design", "friction", "hertz", "paper", "plot", "rough")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

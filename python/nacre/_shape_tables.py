@@ -12,7 +12,20 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 from pydantic import Field
 
 import nacre
-from nacre._case_tables import Flags, Number, Numbers, Pair, Table, Text, Words, described, table_of
+from nacre import rough
+from nacre._case_tables import (
+    Count,
+    Counts,
+    Flags,
+    Number,
+    Numbers,
+    Pair,
+    Table,
+    Text,
+    Words,
+    described,
+    table_of,
+)
 
 PROFILES: dict[str, Any] = {
     "logarithmic": nacre.LogarithmicProfile,
@@ -109,6 +122,28 @@ class HeightMap(Shape):
         return nacre.HeightMap(read.heights / metres, spacing, center, read.periodic)
 
 
+RANDOM = described(rough.random_surface)
+
+
+class RandomSurface(Shape):
+    """A self-affine random surface that repeats: `nacre.rough.random_surface`."""
+
+    kind: Literal["random_surface"] = Field(description="Kind, which decides on the other keys.")
+    shape: Counts = Field(description=RANDOM["shape"])
+    size: Pair = Field(description=RANDOM["size"])
+    hurst: Number = Field(description=RANDOM["hurst"])
+    shortest: Number = Field(description=RANDOM["shortest"])
+    longest: Number = Field(description=RANDOM["longest"])
+    rms_slope: Number | None = Field(None, description=RANDOM["rms_slope"])
+    rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
+    seed: Count = Field(description=RANDOM["seed"])
+
+    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+        """Return the shape without its shift."""
+        given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
+        return rough.random_surface(**given)
+
+
 class Sum(Shape):
     """A sum of shapes: their gaps are added."""
 
@@ -125,7 +160,11 @@ class Sum(Shape):
         return first
 
 
-OWN_TABLES: dict[str, type[Shape]] = {"height_map": HeightMap, "sum": Sum}
+OWN_TABLES: dict[str, type[Shape]] = {
+    "height_map": HeightMap,
+    "random_surface": RandomSurface,
+    "sum": Sum,
+}
 TABLES: dict[str, type[Shape]] = {
     kind: table_of(kind, made, Shape, {"profile": AnyProfile})
     for kind, made in SHAPES.items()

@@ -161,7 +161,7 @@ def test_other_programs_find_the_same_pressure(name: str) -> None:
 
 
 def test_stresses_repeat_and_bear_the_load() -> None:
-    """A wave of pressure on a bare body has σ_zz = −p (1 + qz) e^{−qz}, and σ_xx = −p (1 − qz) e^{−qz}.
+    """A wave on a bare body has σ_zz = −p (1 + qz) e^{−qz} and σ_xx = −p (1 − qz) e^{−qz}.
 
     The mean pressure does not stretch the body: σ_xx = −ν p/(1 − ν), which is 0 here. The cells
     leave (q dx)²/24 of the wave: 2e-3 at 32 cells.

@@ -101,12 +101,12 @@ fn strips_along_the_period_are_line_contacts() -> Result<()> {
         let pressure = Array2::from_shape_fn((24, 10), |(i, _)| profile[i]);
         let turned = stress(&body, &along_y, &pressure, &depths, &sliding(turned))?;
         let exchanged = [1, 0, 2, 3, 5, 4];
-        for component in 0..6 {
+        for (component, turned_component) in exchanged.into_iter().enumerate() {
             for k in 0..depths.len() {
                 for j in 0..24 {
                     let due = due.components[component][[k, 0, j]];
                     let a = found.components[component][[k, 3, j]];
-                    let b = turned.components[exchanged[component]][[k, j, 3]];
+                    let b = turned.components[turned_component][[k, j, 3]];
                     // Coefficients err by 1e-7 of that of the loaded cell, and nine cells are loaded.
                     assert!((a - due).abs() < 1e-6, "{component} {k} {j}: {a} {due}");
                     assert!(

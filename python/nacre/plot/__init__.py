@@ -9,6 +9,7 @@ from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
 from nacre.plot.relief import relief, view
+from nacre.plot.rough import distribution, load_curve, patches, spectrum
 from nacre.plot.sections import compare, section
 from nacre.plot.stress import stress_depth, stress_section
 from nacre.plot.studies import chart, curve
@@ -20,13 +21,17 @@ __all__ = [
     "compare",
     "creep_curve",
     "curve",
+    "distribution",
     "friction",
     "interface_map",
+    "load_curve",
     "loop",
     "overview",
+    "patches",
     "pressure_map",
     "relief",
     "section",
+    "spectrum",
     "stress_depth",
     "stress_section",
     "view",
