@@ -31,8 +31,8 @@ from typing import NamedTuple
 
 CHAIN = [
     *("error", "parallel", "material", "body", "hertz", "grid", "surface", "response", "graded"),
-    *("fft", "kernel", "influence", "convolution", "ends", "traction", "contact", "stress"),
-    *("friction", "serial", "python"),
+    *("fft", "kernel", "images", "influence", "convolution", "ends", "traction", "contact"),
+    *("stress", "friction", "serial", "python"),
 ]
 FILES = 12
 LINES = 400

@@ -6,9 +6,7 @@ SurfaceTopography, patches those of SciPy, and tables those of xarray.
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,24 +14,16 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
+from nacre._patches import crosses, patch_labels, sides, surfaces
 from nacre.units import symbol
 
 if TYPE_CHECKING:
     import xarray
 
 Array = npt.NDArray[np.float64]
-Labels = npt.NDArray[np.int64]
 
 PERIMETER = (np.pi - 1 + np.log(2)) / 24
 """Error of the area of counted cells over perimeter times cell, by Yastrebov et al. (2017)."""
-
-
-@contextmanager
-def _surfaces() -> Iterator[None]:
-    """Import SurfaceTopography and SciPy, without a warning that MPI is missing."""
-    with extra("surfaces"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", ImportWarning)
-        yield
 
 
 def random_surface(
@@ -78,7 +68,7 @@ def random_surface(
     ValueError
         If a number is out of range, or not exactly one of slope and height is given.
     """
-    with _surfaces():
+    with surfaces():
         from SurfaceTopography.Generation import fourier_synthesis
 
     if not 0 < hurst <= 1:
@@ -237,21 +227,9 @@ def corrected_area(solution: core.Solution) -> float:
     subtract 0.118 S: a quarter of the correction is the uncertainty of the result.
     """
     dx, dy = solution.report.grid.spacing
-    along, across = _sides(solution)
+    along, across = sides(solution)
     perimeter = along * dx + across * dy
     return float(max(solution.contact_area - PERIMETER * perimeter * np.sqrt(dx * dy), 0.0))
-
-
-def _sides(solution: core.Solution) -> tuple[int, int]:
-    """Return how many sides of cells along x and along y lie between contact and gap."""
-    contact, repeats = solution.in_contact, solution.report.grid.periodic
-    counts = []
-    for axis in (1, 0):
-        # Beyond the rim of a grid that does not repeat nothing touches.
-        last, none = np.take(contact, [-1], axis), np.zeros_like(np.take(contact, [0], axis))
-        closed = [last, contact] if repeats[axis] else [none, contact, none]
-        counts.append(int(np.sum(np.diff(np.concatenate(closed, axis), axis=axis))))
-    return counts[0], counts[1]
 
 
 def patches(solution: core.Solution) -> Array:
@@ -266,31 +244,6 @@ def patches(solution: core.Solution) -> Array:
     return areas
 
 
-def patch_labels(cells: npt.NDArray[np.bool_], grid: core.Grid) -> Labels:
-    """Return numbers from 1 on of connected cells ``(nx, ny)``, and 0 in all others."""
-    with _surfaces():
-        from scipy.ndimage import label
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-    labels, count = label(cells)
-    first, second = [], []
-    for axis, repeats in enumerate(grid.periodic):
-        if repeats:
-            low, high = np.take(labels, 0, axis), np.take(labels, -1, axis)
-            both = (low > 0) & (high > 0)
-            first.append(low[both])
-            second.append(high[both])
-    if not first:
-        return np.asarray(labels, dtype=np.int64)
-    edges = np.concatenate(first), np.concatenate(second)
-    graph = coo_array((np.ones(edges[0].size), edges), shape=(count + 1, count + 1))
-    _, joined = connected_components(graph, directed=False)
-    # The label 0 stands alone, and keeps its number.
-    numbers = np.unique(joined[labels], return_inverse=True)[1].reshape(labels.shape)
-    return np.where(labels > 0, numbers + (0 if (labels == 0).any() else 1), 0)
-
-
 def percolates(solution: core.Solution) -> tuple[bool, bool]:
     """Whether the gap is open from side to side, along x and along y: whether it leaks.
 
@@ -298,51 +251,7 @@ def percolates(solution: core.Solution) -> tuple[bool, bool]:
     to the same cell of the next period.
     """
     gap = ~solution.in_contact
-    return _crosses(gap, solution.report.grid, 0), _crosses(gap, solution.report.grid, 1)
-
-
-def _crosses(cells: npt.NDArray[np.bool_], grid: core.Grid, axis: int) -> bool:
-    """Return whether connected cells lead from one side to the other along an axis."""
-    with _surfaces():
-        from scipy.ndimage import label
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import breadth_first_order
-
-    repeats = grid.periodic
-    if not repeats[axis]:
-        # Across the axis the grid may repeat: labels know that.
-        across = core.Grid(grid.shape, grid.size, periodic=(repeats[0], repeats[1]))
-        labels = patch_labels(cells, across)
-        ends = [np.take(labels, k, axis) for k in (0, -1)]
-        return bool(np.intersect1d(ends[0][ends[0] > 0], ends[1][ends[1] > 0]).size)
-    # Each connected part has a place on the endless plane; a part that meets itself in another
-    # period crosses. Steps over the seams carry the number of periods along the axis.
-    labels, count = label(cells)
-    links = []
-    for seam, joined in enumerate(repeats):
-        if joined:
-            low, high = np.take(labels, 0, seam).ravel(), np.take(labels, -1, seam).ravel()
-            both = (low > 0) & (high > 0)
-            step = 1 if seam == axis else 0
-            links += [(h, low_, step) for h, low_ in zip(high[both], low[both], strict=True)]
-    neighbours: dict[int, list[tuple[int, int]]] = {}
-    for a, b, step in set(links):
-        neighbours.setdefault(int(a), []).append((int(b), step))
-        neighbours.setdefault(int(b), []).append((int(a), -step))
-    place: dict[int, int] = {}
-    graph = coo_array(
-        (np.ones(len(links)), ([a for a, _, _ in links], [b for _, b, _ in links])),
-        shape=(count + 1, count + 1),
-    ).tocsr()
-    for start in sorted(neighbours):
-        if start in place:
-            continue
-        place[start] = 0
-        order, before = breadth_first_order(graph, start, directed=False)
-        for part in order[1:]:
-            step = next(s for b, s in neighbours[int(before[part])] if b == part)
-            place[int(part)] = place[int(before[part])] + step
-    return any(place[a] + step != place[b] for a in neighbours for b, step in neighbours[a])
+    return crosses(gap, solution.report.grid, 0), crosses(gap, solution.report.grid, 1)
 
 
 def pressure_distribution(solution: core.Solution, bins: int = 50) -> xarray.DataArray:
@@ -433,7 +342,7 @@ def _grid(surface: core.HeightMap) -> core.Grid:
 
 def _topography(heights: Array, grid: core.Grid, name: str) -> Any:
     """Return a topography of SurfaceTopography."""
-    with _surfaces():
+    with surfaces():
         from SurfaceTopography import Topography
 
     if grid.is_line:

@@ -26,7 +26,7 @@ pub(super) use yielding::{Elastic, Yielding};
 /// Largest pressure that a surface bears \[Pa\], above 0; +∞ where it does not yield.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Hardness {
-    /// The same everywhere.
+    /// One number for all cells.
     Uniform(f64),
     /// One for each cell of the grid, (nx, ny).
     Cells(Array2<f64>),

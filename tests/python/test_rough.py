@@ -10,6 +10,7 @@ import pytest
 
 import nacre
 from nacre import plot, rough
+from nacre._patches import crosses, patch_labels
 from nacre.case import Case, CaseError
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # spots of few cells
@@ -49,7 +50,7 @@ def test_a_seed_makes_the_same_surface_with_the_waves_that_are_asked_for() -> No
 
 
 def test_the_height_may_be_given_and_the_spectrum_falls_as_it_should() -> None:
-    """Of the density C ~ q^(-2-2H) the mean over 40 seeds has that slope within its scatter."""
+    """The mean density over 40 seeds falls as q^(-2-2H), within its scatter."""
     number = np.fft.fftfreq(128, 1 / 128)
     q = np.hypot(number[:, None], number[None, :])
     power = np.zeros((128, 128))
@@ -127,12 +128,12 @@ def test_patches_are_joined_across_the_seam(periodic: tuple[bool, bool], sizes: 
         "##.#..",
     )
     grid = nacre.Grid((6, 6), (6.0, 6.0), periodic=periodic)
-    labels = rough.patch_labels(pattern, grid)
+    labels = patch_labels(pattern, grid)
     assert sorted(np.bincount(labels.ravel())[1:].tolist()) == sizes
     assert ((labels > 0) == pattern).all()
     assert set(np.unique(labels)) == set(range(len(sizes) + 1))
     # A map without a cell beside is one patch.
-    assert (rough.patch_labels(np.ones((6, 6), dtype=bool), grid) == 1).all()
+    assert (patch_labels(np.ones((6, 6), dtype=bool), grid) == 1).all()
 
 
 @pytest.mark.parametrize(
@@ -158,9 +159,9 @@ def test_open_gaps_lead_from_side_to_side(
 ) -> None:
     gap = ~cells(*rows)
     grid = nacre.Grid(gap.shape, gap.shape, periodic=periodic)
-    assert tuple(rough._crosses(gap, grid, axis) for axis in (0, 1)) == along
+    assert tuple(crosses(gap, grid, axis) for axis in (0, 1)) == along
     turned = nacre.Grid(gap.T.shape, gap.T.shape, periodic=periodic[::-1])
-    assert tuple(rough._crosses(gap.T, turned, axis) for axis in (1, 0)) == along
+    assert tuple(crosses(gap.T, turned, axis) for axis in (1, 0)) == along
 
 
 def test_percolation_ends_as_the_load_grows() -> None:
@@ -173,7 +174,7 @@ def test_percolation_ends_as_the_load_grows() -> None:
 
 
 def test_distributions_integrate_to_their_shares_and_hertz_has_its_own() -> None:
-    """Of Hertz' contact the density of the pressure is 2p/p0² times the share of the contact."""
+    """In Hertz' contact the density of the pressure is 2p/p0² times the share of the contact."""
     for found, share in (
         (rough.pressure_distribution(SOLUTION, 40), SOLUTION.in_contact.mean()),
         (rough.gap_distribution(SOLUTION, 40), 1 - SOLUTION.in_contact.mean()),

@@ -268,7 +268,7 @@ fn the_seam_is_like_any_other_place() -> Result<()> {
     Ok(())
 }
 
-/// The same bits on one thread, on two and on four.
+/// One thread, two and four give the same bits.
 #[test]
 fn threads_change_no_bit() -> Result<()> {
     let fields: Vec<Stress> = [1, 2, 4]

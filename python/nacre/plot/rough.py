@@ -9,6 +9,7 @@ import numpy as np
 from nacre import rough
 from nacre._core import Solution
 from nacre._extras import extra
+from nacre._patches import patch_labels
 from nacre.plot.style import COLOURS, lengths, new_axes, next_look, styled
 from nacre.units import Scale, symbol
 
@@ -117,7 +118,7 @@ def patches(solution: Solution, axes: Axes | None = None) -> Axes:
     grid = solution.report.grid
     if grid.is_line:
         raise ValueError("the grid of a solution must have cells along x for a map, got a line")
-    labels = rough.patch_labels(solution.in_contact, grid)
+    labels = patch_labels(solution.in_contact, grid)
     sizes = np.bincount(labels.ravel(), minlength=2)[1:]
     kinds = np.where(labels == 0, 0, np.where(labels == 1 + np.argmax(sizes), 2, 1))
     ends = [(c - side / 2, c + side / 2) for c, side in zip(grid.center, grid.size, strict=True)]

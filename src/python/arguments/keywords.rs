@@ -12,9 +12,7 @@ use pyo3::types::{PyDict, PyMapping};
 
 use super::{Real, Repr, count, number, pair, real_array, real_matrix};
 use crate::contact::{Hardness, Motion, Options};
-use crate::grid::Grid;
 use crate::influence::Method;
-use crate::python::solution::PySolution;
 use crate::python::words::{REFINEMENT, Word, method};
 
 /// Signature of the keywords that say how coefficients are planned.
@@ -167,29 +165,26 @@ fn hardness(keywords: &Keywords) -> PyResult<Option<Hardness>> {
 }
 
 /// What only a single solve takes.
-pub(in crate::python) struct Single {
+pub(in crate::python) struct Single<'py> {
     pub(in crate::python) options: Options,
-    /// Grid of the permanent indentation that the surfaces have already.
-    pub(in crate::python) dented: Option<Grid>,
+    /// What the options start from.
+    pub(in crate::python) initial: Option<Bound<'py, PyAny>>,
     pub(in crate::python) progress: Option<Py<PyAny>>,
     pub(in crate::python) check: bool,
 }
 
 /// Options, callback and check of a single solve.
-pub(in crate::python) fn single(keywords: &Keywords) -> PyResult<Single> {
-    let (mut options, mut dented) = (options(keywords)?, None);
+pub(in crate::python) fn single<'py>(keywords: &Keywords<'py>) -> PyResult<Single<'py>> {
+    let (mut options, mut given) = (options(keywords)?, None);
     if let Some(initial) = keywords.given("initial")? {
-        if let Ok(before) = initial.cast::<PySolution>() {
-            let before = before.get().solution();
-            options.indentation.clone_from(&before.indentation);
-            dented = before.indentation.as_ref().map(|_| *before.grid());
-        }
-        let pressure = initial.getattr_opt("pressure")?.unwrap_or(initial);
-        options.initial = Some(real_matrix("initial", &pressure)?);
+        let pressure = initial.getattr_opt("pressure")?;
+        let pressure = pressure.as_ref().unwrap_or(&initial);
+        options.initial = Some(real_matrix("initial", pressure)?);
+        given = Some(initial);
     }
     Ok(Single {
         options,
-        dented,
+        initial: given,
         progress: keywords.callable("progress")?,
         check: keywords.flag("check", true)?,
     })

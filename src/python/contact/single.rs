@@ -5,6 +5,7 @@ use pyo3::types::PyDict;
 
 use crate::body::HalfSpace;
 use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
+use crate::grid::Grid;
 use crate::python::arguments::keywords::{
     self, Keywords, Single, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
     search_signature, single_docs, single_signature,
@@ -96,7 +97,7 @@ pub(in crate::python) fn solve<'py>(
     let call = Call::new(shape, &keywords)?;
     keywords.finish("keywords of solve")?;
     let body = Body::from(body);
-    let grid = grid.map(|grid| grid.0).or(call.single.dented);
+    let grid = grid.map(|grid| grid.0).or(call.dented);
     call.run(py, move |shape, motion, options, progress| match grid {
         Some(grid) => {
             Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
@@ -109,17 +110,38 @@ pub(in crate::python) fn solve<'py>(
 pub(super) struct Call {
     shape: Shape,
     motion: Motion,
-    single: Single,
+    options: Options,
+    /// Grid of the permanent indentation that the surfaces have already.
+    dented: Option<Grid>,
+    progress: Option<Py<PyAny>>,
+    check: bool,
 }
 
 impl Call {
     pub(super) fn new(shape: &Bound<'_, PyAny>, keywords: &Keywords) -> PyResult<Self> {
         let motion = keywords::motion(keywords)?;
-        let single = keywords::single(keywords)?;
+        let Single {
+            mut options,
+            initial,
+            progress,
+            check,
+        } = keywords::single(keywords)?;
+        let mut dented = None;
+        if let Some(before) = initial
+            .as_ref()
+            .and_then(|one| one.cast::<PySolution>().ok())
+        {
+            let before = before.get().solution();
+            options.indentation.clone_from(&before.indentation);
+            dented = before.indentation.as_ref().map(|_| *before.grid());
+        }
         Ok(Self {
             shape: self::shape(shape)?.get().0.clone(),
             motion,
-            single,
+            options,
+            dented,
+            progress,
+            check,
         })
     }
 
@@ -134,14 +156,11 @@ impl Call {
         let Self {
             shape,
             motion,
-            single,
-        } = self;
-        let Single {
             options,
             progress,
             check,
             ..
-        } = single;
+        } = self;
         let tolerance = options.tolerance;
         let solution = background::run(py, progress, move |caller| {
             work(&shape, &motion, &options, &mut |report| {

@@ -13,6 +13,8 @@ use crate::kernel::strip::{self, LinePlan};
 use crate::response::interior::Place;
 use crate::stress::half_space::plan::HalfSpacePlan;
 use crate::stress::half_space::repeats::{Repeats, rows_of};
+
+pub(super) use crate::stress::half_space::repeats::RowSource;
 use crate::stress::subcell::STRESSES;
 
 /// A load on the surface, in proportion to the pressure.
@@ -42,9 +44,6 @@ impl SurfaceLoad {
 pub(in crate::stress) const fn components(displacement: bool) -> usize {
     if displacement { COMPONENTS } else { STRESSES }
 }
-
-/// Gives the coefficients of some rows to its second argument.
-pub(super) type RowSource<'a> = dyn Fn(Range<usize>, &mut Keep) + Sync + 'a;
 
 /// Coefficients of a plan at one place.
 #[derive(Debug, Clone, Copy)]

@@ -12,7 +12,6 @@ use std::ops::Range;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use super::coefficients::RowSource;
 use crate::body::{HalfSpace, Substrate};
 use crate::fft::Keep;
 use crate::grid::Grid;
@@ -46,6 +45,9 @@ pub(in crate::stress) struct Repeats {
     body: HalfSpace,
     grid: Grid,
 }
+
+/// Gives the coefficients of some rows to its second argument.
+pub(super) type RowSource<'a> = dyn Fn(Range<usize>, &mut Keep) + Sync + 'a;
 
 /// A load whose coefficients are summed: pressure, or traction along an axis.
 pub(super) type Axis = Option<usize>;

@@ -113,7 +113,7 @@ fn waves_along_one_direction_are_those_of_the_body() -> Result<()> {
     Ok(())
 }
 
-/// The same of crossed waves, for σ_zz.
+/// Crossed waves are those of the body, too: σ_zz.
 #[test]
 fn crossed_waves_are_those_of_the_body() -> Result<()> {
     for body in &bodies()? {
