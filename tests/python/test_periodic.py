@@ -197,5 +197,5 @@ def test_plans_sections_and_files_know_that_stresses_repeat(tmp_path: Path) -> N
     assert (tmp_path / "below.vtr").stat().st_size > 1000
     from nacre import plot
 
-    axes = plot.stress_section(solution, "x")
+    axes = plot.stress_section(solution)
     assert axes.get_xlabel().startswith("x")
