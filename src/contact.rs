@@ -40,8 +40,8 @@ use start::Sampled;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
-/// A plan and a solve take up to 170 bytes a cell; a grid that does not fit into memory is refused before
-/// it starts. Between solves a plan keeps the memory that they worked in: up to 130 bytes a cell.
+/// A plan and a solve take up to 170 bytes a cell, with a hardness 230; a grid that does not fit into memory is refused
+/// before it starts. Between solves a plan keeps the memory that they worked in: up to 130 bytes a cell.
 ///
 /// ```
 /// use nacre::{Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::response::frequency_response;
 use nacre::{
-    Contact, Cylinder, Elastic, Error, Grid, HalfSpace, HeightMap, Layer, Motion, Options,
-    Paraboloid, Result, Setup, Solution, Substrate, Surface,
+    Contact, Cylinder, Elastic, Error, Grid, HalfSpace, Hardness, HeightMap, Layer, Motion,
+    Options, Paraboloid, Result, Setup, Solution, Substrate, Surface,
 };
 use ndarray::Array2;
 
@@ -256,6 +256,126 @@ fn a_long_period_is_none() -> Result<()> {
         near[1] < 5e-2 && far[1] < 0.16 * near[1],
         "{near:?} {far:?}"
     );
+    Ok(())
+}
+
+/// Full contact of one wave and of two crossed ones on ten random stacks, to rounding with the spectral method.
+#[test]
+fn random_stacks_in_full_contact() -> Result<()> {
+    let grid = Grid::new([24, 20], [2.4, 2.0])?.periodic([true; 2])?;
+    for number in 0..10 {
+        let r = uniform([1, 14], 900 + number);
+        let material =
+            |k: usize| Elastic::new(10_f64.powf(2.0 * r[[0, k]] - 1.0), 0.49 * r[[0, k + 1]]);
+        let count = 1 + number as usize % 4;
+        let layers: Vec<Layer> = (0..count)
+            .map(|k| Layer::new(material(3 * k)?, 10_f64.powf(2.0 * r[[0, 3 * k + 2]] - 1.5)))
+            .collect::<Result<_>>()?;
+        let base = if number % 3 == 0 {
+            Substrate::Rigid
+        } else {
+            Substrate::Elastic(material(12)?)
+        };
+        let body = HalfSpace::new(base, layers)?;
+        for [k, l] in [[1, 0], [2, 3]] {
+            let (qx, qy) = (2.0 * PI * f64::from(k) / 2.4, 2.0 * PI * f64::from(l) / 2.0);
+            let wave = |x: f64, y: f64| (qx * x).cos() * (qy * y).cos();
+            let alpha = qx.hypot(qy);
+            let amplitude = 1e-3 / frequency_response(&body, alpha)?;
+            let setup = Setup {
+                method: Method::Spectral,
+                ..Setup::default()
+            };
+            let contact = Contact::plan(&body, grid, setup)?;
+            let shape = map(&grid, |x, y| 1e-3 * wave(x, y))?;
+            let found = contact.solve(&shape, &Motion::load(1.2 * amplitude * 4.8), &tight())?;
+            let (x, y) = (grid.x(), grid.y());
+            for ((i, j), p) in found.pressure.indexed_iter() {
+                let due = amplitude * (1.2 + wave(x[i], y[j]));
+                assert!(
+                    (p - due).abs() < 1e-12 * amplitude,
+                    "{number} {k} {l}: {p:e} {due:e}"
+                );
+            }
+            let largest = found.gap().iter().fold(0.0_f64, |m, g| m.max(g.abs()));
+            assert!(largest < 1e-12 * 1e-3, "{number}: {largest:e}");
+        }
+    }
+    Ok(())
+}
+
+/// The operator of a mirrored pressure is mirrored, that of a shifted one shifted, and with x and y exchanged transposed.
+#[test]
+fn the_operator_is_mirrored_shifted_and_transposed() -> Result<()> {
+    let shape = [30, 18];
+    let pressure = uniform(shape, 31);
+    for repeats in [[true, true], [true, false], [false, true]] {
+        for body in &bodies(1.0)? {
+            let displaced = |p: &Array2<f64>, turned: bool| -> Result<Array2<f64>> {
+                let (shape, repeats) = match turned {
+                    true => ([18, 30], [repeats[1], repeats[0]]),
+                    false => (shape, repeats),
+                };
+                let size = shape.map(|n| n as f64);
+                let grid = Grid::new(shape, size)?.periodic(repeats)?;
+                Contact::plan(body, grid, Setup::default())?
+                    .convolution()
+                    .apply(p)
+            };
+            let at = |values: &Array2<f64>, [i, j]: [usize; 2]| values[[i % 30, j % 18]];
+            let here = displaced(&pressure, false)?;
+            let largest = here.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+            let moved = |i: usize| if repeats[0] { i + 7 } else { i };
+            let shifted = Array2::from_shape_fn(shape, |(i, j)| at(&pressure, [moved(i), j]));
+            let mirrored = Array2::from_shape_fn(shape, |(i, j)| pressure[[29 - i, 17 - j]]);
+            let transposed = pressure.t().to_owned();
+            let [shifted, mirrored] = [displaced(&shifted, false)?, displaced(&mirrored, false)?];
+            let transposed = displaced(&transposed, true)?;
+            for ((i, j), u) in here.indexed_iter() {
+                let errors = [
+                    shifted[[i, j]] - at(&here, [moved(i), j]),
+                    mirrored[[29 - i, 17 - j]] - u,
+                    transposed[[j, i]] - u,
+                ];
+                for error in errors {
+                    assert!(
+                        error.abs() < 1e-12 * largest,
+                        "{repeats:?} {i} {j}: {errors:?}"
+                    );
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One thread, two and four give the same bits, with a hardness as well.
+#[test]
+fn threads_change_no_bit() -> Result<()> {
+    let grid = Grid::new([128, 96], [1.0, 0.75])?.periodic([true; 2])?;
+    let shape = rough(&grid)?;
+    let body = &bodies(0.01)?[1];
+    let solve = |threads: usize, hardness: Option<f64>| -> Result<Solution> {
+        let setup = Setup {
+            threads: Some(threads),
+            ..Setup::default()
+        };
+        let options = Options {
+            hardness: hardness.map(Hardness::Uniform),
+            ..Options::default()
+        };
+        Contact::plan(body, grid, setup)?.solve(&shape, &Motion::load(2e-3), &options)
+    };
+    let elastic = solve(1, None)?;
+    let hardness = 0.5 * elastic.peak_pressure();
+    let yielding = solve(1, Some(hardness))?;
+    assert!(yielding.indentation.is_some());
+    for threads in [2, 4] {
+        assert_eq!(solve(threads, None)?.pressure, elastic.pressure);
+        let found = solve(threads, Some(hardness))?;
+        assert_eq!(found.pressure, yielding.pressure);
+        assert_eq!(found.indentation, yielding.indentation);
+    }
     Ok(())
 }
 
