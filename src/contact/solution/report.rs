@@ -39,7 +39,7 @@ pub struct Report {
     /// Errors of force and moments.
     pub balance: Balance,
     /// Discretisation errors, estimated from coarser grids. `None` where no coarser grid was solved: on
-    /// small grids, from a given pressure, by another algorithm, or without convergence.
+    /// small grids, from a given pressure, by another algorithm, where surfaces yield, or without convergence.
     pub discretisation: Option<Discretisation>,
     /// Warnings: what the user should know.
     pub warnings: Vec<Warning>,

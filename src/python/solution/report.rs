@@ -226,8 +226,8 @@ impl PyReport {
     /// The keys are ``peak_pressure`` [Pa], ``approach`` [m] and ``load`` [N]; a prescribed quantity
     /// has the error 0. The peak pressure has none, `None`, where the pressure is singular: at a sharp
     /// edge of the shape, or where the grid cuts the contact; a warning says so. `None` altogether where
-    /// no coarser grid was solved: on small grids, from a given pressure, by another algorithm, or
-    /// without convergence.
+    /// no coarser grid was solved: on small grids, from a given pressure, by another algorithm, where
+    /// surfaces yield, or without convergence.
     #[getter]
     fn discretisation<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(errors) = self.0.discretisation else {
