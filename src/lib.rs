@@ -77,6 +77,8 @@ mod kernel;
 
 mod images;
 
+pub mod indent;
+
 pub mod influence;
 
 pub mod convolution;

@@ -31,7 +31,7 @@ from typing import NamedTuple
 
 CHAIN = [
     *("error", "parallel", "material", "body", "hertz", "grid", "surface", "response", "graded"),
-    *("fft", "kernel", "images", "influence", "convolution", "ends", "traction", "contact"),
+    *("fft", "kernel", "images", "indent", "influence", "convolution", "ends", "traction", "contact"),
     *("stress", "friction", "serial", "python"),
 ]
 FILES = 12
