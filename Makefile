@@ -64,7 +64,7 @@ fuzz: $(WHEEL) $(DEV) ## random contacts and calls, ten thousand in all: CASES=1
 peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes
 	PYTHONPATH=benches $(PYTHON) -m peers --target $(TARGET) $(OPTIONS)
 
-kappa: $(WHEEL) $(DEV) ## area of rough contacts of bare and coated bodies: docs/kappa.csv and its picture, in ten minutes
+kappa: $(WHEEL) $(DEV) ## area of rough contacts of bare and coated bodies: docs/kappa.csv and its picture, in three minutes
 	$(BIN)/python benches/kappa.py
 
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop

@@ -15,7 +15,7 @@ import nacre
 
 Array = npt.NDArray[np.float64]
 Waves = npt.NDArray[np.complex128]
-Name = Literal["hertz", "coated", "rough", "periodic", "roller"]
+Name = Literal["hertz", "coated", "rough", "periodic", "opened", "roller"]
 
 SIDE = 2.0
 """Side of the domain."""
@@ -40,7 +40,8 @@ SEED = 2026
 class Problem:
     """One problem on one grid.
 
-    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `method`.
+    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `method`. `opened` is
+    the same surface once, which nacre alone solves.
     `coated` is `hertz` on a layer as thick as the contact radius, of four times the modulus;
     `roller` is that of Spinu et al., on 1024 × 128 cells, under a force at e/L = 0.3. nacre alone
     solves these two.
@@ -84,7 +85,7 @@ class Problem:
         """The force."""
         if self.name == "roller":
             return 1e3
-        is_rough = self.name in ("rough", "periodic")
+        is_rough = self.name in ("rough", "periodic", "opened")
         return MEAN_PRESSURE * SIDE**2 if is_rough else HERTZ_LOAD
 
     @property
@@ -97,7 +98,7 @@ class Problem:
         match self.name:
             case "roller":
                 return nacre.Roller(5e-3, flat_length=19.13e-3, crown_radius=7.5)
-            case "rough" | "periodic":
+            case "rough" | "periodic" | "opened":
                 gaps = self.gaps() if gaps is None else gaps
                 spacing, repeats = SIDE / self.cells, (self.repeats, self.repeats)
                 return nacre.HeightMap(-gaps, spacing=spacing, periodic=repeats)
@@ -106,7 +107,7 @@ class Problem:
 
     def gaps(self) -> Array:
         """Return the undeformed gap at cell centres, that of the highest point 0 when rough."""
-        if self.name in ("rough", "periodic"):
+        if self.name in ("rough", "periodic", "opened"):
             make = rough_heights if self.name == "rough" else periodic_heights
             heights = make(self.cells)
             return np.asarray(heights.max() - heights)

@@ -17,6 +17,7 @@ TITLES = {
     "hertz": "Hertz: a sphere on a square of side 2, contact radius 1/3",
     "rough": "Rough: self-affine, Hurst 0.8, rms slope 1, mean pressure 0.04 E*",
     "periodic": "Rough and periodic: the same spectrum, with the side as its period",
+    "opened": "The same surface once, on a grid that does not repeat",
     "coated": "Hertz on a layer of four times the modulus, as thick as the contact radius",
     "batch": "1000 coated spheres, load by load; on several threads by `Contact.solve_many`",
     "roller": "Roller of Spinu et al., E1/E2 = 4, e/L = 0.3, with an eighth of the cells across",

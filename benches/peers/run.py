@@ -71,6 +71,7 @@ def by_itself(bench: Bench, sizes: list[int], *, large: bool) -> None:
     middle = min(1024, sizes[-1])
     turns = TURNS if large else TURNS // 8
     bench.solve(Problem("roller", middle), "nacre", 1)
+    bench.solve(Problem("opened", middle), "nacre", 1)
     bench.in_turn(max(4, turns // 8), [bench.batch(128, 1000, n) for n in (1, os.cpu_count() or 1)])
     sphere, coated = Problem("hertz", middle), Problem("coated", middle)
     asked = [bench.solves(sphere, threads, "idle") for threads in (1, 2)]

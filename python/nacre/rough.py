@@ -225,7 +225,14 @@ def corrected_area(solution: core.Solution) -> float:
     subtract (π - 1 + ln 2)/24 of it, the perimeter S counted along the sides of cells. On round
     contacts of nacre's own the error is 0.09 S, and 0.10 S with the method "spectral", where they
     subtract 0.118 S: a quarter of the correction is the uncertainty of the result.
+
+    Raises
+    ------
+    ValueError
+        If the grid is one of strips.
     """
+    if solution.report.grid.is_line:
+        raise ValueError("the grid of solution must have cells along x, got a line")
     dx, dy = solution.report.grid.spacing
     along, across = sides(solution)
     perimeter = along * dx + across * dy

@@ -206,8 +206,11 @@ def test_the_spectrum_knows_the_waves_and_flattens_under_load() -> None:
     flat = rough.spectrum(full)["deformed"]
     assert float(flat.max()) < 1e-6 * float(found["undeformed"].max())
     line = nacre.solve(nacre.Cylinder(1.0), BODY, grid=nacre.Grid.line(32, 1.0), load=1e-3)
-    with pytest.raises(ValueError, match="must have cells along x"):
-        rough.spectrum(line)
+    for statistic in (rough.spectrum, rough.corrected_area):
+        with pytest.raises(ValueError, match="must have cells along x"):
+            statistic(line)
+    # Patches of a line contact have lengths.
+    assert rough.patches(line).sum() == pytest.approx(line.contact_area, rel=1e-12)
 
 
 def test_the_load_curve_is_that_of_single_solves() -> None:
