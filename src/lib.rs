@@ -57,6 +57,8 @@ pub mod error;
 
 mod parallel;
 
+mod dense;
+
 pub mod material;
 
 pub mod body;

@@ -30,8 +30,29 @@ from pathlib import Path
 from typing import NamedTuple
 
 CHAIN = [
-    *("error", "parallel", "material", "body", "hertz", "grid", "surface", "response", "graded"),
-    *("fft", "kernel", "images", "indent", "influence", "convolution", "ends", "traction", "contact"),
+    *(
+        "error",
+        "parallel",
+        "dense",
+        "material",
+        "body",
+        "hertz",
+        "grid",
+        "surface",
+        "response",
+        "graded",
+    ),
+    *(
+        "fft",
+        "kernel",
+        "images",
+        "indent",
+        "influence",
+        "convolution",
+        "ends",
+        "traction",
+        "contact",
+    ),
     *("stress", "friction", "serial", "python"),
 ]
 FILES = 12

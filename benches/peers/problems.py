@@ -40,8 +40,8 @@ SEED = 2026
 class Problem:
     """One problem on one grid.
 
-    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `method`. `opened` is
-    the same surface once, which nacre alone solves.
+    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `method`. `opened`
+    is the same surface once, which nacre alone solves.
     `coated` is `hertz` on a layer as thick as the contact radius, of four times the modulus;
     `roller` is that of Spinu et al., on 1024 × 128 cells, under a force at e/L = 0.3. nacre alone
     solves these two.

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::stack::Stack;
 use super::tip::Tip;
+use crate::dense::{backward, cholesky, forward};
 use crate::error::{Error, Result, positive};
 use crate::kernel::quadrature::Rule;
 
@@ -13,7 +14,7 @@ const BARE: usize = 8;
 /// Nodes at most: thinner layers need other methods.
 const MOST: usize = 600;
 
-/// Nodes of the integrals of the pressure.
+/// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
 const PRESSURE: usize = 48;
 
 /// Newton steps for a radius; some five suffice.
@@ -203,23 +204,20 @@ impl<'a> Indent<'a> {
                     .collect()
             })
             .collect();
-        let mut matrix = vec![vec![0.0; n]; n];
-        for i in 0..n {
-            for j in 0..=i {
-                let terms = cosines[i].iter().zip(&cosines[j]).zip(waves);
-                let sum: f64 = terms.map(|((a, b), [_, m])| a * b * m).sum();
-                matrix[i][j] = 2.0 / PI * sum + if i == j { 1.0 } else { 0.0 };
-            }
-        }
-        let factor = cholesky(matrix).ok_or(Error::Inconsistent(
+        let factor = cholesky(n, |i, j| {
+            let terms = cosines[i].iter().zip(&cosines[j]).zip(waves);
+            let sum: f64 = terms.map(|((a, b), [_, m])| a * b * m).sum();
+            2.0 / PI * sum + if i == j { 1.0 } else { 0.0 }
+        });
+        let factor = factor.ok_or(Error::Inconsistent(
             "the response of the bodies must be positive at every wavenumber",
         ))?;
         let unit = nodes.iter().map(|(_, w)| f * w.sqrt());
         let profile = nodes
             .iter()
             .map(|(s, w)| f * w.sqrt() * self.tip.transform(*s)[0]);
-        let [punch, profile] =
-            [unit.collect(), profile.collect()].map(|right| solved(&factor, right));
+        let [punch, profile] = [unit.collect(), profile.collect()]
+            .map(|right| backward(&factor, forward(&factor, right)));
         // p̂ of each, and the values at the edge.
         let transform = |values: &[f64]| -> Vec<f64> {
             (0..waves.len())
@@ -262,13 +260,49 @@ impl<'a> Indent<'a> {
     fn nodes(&self, a: f64, count: usize) -> Vec<(f64, f64)> {
         let rule = Rule::gauss_legendre(count);
         let kink = self.tip.kink().filter(|b| *b < a);
-        let ends = [Some(0.0), kink, Some(a)];
-        let ends: Vec<f64> = ends.into_iter().flatten().collect();
-        let panel = |ends: &[f64]| -> Vec<(f64, f64)> {
-            rule.nodes(0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]))
-                .collect()
-        };
-        ends.windows(2).flat_map(panel).collect()
+        panels(0.0, kink, a)
+            .flat_map(|panel| panel.nodes(&rule))
+            .collect()
+    }
+}
+
+/// Part of a range of integration.
+#[derive(Debug, Clone, Copy)]
+struct Panel {
+    low: f64,
+    high: f64,
+    /// Whether the integrand has roots of the distance from the lower end, as beyond a kink of the profile.
+    has_root: bool,
+}
+
+/// Panels from `low` to `high`, which end at a kink.
+fn panels(low: f64, kink: Option<f64>, high: f64) -> impl Iterator<Item = Panel> {
+    let first = Panel {
+        low,
+        high: kink.unwrap_or(high),
+        has_root: false,
+    };
+    let second = kink.map(|low| Panel {
+        low,
+        high,
+        has_root: true,
+    });
+    std::iter::once(first).chain(second)
+}
+
+impl Panel {
+    /// Nodes and weights; a root is taken away by squares.
+    fn nodes(self, rule: &Rule) -> Vec<(f64, f64)> {
+        let length = self.high - self.low;
+        match self.has_root {
+            false => rule
+                .nodes(0.5 * (self.low + self.high), 0.5 * length)
+                .collect(),
+            true => {
+                let place = |(v, w): (f64, f64)| (self.low + length * v * v, 2.0 * length * v * w);
+                rule.nodes(0.5, 0.5).map(place).collect()
+            }
+        }
     }
 }
 
@@ -306,13 +340,15 @@ impl Point<'_> {
             });
         }
         let singular = density / ((a - r) * (a + r)).sqrt();
-        let rule = Rule::gauss_legendre(PRESSURE);
+        let ratio = self.stack.thickness.map_or(0.0, |h| a / h);
+        let rule = Rule::gauss_legendre(PRESSURE + (4.0 * ratio).ceil() as usize);
         let mut sum = 0.0;
+        let kink = self.tip.kink().filter(|b| *b > r && *b < a);
         if r > 0.0 {
             // t = r cosh θ takes the root away.
-            let end = (a / r).acosh();
-            for [low, high] in self.panels(|t| (t / r).acosh(), [r, end]) {
-                let nodes = rule.nodes(0.5 * (low + high), 0.5 * (high - low));
+            let angle = |t: f64| (t / r).acosh();
+            for panel in panels(0.0, kink.map(angle), angle(a)) {
+                let nodes = panel.nodes(&rule).into_iter();
                 sum += nodes
                     .map(|(angle, w)| w * self.slope(r * angle.cosh()))
                     .sum::<f64>();
@@ -322,20 +358,11 @@ impl Point<'_> {
         if self.tip.transform(0.0)[1] > 0.0 {
             return Ok(f64::INFINITY);
         }
-        for [low, high] in self.panels(|t| t, [0.0, a]) {
-            let nodes = rule.nodes(0.5 * (low + high), 0.5 * (high - low));
+        for panel in panels(0.0, kink, a) {
+            let nodes = panel.nodes(&rule).into_iter();
             sum += nodes.map(|(t, w)| w * self.slope(t) / t).sum::<f64>();
         }
         Ok(singular - sum)
-    }
-
-    /// Panels from 0 to an end, cut where a kink beyond `r` lies in the new variable.
-    fn panels(&self, variable: impl Fn(f64) -> f64, [r, end]: [f64; 2]) -> Vec<[f64; 2]> {
-        let kink = self.tip.kink().filter(|b| *b > r && *b < self.radius);
-        match kink.map(variable) {
-            Some(cut) => vec![[0.0, cut], [cut, end]],
-            None => vec![[0.0, end]],
-        }
     }
 
     /// φ'(t) of the contact: −f F' + 2/π ∫ M α sin(αt) p̂ dα.
@@ -349,47 +376,4 @@ impl Point<'_> {
             .sum();
         2.0 / PI * sum - self.stack.modulus / PI * self.tip.transform(t)[1]
     }
-}
-
-/// Cholesky factor of a symmetric matrix, of which the lower half is given; none where a pivot is not positive.
-fn cholesky(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
-    for a in 0..matrix.len() {
-        for b in 0..=a {
-            let (above, rest) = matrix.split_at_mut(a);
-            let row = &mut rest[0];
-            let before: f64 = match b < a {
-                true => row[..b]
-                    .iter()
-                    .zip(&above[b][..b])
-                    .map(|(x, y)| x * y)
-                    .sum(),
-                false => row[..b].iter().map(|x| x * x).sum(),
-            };
-            let value = row[b] - before;
-            if b < a {
-                row[b] = value / above[b][b];
-            } else if value > 0.0 {
-                row[b] = value.sqrt();
-            } else {
-                return None;
-            }
-        }
-    }
-    Some(matrix)
-}
-
-/// Solution of L Lᵀ x = `right`.
-fn solved(lower: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
-    for a in 0..right.len() {
-        let known: f64 = lower[a][..a].iter().zip(&right).map(|(l, x)| l * x).sum();
-        right[a] = (right[a] - known) / lower[a][a];
-    }
-    for a in (0..right.len()).rev() {
-        right[a] /= lower[a][a];
-        let value = right[a];
-        for (x, l) in right[..a].iter_mut().zip(&lower[a][..a]) {
-            *x -= l * value;
-        }
-    }
-    right
 }
