@@ -1,379 +1,283 @@
-//! The contact of one radius.
+//! States of an indentation.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use super::stack::Stack;
-use super::tip::Tip;
-use crate::dense::{backward, cholesky, forward};
-use crate::error::{Error, Result, positive};
-use crate::kernel::quadrature::Rule;
-
-/// Nodes of the contact without layers, of which eight give all digits of smooth tips.
-const BARE: usize = 8;
-
-/// Nodes at most: thinner layers need other methods.
-const MOST: usize = 600;
-
-/// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
-const PRESSURE: usize = 48;
-
-/// Newton steps for a radius; some five suffice.
-const STEPS: usize = 100;
-
-/// A tip on a stack.
-#[derive(Debug, Clone)]
-pub struct Indent<'a> {
-    stack: &'a Stack,
-    tip: Tip,
-}
+use super::adhesion::Adhesion;
+use super::cohesion::Zone;
+use super::density::{Density, bessel_sum};
+use super::parts::{Parts, times};
+use crate::error::{Error, Result};
+use crate::parallel::dot;
 
 /// One state of an indentation.
 #[derive(Debug, Clone)]
-pub struct Point<'a> {
+pub struct Point {
     /// Contact radius a \[m\].
     pub radius: f64,
-    /// Load P \[N\].
+    /// Load P \[N\], below 0 where the tip is pulled.
     pub load: f64,
     /// Approach δ \[m\].
     pub approach: f64,
-    /// Stiffness dP/dδ of this contact \[N/m\]: that of unloading, and without adhesion along the curve.
+    /// Stiffness dP/dδ of this contact area \[N/m\]: that of unloading, and without adhesion that along the curve.
     pub stiffness: f64,
     /// Its derivative with respect to the contact radius \[N/m²\].
     pub stiffness_slope: f64,
-    stack: &'a Stack,
-    tip: Tip,
-    /// Approach without adhesion at this radius \[m\].
-    pub(super) hertzian: f64,
-    /// P_F \[N\]: the load is S δ − P_F.
-    profile_load: f64,
-    /// φ₁(a) of the flat punch at unit approach \[N/m²\].
-    pub(super) edge: f64,
-    /// p̂ at the waves of the stack, of the flat punch at unit approach and of the profile.
-    hats: [Vec<f64>; 2],
+    /// Radius \[m\] up to which the surfaces attract each other, with the adhesion of Maugis and Dugdale.
+    pub outer_radius: Option<f64>,
+    pub(super) parts: Arc<Parts>,
+    pub(super) adhesion: Adhesion,
+    pub(super) zone: Option<Zone>,
 }
 
-impl Stack {
-    /// A tip that is pressed into this stack.
-    ///
-    /// # Errors
-    /// A tip with a number that is not above 0.
-    pub fn indent(&self, tip: &Tip) -> Result<Indent<'_>> {
-        Ok(Indent {
-            stack: self,
-            tip: tip.checked()?,
-        })
-    }
-}
-
-impl<'a> Indent<'a> {
-    /// The contact of radius `a` \[m\] without adhesion; a flat tip, whose load its radius does not decide, at the approach 1.
-    ///
-    /// # Errors
-    /// A radius that is not above 0, beyond that of the plan or of the tip, or too large for the thickness of the top layer.
-    pub fn at_radius(&self, a: f64) -> Result<Point<'a>> {
-        let point = self.solve(a)?;
-        let approach = match self.tip {
-            Tip::Flat => 1.0,
-            _ => point.hertzian,
+impl Point {
+    /// The contact of `parts` at an `approach`.
+    pub(super) fn new(parts: Arc<Parts>, adhesion: Adhesion, approach: f64) -> Self {
+        let [stiffness, profile] = parts.loads;
+        let outside = match (adhesion, parts.tip.end_radius()) {
+            (Adhesion::Dmt { work }, Some(radius)) => 2.0 * PI * work * radius,
+            _ => 0.0,
         };
-        Ok(point.at(approach))
+        Self {
+            radius: parts.system.radius,
+            load: stiffness * approach - profile - outside,
+            approach,
+            stiffness,
+            stiffness_slope: parts.stiffness_slope(),
+            outer_radius: None,
+            parts,
+            adhesion,
+            zone: None,
+        }
     }
 
-    /// Largest contact radius \[m\] that can be asked for.
-    pub(super) fn largest(&self) -> f64 {
-        self.stack
-            .largest
-            .min(self.tip.largest_radius() * (1.0 - 1e-9))
+    /// φ in the basis.
+    pub(super) fn values(&self) -> Vec<f64> {
+        self.combined(|parts| &parts.values, |zone| &zone.values)
     }
 
-    /// The contact under a `load` \[N\] above 0, without adhesion.
+    /// p̂ at the waves, with that of a cohesive zone.
+    pub(super) fn hat(&self) -> Vec<f64> {
+        self.combined(|parts| &parts.hats, |zone| &zone.hat)
+    }
+
+    fn combined<'a>(
+        &'a self,
+        of: impl Fn(&'a Parts) -> &'a [Vec<f64>; 2],
+        more: impl Fn(&'a Zone) -> &'a [f64],
+    ) -> Vec<f64> {
+        let [punch, profile] = of(&self.parts);
+        let pairs = punch.iter().zip(profile);
+        let mut all: Vec<f64> = pairs.map(|(a, b)| self.approach * a - b).collect();
+        if let Some(zone) = &self.zone {
+            for (value, more) in all.iter_mut().zip(more(zone)) {
+                *value += more;
+            }
+        }
+        all
+    }
+
+    /// φ at the edge.
+    pub(super) fn edge(&self) -> f64 {
+        let [punch, profile] = self.parts.edge;
+        self.zone.as_ref().map_or(0.0, |zone| zone.edge) + self.approach * punch - profile
+    }
+
+    /// The density of the state.
+    pub(super) fn density(&self) -> Density<'_> {
+        let f = self.parts.f();
+        Density {
+            parts: &self.parts,
+            known: [f * self.approach, f],
+            rate: None,
+            g: times(self.parts.system.excess(), &self.hat()),
+            edge: self.exact_edge(),
+        }
+    }
+
+    /// φ at the edge, without the rounding of what vanishes there.
+    pub(super) fn exact_edge(&self) -> f64 {
+        let is_sharp = self.parts.tip.fixed_radius().is_some();
+        match (self.adhesion, &self.zone) {
+            (_, Some(_)) => self.edge(),
+            (Adhesion::None | Adhesion::Dmt { .. }, None) if !is_sharp => 0.0,
+            (Adhesion::Jkr { .. }, None) if !is_sharp => self
+                .adhesion
+                .edge(self.parts.stack.surface_modulus(), self.radius),
+            _ => self.edge(),
+        }
+    }
+
+    /// Pressure at each distance r from the axis \[Pa\], 0 outside of the contact; +∞ on the axis below a sharp tip, and ±∞
+    /// at an edge where it has no limit. The stress of a cohesive zone is negative.
     ///
     /// # Errors
-    /// As [`Indent::at_radius`], a flat tip, and a load that needs a larger radius than was planned.
-    pub fn at_load(&self, load: f64) -> Result<Point<'a>> {
-        positive("load", load)?;
-        self.find("load", load, |point| [point.load, point.stiffness])
+    /// A distance that is negative or not finite.
+    pub fn pressure(&self, r: &[f64]) -> Result<Vec<f64>> {
+        r.iter().try_for_each(|r| distance(*r))?;
+        let (density, a) = (self.density(), self.radius);
+        let at = |r: &f64| -> f64 {
+            if *r > a {
+                return self.zone.as_ref().map_or(0.0, |zone| zone.outside(*r));
+            }
+            if let Some(zone) = &self.zone {
+                // φ goes on into the zone, so that no edge is singular.
+                let from_contact = match *r < a {
+                    true => Density { edge: 0.0, ..self.density() }.pressure(*r),
+                    false => 0.0,
+                };
+                return from_contact + zone.inside(*r, a);
+            }
+            if *r >= a {
+                return match density.edge.abs() > 0.0 {
+                    true => density.edge.signum() * f64::INFINITY,
+                    false => 0.0,
+                };
+            }
+            if *r <= 0.0 && self.parts.tip.is_sharp() {
+                return f64::INFINITY;
+            }
+            density.pressure(*r)
+        };
+        Ok(r.iter().map(at).collect())
     }
 
-    /// The contact at an `approach` \[m\] above 0, without adhesion.
+    /// Normal displacement of the surfaces of all bodies together at each distance r from the axis \[m\], positive into
+    /// them; within the contact it is δ − g(r).
     ///
     /// # Errors
-    /// As [`Indent::at_radius`], a flat tip, and an approach that needs a larger radius than was planned.
-    pub fn at_approach(&self, approach: f64) -> Result<Point<'a>> {
-        positive("approach", approach)?;
-        self.find("approach", approach, |point| [point.approach, 1.0])
+    /// A distance that is negative or not finite.
+    pub fn displacement(&self, r: &[f64]) -> Result<Vec<f64>> {
+        r.iter().try_for_each(|r| distance(*r))?;
+        let density = self.density();
+        let short = self.parts.stack.short();
+        let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
+        let waves = self.wider_waves(far);
+        let at = |r: &f64| -> f64 {
+            if *r <= self.radius {
+                return self.approach - self.parts.tip.gap(*r);
+            }
+            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(*r));
+            let layers = waves.as_ref().map_or(0.0, |[g, alpha]| bessel_sum(g, alpha, *r));
+            short * (density.abel(*r) + zone + layers)
+        };
+        Ok(r.iter().map(at).collect())
     }
 
-    /// The radius at which a quantity that grows with it has a value; `of` gives it, and its derivative with respect to the
-    /// approach.
-    fn find(
-        &self,
-        name: &'static str,
-        wanted: f64,
-        of: fn(&Point<'_>) -> [f64; 2],
-    ) -> Result<Point<'a>> {
-        if self.tip == Tip::Flat {
-            return Err(Error::Inconsistent(
-                "the radius of a flat tip is its own: take the contact at this radius, whose load is proportional to the approach",
-            ));
-        }
-        let most = self.largest();
-        let least = self
-            .tip
-            .kink()
-            .filter(|_| matches!(self.tip, Tip::RoundedPunch(..)));
-        let (mut low, mut high) = (least.unwrap_or(0.0), most);
-        let top = self.at_radius(most)?;
-        if of(&top)[0] < wanted {
-            return Err(Error::Parameter {
-                name,
-                requirement: "no more than at the largest contact radius that was planned",
-                value: wanted,
-            });
-        }
-        // Bisection of ln a, and secants of the logarithms where they stay inside.
-        let mut a = 0.5 * (low + high);
-        let mut last: Option<[f64; 2]> = None;
-        for _ in 0..STEPS {
-            let point = self.at_radius(a)?;
-            let [found, _] = of(&point);
-            let error = (found / wanted).ln();
-            if error.abs() < 4.0 * f64::EPSILON {
-                return Ok(point);
-            }
-            match found < wanted {
-                true => low = a,
-                false => high = a,
-            }
-            let here = [a.ln(), error];
-            let slope = last.map(|[x, y]| (here[1] - y) / (here[0] - x));
-            last = Some(here);
-            let next = slope
-                .filter(|s| *s > 0.0)
-                .map(|s| (here[0] - error / s).exp());
-            let inside = next.filter(|next| *next > low && *next < high);
-            let next = inside.unwrap_or_else(|| {
-                if low > 0.0 {
-                    (low * high).sqrt()
-                } else {
-                    0.1 * high
+    /// Gap between tip and surface \[m\] at each distance r from the axis; +∞ beyond the tip.
+    ///
+    /// # Errors
+    /// A distance that is negative or not finite.
+    pub fn gap(&self, r: &[f64]) -> Result<Vec<f64>> {
+        let displacement = self.displacement(r)?;
+        let pairs = r.iter().zip(displacement);
+        Ok(pairs
+            .map(|(r, u)| match *r <= self.radius {
+                true => 0.0,
+                false => self.parts.tip.gap(*r) + u - self.approach,
+            })
+            .collect())
+    }
+
+    /// Weights times M p̂, and wavenumbers, of waves that resolve J₀(αr) up to `far`; none of bare bodies.
+    fn wider_waves(&self, far: f64) -> Option<[Vec<f64>; 2]> {
+        let level = self.parts.stack.level(self.radius + far)?;
+        let own = self.parts.system.level.as_ref()?;
+        let (alpha, excess) = (level.waves.alpha.clone(), &level.excess);
+        let hat = match level.waves.len() == own.waves.len() {
+            true => self.hat(),
+            false => {
+                let rows = self.parts.system.basis.transforms(&level.waves);
+                let values = self.values();
+                let mut hat = vec![0.0; alpha.len()];
+                for (row, value) in rows.iter().zip(&values) {
+                    hat.iter_mut().zip(row).for_each(|(sum, b)| *sum += value * b);
                 }
-            });
-            if (next / a - 1.0).abs() < 2.0 * f64::EPSILON {
-                return Ok(point);
+                if let Some(zone) = &self.zone {
+                    let own = zone.transform(&level.waves);
+                    hat.iter_mut().zip(own).for_each(|(sum, more)| *sum += more);
+                }
+                hat
             }
-            a = next;
-        }
-        self.at_radius(a)
-    }
-
-    /// The contact of radius `a`, with the approach 0.
-    pub(super) fn solve(&self, a: f64) -> Result<Point<'a>> {
-        let Stack {
-            modulus,
-            waves,
-            thickness,
-            largest,
-        } = self.stack;
-        self.tip.check_radius(a)?;
-        if a > *largest {
-            return Err(Error::Parameter {
-                name: "contact radius",
-                requirement: "at most the largest that was planned",
-                value: a,
-            });
-        }
-        let count = thickness.map_or(BARE, |h| 8 + (4.0 * a / h).ceil() as usize);
-        if count > MOST {
-            return Err(Error::Parameter {
-                name: "contact radius",
-                requirement: "at most 148 times the thickness of the top layer",
-                value: a,
-            });
-        }
-        let f = modulus / PI;
-        let nodes = self.nodes(a, count);
-        let n = nodes.len();
-        // B = 1 + 2/π C D Cᵀ, symmetric with the roots of the weights.
-        let cosines: Vec<Vec<f64>> = nodes
-            .iter()
-            .map(|(s, w)| {
-                waves
-                    .iter()
-                    .map(|[alpha, _]| w.sqrt() * (alpha * s).cos())
-                    .collect()
-            })
-            .collect();
-        let factor = cholesky(n, |i, j| {
-            let terms = cosines[i].iter().zip(&cosines[j]).zip(waves);
-            let sum: f64 = terms.map(|((a, b), [_, m])| a * b * m).sum();
-            2.0 / PI * sum + if i == j { 1.0 } else { 0.0 }
-        });
-        let factor = factor.ok_or(Error::Inconsistent(
-            "the response of the bodies must be positive at every wavenumber",
-        ))?;
-        let unit = nodes.iter().map(|(_, w)| f * w.sqrt());
-        let profile = nodes
-            .iter()
-            .map(|(s, w)| f * w.sqrt() * self.tip.transform(*s)[0]);
-        let [punch, profile] = [unit.collect(), profile.collect()]
-            .map(|right| backward(&factor, forward(&factor, right)));
-        // p̂ of each, and the values at the edge.
-        let transform = |values: &[f64]| -> Vec<f64> {
-            (0..waves.len())
-                .map(|q| cosines.iter().zip(values).map(|(row, v)| row[q] * v).sum())
-                .collect()
         };
-        let hats = [transform(&punch), transform(&profile)];
-        let total = |values: &[f64]| -> f64 {
-            let pairs = nodes.iter().zip(values);
-            2.0 * PI * pairs.map(|((_, w), v)| w.sqrt() * v).sum::<f64>()
-        };
-        let edge = |right: f64, hat: &[f64]| {
-            let waves = waves.iter().zip(hat);
-            f * right
-                - 2.0 / PI
-                    * waves
-                        .map(|([alpha, m], p)| m * (alpha * a).cos() * p)
-                        .sum::<f64>()
-        };
-        let (unit, of_profile) = (
-            edge(1.0, &hats[0]),
-            edge(self.tip.transform(a)[0], &hats[1]),
-        );
-        Ok(Point {
-            radius: a,
-            load: 0.0,
-            approach: 0.0,
-            stiffness: total(&punch),
-            stiffness_slope: 2.0 * (PI * unit).powi(2) / modulus,
-            stack: self.stack,
-            tip: self.tip,
-            hertzian: of_profile / unit,
-            profile_load: total(&profile),
-            edge: unit,
-            hats,
-        })
+        Some([times(excess, &hat), alpha])
     }
 
-    /// Nodes and weights on \[0, a\], in panels that end at a kink.
-    fn nodes(&self, a: f64, count: usize) -> Vec<(f64, f64)> {
-        let rule = Rule::gauss_legendre(count);
-        let kink = self.tip.kink().filter(|b| *b < a);
-        panels(0.0, kink, a)
-            .flat_map(|panel| panel.nodes(&rule))
-            .collect()
-    }
-}
-
-/// Part of a range of integration.
-#[derive(Debug, Clone, Copy)]
-struct Panel {
-    low: f64,
-    high: f64,
-    /// Whether the integrand has roots of the distance from the lower end, as beyond a kink of the profile.
-    has_root: bool,
-}
-
-/// Panels from `low` to `high`, which end at a kink.
-fn panels(low: f64, kink: Option<f64>, high: f64) -> impl Iterator<Item = Panel> {
-    let first = Panel {
-        low,
-        high: kink.unwrap_or(high),
-        has_root: false,
-    };
-    let second = kink.map(|low| Panel {
-        low,
-        high,
-        has_root: true,
-    });
-    std::iter::once(first).chain(second)
-}
-
-impl Panel {
-    /// Nodes and weights; a root is taken away by squares.
-    fn nodes(self, rule: &Rule) -> Vec<(f64, f64)> {
-        let length = self.high - self.low;
-        match self.has_root {
-            false => rule
-                .nodes(0.5 * (self.low + self.high), 0.5 * length)
-                .collect(),
-            true => {
-                let place = |(v, w): (f64, f64)| (self.low + length * v * v, 2.0 * length * v * w);
-                rule.nodes(0.5, 0.5).map(place).collect()
-            }
-        }
-    }
-}
-
-impl Point<'_> {
-    /// This contact at an approach, with the load that belongs to it.
-    pub(super) fn at(mut self, approach: f64) -> Self {
-        self.approach = approach;
-        self.load = self.stiffness * approach - self.profile_load;
-        self
-    }
-
-    /// Pressure at r from the axis \[Pa\], 0 outside of the contact; +∞ below the tip of a cone, and at an edge where it
-    /// has no limit.
+    /// Derivatives of approach and load with respect to the contact radius, along the states of the same adhesion.
     ///
-    /// # Errors
-    /// A place that is negative or not finite.
-    pub fn pressure(&self, r: f64) -> Result<f64> {
-        if !(r.is_finite() && r >= 0.0) {
-            return Err(Error::Parameter {
-                name: "r",
-                requirement: "finite and at least 0",
-                value: r,
-            });
+    /// φ(a) = e(a), and φ changes at fixed t by that of a punch and, where its edge is not 0, by what the wider contact adds:
+    ///
+    /// ```text
+    /// B φ_a = −2/π φ(a) ∫ M b̂ cos αa dα      δ' φ₁(a) = e' − φ'(a) − φ_a(a)      P' = S δ' + 2π [∫ φ_a + φ(a)]
+    /// ```
+    pub(super) fn along(&self) -> [f64; 2] {
+        let edge = self.exact_edge();
+        let system = &self.parts.system;
+        let mut needed = edge / (2.0 * self.radius) - self.density().edge_slope();
+        let mut more = edge;
+        if edge.abs() > 0.0 {
+            let (values, _, at_edge) = self.widening(edge);
+            needed -= at_edge;
+            more += dot(&values, &system.ones);
         }
-        let a = self.radius;
-        let density = (self.approach - self.hertzian) * self.edge;
-        if r > a {
-            return Ok(0.0);
-        }
-        if r >= a {
-            return Ok(if density.abs() > 0.0 {
-                density.signum() * f64::INFINITY
-            } else {
-                0.0
-            });
-        }
-        let singular = density / ((a - r) * (a + r)).sqrt();
-        let ratio = self.stack.thickness.map_or(0.0, |h| a / h);
-        let rule = Rule::gauss_legendre(PRESSURE + (4.0 * ratio).ceil() as usize);
-        let mut sum = 0.0;
-        let kink = self.tip.kink().filter(|b| *b > r && *b < a);
-        if r > 0.0 {
-            // t = r cosh θ takes the root away.
-            let angle = |t: f64| (t / r).acosh();
-            for panel in panels(0.0, kink.map(angle), angle(a)) {
-                let nodes = panel.nodes(&rule).into_iter();
-                sum += nodes
-                    .map(|(angle, w)| w * self.slope(r * angle.cosh()))
-                    .sum::<f64>();
-            }
-            return Ok(singular - sum);
-        }
-        if self.tip.transform(0.0)[1] > 0.0 {
-            return Ok(f64::INFINITY);
-        }
-        for panel in panels(0.0, kink, a) {
-            let nodes = panel.nodes(&rule).into_iter();
-            sum += nodes.map(|(t, w)| w * self.slope(t) / t).sum::<f64>();
-        }
-        Ok(singular - sum)
+        let approach = needed / self.parts.edge[0];
+        [approach, self.stiffness * approach + 2.0 * PI * more]
     }
 
-    /// φ'(t) of the contact: −f F' + 2/π ∫ M α sin(αt) p̂ dα.
-    fn slope(&self, t: f64) -> f64 {
-        let [punch, profile] = &self.hats;
-        let waves = self.stack.waves.iter().zip(punch.iter().zip(profile));
-        let sum: f64 = waves
-            .map(|([alpha, m], (punch, profile))| {
-                m * alpha * (alpha * t).sin() * (self.approach * punch - profile)
-            })
-            .sum();
-        2.0 / PI * sum - self.stack.modulus / PI * self.tip.transform(t)[1]
+    /// φ_a of a density that is `edge` at the edge: in the basis, its transform with that of the wider contact, and at the edge.
+    pub(super) fn widening(&self, edge: f64) -> (Vec<f64>, Vec<f64>, f64) {
+        let system = &self.parts.system;
+        let outer = times(system.excess(), &system.edge[0]);
+        let right = system.couple(&outer).iter().map(|c| -edge * c).collect();
+        let values = system.solve(right);
+        let mut hat = system.transform(&values);
+        for (hat, cos) in hat.iter_mut().zip(&system.edge[0]) {
+            *hat += edge * cos;
+        }
+        let at_edge = -system.couple_edge(&times(system.excess(), &hat));
+        (values, hat, at_edge)
+    }
+
+    /// An error where the pressure is negative within the contact or the surfaces overlap outside of it, so that the
+    /// contact is no disc.
+    pub(super) fn check_disc(&self) -> Result<()> {
+        if self.adhesion != Adhesion::None || self.parts.tip.fixed_radius().is_some() {
+            return Ok(());
+        }
+        const NO_DISC: Error = Error::Inconsistent(
+            "the contact of this tip is no disc at this load: its pressure would be negative or the surfaces would overlap; \
+             use nacre.solve",
+        );
+        // φ that falls towards the edge has a positive pressure.
+        let places = [0.1, 0.5, 0.999].map(|part| part * self.radius);
+        let falls = self.density().at(&places).iter().all(|[_, slope]| *slope <= 0.0);
+        if !falls || !self.parts.tip.is_convex() {
+            let inside = (1..10).map(|k| 0.1 * f64::from(k) * self.radius);
+            let inside: Vec<f64> = inside.collect();
+            let size = self.load / (PI * self.radius * self.radius);
+            let pressure = self.pressure(&inside)?;
+            if pressure.iter().any(|p| *p < -1e-9 * size) {
+                return Err(NO_DISC);
+            }
+        }
+        if !self.parts.tip.is_convex() {
+            let outside: Vec<f64> = (1..20).map(|k| self.radius * (1.0 + 0.05 * f64::from(k))).collect();
+            if self.gap(&outside)?.iter().any(|gap| *gap < -1e-9 * self.approach) {
+                return Err(NO_DISC);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An error unless `r` is a distance from the axis.
+pub(super) fn distance(r: f64) -> Result<()> {
+    match r.is_finite() && r >= 0.0 {
+        true => Ok(()),
+        false => Err(Error::Parameter {
+            name: "r",
+            requirement: "finite and at least 0",
+            value: r,
+        }),
     }
 }

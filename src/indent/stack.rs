@@ -1,53 +1,87 @@
-//! The response of the bodies at the nodes of a quadrature.
+//! The response of the bodies, planned for contacts of any radius.
 
-use crate::error::{Error, Result, positive};
-use crate::kernel::quadrature::Rule;
-use crate::response::Body;
+use std::sync::{Arc, OnceLock};
 
-/// Wavenumber, in inverse top layers, from which on the response is that of the top layer: e^{−28} is left of the rest.
-const TAIL: f64 = 14.0;
+use super::tip::TipParameter;
+use super::waves::Waves;
+use crate::error::{Error, Result};
+use crate::response::{Body, BodyParameter, asymptote_derivatives, normal_derivatives};
 
-/// Halvings of the first uniform panel towards wavenumber 0.
-const HALVINGS: i32 = 26;
+/// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
+pub(super) const MOST_RATIO: f64 = 1024.0;
 
-/// Nodes of a panel.
-const NODES: usize = 8;
+/// Longest oscillation of the first level, in top layers: contacts of a radius of four.
+const FIRST_LENGTH: f64 = 8.0;
 
-/// Panels of the quadrature at most.
-const MOST_PANELS: f64 = 1e5;
+/// Levels, each for twice the length of the one before.
+const LEVELS: usize = 10;
 
-/// Bodies that are indented, planned once for all contact radii up to a largest.
+/// A number that an indentation depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameter {
+    /// A number of the body of this position.
+    Body(usize, BodyParameter),
+    /// A number of the tip.
+    Tip(TipParameter),
+    /// Work of adhesion.
+    Work,
+    /// Tensile strength of the adhesion of Maugis and Dugdale.
+    Strength,
+}
+
+/// The response at the wavenumbers of one quadrature.
+#[derive(Debug)]
+pub(super) struct Level {
+    pub(super) waves: Waves,
+    /// Weights times M(α).
+    pub(super) excess: Vec<f64>,
+    /// Weights times the derivative of M with respect to each parameter of the bodies.
+    rates: OnceLock<Vec<Vec<f64>>>,
+}
+
+/// Bodies that are indented, planned once.
 ///
 /// ```
-/// use nacre::indent::{Stack, Tip};
+/// use nacre::indent::{Indent, Stack, Tip};
 /// use nacre::{Elastic, HalfSpace, Layer};
 /// let (soft, hard) = (Elastic::new(1.0, 0.3)?, Elastic::new(4.0, 0.3)?);
 /// let body = HalfSpace::new(soft, [Layer::new(hard, 1.0)?])?;
-/// let stack = Stack::plan(&[body.into()], 2.0)?;
-/// let point = stack.indent(&Tip::Paraboloid(10.0))?.at_radius(0.5)?;
+/// let stack = Stack::plan(&[body.into()])?;
+/// let point = Indent::new(&stack, &Tip::paraboloid(10.0)?).at_radius(0.5)?;
 /// assert!(point.load > 0.0 && point.approach > 0.0);
 /// # Ok::<(), nacre::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Stack {
-    /// E* of the bodies at short wavelengths \[Pa\].
-    pub(super) modulus: f64,
-    /// Wavenumbers α, and weights times M(α); none where the response does not depend on the wavelength.
-    pub(super) waves: Vec<[f64; 2]>,
-    /// Thickness of the thinnest top layer \[m\]; none without layers.
-    pub(super) thickness: Option<f64>,
-    /// Largest contact radius \[m\] that the nodes resolve.
-    pub(super) largest: f64,
+pub struct Stack(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    bodies: Vec<Body>,
+    parameters: Vec<Parameter>,
+    /// lim α û/p̂ of all bodies for short waves, and its derivatives.
+    short: f64,
+    short_rates: Vec<f64>,
+    thickness: Option<f64>,
+    /// Factor by which all resolutions are raised; 1 but for estimates of the error.
+    finer: f64,
+    levels: [OnceLock<Arc<Level>>; LEVELS],
 }
 
 impl Stack {
-    /// Plans `bodies`, which touch in the contact, for contact radii up to `largest` \[m\].
+    /// Plans `bodies`, which touch in the contact.
     ///
     /// # Errors
-    /// No bodies, all of them rigid, one with a local compliance, a radius that is not above 0, or more than 1e4 times the
-    /// thickness of the top layer.
-    pub fn plan(bodies: &[Body], largest: f64) -> Result<Self> {
-        positive("largest contact radius", largest)?;
+    /// No bodies, all of them rigid, one with a local compliance.
+    pub fn plan(bodies: &[Body]) -> Result<Self> {
+        Self::with_resolution(bodies, 1.0)
+    }
+
+    /// The same bodies with `finer` times as many nodes of all quadratures.
+    pub(super) fn refined(&self, finer: f64) -> Result<Self> {
+        Self::with_resolution(&self.0.bodies, finer)
+    }
+
+    fn with_resolution(bodies: &[Body], finer: f64) -> Result<Self> {
         let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
         if bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0) {
             return Err(Error::Inconsistent(
@@ -58,43 +92,119 @@ impl Stack {
             .iter()
             .filter_map(|body| body.lengths())
             .map(|[top, _]| top);
-        let thickness = tops.reduce(f64::min);
-        let mut waves = Vec::new();
-        if let Some(h) = thickness {
-            let first = (0.5 / h).min(1.5 / largest);
-            let panels = (TAIL / h / first).ceil();
-            if panels > MOST_PANELS || largest > 1e4 * h {
-                return Err(Error::Parameter {
-                    name: "largest contact radius",
-                    requirement: "at most 1e4 times the thickness of the top layer",
-                    value: largest,
-                });
-            }
-            let rule = Rule::gauss_legendre(NODES);
-            let mut add = |low: f64, high: f64| {
-                for (alpha, weight) in rule.nodes(0.5 * (low + high), 0.5 * (high - low)) {
-                    let response: f64 = bodies.iter().map(|body| body.normal(alpha)).sum();
-                    waves.push([alpha, weight * (response / short - 1.0)]);
-                }
+        let (mut parameters, mut short_rates) = (Vec::new(), Vec::new());
+        for (number, body) in bodies.iter().enumerate() {
+            let Some(body) = body.half_space() else {
+                continue;
             };
-            add(0.0, first * 2.0_f64.powi(-HALVINGS));
-            for k in (0..HALVINGS).rev() {
-                add(first * 2.0_f64.powi(-k - 1), first * 2.0_f64.powi(-k));
-            }
-            for k in 1..panels as usize {
-                add(first * k as f64, first * (k + 1) as f64);
-            }
+            let own = body.parameters();
+            let rates = asymptote_derivatives(body, &own);
+            short_rates.extend(rates.iter().map(|rate| rate.short));
+            parameters.extend(own.iter().map(|own| Parameter::Body(number, *own)));
         }
-        Ok(Self {
-            modulus: 2.0 / short,
-            waves,
-            thickness,
-            largest,
-        })
+        Ok(Self(Arc::new(Shared {
+            bodies: bodies.to_vec(),
+            parameters,
+            short,
+            short_rates,
+            thickness: tops.reduce(f64::min),
+            finer,
+            levels: [const { OnceLock::new() }; LEVELS],
+        })))
     }
 
     /// Contact modulus E* of the bodies at their surfaces \[Pa\].
     pub fn surface_modulus(&self) -> f64 {
-        self.modulus
+        2.0 / self.0.short
+    }
+
+    /// Bodies that were planned.
+    pub fn bodies(&self) -> &[Body] {
+        &self.0.bodies
+    }
+
+    /// Numbers of the bodies, with respect to which there are derivatives: those of half-spaces.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.0.parameters
+    }
+
+    /// Thickness \[m\] of the thinnest top layer; none without layers.
+    pub fn thickness(&self) -> Option<f64> {
+        self.0.thickness
+    }
+
+    /// Largest contact radius \[m\] that is computed.
+    pub fn largest_radius(&self) -> f64 {
+        self.0.thickness.map_or(f64::INFINITY, |h| MOST_RATIO * h)
+    }
+
+    pub(super) fn finer(&self) -> f64 {
+        self.0.finer
+    }
+
+    /// lim α û/p̂ for short waves \[1/Pa\].
+    pub(super) fn short(&self) -> f64 {
+        self.0.short
+    }
+
+    /// Derivative of the modulus E* with respect to the `number`th parameter, relative to E*.
+    pub(super) fn modulus_rate(&self, number: usize) -> f64 {
+        -self.0.short_rates[number] / self.0.short
+    }
+
+    /// Response for functions that oscillate over lengths up to `length` in α; none where it is that of bare bodies. The
+    /// longest level serves beyond.
+    pub(super) fn level(&self, length: f64) -> Option<&Arc<Level>> {
+        let h = self.0.thickness?;
+        let doublings = (length / (FIRST_LENGTH * h)).log2().ceil().max(0.0) as usize;
+        let number = doublings.min(LEVELS - 1);
+        Some(self.0.levels[number].get_or_init(|| {
+            let length = FIRST_LENGTH * h * 2.0_f64.powi(number as i32);
+            let excess = |alpha: f64| -> f64 {
+                let response: f64 = self.0.bodies.iter().map(|body| body.normal(alpha)).sum();
+                response / self.0.short - 1.0
+            };
+            let waves = Waves::plan(h, length, self.0.finer, excess);
+            let pairs = waves.alpha.iter().zip(&waves.weight);
+            let excess = pairs.map(|(alpha, w)| w * excess(*alpha)).collect();
+            Arc::new(Level {
+                waves,
+                excess,
+                rates: OnceLock::new(),
+            })
+        }))
+    }
+
+    /// Weights times the derivative of M with respect to the `number`th parameter, at the waves of `level`.
+    pub(super) fn excess_rate<'a>(&self, level: &'a Level, number: usize) -> &'a [f64] {
+        let rates = level.rates.get_or_init(|| {
+            let shared = &self.0;
+            let mut all = vec![vec![0.0; level.waves.len()]; shared.parameters.len()];
+            let own: Vec<Vec<BodyParameter>> = shared
+                .bodies
+                .iter()
+                .map(|body| body.half_space().map_or(vec![], |body| body.parameters()))
+                .collect();
+            let most = own.iter().map(Vec::len).max().unwrap_or(0);
+            let mut slopes = vec![0.0; most];
+            for (q, (alpha, w)) in level.waves.alpha.iter().zip(&level.waves.weight).enumerate() {
+                // M = response/short − 1.
+                let ratio = level.excess[q] + w;
+                let mut first = 0;
+                for (body, own) in shared.bodies.iter().zip(&own) {
+                    let Some(body) = body.half_space() else {
+                        continue;
+                    };
+                    normal_derivatives(body, own, *alpha, &mut slopes[..own.len()]);
+                    for (k, slope) in slopes[..own.len()].iter().enumerate() {
+                        let short_rate = shared.short_rates[first + k];
+                        all[first + k][q] = (w * slope - ratio * short_rate) / shared.short;
+                    }
+                    first += own.len();
+                }
+            }
+            all
+        });
+        &rates[number]
     }
 }

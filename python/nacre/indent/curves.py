@@ -1,0 +1,356 @@
+"""Indentation curves, and files that hold them."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Literal, TypedDict, Unpack, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from nacre.indent._columns import checked_units, chosen_segments, quantities, title
+from nacre.indent._text import tables
+from nacre.units import written
+
+Array = npt.NDArray[np.float64]
+
+LEAST_POINTS = 3
+"""Fewest points of a curve: with less, no law of two parameters could be tested."""
+ROUNDING = 4 * float(np.finfo(np.float64).eps)
+"""Relative error of a depth that was converted from another unit, and of a bound: a few roundings,
+so that a point on a bound is kept."""
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Curve:
+    """Force over depth of one indentation.
+
+    Parameters
+    ----------
+    depth : array_like, (n,)
+        Displacement of the tip into the sample [m], in the order of the measurement. Its zero may
+        be anywhere, see `contact_point`.
+    force : array_like, (n,)
+        Force [N], positive in compression.
+    time : array_like, (n,), optional
+        Time [s], which does not fall.
+    name : str
+        Name in tables, pictures and messages.
+
+    Raises
+    ------
+    ValueError
+        If there are less than three points, lengths differ, a value is not finite, or time falls.
+    TypeError
+        If an argument is not made of real numbers, or the name is not a text.
+
+    Notes
+    -----
+    Any consistent units will do; those of `read` are SI. The arrays cannot be written to.
+
+    Examples
+    --------
+    >>> depth = np.linspace(0.0, 100e-9, 51)
+    >>> curve = nacre.indent.Curve(depth, 3.16e4 * depth**1.5, name="A1")
+    >>> curve
+    <Curve 'A1': 51 points, depth 0 m to 100 nm, force 0 N to 999.3 nN>
+    >>> curve.between(20e-9, 60e-9).force.size
+    21
+    """
+
+    depth: Array
+    force: Array
+    time: Array | None
+    name: str
+
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+
+    def __init__(
+        self,
+        depth: npt.ArrayLike,
+        force: npt.ArrayLike,
+        *,
+        time: npt.ArrayLike | None = None,
+        name: str = "",
+    ) -> None:
+        if not isinstance(name, str):
+            raise TypeError(f"name must be a text, got {name!r}")
+        arrays = {"depth": _checked("depth", depth), "force": _checked("force", force)}
+        if time is not None:
+            arrays["time"] = _checked("time", time)
+        for argument, array in arrays.items():
+            if array.size != arrays["depth"].size:
+                raise ValueError(
+                    f"{argument} must have as many values as depth, {arrays['depth'].size}, got "
+                    f"{array.size}"
+                )
+        if time is not None:
+            falls = np.flatnonzero(np.diff(arrays["time"]) < 0)
+            if falls.size:
+                index = int(falls[0]) + 1
+                before, after = arrays["time"][index - 1 : index + 1]
+                raise ValueError(
+                    f"time must not fall, got {after:.6g} after {before:.6g} at index {index}"
+                )
+        for attribute, value in ({"time": None} | arrays | {"name": name}).items():
+            object.__setattr__(self, attribute, value)
+
+    def __repr__(self) -> str:
+        """Return the number of points and the ranges, in the units that are set."""
+        depth, force = (
+            f"{written(float(values.min()), unit)} to {written(float(values.max()), unit)}"
+            for values, unit in ((self.depth, "m"), (self.force, "N"))
+        )
+        name = f" {self.name!r}" if self.name else ""
+        return f"<Curve{name}: {len(self)} points, depth {depth}, force {force}>"
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return self.depth.size
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether all numbers and the names are equal."""
+        if not isinstance(other, Curve):
+            return NotImplemented
+        pairs = ((self.depth, other.depth), (self.force, other.force), (self.time, other.time))
+        return self.name == other.name and all(
+            a is b or (a is not None and b is not None and np.array_equal(a, b)) for a, b in pairs
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what pickles and copies are made of; arrays alone would become writable."""
+        return _curve, (self.depth, self.force, self.time, self.name)
+
+    def loading(self) -> Curve:
+        """Return the part up to the largest force, with that point.
+
+        A hold at the largest force may lie on both sides. The part before contact is kept, see
+        `between` and `contact_point`.
+        """
+        return self._part(slice(0, int(np.argmax(self.force)) + 1), "up to its largest force")
+
+    def unloading(self) -> Curve:
+        """Return the part from the largest force on, with that point."""
+        last = len(self) - 1 - int(np.argmax(self.force[::-1]))
+        return self._part(slice(last, None), "from its largest force on")
+
+    def between(
+        self, low: float = -math.inf, high: float = math.inf, *, by: str = "depth"
+    ) -> Curve:
+        """Return the points whose depth or force lies in a range.
+
+        Parameters
+        ----------
+        low, high : float
+            Bounds of the range [m] or [N]; points on a bound are kept.
+        by : str
+            "depth" or "force".
+
+        Returns
+        -------
+        Curve
+            Points in the order of the measurement.
+
+        Raises
+        ------
+        ValueError
+            If less than three points are left, or an argument is not one of those above.
+
+        Examples
+        --------
+        >>> depth = np.linspace(0.0, 100e-9, 51)
+        >>> curve = nacre.indent.Curve(depth, 10.0 * depth)
+        >>> curve.between(0.2e-6, 0.5e-6, by="force")
+        <Curve: 16 points, depth 20 nm to 50 nm, force 200 nN to 500 nN>
+        """
+        if by not in ("depth", "force"):
+            raise ValueError(f"by must be 'depth' or 'force', got {by!r}")
+        if not low < high:  # nor if one is not a number
+            raise ValueError(f"high must be above low, {low:.6g}, got {high:.6g}")
+        values = self.depth if by == "depth" else self.force
+        low, high = low - ROUNDING * abs(low), high + ROUNDING * abs(high)
+        return self._part((low <= values) & (values <= high), f"with {by} in the range")
+
+    def shifted(self, *, depth: float = 0.0, force: float = 0.0) -> Curve:
+        """Return the curve with its zero at this depth and force, which are subtracted.
+
+        Parameters
+        ----------
+        depth : float
+            Depth of the new zero [m], such as that of `contact_point`.
+        force : float
+            Force of the new zero [N], such as an offset of the sensor.
+
+        Returns
+        -------
+        Curve
+            Shifted curve.
+
+        Raises
+        ------
+        ValueError
+            If an argument is not finite.
+
+        Examples
+        --------
+        >>> curve = nacre.indent.Curve([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])
+        >>> curve.shifted(depth=1.0).depth
+        array([0., 1., 2.])
+        """
+        for name, value in (("depth", depth), ("force", force)):
+            if not math.isfinite(value):
+                raise ValueError(f"{name} must be finite, got {value}")
+        return Curve(self.depth - depth, self.force - force, time=self.time, name=self.name)
+
+    def _part(self, kept: slice | npt.NDArray[np.bool_], which: str) -> Curve:
+        depth = self.depth[kept]
+        if depth.size < LEAST_POINTS:
+            raise ValueError(
+                f"the curve must have at least {LEAST_POINTS} points {which}, got {depth.size} of "
+                f"{len(self)}"
+            )
+        time = None if self.time is None else self.time[kept]
+        return Curve(depth, self.force[kept], time=time, name=self.name)
+
+
+def _curve(depth: Array, force: Array, time: Array | None, name: str) -> Curve:
+    return Curve(depth, force, time=time, name=name)
+
+
+def _checked(name: str, values: npt.ArrayLike) -> Array:
+    """Return values as an array that cannot be written to."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be real numbers, got {array.dtype}")
+    if array.ndim != 1:
+        raise ValueError(f"{name} must have one dimension, got shape {array.shape}")
+    if array.size < LEAST_POINTS:
+        raise ValueError(f"{name} must have at least {LEAST_POINTS} values, got {array.size}")
+    wrong = np.flatnonzero(~np.isfinite(array))
+    if wrong.size:
+        raise ValueError(f"{name} must be finite, got {array[wrong[0]]} at index {wrong[0]}")
+    array = array.astype(np.float64)
+    array.flags.writeable = False
+    return array
+
+
+class _Options(TypedDict, total=False):
+    """Keywords of `read` but for the segment."""
+
+    depth: str | int | None
+    force: str | int | None
+    time: str | int | None
+    units: Mapping[str, str] | None
+    decimal: str | None
+    delimiter: str | None
+    encoding: str | None
+
+
+@overload
+def read(  # type: ignore[overload-overlap]  # no table has the name "all"
+    path: str | os.PathLike[str], *, segment: Literal["all"], **options: Unpack[_Options]
+) -> list[Curve]: ...
+@overload
+def read(
+    path: str | os.PathLike[str], *, segment: int | str | None = None, **options: Unpack[_Options]
+) -> Curve: ...
+def read(
+    path: str | os.PathLike[str],
+    *,
+    depth: str | int | None = None,
+    force: str | int | None = None,
+    time: str | int | None = None,
+    units: Mapping[str, str] | None = None,
+    decimal: str | None = None,
+    delimiter: str | None = None,
+    segment: int | str | None = None,
+    encoding: str | None = None,
+) -> Curve | list[Curve]:
+    r"""Read an indentation curve from a text file, such as instruments export, in SI units.
+
+    Lines above the table, names and units of columns, delimiter, decimal mark and encoding are
+    found from the file. What cannot be found is an error that says which keyword is needed.
+
+    Parameters
+    ----------
+    path : str or path
+        Text file.
+    depth, force, time : str or int, optional
+        Column of the quantity: its name, with or without the unit, or its number from 0. A minus
+        before a name changes the sign. Time is optional.
+    units : dict of str, optional
+        Units of "depth", "force" and "time" where the file names none or wrong ones, such as
+        ``{"depth": "nm", "force": "mN"}``. A time without a unit is in seconds.
+    decimal : str, optional
+        Decimal mark, "." or ",".
+    delimiter : str, optional
+        Mark between fields; " " is any white space.
+    segment : int or str, optional
+        Table to read where the file holds several: its number from 0, the name that the file gives
+        it, such as "extend", or "all". Segments of one curve are joined if none is given.
+    encoding : str, optional
+        Encoding, by a name that Python knows.
+
+    Returns
+    -------
+    Curve or list of Curve
+        Depth [m], force [N] and time [s]; a list for ``segment="all"``.
+
+    Raises
+    ------
+    ValueError
+        If the table, a column, a unit or the decimal mark cannot be found, or a value is missing.
+    TypeError
+        If an argument has the wrong type.
+    FileNotFoundError
+        If there is no such file.
+
+    Warns
+    -----
+    NacreWarning
+        If the force is most negative where the depth is greatest, and its sign was changed; or if
+        a time that was not asked for falls, and was left out.
+
+    Notes
+    -----
+    A distance between tip and sample (JPK's "Vertical Tip Position") becomes a depth by a change of
+    sign. So does the height of a cantilever, less its deflection force/springConstant, if the head
+    of the file has that constant. Their zeros are the instrument's, see `contact_point`.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "A1.txt"
+    >>> text = "Pd [nm];Fn [mN]\n0,0;0,0\n10,5;0,25\n20,0;0,75\n"
+    >>> _ = path.write_text(text, encoding="utf-8")
+    >>> curve = nacre.indent.read(path)
+    >>> curve
+    <Curve 'A1': 3 points, depth 0 m to 20 nm, force 0 N to 750 µN>
+    """
+    asked = {"depth": depth, "force": force, "time": time}
+    units = checked_units(units)
+    if decimal not in (None, ".", ","):
+        raise ValueError(f"decimal must be '.' or ',', got {decimal!r}")
+    if delimiter is not None and (not isinstance(delimiter, str) or len(delimiter) != 1):
+        raise ValueError(f"delimiter must be one character, got {delimiter!r}")
+    if delimiter is not None and delimiter == decimal:
+        raise ValueError(f"delimiter must differ from decimal, got {delimiter!r} for both")
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"{str(path)!r} is not a file")
+    where = repr(str(path))
+    found = tables(path, delimiter, decimal, encoding)
+    curves = []
+    for group in chosen_segments(where, found, segment):
+        depths, forces, times = quantities(where, group, asked, units)
+        whole = len(found) == len(group)
+        name = path.stem if whole else f"{path.stem} {title(found, group[0])}"
+        try:
+            curves.append(Curve(depths, forces, time=times, name=name))
+        except ValueError as error:
+            raise ValueError(f"{where}: {error}") from error
+    return curves if segment == "all" else curves[0]

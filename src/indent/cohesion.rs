@@ -1,0 +1,305 @@
+//! The cohesive zone of Maugis and Dugdale around a contact, on any stack.
+//!
+//! A stress −σ₀ acts on a < r < c, and the gap is w/σ₀ at c. The density of a uniform stress is known,
+//!
+//! ```text
+//! ψ(t) = −2/π σ₀ √(c²−t²)      a < t < c
+//! ```
+//!
+//! so that φ on the contact satisfies its equation with −2/π ∫ M cos αs ψ̂ dα more on the right. φ(a) = ψ(a) fixes δ, since the
+//! stress has no infinity, and the gap fixes c. Before the tip touches, ψ acts on 0 < t < c alone: the surfaces are apart, the
+//! load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived for nacre; on a bare body they are Maugis's closed form
+//! (J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T).
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+use spec_math::cephes64::j1;
+
+use super::adhesion::Adhesion;
+use super::basis::rule;
+use super::density::bessel_sum;
+use super::parts::{Parts, times};
+use super::point::Point;
+use super::root::bracketed;
+use super::stack::Stack;
+use super::tip::Tip;
+use super::waves::Waves;
+use crate::error::{Error, Result};
+use crate::parallel::dot;
+
+/// Nodes of the integral over a zone, beside eight for each thickness of the top layer in it.
+const NODES: usize = 24;
+
+/// Nodes of the integrals with a root of r² − t².
+const ROOT_NODES: usize = 16;
+
+/// A cohesive zone, and what the contact answers to it at approach 0.
+#[derive(Debug, Clone)]
+pub(super) struct Zone {
+    inner: f64,
+    pub(super) outer: f64,
+    strength: f64,
+    thickness: Option<f64>,
+    /// φ of the contact, in its basis.
+    pub(super) values: Vec<f64>,
+    /// Transform of ψ and of this φ, at the waves.
+    pub(super) hat: Vec<f64>,
+    /// This φ at the edge.
+    pub(super) edge: f64,
+}
+
+impl Zone {
+    /// The zone from `inner` to `outer` without an answer.
+    fn alone(inner: f64, outer: f64, strength: f64, thickness: Option<f64>) -> Self {
+        Self {
+            inner,
+            outer,
+            strength,
+            thickness,
+            values: Vec::new(),
+            hat: Vec::new(),
+            edge: 0.0,
+        }
+    }
+
+    /// The zone around the contact of `parts`.
+    fn around(parts: &Parts, outer: f64, strength: f64) -> Self {
+        let system = &parts.system;
+        let mut zone = Self::alone(system.radius, outer, strength, parts.stack.thickness());
+        let Some(level) = &system.level else {
+            zone.values = vec![0.0; system.ones.len()];
+            return zone;
+        };
+        let own = zone.transform(&level.waves);
+        let right = system.couple(&times(&level.excess, &own)).iter().map(|c| -c).collect();
+        zone.values = system.solve(right);
+        zone.hat = system.transform(&zone.values);
+        zone.hat.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        zone.edge = -system.couple_edge(&times(&level.excess, &zone.hat));
+        zone
+    }
+
+    /// √(c² − a²)
+    fn reach(&self) -> f64 {
+        ((self.outer - self.inner) * (self.outer + self.inner)).sqrt()
+    }
+
+    /// ψ at the inner edge.
+    fn density(&self) -> f64 {
+        -2.0 / PI * self.strength * self.reach()
+    }
+
+    /// 2π ∫ ψ over the zone: its load.
+    fn load(&self) -> f64 {
+        let angle = self.reach().atan2(self.inner);
+        let area = self.outer * self.outer * angle - self.inner * self.reach();
+        -2.0 * self.strength * area
+    }
+
+    /// ψ̂(α) at all waves; t = c cos η.
+    pub(super) fn transform(&self, waves: &Waves) -> Vec<f64> {
+        let thicknesses = self.thickness.map_or(0.0, |h| (self.outer - self.inner) / h);
+        let count = NODES + (8.0 * thicknesses).ceil() as usize;
+        let most = 0.5 * self.reach().atan2(self.inner);
+        let mut sums = vec![0.0; waves.len()];
+        let (mut cos, mut sin) = (sums.clone(), sums.clone());
+        for (angle, w) in rule(count).nodes(most, most) {
+            waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
+            let weight = -2.0 / PI * self.strength * w * (self.outer * angle.sin()).powi(2);
+            sums.iter_mut().zip(&cos).for_each(|(sum, cos)| *sum += weight * cos);
+        }
+        sums
+    }
+
+    /// ∫ ψ/√(r²−t²) over a < t < min(r, c). With m = min(r, c), t = m cos η and η = ε sinh x, where ε is the distance from the
+    /// root's double zero.
+    pub(super) fn abel(&self, r: f64) -> f64 {
+        let (a, c) = (self.inner, self.outer);
+        let factor = -2.0 / PI * self.strength;
+        let m = r.min(c);
+        let most = ((m - a) * (m + a)).max(0.0).sqrt().atan2(a);
+        let near = ((c - r) * (c + r)).abs().sqrt();
+        if near <= 1e-12 * c {
+            return factor * (c - a);
+        }
+        let size = near / m;
+        let integrand = |x: f64| {
+            let eta = size * x.sinh();
+            let sine = m * eta.sin();
+            let value = match r < c {
+                true => (near * near + sine * sine).sqrt(),
+                false => sine * sine / (near * near + sine * sine).sqrt(),
+            };
+            value * size * x.cosh()
+        };
+        factor * rule(ROOT_NODES).over_panels(0.0, (most / size).asinh(), integrand)
+    }
+
+    /// Part of the pressure within the contact, r ≤ a, that is due to the zone; at its edge −σ₀.
+    pub(super) fn inside(&self, r: f64, a: f64) -> f64 {
+        let ratio = (self.outer - a) * (self.outer + a) / ((self.outer - r) * (self.outer + r));
+        -2.0 / PI * self.strength * ratio.sqrt().min(1.0).asin()
+    }
+
+    /// Pressure beyond the contact.
+    pub(super) fn outside(&self, r: f64) -> f64 {
+        match r <= self.outer {
+            true => -self.strength,
+            false => 0.0,
+        }
+    }
+}
+
+/// The contact of radius `a` with a cohesive zone.
+///
+/// # Errors
+/// As [`Parts::new`], and no zone within the radii that can be computed.
+pub(super) fn contact(stack: &Stack, tip: &Tip, a: f64, [work, strength]: [f64; 2]) -> Result<Point> {
+    let opening = work / strength;
+    let mut length = 4.0 * a;
+    let mut parts = Arc::new(Parts::new(stack, tip, a, length)?);
+    // ln (c − a): the gap at c grows with it.
+    let mut excess = |log: f64| -> Result<(f64, Point)> {
+        let outer = a + log.exp();
+        if 2.0 * outer > length && stack.thickness().is_some() {
+            length = 4.0 * outer;
+            parts = Arc::new(Parts::new(stack, tip, a, length)?);
+        }
+        let zone = Zone::around(&parts, outer, strength);
+        let approach = parts.hertzian() + (zone.density() - zone.edge) / parts.edge[0];
+        let mut point = Point::new(Arc::clone(&parts), Adhesion::Maugis { work, strength }, approach);
+        point.load += zone.load() + 2.0 * PI * dot(&zone.values, &parts.system.ones);
+        point.outer_radius = Some(outer);
+        point.zone = Some(zone);
+        let gap = point.gap(&[outer])?[0];
+        Ok((gap - opening, point))
+    };
+    let (mut low, mut high) = (a.ln() - 3.0, a.ln() - 3.0);
+    while excess(low)?.0 > 0.0 {
+        low -= 3.0;
+        if low < a.ln() - 34.0 {
+            return Err(NO_ZONE);
+        }
+    }
+    while excess(high)?.0 < 0.0 {
+        high += 1.0;
+        if a + high.exp() > 0.5 * stack.largest_radius().min(1e6 * a) {
+            return Err(NO_ZONE);
+        }
+    }
+    let found = bracketed(|log| Ok(excess(log)?.0), [low.max(high - 3.0).min(low.max(high - 1.0)), high]);
+    let log = match found {
+        Ok(log) => log,
+        Err(_) => bracketed(|log| Ok(excess(log)?.0), [low, high])?,
+    };
+    Ok(excess(log)?.1)
+}
+
+const NO_ZONE: Error = Error::Inconsistent(
+    "no cohesive zone of this contact radius exists: the strength is too small or too large for the layers",
+);
+
+/// Surfaces that attract each other and do not touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Apart {
+    /// Radius c \[m\] up to which the surfaces attract each other.
+    pub outer_radius: f64,
+    /// Load \[N\], below 0.
+    pub load: f64,
+    /// Approach \[m\].
+    pub approach: f64,
+    /// Gap on the axis \[m\]; 0 where the tip begins to touch.
+    pub gap: f64,
+}
+
+impl Apart {
+    /// The state in which the surfaces attract each other up to `outer` \[m\].
+    pub(super) fn new(stack: &Stack, tip: &Tip, outer: f64, [work, strength]: [f64; 2]) -> Self {
+        let c = outer;
+        // u/A1 at c and on the axis.
+        let (mut edge, mut axis) = (-2.0 / PI * strength * c, -strength * c);
+        if let Some(level) = stack.level(2.0 * c) {
+            let hat = level.waves.alpha.iter().map(|alpha| -strength * c * j1(alpha * c) / alpha);
+            let hat: Vec<f64> = hat.collect();
+            let g = times(&level.excess, &hat);
+            edge += bessel_sum(&g, &level.waves.alpha, c);
+            axis += g.iter().sum::<f64>();
+        }
+        let approach = tip.gap(c) + stack.short() * edge - work / strength;
+        Self {
+            outer_radius: c,
+            load: -PI * c * c * strength,
+            approach,
+            gap: stack.short() * axis - approach,
+        }
+    }
+
+    /// The state in which the tip begins to touch.
+    ///
+    /// # Errors
+    /// None within the radii that can be computed.
+    pub(super) fn touching(stack: &Stack, tip: &Tip, numbers: [f64; 2]) -> Result<Self> {
+        let gap = |log: f64| Self::new(stack, tip, log.exp(), numbers).gap;
+        // From the radius at which the profile itself has opened by w/σ₀, which is too large or too small by the deformation.
+        let opening = numbers[0] / numbers[1];
+        let mut log = 0.0_f64;
+        while tip.gap(log.exp()) > opening {
+            log -= 1.0;
+        }
+        while tip.gap(log.exp()) < opening && log.exp() < tip.range()[1] {
+            log += 1.0;
+        }
+        let (mut low, mut high) = (log, log);
+        while gap(low) < 0.0 {
+            low -= 1.0;
+        }
+        while gap(high) > 0.0 {
+            high += 0.25;
+            if high.exp() > 0.5 * stack.largest_radius() {
+                return Err(NO_ZONE);
+            }
+        }
+        let log = bracketed(|log| Ok(gap(log)), [low, high])?;
+        Ok(Self::new(stack, tip, log.exp(), numbers))
+    }
+}
+
+/// arcsin of a ratio that rounding may raise above 1, for tests of [`Zone::inside`].
+#[cfg(test)]
+mod tests {
+    use super::{FRAC_PI_2, PI, Zone};
+    use crate::indent::waves::Waves;
+
+    /// A zone from the axis on is a disc of uniform stress: its load, its transform J₁, its displacement at the edge, and the
+    /// stress itself.
+    #[test]
+    fn a_disc_of_uniform_stress() {
+        let (c, strength) = (0.7, 3.0);
+        let zone = Zone::alone(0.0, c, strength, Some(1.0));
+        assert!((zone.load() / (-PI * c * c * strength) - 1.0).abs() < 1e-14);
+        assert!((zone.inside(0.3, 0.0) / (-2.0 / PI * strength) - (c / (c * c - 0.09_f64).sqrt()).min(1.0).asin()).abs() < 1e-14);
+        let waves = Waves::plan(1.0, 3.0, 1.0, |alpha| (-alpha).exp());
+        for (alpha, found) in waves.alpha.iter().zip(zone.transform(&waves)) {
+            let due = -strength * c * spec_math::cephes64::j1(alpha * c) / alpha;
+            assert!((found - due).abs() < 1e-14, "{alpha}: {found} {due}");
+        }
+        // ∫ √(c²−t²)/√(r²−t²): elliptic integrals E at r < c; r E(c... ) is π/2 · c at r → 0.
+        let near_axis = zone.abel(1e-6) / (-2.0 / PI * strength);
+        assert!((near_axis / (FRAC_PI_2 * c) - 1.0).abs() < 1e-10);
+        for r in [0.2, 0.6999999, 0.7000001, 2.0] {
+            let fine = 4000;
+            let m = f64::min(r, c);
+            // The midpoint rule in t = m sin θ.
+            let sum: f64 = (0..fine)
+                .map(|k| {
+                    let angle = FRAC_PI_2 * (f64::from(k) + 0.5) / f64::from(fine);
+                    let t = m * angle.sin();
+                    m * angle.cos() * ((c * c - t * t) / (r * r - t * t)).sqrt()
+                })
+                .sum();
+            let due = -2.0 / PI * strength * sum * FRAC_PI_2 / f64::from(fine);
+            assert!((zone.abel(r) / due - 1.0).abs() < 1e-6, "{r}: {} {due}", zone.abel(r));
+        }
+    }
+}

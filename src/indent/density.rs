@@ -1,0 +1,138 @@
+//! Pressure and displacement that belong to a density φ on the contact.
+
+use std::f64::consts::PI;
+
+use spec_math::cephes64::j0;
+
+use super::basis::{Panel, rule};
+use super::parts::Parts;
+use super::tip::TipParameter;
+
+/// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
+const PRESSURE: usize = 48;
+
+/// φ(t) = c₀ − c₁ F(t) − f ∂F/∂θ(t) − 2/π Σ g cos αt on the contact.
+#[derive(Debug)]
+pub(super) struct Density<'a> {
+    pub(super) parts: &'a Parts,
+    /// c₀ and c₁.
+    pub(super) known: [f64; 2],
+    /// θ, for derivatives with respect to a number of the tip.
+    pub(super) rate: Option<TipParameter>,
+    /// Weights times M p̂ and what else oscillates.
+    pub(super) g: Vec<f64>,
+    /// φ at the edge.
+    pub(super) edge: f64,
+}
+
+impl Density<'_> {
+    /// φ(t) and φ'(t) at each of `places`.
+    pub(super) fn at(&self, places: &[f64]) -> Vec<[f64; 2]> {
+        let parts = self.parts;
+        let waves = parts.system.level.as_ref().map(|level| &level.waves);
+        let rates = self.rate.map(|rate| parts.tip.rate(rate, places));
+        let count = self.g.len();
+        let (mut cos, mut sin) = (vec![0.0; count], vec![0.0; count]);
+        let value = |(k, t): (usize, &f64)| {
+            let [value, slope, _] = parts.tip.transform(*t);
+            let mut found = [
+                self.known[0] - self.known[1] * value,
+                -self.known[1] * slope,
+            ];
+            if let Some(rates) = &rates {
+                found[0] -= parts.f() * rates[k][0];
+                found[1] -= parts.f() * rates[k][1];
+            }
+            if let Some(waves) = waves {
+                waves.circular(*t, &mut cos, &mut sin);
+                let terms = self.g.iter().zip(&waves.alpha).zip(cos.iter().zip(&sin));
+                let (mut even, mut odd) = (0.0, 0.0);
+                for ((g, alpha), (cos, sin)) in terms {
+                    even += g * cos;
+                    odd += g * alpha * sin;
+                }
+                found[0] -= 2.0 / PI * even;
+                found[1] += 2.0 / PI * odd;
+            }
+            found
+        };
+        places.iter().enumerate().map(value).collect()
+    }
+
+    /// φ'(a) at the edge.
+    pub(super) fn edge_slope(&self) -> f64 {
+        let parts = self.parts;
+        let a = parts.system.radius;
+        let [_, slope, _] = parts.tip.transform(a);
+        let mut found = -self.known[1] * slope;
+        if let Some(rate) = self.rate {
+            found -= parts.f() * parts.tip.rate(rate, &[a])[0][1];
+        }
+        if let Some(level) = &parts.system.level {
+            let waves = self.g.iter().zip(&level.waves.alpha);
+            let terms = waves.zip(&parts.system.edge[1]);
+            found += 2.0 / PI * terms.map(|((g, alpha), sin)| g * alpha * sin).sum::<f64>();
+        }
+        found
+    }
+
+    /// Pressure \[Pa\] at the distance r < a from the axis:
+    ///
+    /// ```text
+    /// p(r) = φ(a)/√(a²−r²) − ∫_r^a φ'(t)/√(t²−r²) dt      p(0) = φ(a)/a − ∫₀^a φ'(t)/t dt
+    /// ```
+    pub(super) fn pressure(&self, r: f64) -> f64 {
+        let parts = self.parts;
+        let a = parts.system.radius;
+        let singular = self.edge / ((a - r) * (a + r)).sqrt();
+        let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
+        let rule = rule((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
+        let kinks = parts.tip.kinks();
+        // t = r cosh θ takes the root away.
+        let (panels, is_axis) = match r > 0.0 {
+            true => {
+                let angle = |t: f64| (t / r).max(1.0).acosh();
+                let kinks: Vec<f64> = kinks.iter().map(|b| angle(*b)).collect();
+                (Panel::between(0.0, &kinks, angle(a)), false)
+            }
+            false => (Panel::between(0.0, kinks, a), true),
+        };
+        let nodes = panels.into_iter().flat_map(|panel| panel.nodes(rule));
+        let (angles, weights): (Vec<f64>, Vec<f64>) = nodes.unzip();
+        let places: Vec<f64> = match is_axis {
+            true => angles,
+            false => angles.iter().map(|angle| r * angle.cosh()).collect(),
+        };
+        let slopes = self.at(&places);
+        let terms = slopes.iter().zip(&weights).zip(&places);
+        let sum: f64 = terms
+            .map(|(([_, slope], w), t)| match is_axis {
+                true => w * slope / t,
+                false => w * slope,
+            })
+            .sum();
+        singular - sum
+    }
+
+    /// ∫₀^a φ(t)/√(r²−t²) dt at r ≥ a.
+    pub(super) fn abel(&self, r: f64) -> f64 {
+        let parts = self.parts;
+        let a = parts.system.radius;
+        let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
+        let rule = rule((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
+        // t = r sin θ takes the root away.
+        let angle = |t: f64| (t / r).min(1.0).asin();
+        let kinks: Vec<f64> = parts.tip.kinks().iter().map(|b| angle(*b)).collect();
+        let panels = Panel::between(0.0, &kinks, angle(a)).into_iter();
+        let (angles, weights): (Vec<f64>, Vec<f64>) =
+            panels.flat_map(|panel| panel.nodes(rule)).unzip();
+        let places: Vec<f64> = angles.iter().map(|angle| r * angle.sin()).collect();
+        let values = self.at(&places);
+        values.iter().zip(&weights).map(|([value, _], w)| w * value).sum()
+    }
+}
+
+/// ∫ g J₀(αr) over waves.
+pub(super) fn bessel_sum(g: &[f64], alpha: &[f64], r: f64) -> f64 {
+    g.iter().zip(alpha).map(|(g, alpha)| g * j0(alpha * r)).sum()
+}

@@ -1,0 +1,119 @@
+//! The linear system of one contact radius, factored.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::basis::Basis;
+use super::stack::{Level, Stack};
+use super::tip::Tip;
+use crate::dense::{backward, cholesky, forward};
+use crate::error::{Error, Result};
+use crate::parallel::dot;
+
+/// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.
+#[derive(Debug)]
+pub(super) struct System {
+    /// Contact radius a \[m\].
+    pub(super) radius: f64,
+    pub(super) basis: Basis,
+    /// Response at the waves; none of bare bodies.
+    pub(super) level: Option<Arc<Level>>,
+    /// Transforms of the functions at the waves.
+    rows: Vec<Vec<f64>>,
+    factor: Vec<Vec<f64>>,
+    /// ∫ bᵢ.
+    pub(super) ones: Vec<f64>,
+    /// cos αa and sin αa at the waves.
+    pub(super) edge: [Vec<f64>; 2],
+}
+
+impl System {
+    /// The system of the contact radius `a` \[m\], with waves that resolve oscillations over `length` \[m\], at least 2a.
+    ///
+    /// # Errors
+    /// A radius beyond those that are computed, and a response that is not positive.
+    pub(super) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
+        tip.check_radius(a)?;
+        if a > stack.largest_radius() {
+            return Err(Error::Parameter {
+                name: "radius",
+                requirement: "at most 1024 times the thickness of the top layer",
+                value: a,
+            });
+        }
+        let basis = Basis::new(a, stack.thickness(), tip.kinks(), stack.finer());
+        let ones = basis.project(&vec![1.0; basis.places().len()]);
+        let level = stack.level(length.max(2.0 * a)).cloned();
+        let (mut rows, mut edge) = (Vec::new(), [Vec::new(), Vec::new()]);
+        if let Some(level) = &level {
+            rows = basis.transforms(&level.waves);
+            let [cos, sin] = &mut edge;
+            cos.resize(level.waves.len(), 0.0);
+            sin.resize(level.waves.len(), 0.0);
+            level.waves.circular(a, cos, sin);
+        }
+        let mut weighted: Vec<f64> = Vec::new();
+        let factor = cholesky(basis.len(), |i, j| {
+            let identity = if i == j { 1.0 } else { 0.0 };
+            let Some(level) = &level else {
+                return identity;
+            };
+            // Rows are taken one after the other, j up to i.
+            if j == 0 {
+                weighted = rows[i].iter().zip(&level.excess).map(|(b, m)| b * m).collect();
+            }
+            identity + 2.0 / PI * dot(&weighted, &rows[j])
+        });
+        let factor = factor.ok_or(Error::Inconsistent(
+            "the response of the bodies must be positive at every wavenumber",
+        ))?;
+        Ok(Self {
+            radius: a,
+            basis,
+            level,
+            rows,
+            factor,
+            ones,
+            edge,
+        })
+    }
+
+    /// B⁻¹ `right`.
+    pub(super) fn solve(&self, right: Vec<f64>) -> Vec<f64> {
+        backward(&self.factor, forward(&self.factor, right))
+    }
+
+    /// p̂(α) = ∫ φ cos αt dt at the waves, of a φ in the basis.
+    pub(super) fn transform(&self, values: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.waves()];
+        for (row, value) in self.rows.iter().zip(values) {
+            for (sum, b) in sums.iter_mut().zip(row) {
+                *sum += value * b;
+            }
+        }
+        sums
+    }
+
+    /// 2/π Σ g b̂ᵢ over the waves, for each function.
+    pub(super) fn couple(&self, g: &[f64]) -> Vec<f64> {
+        match self.level {
+            Some(_) => self.rows.iter().map(|row| 2.0 / PI * dot(row, g)).collect(),
+            None => vec![0.0; self.ones.len()],
+        }
+    }
+
+    /// 2/π Σ g cos αa over the waves.
+    pub(super) fn couple_edge(&self, g: &[f64]) -> f64 {
+        2.0 / PI * dot(&self.edge[0], g)
+    }
+
+    /// Number of waves.
+    pub(super) fn waves(&self) -> usize {
+        self.edge[0].len()
+    }
+
+    /// Weights times M(α); none of bare bodies.
+    pub(super) fn excess(&self) -> &[f64] {
+        self.level.as_ref().map_or(&[], |level| &level.excess)
+    }
+}

@@ -1,0 +1,180 @@
+//! Terms of which the profiles of tips are sums, and their rates of change with a number.
+
+use std::f64::consts::PI;
+
+use spec_math::cephes64::{gamma, psi};
+
+/// A term of F(s) = s ∫₀^s g'(r)/√(s²−r²) dr, the indentation at which a bare body is in contact up to s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Term {
+    /// g = b rⁿ, with rate = b n (√π/2) Γ(n/2)/Γ((n+1)/2): F = rate sⁿ.
+    Power {
+        factor: f64,
+        exponent: f64,
+        rate: f64,
+    },
+    /// g = R − √(R² − r²): F = s artanh(s/R).
+    Sphere { radius: f64 },
+    /// The slope g' jumps at r = b: F = slope s arccos(b/s) beyond.
+    Step { at: f64, slope: f64 },
+    /// The curvature g'' jumps at r = b: F = curvature s [√(s²−b²) − b arccos(b/s)] beyond.
+    Hinge { at: f64, curvature: f64 },
+    /// The derivative of `Sphere` with respect to its radius.
+    SphereRate { radius: f64 },
+    /// The derivative of `Power` with respect to its exponent.
+    ExponentRate { exponent: f64, rate: f64 },
+    /// The derivative of `Step` with respect to its place.
+    PlaceRate { at: f64, slope: f64 },
+}
+
+impl Term {
+    /// g = b rⁿ.
+    pub(super) fn power(factor: f64, exponent: f64) -> Self {
+        let ratio = gamma(0.5 * exponent) / gamma(0.5 * exponent + 0.5);
+        Self::Power {
+            factor,
+            exponent,
+            rate: factor * exponent * 0.5 * PI.sqrt() * ratio,
+        }
+    }
+
+    /// g = r²/2R, of curvature 1/R.
+    pub(super) fn paraboloid(curvature: f64) -> Self {
+        Self::Power {
+            factor: 0.5 * curvature,
+            exponent: 2.0,
+            rate: curvature,
+        }
+    }
+
+    /// Place of a kink, where F has a root of the distance from it.
+    pub(super) fn kink(&self) -> Option<f64> {
+        match *self {
+            Self::Step { at, .. } | Self::Hinge { at, .. } | Self::PlaceRate { at, .. } => Some(at),
+            _ => None,
+        }
+    }
+
+    /// The profile g(r) \[m\] of a term that is no rate.
+    pub(super) fn gap(&self, r: f64) -> f64 {
+        match *self {
+            Self::Power {
+                factor, exponent, ..
+            } => factor * r.powf(exponent),
+            Self::Sphere { radius } => r * r / (radius + ((radius - r) * (radius + r)).sqrt()),
+            Self::Step { at, slope } => slope * (r - at).max(0.0),
+            Self::Hinge { at, curvature } => 0.5 * curvature * (r - at).max(0.0).powi(2),
+            Self::SphereRate { radius } => {
+                // ∂/∂R of R − √(R² − r²).
+                1.0 - radius / ((radius - r) * (radius + r)).sqrt()
+            }
+            Self::ExponentRate { exponent, rate } => {
+                let factor = rate / Self::power(1.0, exponent).rate();
+                match r > 0.0 {
+                    true => factor * r.powf(exponent) * r.ln(),
+                    false => 0.0,
+                }
+            }
+            Self::PlaceRate { at, slope } => {
+                if r > at {
+                    -slope
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
+    fn rate(&self) -> f64 {
+        match *self {
+            Self::Power { rate, .. } => rate,
+            _ => 0.0,
+        }
+    }
+
+    /// F, dF/ds and d²F/ds² at s.
+    pub(super) fn transform(&self, s: f64) -> [f64; 3] {
+        match *self {
+            Self::Power { exponent, rate, .. } => power(rate, exponent, s),
+            Self::Sphere { radius } => {
+                let (x, rest) = (s / radius, (radius - s) * (radius + s) / (radius * radius));
+                [
+                    s * x.atanh(),
+                    x.atanh() + x / rest,
+                    2.0 / (radius * rest * rest),
+                ]
+            }
+            Self::SphereRate { radius } => {
+                let rest = (radius - s) * (radius + s);
+                let r2 = radius * radius;
+                [
+                    -s * s / rest,
+                    -2.0 * s * r2 / (rest * rest),
+                    -2.0 * r2 * (r2 + 3.0 * s * s) / (rest * rest * rest),
+                ]
+            }
+            Self::ExponentRate { exponent: n, rate } => {
+                if s <= 0.0 {
+                    return [0.0; 3];
+                }
+                let [value, slope, bend] = power(rate, n, s);
+                let log = 1.0 / n + s.ln() + 0.5 * (psi(0.5 * n) - psi(0.5 * n + 0.5));
+                [
+                    value * log,
+                    slope * log + value / s,
+                    bend * log + 2.0 * slope / s - value / (s * s),
+                ]
+            }
+            Self::Step { at, .. } | Self::Hinge { at, .. } | Self::PlaceRate { at, .. }
+                if s <= at =>
+            {
+                [0.0; 3]
+            }
+            Self::Step { at, slope } => {
+                let (root, angle) = beyond(s, at);
+                [
+                    slope * s * angle,
+                    slope * (angle + at / root),
+                    slope * (at / (s * root) - at * s / root.powi(3)),
+                ]
+            }
+            Self::Hinge { at, curvature } => {
+                let (root, angle) = beyond(s, at);
+                [
+                    curvature * s * (root - at * angle),
+                    curvature * (2.0 * root - at * angle),
+                    curvature * (2.0 * s / root - at * at / (s * root)),
+                ]
+            }
+            Self::PlaceRate { at, slope } => {
+                let (root, _) = beyond(s, at);
+                [
+                    -slope * s / root,
+                    slope * at * at / root.powi(3),
+                    -3.0 * slope * at * at * s / root.powi(5),
+                ]
+            }
+        }
+    }
+}
+
+/// √(s² − b²) and arccos(b/s).
+fn beyond(s: f64, b: f64) -> (f64, f64) {
+    let root = ((s - b) * (s + b)).sqrt();
+    (root, root.atan2(b))
+}
+
+/// rate sⁿ and its two derivatives.
+fn power(rate: f64, n: f64, s: f64) -> [f64; 3] {
+    let whole = n.round();
+    let raised = |k: f64| match (n - whole).abs() > 0.0 || whole > 64.0 {
+        true => s.powf(n - k),
+        false => s.powi((whole - k) as i32),
+    };
+    // A factor of 0 stands before a power that may be infinite at s = 0.
+    let term = |factor: f64, k: f64| match factor.abs() > 0.0 {
+        true => rate * factor * raised(k),
+        false => 0.0,
+    };
+    [term(1.0, 0.0), term(n, 1.0), term(n * (n - 1.0), 2.0)]
+}
