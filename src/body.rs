@@ -1,5 +1,9 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
+mod parameter;
+
+pub use parameter::BodyParameter;
+
 use crate::error::{Error, Result, finite, positive};
 use crate::material::Elastic;
 

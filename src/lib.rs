@@ -101,7 +101,7 @@ mod serial;
 #[cfg(feature = "python")]
 mod python;
 
-pub use body::{HalfSpace, Interface, Layer, Substrate};
+pub use body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
 pub use contact::{
     Algorithm, Case, Contact, Discretisation, Hardness, Motion, Options, Report, Setup, Solution,
     Solver, Termination, Warning, solve,

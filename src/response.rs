@@ -18,12 +18,14 @@ use crate::error::{Error, Result, positive};
 
 mod body;
 mod compliance;
+mod derivatives;
 pub(crate) mod interior;
 mod layer;
 
 pub use body::{Body, Response};
 pub(crate) use body::{check, size};
 pub use compliance::Compliance;
+pub use derivatives::{asymptote_derivatives, normal_derivatives};
 
 use layer::Slab;
 

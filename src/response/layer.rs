@@ -1,5 +1,9 @@
 //! One layer as an element between its two faces: the step of the recursion, which is nacre's own.
 
+mod poisson;
+
+pub(super) use poisson::of_energy;
+
 use super::compliance::Compliance;
 use crate::body::Interface;
 use crate::material::Elastic;
@@ -37,13 +41,23 @@ pub(super) struct Slab {
 /// A symmetric 2 × 2 matrix: elements 11, 12, 22.
 struct Symmetric(f64, f64, f64);
 
+impl Symmetric {
+    /// vᵀ M v
+    fn form(&self, [a, b]: [f64; 2]) -> f64 {
+        a * (self.0 * a + self.1 * b) + b * (self.1 * a + self.2 * b)
+    }
+}
+
 struct Twist {
     h11: f64,
     h12: f64,
     h22: f64,
 }
 
-/// sinh 2x − 2x, x cosh x − sinh x, sinh²x − x², by their power series; for 0 ≤ x < ½, where
+/// x below which differences that cancel come from their power series.
+const SMALL: f64 = 0.5;
+
+/// sinh 2x − 2x, x cosh x − sinh x, sinh²x − x², by their power series; for 0 ≤ x < [`SMALL`], where
 /// twelve terms leave (2x)²⁴/27! < 1e-28.
 fn small_differences(x: f64) -> (f64, f64, f64) {
     let (x2, y2) = (x * x, 4.0 * x * x);
@@ -64,17 +78,35 @@ fn small_differences(x: f64) -> (f64, f64, f64) {
     (sinh, mixed, square)
 }
 
-impl Slab {
-    pub(super) fn new(material: Elastic, x: f64) -> Self {
-        let (g, nu) = (material.shear(), material.poisson());
-        let (eta, epsilon, k) = (1.0 - nu, 1.0 - 2.0 * nu, 3.0 - 4.0 * nu);
+/// The functions of x that the elements consist of, each times 2e^{−2x}.
+struct Shapes {
+    x: f64,
+    /// 2e^{−2x}
+    scale: f64,
+    /// e^{−x} and e^{−2x}, as they are.
+    decay: [f64; 2],
+    cosh: f64,
+    sinh: f64,
+    /// x
+    xs: f64,
+    /// x²
+    x2s: f64,
+    /// sinh 2x − 2x
+    sinh2_2x: f64,
+    /// x cosh x − sinh x
+    xcosh_sinh: f64,
+    /// sinh²x − x²
+    sinhsq_x2: f64,
+}
+
+impl Shapes {
+    fn new(x: f64) -> Self {
         let e1 = (-x).exp();
         let e2 = e1 * e1;
-        // Numerators and Δ times 2e^{−2x}:
         let scale = 2.0 * e2;
         let (cosh, sinh) = (e1 * (1.0 + e2), -e1 * (-2.0 * x).exp_m1());
         let (xs, x2s) = (x * scale, x * x * scale);
-        let (sinh2_2x, xcosh_sinh, sinhsq_x2) = if x < 0.5 {
+        let (sinh2_2x, xcosh_sinh, sinhsq_x2) = if x < SMALL {
             let (a, b, c) = small_differences(x);
             (scale * a, scale * b, scale * c)
         } else {
@@ -85,7 +117,48 @@ impl Slab {
                 0.5 * half * half - x2s,
             )
         };
-        let delta = k * (1.0 + e2 * e2) + 2.0 * x2s + scale * (5.0 - 12.0 * nu + 8.0 * nu * nu);
+        Self {
+            x,
+            scale,
+            decay: [e1, e2],
+            cosh,
+            sinh,
+            xs,
+            x2s,
+            sinh2_2x,
+            xcosh_sinh,
+            sinhsq_x2,
+        }
+    }
+
+    /// Δ times 2e^{−2x}.
+    fn delta(&self, nu: f64) -> f64 {
+        let (k, [_, e2]) = (3.0 - 4.0 * nu, self.decay);
+        k * (1.0 + e2 * e2) + 2.0 * self.x2s + self.scale * (5.0 - 12.0 * nu + 8.0 * nu * nu)
+    }
+}
+
+impl Slab {
+    pub(super) fn new(material: Elastic, x: f64) -> Self {
+        Self::of(material, &Shapes::new(x))
+    }
+
+    fn of(material: Elastic, shapes: &Shapes) -> Self {
+        let (g, nu) = (material.shear(), material.poisson());
+        let (eta, epsilon, k) = (1.0 - nu, 1.0 - 2.0 * nu, 3.0 - 4.0 * nu);
+        let delta = shapes.delta(nu);
+        let &Shapes {
+            x,
+            decay: [e1, e2],
+            cosh,
+            sinh,
+            xs,
+            x2s,
+            sinh2_2x,
+            xcosh_sinh,
+            sinhsq_x2,
+            ..
+        } = shapes;
         let (xsinh, xcosh) = (x * sinh, x * cosh);
         let h11 = 1.0 / (g * delta);
         let h12 = 4.0 * eta / delta;
@@ -221,5 +294,11 @@ impl Slab {
             }
             Interface::Frictionless => (0.0, f / self.twist.h22),
         }
+    }
+
+    /// Twice the strain energy of the layer under `traction` on its top and `displacement` of its bottom,
+    /// tᵀ H11 t + uᵀ H22 u.
+    pub(super) fn energy(&self, traction: [f64; 2], displacement: [f64; 2]) -> f64 {
+        self.h11.form(traction) + self.h22.form(displacement)
     }
 }

@@ -1,0 +1,306 @@
+//! Derivatives of the frequency response equal reference values of 50 digits and two exact identities, for any stack.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use nacre::response::{Asymptotes, Response, asymptote_derivatives, normal_derivatives};
+use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result, Substrate};
+use serde_json::Value;
+
+use crate::support::random::uniform;
+use crate::support::reference::{list, read};
+
+/// Relative to max(|∂|, 1e-6 |c|/|θ|): the energies are sums of a few terms of one size.
+const EXACT: f64 = 1e-12;
+
+/// Identities between sums of derivatives, relative to the response: rounding of the terms.
+const IDENTITY: f64 = 1e-13;
+
+/// [`IDENTITY`] for thicknesses; one random body of 200, stiff and thin on a soft layer that slides, has 1.7e-13.
+const LENGTHS: f64 = 2e-13;
+
+/// The value of a decimal number in a text.
+fn decimal(value: &Value) -> f64 {
+    let text = value.as_str().unwrap_or_else(|| panic!("no text: {value}"));
+    text.parse()
+        .unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+/// The body of a stack of `response_derivatives.json`.
+fn stack(stack: &Value) -> Result<HalfSpace> {
+    let material = |one: &Value| Elastic::new(decimal(&one["young"]), decimal(&one["poisson"]));
+    let layers: Result<Vec<Layer>> = list(stack, "layers")
+        .iter()
+        .map(|one| {
+            let layer = Layer::new(material(one)?, decimal(&one["thickness"]))?;
+            Ok(layer.with_interface(match one["interface"].as_str() {
+                Some("frictionless") => Interface::Frictionless,
+                _ => Interface::Bonded,
+            }))
+        })
+        .collect();
+    let substrate = match &stack["substrate"] {
+        Value::Object(_) => material(&stack["substrate"])?.into(),
+        _ => Substrate::Rigid,
+    };
+    HalfSpace::new(substrate, layers?)
+}
+
+/// A random body of up to five layers, contrasts up to 1e3, and Poisson's ratios up to 0.5.
+fn random_body(seed: u64) -> Result<HalfSpace> {
+    let numbers = uniform([8, 5], seed);
+    let count = 1 + (5.0 * numbers[[7, 0]]) as usize;
+    let interface = |u: f64| match u {
+        u if u < 0.25 => Interface::Frictionless,
+        _ => Interface::Bonded,
+    };
+    let poisson = |u: f64| (u * 1.2 - 0.6).clamp(-0.5, 0.5);
+    let layers: Result<Vec<Layer>> = (0..count.min(5))
+        .map(|k| {
+            let u = |row: usize| numbers[[row, k]];
+            let young = 10f64.powf(3.0 * u(0) - 1.5);
+            let material = Elastic::new(young, poisson(u(1)))?;
+            let layer = Layer::new(material, 10f64.powf(2.0 * u(2) - 1.0))?;
+            Ok(layer.with_interface(interface(u(3))))
+        })
+        .collect();
+    let substrate = match numbers[[6, 0]] {
+        u if u < 0.2 => Substrate::Rigid,
+        u => Elastic::new(u, poisson(numbers[[6, 1]]))?.into(),
+    };
+    HalfSpace::new(substrate, layers?)
+}
+
+/// All derivatives at a wavenumber, and the response.
+fn all(body: &HalfSpace, alpha: f64) -> (f64, Vec<(BodyParameter, f64)>) {
+    let parameters = body.parameters();
+    let mut out = vec![0.0; parameters.len()];
+    let value = normal_derivatives(body, &parameters, alpha, &mut out);
+    (value, parameters.into_iter().zip(out).collect())
+}
+
+/// Σ θ ∂/∂θ over the parameters that `select` takes.
+fn weighted(
+    body: &HalfSpace,
+    slopes: &[(BodyParameter, f64)],
+    select: fn(&BodyParameter) -> bool,
+) -> f64 {
+    let taken = slopes.iter().filter(|(one, _)| select(one));
+    taken
+        .map(|(one, slope)| body.value(*one).unwrap_or(0.0) * slope)
+        .sum()
+}
+
+const fn is_young(one: &BodyParameter) -> bool {
+    matches!(one, BodyParameter::Young(_))
+}
+
+const fn is_thickness(one: &BodyParameter) -> bool {
+    matches!(one, BodyParameter::Thickness(_))
+}
+
+/// Wavenumbers from 1e-6 to 1e3, two to a decade.
+fn sweep() -> impl Iterator<Item = f64> {
+    (-12..=6).map(|k| 10f64.powf(0.5 * f64::from(k)))
+}
+
+#[test]
+fn derivatives_equal_those_of_fifty_digits() -> Result<()> {
+    let (mut worst, mut compared) = (0.0_f64, 0);
+    for case in list(&read("response_derivatives.json"), "stacks") {
+        let body = stack(case)?;
+        let layers = body.layers().len();
+        for row in list(case, "rows") {
+            let (value, slopes) = all(&body, decimal(&row["alpha"]));
+            let expected = decimal(&row["alpha_c11"]);
+            assert!((value / expected - 1.0).abs() < EXACT);
+            for (parameter, slope) in slopes {
+                let (name, place) = match parameter {
+                    BodyParameter::Young(place) => ("young", place),
+                    BodyParameter::Poisson(place) => ("poisson", place),
+                    BodyParameter::Thickness(place) => ("thickness", place),
+                };
+                let key = match place {
+                    place if place == layers => format!("d_{name}_substrate"),
+                    place => format!("d_{name}_{place}"),
+                };
+                let reference = decimal(&row[&key]);
+                let theta = body.value(parameter).unwrap_or(1.0).abs();
+                let scale = reference.abs().max(1e-6 * expected / theta);
+                let error = (slope - reference).abs() / scale;
+                if error > EXACT {
+                    println!(
+                        "{} {} {key}: {slope:e} {reference:e} {error:.1e}",
+                        case["name"], row["alpha"]
+                    );
+                }
+                worst = worst.max(error);
+                compared += 1;
+            }
+        }
+    }
+    println!("largest error {worst:.1e} of {compared}");
+    assert!(worst < EXACT && compared == 242, "{worst:e} of {compared}");
+    Ok(())
+}
+
+/// α ∂(α c11)/∂α by a central difference of 24 points in ln α.
+fn along(body: &HalfSpace, alpha: f64) -> f64 {
+    const STEP: f64 = 0.04;
+    const POINTS: i32 = 12;
+    let mut weight = -1.0;
+    (1..=POINTS)
+        .map(|k| {
+            // (−1)^{k+1} n!²/((n−k)! (n+k)!)
+            let (n, j) = (f64::from(POINTS), f64::from(k));
+            weight *= -(n - j + 1.0) / (n + j);
+            let at = |sign: f64| body.normal(alpha * (sign * j * STEP).exp());
+            weight * (at(1.0) - at(-1.0)) / (j * STEP)
+        })
+        .sum()
+}
+
+#[test]
+fn moduli_and_lengths_scale_the_response() -> Result<()> {
+    let mut worst = [0.0_f64; 2];
+    for seed in 0..200 {
+        let body = random_body(seed)?;
+        for alpha in sweep() {
+            let (value, slopes) = all(&body, alpha);
+            let young = weighted(&body, &slopes, is_young) + value;
+            let lengths = weighted(&body, &slopes, is_thickness) - along(&body, alpha);
+            worst[0] = worst[0].max((young / value).abs());
+            worst[1] = worst[1].max((lengths / value).abs());
+        }
+    }
+    println!("Σ E ∂/∂E {:.1e}, Σ h ∂/∂h {:.1e}", worst[0], worst[1]);
+    assert!(worst[0] < IDENTITY && worst[1] < LENGTHS, "{worst:?}");
+    Ok(())
+}
+
+#[test]
+fn a_layer_cut_in_two_shares_its_derivatives() -> Result<()> {
+    let mut worst = 0.0_f64;
+    for seed in 0..100 {
+        let body = random_body(seed)?;
+        let cut = |layer: &Layer| -> Result<[Layer; 2]> {
+            let (top, rest) = (0.3 * layer.thickness(), 0.7 * layer.thickness());
+            let lower = Layer::new(layer.material(), rest)?.with_interface(layer.interface());
+            Ok([Layer::new(layer.material(), top)?, lower])
+        };
+        let halves: Result<Vec<[Layer; 2]>> = body.layers().iter().map(cut).collect();
+        let halved = HalfSpace::new(body.substrate(), halves?.into_iter().flatten())?;
+        for alpha in sweep() {
+            let (value, slopes) = all(&body, alpha);
+            let (_, parts) = all(&halved, alpha);
+            for (k, (parameter, slope)) in slopes.iter().enumerate() {
+                let theta = body.value(*parameter).unwrap_or(0.0).abs().max(0.1);
+                let at = |j: usize| parts[j].1;
+                let layer = k / 3;
+                let sum = match parameter {
+                    BodyParameter::Thickness(_) => {
+                        0.3 * at(6 * layer + 2) + 0.7 * at(6 * layer + 5)
+                    }
+                    _ if layer == body.layers().len() => at(6 * layer + k % 3),
+                    _ => at(6 * layer + k % 3) + at(6 * layer + k % 3 + 3),
+                };
+                worst = worst.max((sum - slope).abs() * theta / value);
+            }
+        }
+    }
+    println!("largest difference {worst:.1e}");
+    assert!(worst < EXACT, "{worst:e}");
+    Ok(())
+}
+
+/// Differences of the limits, at a step of 1e-4, in error by its square.
+#[test]
+fn limits_have_the_derivatives_of_their_differences() -> Result<()> {
+    const STEP: f64 = 1e-4;
+    let mut worst = 0.0_f64;
+    for seed in 0..200 {
+        let body = random_body(seed)?;
+        let parameters = body.parameters();
+        let limits = asymptote_derivatives(&body, &parameters);
+        let largest = parameters
+            .iter()
+            .zip(&limits)
+            .fold([0.0_f64; 3], |most, (one, slope)| {
+                let theta = body.value(*one).unwrap_or(0.0).abs();
+                let [a, b, c] = numbers(*slope).map(|x| (x * theta).abs());
+                [most[0].max(a), most[1].max(b), most[2].max(c)]
+            });
+        for (parameter, slope) in parameters.iter().zip(limits) {
+            let theta = body.value(*parameter).unwrap_or(0.0);
+            let step = STEP * theta.abs().max(1e-2);
+            let at = |sign: f64| body.with_value(*parameter, theta + sign * step);
+            // Poisson's ratio of 0.5 has no neighbour above.
+            let (Ok(above), Ok(below)) = (at(1.0), at(-1.0)) else {
+                continue;
+            };
+            let (above, below) = (above.asymptotes(), below.asymptotes());
+            for (k, found) in numbers(slope).into_iter().enumerate() {
+                let difference = (numbers(above)[k] - numbers(below)[k]) / (2.0 * step);
+                let error = (difference - found).abs() * theta.abs().max(0.1);
+                if largest[k] > 0.0 {
+                    worst = worst.max(error / largest[k]);
+                } else {
+                    assert!(error <= 0.0);
+                }
+            }
+        }
+    }
+    println!("largest difference {worst:.1e}");
+    // The square of the step, and second derivatives that are some tens larger.
+    assert!(worst < 1e-6, "{worst:e}");
+    Ok(())
+}
+
+fn numbers(limits: Asymptotes) -> [f64; 3] {
+    [limits.long, limits.constant, limits.short]
+}
+
+#[test]
+fn long_waves_leave_for_the_derivatives_of_the_limits() -> Result<()> {
+    let mut worst = 0.0_f64;
+    for seed in 0..100 {
+        let body = random_body(seed)?;
+        let limits = asymptote_derivatives(&body, &body.parameters());
+        let alpha = 1e-7;
+        let (value, slopes) = all(&body, alpha);
+        for ((parameter, slope), limit) in slopes.into_iter().zip(limits) {
+            let theta = body.value(parameter).unwrap_or(0.0).abs();
+            let error = slope - (limit.long + alpha * limit.constant);
+            worst = worst.max((error * theta).abs() / value);
+        }
+    }
+    println!("largest difference {worst:.1e}");
+    // Terms of the order (αh)², with the largest contrasts.
+    assert!(worst < 1e-6, "{worst:e}");
+    Ok(())
+}
+
+/// At most 0.2 µs for a wavenumber and parameter; three times as much in a debug build or on a busy machine is told by
+/// the printed figure alone.
+#[test]
+fn a_derivative_takes_a_fraction_of_a_microsecond() -> Result<()> {
+    let coat = Layer::new(Elastic::new(4.0, 0.25)?, 1.0)?;
+    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let parameters = body.parameters();
+    let mut out = vec![0.0; parameters.len()];
+    let start = Instant::now();
+    let runs = 20_000;
+    for k in 0..runs {
+        let alpha = 1e-3 + 1e-3 * f64::from(k);
+        black_box(normal_derivatives(
+            black_box(&body),
+            &parameters,
+            alpha,
+            &mut out,
+        ));
+    }
+    let each = start.elapsed().as_secs_f64() / f64::from(runs) / parameters.len() as f64;
+    println!("{:.3} µs", 1e6 * each);
+    assert!(each < 20e-6, "{each:e}");
+    Ok(())
+}
