@@ -2,11 +2,10 @@
 
 use crate::parallel::dot;
 
-/// Cholesky factor L of K = L Lᵀ, by rows up to the diagonal; `None` where a pivot is not positive. `matrix` is asked row by
-/// row, each from its first column to the diagonal.
+/// Cholesky factor L of K = L Lᵀ, by rows up to the diagonal; `None` where a pivot is not positive.
 pub(crate) fn cholesky(
     cells: usize,
-    mut matrix: impl FnMut(usize, usize) -> f64,
+    matrix: impl Fn(usize, usize) -> f64,
 ) -> Option<Vec<Vec<f64>>> {
     let mut lower: Vec<Vec<f64>> = Vec::with_capacity(cells);
     for a in 0..cells {

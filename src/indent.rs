@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! φ(s) + 2/π ∫₀^a K(s,t) φ(t) dt = f [δ − F(s)]      K = ∫₀^∞ M cos αs cos αt dα      F = s ∫₀^s g'(r)/√(s²−r²) dr
-//! P = 2π ∫ φ      p(r) = φ(a)/√(a²−r²) − ∫_r^a φ'(t)/√(t²−r²) dt
+//! P = 2π ∫ φ      p(r) = φ(a)/√(a²−r²) − ∫_r^a φ'(t)/√(t²−r²) dt      u(r) = A1 ∫₀^a φ/√(r²−t²) dt + A1 ∫₀^∞ M p̂ J₀(αr) dα
 //! ```
 //!
 //! (Sneddon, Int. J. Eng. Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4, for M = 0.) The solution is φ = δ φ₁ − φ_F,
@@ -15,16 +15,31 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `tip` | profiles, and their F |
-//! | `stack` | M of the bodies at the nodes of a quadrature, which all radii share |
-//! | `point` | one radius: the system, load, approach, stiffness, pressure |
-//! | `adhesion` | Johnson, Kendall and Roberts' contacts on any stack |
+//! | `waves`, `stack` | M of the bodies at the nodes of a quadrature, which all radii share |
+//! | `basis`, `system` | functions on the contact, and their linear system |
+//! | `parts`, `point`, `density` | the two solutions of one radius; states, pressure, displacement |
+//! | `adhesion`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
+//! | `change` | derivatives |
+//! | `indenter` | states by radius, load and approach; pull-off |
 
 mod adhesion;
+mod basis;
+mod change;
+mod cohesion;
+mod density;
+mod indenter;
+mod parts;
 mod point;
+mod root;
 mod stack;
+mod system;
 mod tip;
+mod waves;
 
-pub use adhesion::{Control, PullOff};
-pub use point::{Indent, Point};
-pub use stack::Stack;
-pub use tip::Tip;
+pub use adhesion::{Adhesion, Branch, Control};
+pub use change::{Change, Held, Variable};
+pub use cohesion::Apart;
+pub use indenter::{Indent, PullOff};
+pub use point::Point;
+pub use stack::{Parameter, Stack};
+pub use tip::{Form, Tip, TipParameter, slope_of};

@@ -19,10 +19,11 @@ use spec_math::cephes64::j1;
 use super::adhesion::Adhesion;
 use super::basis::rule;
 use super::density::bessel_sum;
-use super::parts::{Parts, times};
+use super::parts::Parts;
 use super::point::Point;
 use super::root::bracketed;
 use super::stack::Stack;
+use super::system::times;
 use super::tip::Tip;
 use super::waves::Waves;
 use crate::error::{Error, Result};
@@ -151,11 +152,18 @@ impl Zone {
     }
 }
 
-/// The contact of radius `a` with a cohesive zone.
+/// The contact of radius `a` with a cohesive zone, whose width c − a is looked for from e^`start` on; at the end its
+/// logarithm is in `start`.
 ///
 /// # Errors
 /// As [`Parts::new`], and no zone within the radii that can be computed.
-pub(super) fn contact(stack: &Stack, tip: &Tip, a: f64, [work, strength]: [f64; 2]) -> Result<Point> {
+pub(super) fn contact(
+    stack: &Stack,
+    tip: &Tip,
+    a: f64,
+    [work, strength]: [f64; 2],
+    start: &mut f64,
+) -> Result<Point> {
     let opening = work / strength;
     let mut length = 4.0 * a;
     let mut parts = Arc::new(Parts::new(stack, tip, a, length)?);
@@ -175,25 +183,22 @@ pub(super) fn contact(stack: &Stack, tip: &Tip, a: f64, [work, strength]: [f64; 
         let gap = point.gap(&[outer])?[0];
         Ok((gap - opening, point))
     };
-    let (mut low, mut high) = (a.ln() - 3.0, a.ln() - 3.0);
-    while excess(low)?.0 > 0.0 {
-        low -= 3.0;
-        if low < a.ln() - 34.0 {
+    let most = 0.5 * stack.largest_radius().min(1e6 * a);
+    let from = start.clamp(a.ln() - 30.0, most.ln());
+    let is_wide = excess(from)?.0 > 0.0;
+    let (mut near, mut far, mut step) = (from, from, 0.25);
+    loop {
+        far += if is_wide { -step } else { step };
+        if far < a.ln() - 34.0 || far > most.ln() {
             return Err(NO_ZONE);
         }
-    }
-    while excess(high)?.0 < 0.0 {
-        high += 1.0;
-        if a + high.exp() > 0.5 * stack.largest_radius().min(1e6 * a) {
-            return Err(NO_ZONE);
+        if (excess(far)?.0 > 0.0) != is_wide {
+            break;
         }
+        (near, step) = (far, (2.0 * step).min(1.0));
     }
-    let found = bracketed(|log| Ok(excess(log)?.0), [low.max(high - 3.0).min(low.max(high - 1.0)), high]);
-    let log = match found {
-        Ok(log) => log,
-        Err(_) => bracketed(|log| Ok(excess(log)?.0), [low, high])?,
-    };
-    Ok(excess(log)?.1)
+    *start = bracketed(|log| Ok(excess(log)?.0), [near, far])?;
+    Ok(excess(*start)?.1)
 }
 
 const NO_ZONE: Error = Error::Inconsistent(
@@ -265,7 +270,6 @@ impl Apart {
     }
 }
 
-/// arcsin of a ratio that rounding may raise above 1, for tests of [`Zone::inside`].
 #[cfg(test)]
 mod tests {
     use super::{FRAC_PI_2, PI, Zone};

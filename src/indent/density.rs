@@ -11,6 +11,9 @@ use super::tip::TipParameter;
 /// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
 const PRESSURE: usize = 48;
 
+/// Nodes of the integrals of the displacement, which have no root.
+const SURFACE: usize = 24;
+
 /// φ(t) = c₀ − c₁ F(t) − f ∂F/∂θ(t) − 2/π Σ g cos αt on the contact.
 #[derive(Debug)]
 pub(super) struct Density<'a> {
@@ -119,7 +122,7 @@ impl Density<'_> {
         let parts = self.parts;
         let a = parts.system.radius;
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
-        let rule = rule((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
+        let rule = rule((parts.stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
         // t = r sin θ takes the root away.
         let angle = |t: f64| (t / r).min(1.0).asin();
         let kinks: Vec<f64> = parts.tip.kinks().iter().map(|b| angle(*b)).collect();

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::stack::Stack;
-use super::system::System;
+use super::system::{System, times};
 use super::tip::Tip;
 use crate::error::Result;
 use crate::parallel::dot;
@@ -74,9 +74,4 @@ impl Parts {
     pub(super) fn stiffness_slope(&self) -> f64 {
         2.0 * (PI * self.edge[0]).powi(2) / self.stack.surface_modulus()
     }
-}
-
-/// Products of the elements.
-pub(super) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a * b).collect()
 }

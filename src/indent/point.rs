@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::adhesion::Adhesion;
 use super::cohesion::Zone;
 use super::density::{Density, bessel_sum};
-use super::parts::{Parts, times};
+use super::parts::Parts;
+use super::system::times;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
 
@@ -181,10 +182,12 @@ impl Point {
 
     /// Weights times M p̂, and wavenumbers, of waves that resolve J₀(αr) up to `far`; none of bare bodies.
     fn wider_waves(&self, far: f64) -> Option<[Vec<f64>; 2]> {
-        let level = self.parts.stack.level(self.radius + far)?;
         let own = self.parts.system.level.as_ref()?;
+        // The level of a cohesive zone may already be wider.
+        let level = self.parts.stack.level(self.radius + far)?;
+        let level = if level.length > own.length { level } else { own };
         let (alpha, excess) = (level.waves.alpha.clone(), &level.excess);
-        let hat = match level.waves.len() == own.waves.len() {
+        let hat = match Arc::ptr_eq(level, own) {
             true => self.hat(),
             false => {
                 let rows = self.parts.system.basis.transforms(&level.waves);

@@ -4,17 +4,18 @@ use std::sync::{Arc, OnceLock};
 
 use super::tip::TipParameter;
 use super::waves::Waves;
+use crate::body::BodyParameter;
 use crate::error::{Error, Result};
-use crate::response::{Body, BodyParameter, asymptote_derivatives, normal_derivatives};
+use crate::response::{Body, asymptote_derivatives, normal_derivatives};
 
 /// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
 pub(super) const MOST_RATIO: f64 = 1024.0;
 
-/// Longest oscillation of the first level, in top layers: contacts of a radius of four.
-const FIRST_LENGTH: f64 = 8.0;
+/// Longest oscillation of the first level, in top layers: that of contacts of a radius of one.
+const FIRST_LENGTH: f64 = 2.0;
 
 /// Levels, each for twice the length of the one before.
-const LEVELS: usize = 10;
+const LEVELS: usize = 12;
 
 /// A number that an indentation depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub enum Parameter {
 /// The response at the wavenumbers of one quadrature.
 #[derive(Debug)]
 pub(super) struct Level {
+    /// Longest oscillation over α that the waves resolve \[m\].
+    pub(super) length: f64,
     pub(super) waves: Waves,
     /// Weights times M(α).
     pub(super) excess: Vec<f64>,
@@ -168,6 +171,7 @@ impl Stack {
             let pairs = waves.alpha.iter().zip(&waves.weight);
             let excess = pairs.map(|(alpha, w)| w * excess(*alpha)).collect();
             Arc::new(Level {
+                length,
                 waves,
                 excess,
                 rates: OnceLock::new(),

@@ -52,17 +52,11 @@ impl System {
             sin.resize(level.waves.len(), 0.0);
             level.waves.circular(a, cos, sin);
         }
-        let mut weighted: Vec<f64> = Vec::new();
+        let excess = level.as_ref().map_or(&[][..], |level| &level.excess);
+        let matrix = products(&rows, excess);
         let factor = cholesky(basis.len(), |i, j| {
             let identity = if i == j { 1.0 } else { 0.0 };
-            let Some(level) = &level else {
-                return identity;
-            };
-            // Rows are taken one after the other, j up to i.
-            if j == 0 {
-                weighted = rows[i].iter().zip(&level.excess).map(|(b, m)| b * m).collect();
-            }
-            identity + 2.0 / PI * dot(&weighted, &rows[j])
+            identity + matrix.get(i).map_or(0.0, |row| 2.0 / PI * row[j])
         });
         let factor = factor.ok_or(Error::Inconsistent(
             "the response of the bodies must be positive at every wavenumber",
@@ -116,4 +110,27 @@ impl System {
     pub(super) fn excess(&self) -> &[f64] {
         self.level.as_ref().map_or(&[], |level| &level.excess)
     }
+}
+
+/// Waves whose transforms of all functions stay in the nearest cache.
+const BLOCK: usize = 256;
+
+/// Σ m b̂ᵢ b̂ⱼ over the waves for j ≤ i, block by block.
+fn products(rows: &[Vec<f64>], m: &[f64]) -> Vec<Vec<f64>> {
+    let mut sums: Vec<Vec<f64>> = (0..rows.len()).map(|i| vec![0.0; i + 1]).collect();
+    for start in (0..m.len()).step_by(BLOCK) {
+        let block = start..(start + BLOCK).min(m.len());
+        for (i, sums) in sums.iter_mut().enumerate() {
+            let weighted = times(&rows[i][block.clone()], &m[block.clone()]);
+            for (sum, row) in sums.iter_mut().zip(rows) {
+                *sum += dot(&weighted, &row[block.clone()]);
+            }
+        }
+    }
+    sums
+}
+
+/// Products of the elements.
+pub(super) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
 }

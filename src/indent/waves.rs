@@ -10,6 +10,9 @@ const TAIL: f64 = 16.0;
 /// Nodes of a panel, a multiple of the lanes.
 const NODES: usize = 12;
 
+/// Length of a panel, in inverse top layers, on which twelve nodes resolve polynomials times e^{−2x} to 1e-15.
+const WIDEST: f64 = 2.5;
+
 /// Phase of an oscillation over a panel that twelve nodes resolve: the rule leaves 4²⁴ (12!)⁴ 2²⁵/(25 (24!)³) = 1e-16 of
 /// cos αx over a phase of 8.
 const RESOLVED: f64 = 8.0;
@@ -45,7 +48,7 @@ impl Waves {
         finer: f64,
         excess: impl Fn(f64) -> f64,
     ) -> Self {
-        let width = (1.0 / thickness).min(RESOLVED / length) / finer;
+        let width = (WIDEST / thickness).min(RESOLVED / length) / finer;
         let rule = Rule::gauss_legendre(NODES);
         let (mut alpha, mut weight) = (Vec::new(), Vec::new());
         let mut add = |low: f64, high: f64| {

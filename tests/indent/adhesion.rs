@@ -1,0 +1,157 @@
+//! Adhesion against the closed forms of Johnson, Kendall, Roberts and Maugis, two programs and the energy.
+
+use std::f64::consts::PI;
+
+use nacre::indent::{Adhesion, Branch, Control, Indent, Stack, Tip};
+use nacre::{Elastic, Result};
+
+use super::support::{coated, number, reference};
+
+/// Work of adhesion with which a0 = 1 where E2* = R = 1: a0³ = 9πwR²/8E2*.
+const WORK: f64 = 8.0 / (9.0 * PI);
+
+/// Johnson, Kendall and Roberts on a bare body: the load at any radius, pull-off at 1.5 πwR and at 5/6 of πwR.
+#[test]
+fn jkr_on_a_bare_body() -> Result<()> {
+    let body = Elastic::new(1.0, 0.3)?;
+    let (modulus, radius, work) = (body.plane_strain_modulus(), 10.0, 1e-3);
+    let stack = Stack::plan(&[body.into()])?;
+    let tip = Tip::paraboloid(radius)?;
+    let indent = Indent::new(&stack, &tip).with_adhesion(Adhesion::Jkr { work })?;
+    for a in [0.1, 0.4, 1.5] {
+        let point = indent.at_radius(a)?;
+        let due = 4.0 * modulus * a.powi(3) / (3.0 * radius)
+            - (8.0 * PI * work * modulus * a.powi(3)).sqrt();
+        assert!(
+            (point.load - due).abs() < 1e-12 * due.abs(),
+            "{a}: {} {due}",
+            point.load
+        );
+        // The energy form and the edge form are the same.
+        let edge = -(2.0 * a * modulus * work / PI).sqrt();
+        let near = a * (1.0 - 1e-9);
+        let singular = edge / (a * a - near * near).sqrt();
+        assert!((point.pressure(&[near])?[0] / singular - 1.0).abs() < 1e-4);
+    }
+    let scale = PI * work * radius;
+    for (control, due) in [(Control::Load, 1.5), (Control::Approach, 5.0 / 6.0)] {
+        let found = indent.pull_off(control)?;
+        assert!(
+            (-found.load / scale - due).abs() < 1e-12,
+            "{control:?}: {}",
+            found.load / scale
+        );
+        let again = indent.work_from_pull_off(-found.load, control)?;
+        assert!((again / work - 1.0).abs() < 1e-9, "{control:?}: {again}");
+    }
+    // Under no load: a³ = 9πwR²/2E*, and the tip jumps there.
+    let jumped = indent.snap_in(Control::Load)?;
+    let due = (4.5 * PI * work * radius * radius / modulus).cbrt();
+    assert!((jumped.radius / due - 1.0).abs() < 1e-12);
+    Ok(())
+}
+
+/// Pull-off and whole curves on coated bodies, of an edge condition and of an energy form, which agree to 1e-13.
+#[test]
+fn jkr_on_coated_bodies() -> Result<()> {
+    let data = reference("jkr.json");
+    let indent = |ratio: f64, h: f64| -> Result<Indent> {
+        let stack = Stack::plan(&[coated(ratio, h)?.into()])?;
+        Indent::new(&stack, &Tip::paraboloid(1.0)?).with_adhesion(Adhesion::Jkr { work: WORK })
+    };
+    for row in data["table"].as_array().into_iter().flatten() {
+        let (ratio, h) = (number(&row["E1_over_E2"]), number(&row["h_over_a0"]));
+        let indent = indent(ratio, h)?;
+        for (control, key) in [
+            (Control::Load, "load_control"),
+            (Control::Approach, "displacement_control"),
+        ] {
+            let Some(due) = row[key]["pull_off_over_piwR"].as_f64() else {
+                continue;
+            };
+            let load = -indent.pull_off(control)?.load / (PI * WORK);
+            assert!(
+                (load - due).abs() < 1e-9,
+                "{ratio} {h} {control:?}: {load} {due}"
+            );
+        }
+    }
+    for curve in data["curves"].as_array().into_iter().flatten() {
+        let (ratio, h) = (number(&curve["E1_over_E2"]), number(&curve["h_over_a0"]));
+        let indent = indent(ratio, h)?;
+        for row in curve["rows"].as_array().into_iter().flatten() {
+            let [a, load, approach] = [0, 1, 2].map(|k| number(&row[k]));
+            let point = indent.at_radius(a)?;
+            assert!((point.load / (PI * WORK) - load).abs() < 1e-9 * load.abs().max(1.0));
+            assert!((point.approach - approach).abs() < 1e-9 * approach.abs().max(1.0));
+            // The energy form: w = S' (δ − δ_H)²/4πa.
+            let without = Indent::new(indent.stack(), indent.tip()).at_radius(a)?;
+            let apart = point.approach - without.approach;
+            let work = point.stiffness_slope * apart * apart / (4.0 * PI * a);
+            assert!((work / WORK - 1.0).abs() < 1e-9);
+        }
+    }
+    Ok(())
+}
+
+/// Both branches have the load that was asked for, the stable one the larger radius, and meet at pull-off.
+#[test]
+fn branches_of_the_curve() -> Result<()> {
+    let stack = Stack::plan(&[coated(4.0, 0.5)?.into()])?;
+    let tip = Tip::paraboloid(1.0)?;
+    let indent = Indent::new(&stack, &tip).with_adhesion(Adhesion::Jkr { work: WORK })?;
+    let last = indent.pull_off(Control::Load)?;
+    for part in [0.5, 0.9, 0.999] {
+        let load = part * last.load;
+        let [stable, unstable] = [Branch::Stable, Branch::Unstable]
+            .map(|branch| indent.at(Control::Load, load, branch));
+        let (stable, unstable) = (stable?, unstable?);
+        assert!((stable.load / load - 1.0).abs() < 1e-10);
+        assert!((unstable.load / load - 1.0).abs() < 1e-10);
+        assert!(stable.radius > last.radius && unstable.radius < last.radius);
+    }
+    assert!(indent.at_load(1.001 * last.load).is_err());
+    Ok(())
+}
+
+/// Pull-off by Maugis's closed form of the bare body, the coated rows of a program of seven digits, and both limits: those of
+/// Johnson, Kendall and Roberts where the strength is large for the top layer, and 2πwR where it is small.
+#[test]
+fn maugis_on_bare_and_coated_bodies() -> Result<()> {
+    let data = reference("maugis.json");
+    let tip = Tip::paraboloid(1.0)?;
+    // λ = σ0 (9R/2πwE2*²)^{1/3}
+    let strength = |lambda: f64| lambda / (9.0 / (2.0 * PI * WORK)).cbrt();
+    let pull_off = |stack: &Stack, lambda: f64| -> Result<f64> {
+        let adhesion = Adhesion::Maugis {
+            work: WORK,
+            strength: strength(lambda),
+        };
+        let indent = Indent::new(stack, &tip).with_adhesion(adhesion)?;
+        Ok(-indent.pull_off(Control::Load)?.load / (PI * WORK))
+    };
+    let bare = Stack::plan(&[Elastic::new(0.91, 0.3)?.into()])?;
+    for row in data["bare"].as_array().into_iter().flatten() {
+        let (lambda, due) = (number(&row["lambda_"]), number(&row["pull_off_over_piwR"]));
+        let found = pull_off(&bare, lambda)?;
+        assert!((found - due).abs() < 1e-9, "{lambda}: {found} {due}");
+    }
+    for case in data["coated"].as_array().into_iter().flatten() {
+        let (ratio, h) = (number(&case["E1_over_E2"]), number(&case["h_over_a0"]));
+        let stack = Stack::plan(&[coated(ratio, h)?.into()])?;
+        for row in case["rows"].as_array().into_iter().flatten() {
+            let (lambda, due) = (number(&row["lambda_"]), number(&row["pull_off_over_piwR"]));
+            let found = pull_off(&stack, lambda)?;
+            assert!((found - due).abs() < 1e-5, "{ratio} {lambda}: {found} {due}");
+        }
+        let jkr = Indent::new(&stack, &tip).with_adhesion(Adhesion::Jkr { work: WORK })?;
+        let due = -jkr.pull_off(Control::Load)?.load / (PI * WORK);
+        // λ of the top layer is λ (E2*/E1*)^{2/3}.
+        let top = ratio.powf(2.0 / 3.0);
+        let found = pull_off(&stack, 100.0 * top)?;
+        assert!((found / due - 1.0).abs() < 1e-2, "{ratio}: {found} {due}");
+        let found = pull_off(&stack, 0.002 * top)?;
+        assert!((found / 2.0 - 1.0).abs() < 1e-3, "{ratio}: {found}");
+    }
+    Ok(())
+}
