@@ -20,12 +20,14 @@
 //! | `parts`, `point`, `density` | the two solutions of one radius; states, pressure, displacement |
 //! | `adhesion`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
 //! | `change` | derivatives |
+//! | `curve` | whole curves by interpolation |
 //! | `indenter` | states by radius, load and approach; pull-off |
 
 mod adhesion;
 mod basis;
 mod change;
 mod cohesion;
+mod curve;
 mod density;
 mod indenter;
 mod parts;
@@ -39,6 +41,7 @@ mod waves;
 pub use adhesion::{Adhesion, Branch, Control};
 pub use change::{Change, Held, Variable};
 pub use cohesion::Apart;
+pub use curve::Curve;
 pub use indenter::{Indent, PullOff};
 pub use point::Point;
 pub use stack::{Parameter, Stack};

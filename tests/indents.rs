@@ -3,6 +3,7 @@
 mod indent {
     pub mod adhesion;
     pub mod contact;
+    pub mod curves;
     pub mod derivatives;
     pub mod ranges;
     pub mod support;

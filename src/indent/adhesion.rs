@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::stack::Parameter;
+use super::tip::{Tip, TipParameter};
 use crate::error::{Result, positive};
 
 /// How the surfaces adhere.
@@ -83,6 +85,30 @@ impl Adhesion {
     pub(super) fn edge(&self, modulus: f64, a: f64) -> f64 {
         match *self {
             Self::Jkr { work } => -(2.0 * a * modulus * work / PI).sqrt(),
+            _ => 0.0,
+        }
+    }
+
+    /// Force 2πwR \[N\] that pulls outside of the contact.
+    pub(super) fn outside(&self, tip: &Tip) -> f64 {
+        match (*self, tip.end_radius()) {
+            (Self::Dmt { work }, Some(radius)) => 2.0 * PI * work * radius,
+            _ => 0.0,
+        }
+    }
+
+    /// Derivative of the force outside with respect to `parameter`. Where all sections have κ times the area, the end radius is κR.
+    pub(super) fn outside_rate(&self, tip: &Tip, parameter: Parameter) -> f64 {
+        let (Self::Dmt { work }, Some(radius)) = (*self, tip.end_radius()) else {
+            return 0.0;
+        };
+        match parameter {
+            Parameter::Work => 2.0 * PI * radius,
+            Parameter::Tip(TipParameter::Area) => 2.0 * PI * work * radius,
+            // The end radius is the last number of the form.
+            Parameter::Tip(TipParameter::Number(k)) if k + 1 == tip.numbers().len() => {
+                2.0 * PI * work
+            }
             _ => 0.0,
         }
     }

@@ -80,13 +80,16 @@ impl Point {
             "the state does not depend on this parameter: take one of the bodies, the tip or the adhesion",
         );
         let (mut number, mut rate, mut short) = (None, None, 0.0);
-        let (mut widening, mut of_edge, mut outside) = (0.0, 0.0, 0.0);
-        let work = self.adhesion.work();
+        let (mut widening, mut of_edge) = (0.0, 0.0);
+        let outside = match variable {
+            Variable::Parameter(parameter) => self.adhesion.outside_rate(tip, parameter),
+            Variable::Held => 0.0,
+        };
         match variable {
             Variable::Held => {}
             Variable::Parameter(Parameter::Work) => match self.adhesion {
                 Adhesion::Jkr { work } => of_edge = edge / (2.0 * work),
-                Adhesion::Dmt { .. } => outside = 2.0 * PI * tip.end_radius().unwrap_or(0.0),
+                Adhesion::Dmt { .. } => {}
                 _ => return Err(unknown),
             },
             Variable::Parameter(Parameter::Strength) => return Err(unknown),
@@ -103,23 +106,13 @@ impl Point {
                         TipParameter::Number(_) => 1.0,
                     };
                 }
-                if let (Adhesion::Dmt { work }, Some(radius)) = (self.adhesion, tip.end_radius()) {
-                    // The end radius is the last number; of a section's area A it is R → κ R.
-                    outside = 2.0 * PI * work;
-                    let last = tip.numbers().len() - 1;
-                    match own {
-                        TipParameter::Area => outside *= radius,
-                        TipParameter::Number(k) if k != last => outside = 0.0,
-                        TipParameter::Number(_) => {}
-                    }
-                }
             }
             Variable::Parameter(parameter) => {
                 let found = stack.parameters().iter().position(|own| *own == parameter);
                 let found = found.ok_or(unknown)?;
                 number = Some(found);
                 short = -stack.modulus_rate(found);
-                if matches!(self.adhesion, Adhesion::Jkr { .. }) && work.is_some() && !is_flat {
+                if matches!(self.adhesion, Adhesion::Jkr { .. }) && !is_flat {
                     of_edge = -0.5 * edge * short;
                 }
             }

@@ -35,13 +35,9 @@ impl Point {
     /// The contact of `parts` at an `approach`.
     pub(super) fn new(parts: Arc<Parts>, adhesion: Adhesion, approach: f64) -> Self {
         let [stiffness, profile] = parts.loads;
-        let outside = match (adhesion, parts.tip.end_radius()) {
-            (Adhesion::Dmt { work }, Some(radius)) => 2.0 * PI * work * radius,
-            _ => 0.0,
-        };
         Self {
             radius: parts.system.radius,
-            load: stiffness * approach - profile - outside,
+            load: stiffness * approach - profile - adhesion.outside(&parts.tip),
             approach,
             stiffness,
             stiffness_slope: parts.stiffness_slope(),

@@ -1,0 +1,413 @@
+"""Model of measured curves: an indentation, what of it is free, and nuisances of each curve."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre.indent.curves import Curve
+
+Array = npt.NDArray[np.float64]
+Noise = Literal["relative", "absolute"]
+
+NUISANCES = ("contact_point", "drift", "compliance")
+"""Nuisances of a curve: the depth of its zero [m], a drift [m/s], the machine's compliance [m/N]."""
+NUISANCE = re.compile(r"(?:curves\[(\d+)\]\.)?(contact_point|drift|compliance)$")
+RANGES = {
+    "young": 1e4,
+    "thickness": 1e3,
+    "work": 1e4,
+    "area": 10.0,
+    "poisson": (0.0, 0.4999),
+}
+"""Factors by which parameters may differ from their start, and the range of a Poisson's ratio; an
+incompressible layer has no limit of its derivatives."""
+OTHER = 100.0
+"""Factor by which other parameters may differ, such as the numbers of a tip."""
+FARTHEST = 3.0
+"""Range of a nuisance over the range of depth; the model needs some contact within the data."""
+
+
+@dataclass(frozen=True)
+class System:
+    """Arguments of an indentation, which parameters are written into."""
+
+    body: core.HalfSpace
+    tip: core.Tip
+    counterbody: core.HalfSpace | None
+    adhesion: core.Adhesion | None
+
+    @classmethod
+    def of(
+        cls,
+        body: core.HalfSpace | core.Elastic,
+        tip: core.Tip,
+        counterbody: core.HalfSpace | core.Elastic | None = None,
+        adhesion: core.Adhesion | None = None,
+    ) -> System:
+        """Return the system of these arguments, elastic materials as half-spaces."""
+        bodies = [core.HalfSpace(b) if isinstance(b, core.Elastic) else b for b in (body,)]
+        if isinstance(counterbody, core.Elastic):
+            counterbody = core.HalfSpace(counterbody)
+        return cls(bodies[0], tip, counterbody, adhesion)
+
+    def values(self) -> dict[str, float]:
+        """Return the value of each parameter that may be free, by its path."""
+        found: dict[str, float] = {}
+        for side, body in (("body", self.body), ("counterbody", self.counterbody)):
+            if body is None:
+                continue
+            for number, layer in enumerate(body.layers):
+                path = f"{side}.layers[{number}]"
+                found[f"{path}.material.young"] = layer.material.young
+                found[f"{path}.material.poisson"] = layer.material.poisson
+                found[f"{path}.thickness"] = layer.thickness
+            if isinstance(body.substrate, core.Elastic):
+                found[f"{side}.substrate.young"] = body.substrate.young
+                found[f"{side}.substrate.poisson"] = body.substrate.poisson
+        found |= {f"tip.{name}": float(value) for name, value in self.tip.numbers.items()}
+        found["tip.area"] = 1.0
+        if self.adhesion is not None:
+            found["adhesion.work"] = self.adhesion.work
+        return found
+
+    def changed(self, values: Mapping[str, float]) -> System:
+        """Return the system with other values of some parameters, but for the area of the tip."""
+        body = _changed_body(self.body, "body", values)
+        counterbody = self.counterbody
+        if counterbody is not None:
+            counterbody = _changed_body(counterbody, "counterbody", values)
+        tip, adhesion = self.tip, self.adhesion
+        numbers = {
+            path.removeprefix("tip."): value
+            for path, value in values.items()
+            if path.startswith("tip.") and path != "tip.area"
+        }
+        if numbers:
+            tip = getattr(core.Tip, tip.kind)(**{**tip.numbers, **numbers})
+        if adhesion is not None and "adhesion.work" in values:
+            adhesion = getattr(core.Adhesion, adhesion.kind)(values["adhesion.work"])
+        return System(body, tip, counterbody, adhesion)
+
+    def narrowed(self, factor: float) -> System:
+        """Return the system with lateral lengths divided by a factor, but for those of the tip."""
+        bodies = [
+            b and _changed_body(b, "", {}, factor) for b in (self.body, self.counterbody)
+        ]
+        adhesion = self.adhesion
+        if adhesion is not None:
+            adhesion = getattr(core.Adhesion, adhesion.kind)(adhesion.work * factor)
+        assert bodies[0] is not None
+        return replace(self, body=bodies[0], counterbody=bodies[1], adhesion=adhesion)
+
+    def curve(self, approach: Array, wrt: Sequence[str], area: float = 1.0) -> core.IndentCurve:
+        """Return the loads at these approaches."""
+        made = core.Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
+        return made.curve(approach=approach, wrt=wrt)
+
+
+def _changed_body(
+    body: core.HalfSpace, side: str, values: Mapping[str, float], narrower: float = 1.0
+) -> core.HalfSpace:
+    layers = []
+    for number, layer in enumerate(body.layers):
+        path, material = f"{side}.layers[{number}]", layer.material
+        young = values.get(f"{path}.material.young", material.young)
+        poisson = values.get(f"{path}.material.poisson", material.poisson)
+        thickness = values.get(f"{path}.thickness", layer.thickness) / narrower
+        new = core.Elastic(young, poisson)
+        layers.append(core.Layer(new, thickness, interface=layer.interface, name=layer.name))
+    substrate = body.substrate
+    if isinstance(substrate, core.Elastic):
+        substrate = core.Elastic(
+            values.get(f"{side}.substrate.young", substrate.young),
+            values.get(f"{side}.substrate.poisson", substrate.poisson),
+        )
+    return core.HalfSpace(substrate, layers=layers)
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A parameter of the fit: its value is start·exp(x), or start + scale·x."""
+
+    name: str
+    start: float
+    scale: float
+    """Scale of x, 0 where x is a logarithm."""
+    low: float
+    high: float
+    """Bounds of the value."""
+    curve: int = -1
+    """Number of the curve that a nuisance belongs to."""
+    kind: str = ""
+    """Kind of nuisance, empty for a parameter of the system."""
+
+    @property
+    def is_log(self) -> bool:
+        """Whether x is a logarithm."""
+        return self.scale == 0
+
+    def value(self, x: float) -> float:
+        """Return the value at x."""
+        return self.start * math.exp(x) if self.is_log else self.start + self.scale * x
+
+    def place(self, value: float) -> float:
+        """Return x of a value."""
+        if self.is_log:
+            return math.log(value / self.start)
+        return (value - self.start) / self.scale
+
+    def rate(self, x: float) -> float:
+        """Return the derivative of the value with respect to x."""
+        return self.value(x) if self.is_log else self.scale
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Bounds of x."""
+        return self.place(self.low), self.place(self.high)
+
+
+class Model:
+    """Weighted residuals of curves and their Jacobian.
+
+    The true depth is d − d0 − v t − C F. Residuals are ln F − ln P over the relative noise, or
+    F − P over the absolute noise; a prior adds one residual.
+    """
+
+    def __init__(
+        self,
+        curves: Sequence[Curve],
+        system: System,
+        free: Sequence[str],
+        nuisance: Sequence[str],
+        *,
+        noise: Noise,
+        sigma: float | None,
+        prior: Mapping[str, tuple[float, float]],
+        bounds: Mapping[str, tuple[float, float]],
+    ) -> None:
+        self.curves, self.system, self.noise = list(curves), system, noise
+        self.free = list(free)
+        self.unknowns = _unknowns(self.curves, system, free, nuisance, bounds)
+        self.names = [unknown.name for unknown in self.unknowns]
+        self.depth = np.concatenate([curve.depth for curve in curves])
+        self.force = np.concatenate([curve.force for curve in curves])
+        ends = np.cumsum([0, *(len(curve) for curve in curves)])
+        self.parts = [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
+        if noise == "relative":
+            if (self.force <= 0).any():
+                wrong = int((self.force <= 0).sum())
+                raise ValueError(
+                    f"force must be positive at each point for noise='relative', got {wrong} "
+                    f"points that are not; use noise='absolute', or Curve.between"
+                )
+            self.log = np.log(self.force)
+        self.weight = np.ones_like(self.depth)
+        if noise == "absolute":
+            for part in self.parts:
+                self.weight[part] = 1 / self.force[part].max()
+        self.is_known = sigma is not None
+        if sigma is not None:
+            self.weight = np.full_like(self.depth, 1 / sigma)
+        self.prior = [(self.names.index(name), *pair) for name, pair in prior.items()]
+        self.trust = 1.0
+        """Standard deviation of the residuals, by which those of the prior are multiplied."""
+        self.low, self.high = (
+            np.array([unknown.bounds[side] for unknown in self.unknowns]) for side in (0, 1)
+        )
+        self.evaluations = 0
+        self._at: dict[bytes, tuple[Array, Array]] = {}
+
+    @property
+    def dof(self) -> int:
+        """Degrees of freedom: points and priors less parameters."""
+        return self.depth.size + len(self.prior) - len(self.unknowns)
+
+    def values(self, x: Array) -> dict[str, float]:
+        """Return the value of each parameter."""
+        return {u.name: u.value(float(x[k])) for k, u in enumerate(self.unknowns)}
+
+    def rates(self, x: Array) -> Array:
+        """Return the derivative of each value with respect to its x."""
+        return np.array([u.rate(float(x[k])) for k, u in enumerate(self.unknowns)])
+
+    def fitted(self, x: Array) -> System:
+        """Return the system at x, but for the area of the tip."""
+        return self.system.changed(self._system_values(x))
+
+    def _system_values(self, x: Array) -> dict[str, float]:
+        return {u.name: u.value(float(x[k])) for k, u in enumerate(self.unknowns) if not u.kind}
+
+    def approach(self, x: Array) -> Array:
+        """Return the true depth of each point."""
+        depth = self.depth.copy()
+        for k, unknown in enumerate(self.unknowns):
+            if unknown.kind:
+                part = self.parts[unknown.curve]
+                depth[part] -= unknown.value(float(x[k])) * self._lever(unknown)
+        return depth
+
+    def _lever(self, unknown: Unknown) -> Array | float:
+        """Return the derivative of the measured depth with respect to a nuisance."""
+        curve = self.curves[unknown.curve]
+        if unknown.kind == "drift":
+            assert curve.time is not None
+            return curve.time - curve.time[0]
+        return curve.force if unknown.kind == "compliance" else 1.0
+
+    def loads(self, x: Array) -> tuple[Array, Array]:
+        """Return the load of each point, and its derivatives with respect to x."""
+        values = self._system_values(x)
+        area = values.pop("tip.area", 1.0)
+        system = self.system.changed(values)
+        # A tip of all sections κ times as large, r → r√κ, is the old one on layers 1/√κ as thick
+        # under √κ of the load: nacre's own, from the similarity of the integral equation.
+        wider = math.sqrt(area)
+        if area != 1:
+            system = system.narrowed(wider)
+        wrt = [unknown.name for unknown in self.unknowns if not unknown.kind]
+        curve = system.curve(self.approach(x), wrt)
+        load = wider * curve.load
+        columns = np.zeros((load.size, len(self.unknowns)))
+        place = 0
+        for k, unknown in enumerate(self.unknowns):
+            if unknown.kind:
+                part = self.parts[unknown.curve]
+                rate = wider * curve.slope[part] * self._lever(unknown)
+                columns[part, k] = -unknown.scale * rate
+                continue
+            factor = unknown.rate(float(x[k]))
+            if area != 1:
+                factor *= _factor(unknown.name, wider)
+            columns[:, k] = factor * curve.derivatives[:, place]
+            place += 1
+        return load, columns
+
+    def at(self, x: Array) -> tuple[Array, Array]:
+        """Return residuals and Jacobian; not numbers where the model has no value."""
+        key = x.tobytes()
+        if key not in self._at:
+            if len(self._at) > 8:
+                self._at.clear()
+            self._at[key] = self._evaluated(x)
+        return self._at[key]
+
+    def _evaluated(self, x: Array) -> tuple[Array, Array]:
+        self.evaluations += 1
+        try:
+            load, columns = self.loads(x)
+        except (ValueError, RuntimeError, OverflowError):
+            shape = self.depth.size + len(self.prior), len(self.unknowns)
+            return np.full(shape[0], np.nan), np.full(shape, np.nan)
+        if self.noise == "relative":
+            with np.errstate(divide="ignore", invalid="ignore"):
+                residuals = (np.log(load) - self.log) * self.weight
+                jacobian = columns * (self.weight / load)[:, None]
+        else:
+            residuals = (load - self.force) * self.weight
+            jacobian = columns * self.weight[:, None]
+        if self.prior:
+            rates = self.rates(x)
+            rows = np.zeros((len(self.prior), len(self.unknowns)))
+            more = np.empty(len(self.prior))
+            for row, (k, value, spread) in enumerate(self.prior):
+                more[row] = self.trust * (self.unknowns[k].value(float(x[k])) - value) / spread
+                rows[row, k] = self.trust * rates[k] / spread
+            residuals = np.concatenate([residuals, more])
+            jacobian = np.concatenate([jacobian, rows])
+        return residuals, jacobian
+
+    def trusting(self, trust: float) -> None:
+        """Set the standard deviation of the residuals against which priors are weighed."""
+        self.trust = trust
+        self._at.clear()
+
+    def chi2(self, x: Array) -> float:
+        """Return the sum of squares, infinite where the model has no value."""
+        residuals, _ = self.at(x)
+        square = float(residuals @ residuals)
+        return square if math.isfinite(square) else math.inf
+
+
+def _factor(path: str, wider: float) -> float:
+    """Return the derivative of the load with respect to a path over that of the narrowed system."""
+    if path == "tip.area":
+        return wider / wider**2
+    if path.endswith(".thickness"):
+        return 1.0
+    return wider**2 if path == "adhesion.work" else wider
+
+
+def _unknowns(
+    curves: Sequence[Curve],
+    system: System,
+    free: Sequence[str],
+    nuisance: Sequence[str],
+    bounds: Mapping[str, tuple[float, float]],
+) -> list[Unknown]:
+    """Return the parameters of a fit, those of the system first."""
+    known = system.values()
+    for names, allowed, what in ((free, known, "free"), (nuisance, NUISANCES, "nuisance")):
+        for name in names:
+            if name not in allowed:
+                listed = ", ".join(allowed)
+                raise ValueError(f"{what} must name parameters among {listed}, got {name!r}")
+        if len(set(names)) < len(names):
+            raise ValueError(f"{what} must name each parameter once, got {list(names)}")
+    if not free:
+        raise ValueError("free must name a parameter, got none")
+    if "tip.area" in free and any(name.startswith("tip.") for name in free if name != "tip.area"):
+        raise ValueError("free must not hold tip.area together with another number of the tip")
+    found = []
+    for path in free:
+        value = known[path]
+        is_plain = path.endswith(".poisson")
+        if value <= 0 and not is_plain:
+            raise ValueError(f"{path} must be positive where it is free, got {value}")
+        last = path.rpartition(".")[2]
+        spread = RANGES.get(last, OTHER)
+        usual = spread if isinstance(spread, tuple) else (value / spread, value * spread)
+        low, high = _bounds(path, bounds.get(path, usual), is_plain)
+        if not low <= value <= high:
+            raise ValueError(
+                f"bounds of {path} must include its start, {value:.6g}, got {low:.6g}, {high:.6g}"
+            )
+        found.append(Unknown(path, value, 1.0 if is_plain else 0.0, low, high))
+    for number, curve in enumerate(curves):
+        reach, most = float(np.ptp(curve.depth)), float(curve.force.max())
+        for kind in nuisance:
+            scale = reach
+            if kind == "drift":
+                if curve.time is None or curve.time[-1] == curve.time[0]:
+                    raise ValueError("drift needs the time of each point: Curve(…, time=…)")
+                scale = reach / float(np.ptp(curve.time))
+            elif kind == "compliance":
+                scale = reach / most
+            name = kind if len(curves) == 1 else f"curves[{number}].{kind}"
+            low, high = bounds.get(name, bounds.get(kind, (-FARTHEST * scale, FARTHEST * scale)))
+            if not low < 0 < high:
+                raise ValueError(f"bounds of {name} must lie about 0, got {low:.6g}, {high:.6g}")
+            found.append(Unknown(name, 0.0, scale, low, high, number, kind))
+    names = [unknown.name for unknown in found]
+    _check_names(bounds, [*names, *nuisance], "bounds")
+    return found
+
+
+def _check_names(given: Iterable[str], known: Sequence[str], what: str) -> None:
+    for name in given:
+        if name not in known:
+            raise ValueError(f"{what} must name parameters of the fit, {known}, got {name!r}")
+
+
+def _bounds(path: str, pair: Any, is_plain: bool) -> tuple[float, float]:
+    low, high = map(float, pair)
+    if not low < high or (low <= 0 and not is_plain):
+        raise ValueError(f"bounds of {path} must be positive and ascend, got {low:.6g}, {high:.6g}")
+    return low, high
