@@ -50,6 +50,8 @@ mod result;
 mod seed;
 mod slopes;
 mod state;
+mod stress;
+mod tensor;
 
 pub use adjoint::{LinearOptions, Linearisation};
 pub use output::{Measure, Output, StressOutput, StressPlace};

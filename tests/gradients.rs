@@ -12,4 +12,5 @@ mod gradient {
     mod identities;
     mod kinks;
     mod shapes;
+    mod stresses;
 }

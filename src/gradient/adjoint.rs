@@ -10,6 +10,7 @@ use super::result::{Direction, Gradient};
 use super::seed::Seed;
 use super::slopes::Slope;
 use super::state::{Saddle, State};
+use super::stress::StressSeed;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
@@ -141,12 +142,25 @@ impl<'a> Linearisation<'a> {
     ) -> Result<Option<Vec<Gradient>>> {
         let parameters = match wrt {
             None => self.parameters.clone(),
-            Some(paths) => named(&self.parameters, paths)?,
+            Some(paths) => {
+                // Only stresses depend on friction, each by itself.
+                let slides = outputs.iter().any(|one| matches!(one, Output::Stress(_)));
+                let others = paths
+                    .iter()
+                    .filter(|path| !(slides && **path == "friction"));
+                named(&self.parameters, &others.copied().collect::<Vec<_>>())?
+            }
         };
-        let seeds = outputs
-            .iter()
-            .map(|output| Seed::of(self.solution, &self.state, output));
-        let seeds: Vec<Seed> = seeds.collect::<Result<_>>()?;
+        let mut seeds = Vec::new();
+        let mut stresses = Vec::new();
+        for output in outputs {
+            if watch().is_break() {
+                return Ok(None);
+            }
+            let (seed, stress) = self.seed(output)?;
+            seeds.push(seed);
+            stresses.push(stress);
+        }
         let mut adjoints = Vec::new();
         for seed in &seeds {
             let state = &self.state;
@@ -164,12 +178,37 @@ impl<'a> Linearisation<'a> {
             else {
                 return Ok(None);
             };
-            for ((gradient, seed), adjoint) in found.iter_mut().zip(&seeds).zip(&adjoints) {
-                let value = self.derivative(seed, adjoint, &slope, parameter);
+            let parts = seeds.iter().zip(&adjoints).zip(&stresses);
+            for (gradient, ((seed, adjoint), stress)) in found.iter_mut().zip(parts) {
+                let mut value = self.derivative(seed, adjoint, &slope, parameter);
+                if let Some(stress) = stress {
+                    if watch().is_break() {
+                        return Ok(None);
+                    }
+                    value += stress.direct(self.solution, parameter)?;
+                }
                 gradient.values.push((parameter.clone(), value));
             }
         }
+        for (gradient, stress) in found.iter_mut().zip(&stresses) {
+            if let Some(stress) = stress
+                && stress.slides(self.solution)
+                && wrt.is_none_or(|paths| paths.contains(&"friction"))
+            {
+                let value = stress.direct(self.solution, &Parameter::Friction)?;
+                gradient.values.push((Parameter::Friction, value));
+            }
+        }
         Ok(Some(found))
+    }
+
+    /// The seed of an output, and what a stress needs beside.
+    fn seed(&self, output: &Output) -> Result<(Seed, Option<StressSeed>)> {
+        let Output::Stress(stress) = output else {
+            return Ok((Seed::of(self.solution, &self.state, output)?, None));
+        };
+        let (seed, source) = StressSeed::new(self.solution, &self.state, stress, self.pressure())?;
+        Ok((seed, Some(source)))
     }
 
     /// dJ/dθ = ∂J/∂θ − ψᵀ b − χᵀ Ḟ/dA

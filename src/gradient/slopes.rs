@@ -6,7 +6,6 @@ use ndarray::Array2;
 
 use super::parameter::{Parameter, layered};
 use super::state::State;
-use crate::body::BodyParameter;
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
 use crate::grid::{full_window, repeating};
@@ -165,14 +164,6 @@ impl Slope {
                 [0.0, -(delta + sx * x + sy * y)]
             }
         }
-    }
-}
-
-/// Whether a parameter of `member` changes the stress in it at fixed pressure.
-pub(super) fn of_member(parameter: &Parameter, member: Member) -> Option<BodyParameter> {
-    match parameter {
-        Parameter::Body(one, parameter, _) if *one == member => Some(*parameter),
-        _ => None,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::contact::{Solution, Tangent, block, bounds};
+use crate::dense::{backward, cholesky, forward};
 use crate::error::{Error, Result};
 use crate::grid::{Window, full_window};
 use crate::parallel::dot;
@@ -278,16 +279,29 @@ impl State {
         tolerance: f64,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<Saddle>> {
+        // What lies in the span of B_f only moves χ; without it, nothing large cancels.
+        let n = self.columns.len();
+        let gram = |i: usize, j: usize| dot(&self.columns[i].values, &self.columns[j].values);
+        let gram: Vec<Vec<f64>> = (0..n)
+            .map(|i| (0..n).map(|j| gram(i, j)).collect())
+            .collect();
+        let sums = self.columns.iter().map(|column| dot(&column.values, right));
+        let spanned = solved(&gram, sums.collect()).ok_or_else(too_few)?;
+        let mut rest = right.to_vec();
+        for (column, factor) in self.columns.iter().zip(&spanned) {
+            for (r, b) in rest.iter_mut().zip(&column.values) {
+                *r -= factor * b;
+            }
+        }
         let mut psi = vec![0.0; right.len()];
-        if right.iter().any(|r| *r != 0.0) {
-            let Some(found) = self.tangent.solve(right, tolerance, watch)? else {
+        if rest.iter().any(|r| *r != 0.0) {
+            let Some(found) = self.tangent.solve(&rest, tolerance, watch)? else {
                 return Ok(None);
             };
             psi = found;
         }
         // B = B̂ A, with the centred and scaled columns B̂: −B̂ᵀψ = A⁻ᵀ balance.
         let balance = self.tangent.to_scaled(balance);
-        let n = self.columns.len();
         let mut matrix = vec![vec![0.0; n]; n];
         let mut sides = vec![0.0; n];
         for (i, one) in self.columns.iter().enumerate() {
@@ -300,12 +314,10 @@ impl State {
             }
             sides[i] = -balance[one.freedom] - dot(&one.values, &psi);
         }
-        let solved = eliminated(matrix, sides).ok_or_else(|| {
-            refused("the cells in contact are too few for the loaded freedoms: refine the grid")
-        })?;
+        let factors = solved(&matrix, sides).ok_or_else(too_few)?;
         let mut scaled = [0.0; 3];
-        for (column, factor) in self.columns.iter().zip(solved) {
-            scaled[column.freedom] = factor;
+        for ((column, factor), spanned) in self.columns.iter().zip(factors).zip(spanned) {
+            scaled[column.freedom] = factor - spanned;
             for (psi, z) in psi.iter_mut().zip(&column.image) {
                 *psi += factor * z;
             }
@@ -353,6 +365,10 @@ fn check(solution: &Solution) -> Result<()> {
     Ok(())
 }
 
+fn too_few() -> Error {
+    refused("the cells in contact are too few for the loaded freedoms: refine the grid")
+}
+
 /// The error for a solution without a derivative.
 pub(super) fn refused(reason: &'static str) -> Error {
     Error::NotDifferentiable {
@@ -361,27 +377,16 @@ pub(super) fn refused(reason: &'static str) -> Error {
     }
 }
 
-/// Solution of a small symmetric positive definite system, by elimination; none where it is singular.
-fn eliminated(mut matrix: Vec<Vec<f64>>, mut sides: Vec<f64>) -> Option<Vec<f64>> {
-    let n = sides.len();
-    for k in 0..n {
-        let pivot = matrix[k][k];
-        if pivot <= f64::EPSILON * matrix[0][0].abs().max(f64::MIN_POSITIVE) {
-            return None;
-        }
-        for i in k + 1..n {
-            let factor = matrix[i][k] / pivot;
-            for j in k..n {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
-            sides[i] -= factor * sides[k];
-        }
+/// Part of a diagonal entry below which a pivot is rounding.
+const SINGULAR: f64 = 1e-14;
+
+/// Solution of a small symmetric positive definite system; none where it is singular.
+fn solved(matrix: &[Vec<f64>], sides: Vec<f64>) -> Option<Vec<f64>> {
+    let lower = cholesky(sides.len(), |i, j| matrix[i][j])?;
+    let pivots = lower.iter().enumerate();
+    let mut small = pivots.filter(|(k, row)| row[*k] * row[*k] < SINGULAR * matrix[*k][*k]);
+    match small.next() {
+        Some(_) => None,
+        None => Some(backward(&lower, forward(&lower, sides))),
     }
-    for k in (0..n).rev() {
-        for j in k + 1..n {
-            sides[k] -= matrix[k][j] * sides[j];
-        }
-        sides[k] /= matrix[k][k];
-    }
-    Some(sides)
 }

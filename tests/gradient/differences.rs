@@ -19,7 +19,7 @@ fn outputs(case: &Case) -> Vec<Output> {
         Output::ParticipationArea,
         Output::Pressure([0.05, 0.03]),
         Output::Displacement([0.3, -0.2]),
-        Output::Gap([1.1, -1.0]),
+        Output::Gap([0.9, -0.8]),
     ];
     if !case.grid.is_line() {
         outputs.push(Output::Tilt(0));
@@ -107,6 +107,11 @@ fn derivatives_equal_differences_of_solves() -> Result<()> {
                 continue;
             }
             for (j, gradient) in gradients.iter().enumerate() {
+                // The gap of a cell in contact stays 0.
+                if matches!(outputs[j], Output::Gap(_)) && gradient.value.abs() < 1e-12 {
+                    assert!(gradient.values[k].1.abs() < 1e-9);
+                    continue;
+                }
                 let [wide, narrow] = [(0, 1, 2.0), (2, 3, 1.0)]
                     .map(|(a, b, width)| (at[a].0[j] - at[b].0[j]) / (width * step));
                 let difference = narrow + (narrow - wide) / 3.0;
