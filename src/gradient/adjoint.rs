@@ -7,7 +7,7 @@ use ndarray::{Array2, ArrayRef2};
 use super::output::Output;
 use super::parameter::{Parameter, all, named};
 use super::result::{Direction, Gradient};
-use super::seed::Seed;
+use super::seed::{Seed, offsets};
 use super::slopes::Slope;
 use super::state::{Saddle, State};
 use super::stress::StressSeed;
@@ -172,10 +172,15 @@ impl<'a> Linearisation<'a> {
         let mut found: Vec<Gradient> = (outputs.iter().zip(&seeds).zip(&adjoints))
             .map(|((output, seed), adjoint)| self.gradient_of(output, seed, adjoint))
             .collect();
+        let cells: Vec<_> = seeds
+            .iter()
+            .flat_map(|seed| &seed.displaced)
+            .copied()
+            .collect();
+        let reach = offsets(self.state.tangent.window(), &cells);
+        let contact = (self.solution, self.shape);
         for parameter in &parameters {
-            let Some(slope) =
-                Slope::new((self.solution, self.shape), &self.state, parameter, watch)?
-            else {
+            let Some(slope) = Slope::new(contact, &self.state, parameter, reach, watch)? else {
                 return Ok(None);
             };
             let parts = seeds.iter().zip(&adjoints).zip(&stresses);
@@ -300,8 +305,9 @@ impl<'a> Linearisation<'a> {
         let paths: Vec<&str> = direction.iter().map(|(path, _)| *path).collect();
         let parameters = named(&self.parameters, &paths)?;
         for (parameter, (_, rate)) in parameters.iter().zip(direction) {
-            let Some(slope) = Slope::new((self.solution, self.shape), state, parameter, watch)?
-            else {
+            let contact = (self.solution, self.shape);
+            let reach = offsets(state.tangent.window(), &[]);
+            let Some(slope) = Slope::new(contact, state, parameter, reach, watch)? else {
                 return Ok(None);
             };
             add(&slope, *rate);

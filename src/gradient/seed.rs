@@ -232,6 +232,9 @@ impl Seed {
         let [x0, y0] = [0, 1].map(|axis| state.tangent.window()[axis].start);
         let ny = state.tangent.window()[1].len();
         let mut seed = Self::new(state, 0.0);
+        state
+            .tangent
+            .reach(offsets(state.tangent.window(), &cells))?;
         for &(cell, weight) in &cells {
             let mut displaced = 0.0;
             for (k, slope) in seed.pressure.iter_mut().enumerate() {
@@ -269,6 +272,23 @@ impl Seed {
         seed.is_gap = is_gap;
         Ok(seed)
     }
+}
+
+/// Numbers of offsets along x and y, 0 included, between any of `cells` and the cells of a window.
+pub(super) fn offsets(window: &Window, cells: &[([usize; 2], f64)]) -> [usize; 2] {
+    [0, 1].map(|axis| {
+        let range = &window[axis];
+        let distance = |(cell, _): &([usize; 2], f64)| {
+            let [first, last] = [range.start, range.end - 1].map(|end| end.abs_diff(cell[axis]));
+            first.max(last) + 1
+        };
+        cells
+            .iter()
+            .map(distance)
+            .max()
+            .unwrap_or(0)
+            .max(range.len())
+    })
 }
 
 /// Number of a cell of the grid in the window.

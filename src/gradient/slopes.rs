@@ -25,7 +25,7 @@ pub(super) struct Slope {
 
 /// What b is made of outside of the window.
 enum Source {
-    /// Coefficients of K̇, on the whole grid.
+    /// Coefficients of K̇.
     Coefficients(Array2<f64>),
     /// ḣ on the whole grid.
     Gap(Array2<f64>),
@@ -34,7 +34,8 @@ enum Source {
 }
 
 impl Slope {
-    /// The slope with respect to `parameter`; `None` where `watch` breaks.
+    /// The slope with respect to `parameter`, for [`Slope::at`] at cells within `reach` offsets; `None` where `watch`
+    /// breaks.
     ///
     /// # Errors
     /// A parameter that the contact does not have.
@@ -42,6 +43,7 @@ impl Slope {
         (solution, shape): (&Solution, Option<&dyn Surface>),
         state: &State,
         parameter: &Parameter,
+        reach: [usize; 2],
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<Self>> {
         if watch().is_break() {
@@ -61,7 +63,7 @@ impl Slope {
                     body.ok_or_else(|| unknown(parameter))?,
                     &parameter.to_string(),
                 )?;
-                Self::of_body(solution, state, &ResponseSlope::new(&body, *one))?
+                Self::of_body(solution, state, &ResponseSlope::new(&body, *one), reach)?
             }
             Parameter::Shape(name) => {
                 let shape = shape.ok_or_else(|| unknown(parameter))?;
@@ -101,11 +103,21 @@ impl Slope {
     }
 
     /// K̇ p.
-    fn of_body(solution: &Solution, state: &State, slope: &ResponseSlope) -> Result<Self> {
+    fn of_body(
+        solution: &Solution,
+        state: &State,
+        slope: &ResponseSlope,
+        reach: [usize; 2],
+    ) -> Result<Self> {
         let (grid, window) = (solution.grid(), state.tangent.window());
         let convolution = state.tangent.convolution();
         let method = solution.report.method;
-        let coefficients = unchecked_coefficients(slope, grid, method, convolution.own_threads())?;
+        let coefficients = unchecked_coefficients(
+            slope,
+            &grid.of_offsets(reach),
+            method,
+            convolution.own_threads(),
+        )?;
         let shape = [window[0].len(), window[1].len()];
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let companion = convolution.companion(&corner, repeating(grid, window));

@@ -11,8 +11,12 @@ use crate::parallel::dot;
 /// Cells around the contact that the window holds, which may join it first.
 const RING: usize = 2;
 
-/// Residual of the polish, relative to that of the solve, at most 1e-5 or so.
-const POLISH: f64 = 1e-8;
+/// Residual of one pass of the polish, relative to what it starts from.
+const POLISH: f64 = 1e-5;
+
+/// Change of the pressure that is left, relative to the peak, and passes of the polish: one or two as a rule.
+const SETTLED: f64 = 1e-11;
+const PASSES: usize = 4;
 
 /// Rounds in which cells may join or leave the contact while it is polished. A converged solution takes one; a second one
 /// where its tolerance left a cell on the wrong side.
@@ -98,7 +102,6 @@ impl State {
         let flat = |field: &ndarray::Array2<f64>| -> Vec<f64> {
             block(field, tangent.window()).iter().copied().collect()
         };
-        // h less nothing: the gap without displacement and motion.
         let (gap, displacement) = (flat(&gap), flat(&solution.displacement));
         let pressure = flat(&solution.pressure);
         let mut state = Self {
@@ -120,7 +123,7 @@ impl State {
             .map(|((g, u), moved)| g - u + moved)
             .collect();
         let own = state.displaced(&state.pressure);
-        let largest = displacement.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
+        let largest = peak(&displacement);
         let differs = |(a, b): (&f64, &f64)| (a - b).abs() > OTHER_DISPLACEMENT * largest;
         if own.iter().zip(&displacement).any(differs) {
             return Err(refused(
@@ -175,8 +178,7 @@ impl State {
             if self.plan_columns(watch)?.is_none() {
                 return Ok(None);
             }
-            // Twice: the second pass takes what the first left by its tolerance and by rounding.
-            for _ in 0..2 {
+            for _ in 0..PASSES {
                 self.open(undeformed);
                 let right: Vec<f64> = self.masked(&self.gap).iter().map(|g| -g).collect();
                 let carried = self.moments(&self.pressure);
@@ -184,11 +186,15 @@ impl State {
                 let Some(change) = self.saddle(&right, missing, POLISH, watch)? else {
                     return Ok(None);
                 };
+                let (largest, changed) = (peak(&self.pressure), peak(&change.psi));
                 for (p, change) in self.pressure.iter_mut().zip(&change.psi) {
                     *p += change;
                 }
                 for k in (0..3).filter(|&k| self.loaded[k]) {
                     self.motion[k] += change.chi[k];
+                }
+                if POLISH * changed <= SETTLED * largest {
+                    break;
                 }
             }
             self.open(undeformed);
@@ -230,8 +236,7 @@ impl State {
 
     /// A length by which gaps are measured: the largest displacement relative to the rim of the window, or the approach.
     pub(super) fn depth(&self) -> f64 {
-        let displaced = self.displaced(&self.pressure);
-        displaced.iter().fold(0.0, |a: f64, u| a.max(u.abs()))
+        peak(&self.displaced(&self.pressure))
     }
 
     /// `values` in contact, 0 elsewhere.
@@ -330,8 +335,7 @@ impl State {
 
     /// Smaller of the least pressure in contact over the largest, and the least gap outside over the deepest displacement.
     pub(super) fn margin(&self) -> f64 {
-        let peak = self.pressure.iter().fold(0.0, |a: f64, p| a.max(*p));
-        let depth = self.depth();
+        let (peak, depth) = (peak(&self.pressure), self.depth());
         let cells = self
             .tangent
             .contact
@@ -343,6 +347,11 @@ impl State {
         };
         cells.map(relative).fold(self.outside / depth, f64::min)
     }
+}
+
+/// Largest magnitude of `values`.
+fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |a, v| a.max(v.abs()))
 }
 
 /// Refuses a solution that has no derivative.

@@ -1,7 +1,7 @@
 //! The tangent operator of a solved contact: K on the cells in contact, and the columns of B.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use ndarray::Array2;
 
@@ -14,9 +14,10 @@ use crate::contact::solver::linear_cg;
 use crate::convolution::{Addition, Convolution, Workspace};
 use crate::ends::Ends;
 use crate::error::Result;
-use crate::grid::{Window, full_window, repeating};
-use crate::influence::memory;
+use crate::grid::{Grid, Window, full_window, repeating};
+use crate::influence::{Method, memory};
 use crate::parallel::{Threads, check_memory};
+use crate::response::Body;
 
 /// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
 pub(crate) struct Tangent {
@@ -30,9 +31,12 @@ pub(crate) struct Tangent {
     pub(super) cell_area: f64,
     /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
     pub(crate) raise: f64,
-    /// Coefficients of the whole grid, and what the ends of bodies add to them.
+    /// Coefficients at the offsets of the window, and what the ends of bodies add to them.
     coefficients: Array2<f64>,
     additions: Vec<Addition>,
+    source: (Body, Setup, Grid),
+    /// Coefficients of the whole grid, once they are needed.
+    far: OnceLock<Array2<f64>>,
 }
 
 impl Tangent {
@@ -54,7 +58,11 @@ impl Tangent {
             method: report.method,
             threads: None,
         };
-        let (coefficients, datum) = operator(&report.body, &setup, grid, &threads)?;
+        let near = match report.method {
+            Method::Exact => grid.of_offsets(shape),
+            _ => *grid,
+        };
+        let (coefficients, datum) = operator(&report.body, &setup, &near, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, &threads)?;
         let within = additions.iter().map(|addition| addition.on_rows(x.clone()));
@@ -79,6 +87,8 @@ impl Tangent {
             raise: datum.raise() * grid.cell_area(),
             coefficients,
             additions,
+            source: (report.body.clone(), setup, *grid),
+            far: OnceLock::new(),
         })
     }
 
@@ -115,12 +125,29 @@ impl Tangent {
         [one - x0 * x - y0 * y, x, y]
     }
 
-    /// Displacement of a cell of the grid under unit pressure on another, with the datum of the tangent.
+    /// Makes [`Tangent::entry`] hold for cells whose distance is below `offsets` along x and y.
+    ///
+    /// # Errors
+    /// Those of planning the contact.
+    pub(crate) fn reach(&self, offsets: [usize; 2]) -> Result<()> {
+        let known = [self.coefficients.nrows(), self.coefficients.ncols()];
+        let is_near = offsets[0] <= known[0] && offsets[1] <= known[1];
+        if !is_near && self.far.get().is_none() {
+            let (body, setup, grid) = &self.source;
+            let threads = Arc::new(Threads::new(None)?);
+            let (coefficients, _) = operator(body, setup, grid, &threads)?;
+            self.far.get_or_init(|| coefficients);
+        }
+        Ok(())
+    }
+
+    /// Displacement of a cell of the grid under unit pressure on another, with the datum of the tangent. Cells farther apart
+    /// than the window is wide need [`Tangent::reach`] first.
     pub(crate) fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
         let [i, j] = [0, 1].map(|axis| one[axis].abs_diff(other[axis]));
         let added = self.additions.iter();
         let added: f64 = added.map(|added| added.entry([one[0], other[0]], j)).sum();
-        self.coefficients[[i, j]] + added
+        self.far.get().unwrap_or(&self.coefficients)[[i, j]] + added
     }
 
     /// The window of the grid's cells.
