@@ -17,7 +17,6 @@ const POLISH: f64 = 1e-5;
 /// Change of the pressure that is left, relative to the peak, and passes of the polish: one or two as a rule.
 const SETTLED: f64 = 1e-11;
 const PASSES: usize = 4;
-
 /// Rounds in which cells may join or leave the contact while it is polished. A converged solution takes one; a second one
 /// where its tolerance left a cell on the wrong side.
 const ROUNDS: usize = 20;
