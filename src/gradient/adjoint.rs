@@ -98,7 +98,7 @@ impl<'a> Linearisation<'a> {
                 value: options.tolerance,
             });
         }
-        let Some(state) = State::new(solution, options.tolerance, watch)? else {
+        let Some(state) = State::new(solution, watch)? else {
             return Ok(None);
         };
         Ok(Some(Self {

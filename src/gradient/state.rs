@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 
 use crate::contact::{Solution, Tangent, block, bounds};
-use crate::dense::{backward, cholesky, forward};
 use crate::error::{Error, Result};
 use crate::grid::{Window, full_window};
 use crate::parallel::dot;
@@ -38,18 +37,20 @@ pub(super) struct State {
     pub(super) loaded: [bool; 3],
     /// F/dA: right sides of the balance of loaded freedoms.
     target: [f64; 3],
-    /// K⁻¹ of the columns of loaded freedoms, and the inverse of Bᵀ K⁻¹ B.
+    /// Columns of the loaded freedoms.
     columns: Vec<Column>,
-    tolerance: f64,
     /// Smallest gap outside of the window.
     outside: f64,
 }
 
-/// One loaded freedom k: its centred and scaled column b_k of B, and K⁻¹ b_k.
+/// Part of a column that is rounding where the columns before span it.
+const SINGULAR: f64 = 1e-10;
+
+/// One loaded freedom: the column of Q, and that of R, in B_f = Q R.
 struct Column {
     freedom: usize,
     values: Vec<f64>,
-    image: Vec<f64>,
+    factors: Vec<f64>,
 }
 
 /// Solution of a saddle point system: ψ on the window, χ of (1, x, y).
@@ -59,13 +60,12 @@ pub(super) struct Saddle {
 }
 
 impl State {
-    /// Polishes `solution`; linear systems are solved to `tolerance`. `None` where `watch` breaks.
+    /// Polishes `solution`; `None` where `watch` breaks.
     ///
     /// # Errors
     /// A solution that has no derivative, and failing solves.
     pub(super) fn new(
         solution: &Solution,
-        tolerance: f64,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<Self>> {
         check(solution)?;
@@ -110,7 +110,6 @@ impl State {
             loaded,
             target,
             columns: Vec::new(),
-            tolerance,
             outside,
             tangent,
         };
@@ -174,9 +173,7 @@ impl State {
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<()>> {
         for _ in 0..ROUNDS {
-            if self.plan_columns(watch)?.is_none() {
-                return Ok(None);
-            }
+            self.plan_columns()?;
             for _ in 0..PASSES {
                 self.open(undeformed);
                 let right: Vec<f64> = self.masked(&self.gap).iter().map(|g| -g).collect();
@@ -254,28 +251,48 @@ impl State {
         loaded.map(|(cell, p)| p * factor(cell)).sum()
     }
 
-    /// Solves for the columns of loaded freedoms.
-    fn plan_columns(&mut self, watch: &mut dyn FnMut() -> ControlFlow<()>) -> Result<Option<()>> {
-        let mut columns = Vec::new();
+    /// Makes the columns of loaded freedoms orthonormal on the contact.
+    ///
+    /// # Errors
+    /// A contact of too few cells for them.
+    fn plan_columns(&mut self) -> Result<()> {
+        let mut columns: Vec<Column> = Vec::new();
         for freedom in (0..3).filter(|&k| self.loaded[k]) {
-            let values = self.tangent.column(freedom);
-            let Some(image) = self.tangent.solve(&values, self.tolerance, watch)? else {
-                return Ok(None);
-            };
+            let mut values = self.tangent.column(freedom);
+            let size = dot(&values, &values).sqrt();
+            let mut factors = Vec::new();
+            for before in &columns {
+                let factor = dot(&before.values, &values);
+                for (v, q) in values.iter_mut().zip(&before.values) {
+                    *v -= factor * q;
+                }
+                factors.push(factor);
+            }
+            let rest = dot(&values, &values).sqrt();
+            if rest <= SINGULAR * size {
+                return Err(refused(
+                    "the cells in contact are too few for the loaded freedoms: refine the grid",
+                ));
+            }
+            values.iter_mut().for_each(|v| *v /= rest);
+            factors.push(rest);
             columns.push(Column {
                 freedom,
                 values,
-                image,
+                factors,
             });
         }
         self.columns = columns;
-        Ok(Some(()))
+        Ok(())
     }
 
     /// Solves K ψ − B_f χ = `right` on the contact, −B_fᵀ ψ = `balance`, to `tolerance`; `None` where `watch` breaks.
     ///
+    /// With B_f = Q R on the contact, ψ is −Q R⁻ᵀ `balance` and a part without any sum Qᵀψ, which conjugate gradients find
+    /// among such fields; χ = R⁻¹ Qᵀ (K ψ − `right`).
+    ///
     /// # Errors
-    /// A contact of too few cells for its loaded freedoms, and those of the linear solve.
+    /// Those of the linear solve.
     pub(super) fn saddle(
         &self,
         right: &[f64],
@@ -283,51 +300,49 @@ impl State {
         tolerance: f64,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<Saddle>> {
-        // What lies in the span of B_f only moves χ; without it, nothing large cancels.
-        let n = self.columns.len();
-        let gram = |i: usize, j: usize| dot(&self.columns[i].values, &self.columns[j].values);
-        let gram: Vec<Vec<f64>> = (0..n)
-            .map(|i| (0..n).map(|j| gram(i, j)).collect())
-            .collect();
-        let sums = self.columns.iter().map(|column| dot(&column.values, right));
-        let spanned = solved(&gram, sums.collect()).ok_or_else(too_few)?;
-        let mut rest = right.to_vec();
-        for (column, factor) in self.columns.iter().zip(&spanned) {
-            for (r, b) in rest.iter_mut().zip(&column.values) {
-                *r -= factor * b;
-            }
-        }
-        let mut psi = vec![0.0; right.len()];
-        if rest.iter().any(|r| *r != 0.0) {
-            let Some(found) = self.tangent.solve(&rest, tolerance, watch)? else {
-                return Ok(None);
-            };
-            psi = found;
-        }
-        // B = B̂ A, with the centred and scaled columns B̂: −B̂ᵀψ = A⁻ᵀ balance.
         let balance = self.tangent.to_scaled(balance);
-        let mut matrix = vec![vec![0.0; n]; n];
-        let mut sides = vec![0.0; n];
-        for (i, one) in self.columns.iter().enumerate() {
-            for (j, other) in self.columns.iter().enumerate() {
-                let [a, b] = [
-                    dot(&one.values, &other.image),
-                    dot(&other.values, &one.image),
-                ];
-                matrix[i][j] = 0.5 * (a + b);
+        let mut psi = vec![0.0; right.len()];
+        let mut sums: Vec<f64> = Vec::new();
+        for (k, column) in self.columns.iter().enumerate() {
+            let known: f64 = column.factors[..k]
+                .iter()
+                .zip(&sums)
+                .map(|(r, w)| r * w)
+                .sum();
+            let sum = (-balance[column.freedom] - known) / column.factors[k];
+            for (psi, q) in psi.iter_mut().zip(&column.values) {
+                *psi += sum * q;
             }
-            sides[i] = -balance[one.freedom] - dot(&one.values, &psi);
+            sums.push(sum);
         }
-        let factors = solved(&matrix, sides).ok_or_else(too_few)?;
+        let mut image = vec![0.0; right.len()];
+        let mut rest = right.to_vec();
+        if sums.iter().any(|sum| *sum != 0.0) {
+            self.tangent.apply(&psi, &mut image);
+            rest.iter_mut()
+                .zip(&image)
+                .for_each(|(r, image)| *r -= image);
+        }
+        let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
+        let Some(found) = self.tangent.solve_beside(&rest, &span, tolerance, watch)? else {
+            return Ok(None);
+        };
+        psi.iter_mut().zip(found).for_each(|(psi, y)| *psi += y);
+        self.tangent.apply(&psi, &mut image);
+        image
+            .iter_mut()
+            .zip(right)
+            .for_each(|(image, r)| *image -= r);
         let mut scaled = [0.0; 3];
-        for ((column, factor), spanned) in self.columns.iter().zip(factors).zip(spanned) {
-            scaled[column.freedom] = factor - spanned;
-            for (psi, z) in psi.iter_mut().zip(&column.image) {
-                *psi += factor * z;
+        for (k, column) in self.columns.iter().enumerate().rev() {
+            let mut factor = dot(&column.values, &image);
+            for later in &self.columns[k + 1..] {
+                factor -= later.factors[k] * scaled[later.freedom];
             }
+            scaled[column.freedom] = factor / column.factors[k];
         }
         // The operator is K + s 1ᵀ1 where the datum of a line contact lies farther away.
-        let mut chi = self.tangent.from_scaled(scaled);
+        let mut chi = self.tangent.unscaled(scaled);
         chi[0] -= self.tangent.raise * psi.iter().sum::<f64>();
         Ok(Some(Saddle { psi, chi }))
     }
@@ -373,28 +388,10 @@ fn check(solution: &Solution) -> Result<()> {
     Ok(())
 }
 
-fn too_few() -> Error {
-    refused("the cells in contact are too few for the loaded freedoms: refine the grid")
-}
-
 /// The error for a solution without a derivative.
 pub(super) fn refused(reason: &'static str) -> Error {
     Error::NotDifferentiable {
         what: "the solution".to_owned(),
         reason,
-    }
-}
-
-/// Part of a diagonal entry below which a pivot is rounding.
-const SINGULAR: f64 = 1e-14;
-
-/// Solution of a small symmetric positive definite system; none where it is singular.
-fn solved(matrix: &[Vec<f64>], sides: Vec<f64>) -> Option<Vec<f64>> {
-    let lower = cholesky(sides.len(), |i, j| matrix[i][j])?;
-    let pivots = lower.iter().enumerate();
-    let mut small = pivots.filter(|(k, row)| row[*k] * row[*k] < SINGULAR * matrix[*k][*k]);
-    match small.next() {
-        Some(_) => None,
-        None => Some(backward(&lower, forward(&lower, sides))),
     }
 }

@@ -106,14 +106,14 @@ impl Case {
             false if line => Motion::load(0.3 * depth),
             false => Motion::approach(depth),
         };
-        for axis in usize::from(line)..2 {
+        for (axis, by) in by.into_iter().enumerate().skip(usize::from(line)) {
             match numbers.between(0.0, 4.0) as usize {
                 0 if motion.load.is_some() => {
-                    motion.eccentricity[axis] = Some(by[axis] + numbers.between(-0.05, 0.05));
+                    motion.eccentricity[axis] = Some(by + numbers.between(-0.05, 0.05));
                 }
                 1 => motion.tilt[axis] = Some(numbers.between(-0.01, 0.01)),
                 2 if motion.load.is_some() => {
-                    motion.moment[axis] = motion.load.map(|load| load * by[axis]);
+                    motion.moment[axis] = motion.load.map(|load| load * by);
                 }
                 _ => {}
             }

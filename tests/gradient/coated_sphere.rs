@@ -4,7 +4,7 @@ use nacre::gradient::{LinearOptions, Linearisation, Output};
 use nacre::{Contact, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result, Setup};
 use serde_json::Value;
 
-use crate::support::reference::{list, number, read};
+use crate::support::reference::{cases, number};
 
 /// Cells along the contact radius.
 const CELLS: f64 = 64.0;
@@ -83,8 +83,8 @@ fn errors(case: &Value, shift: [f64; 2]) -> Result<Vec<f64>> {
 fn derivatives_of_coated_paraboloids_equal_those_of_the_continuum() -> Result<()> {
     // Of logarithms, and of Poisson's ratios.
     let mut worst = [[0.0_f64; 3]; 2];
-    let data = read("sphere_derivatives.json");
-    let cases = list(&data, "cases").iter();
+    let data = cases("sphere_derivatives.json");
+    let cases = data.iter();
     // Central pressures below the peak belong to rubber on a hard base, whose error is that of its values.
     let cases = cases
         .filter(|case| case["tip"] == "paraboloid" && number(case, "peak_over_p0") < 1.0 + 1e-12);

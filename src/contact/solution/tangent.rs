@@ -16,8 +16,14 @@ use crate::ends::Ends;
 use crate::error::Result;
 use crate::grid::{Grid, Window, full_window, repeating};
 use crate::influence::{Method, memory};
-use crate::parallel::{Threads, check_memory};
+use crate::parallel::{Threads, check_memory, dot};
 use crate::response::Body;
+
+/// Residual of a linear solve, relative to its right side, below which it is rounding.
+const ROUNDING: f64 = 1e-15;
+
+/// Part of a right side beside a span below which there is none, 100 times its rounding.
+const NOTHING: f64 = 1e-13;
 
 /// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
 pub(crate) struct Tangent {
@@ -119,7 +125,7 @@ impl Tangent {
     }
 
     /// A⁻¹ `factors`: factors of (1, x, y) from those of the columns of B.
-    pub(crate) fn from_scaled(&self, [one, x, y]: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn unscaled(&self, [one, x, y]: [f64; 3]) -> [f64; 3] {
         let ([x0, y0], [lx, ly]) = (self.origin, self.scale);
         let (x, y) = (x / lx, y / ly);
         [one - x0 * x - y0 * y, x, y]
@@ -186,21 +192,64 @@ impl Tangent {
         }
     }
 
+    /// `out` = K `input` on the contact, 0 elsewhere.
+    pub(crate) fn apply(&self, input: &[f64], out: &mut [f64]) {
+        let mut workspace = self.convolution.workspace();
+        self.restricted(&self.convolution, input, out, &mut workspace);
+    }
+
     /// K_CC⁻¹ `right`, to a residual of `tolerance` relative to `right`; `None` where `watch` breaks.
     ///
     /// # Errors
     /// As [`linear_cg::solve`].
-    pub(crate) fn solve(
+    pub(super) fn solve(
         &self,
         right: &[f64],
         tolerance: f64,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<Vec<f64>>> {
+        self.solve_beside(right, &[], tolerance, watch)
+    }
+
+    /// The field y without a part in `span`, which is orthonormal, for which `right` − K y lies in it, to a residual of
+    /// `tolerance` relative to `right` beside the span; `None` where `watch` breaks.
+    ///
+    /// # Errors
+    /// As [`linear_cg::solve`].
+    pub(crate) fn solve_beside(
+        &self,
+        right: &[f64],
+        span: &[&[f64]],
+        tolerance: f64,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<Vec<f64>>> {
         let [mut first, mut second] = [self.convolution.workspace(), self.convolution.workspace()];
+        let beside = |values: &mut [f64]| {
+            for column in span {
+                let factor = dot(column, values);
+                for (v, q) in values.iter_mut().zip(*column) {
+                    *v -= factor * q;
+                }
+            }
+        };
+        let mut rest = right.to_vec();
+        beside(&mut rest);
+        // What is left beside the span may be rounding.
+        let part = dot(&rest, &rest).sqrt() / dot(right, right).sqrt().max(f64::MIN_POSITIVE);
+        if part <= NOTHING {
+            return Ok(Some(vec![0.0; right.len()]));
+        }
+        let tolerance = tolerance.max(ROUNDING / part);
         linear_cg::solve(
-            right,
-            |input, out| self.restricted(&self.convolution, input, out, &mut first),
-            |input, out| self.restricted(&self.inverse, input, out, &mut second),
+            &rest,
+            |input, out| {
+                self.restricted(&self.convolution, input, out, &mut first);
+                beside(out);
+            },
+            |input, out| {
+                self.restricted(&self.inverse, input, out, &mut second);
+                beside(out);
+            },
             tolerance,
             watch,
         )
