@@ -26,15 +26,18 @@ use super::words::Word;
 use crate::contact::{Hardness, Solution, Termination};
 use crate::stress::Member;
 
+mod direction;
 mod gradient;
+mod linear;
 mod named;
 mod output;
 mod report;
 
-pub(super) use gradient::{PyDirection, PyGradient};
+pub(super) use direction::PyDirection;
+pub(super) use gradient::PyGradient;
 pub(super) use report::PyReport;
 
-use gradient::Linear;
+use linear::Linear;
 
 /// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 ///
@@ -333,14 +336,16 @@ impl PySolution {
     /// -0.67
     #[pyo3(signature = (output, wrt=None, *, shape=None, tolerance=1e-9))]
     fn gradient<'py>(
-        &self,
+        slf: &Bound<'_, Self>,
         py: Python<'py>,
         output: &Bound<'py, PyAny>,
         wrt: Option<Vec<String>>,
         shape: Option<&Bound<'py, PyAny>>,
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let linear = Linear::new(&self.solution, self.shape.as_ref(), shape, tolerance)?;
+        let this = slf.get();
+        let known = (slf.as_any(), &this.solution);
+        let linear = Linear::new(known, this.shape.as_ref(), shape, tolerance)?;
         linear.gradient(py, output, wrt)
     }
 
@@ -376,14 +381,16 @@ impl PySolution {
     /// 0.1
     #[pyo3(signature = (directions=None, gap=None, *, shape=None, tolerance=1e-9))]
     fn jvp(
-        &self,
+        slf: &Bound<'_, Self>,
         py: Python<'_>,
         directions: Option<&Bound<'_, PyAny>>,
         gap: Option<&Bound<'_, PyAny>>,
         shape: Option<&Bound<'_, PyAny>>,
         tolerance: f64,
     ) -> PyResult<PyDirection> {
-        let linear = Linear::new(&self.solution, self.shape.as_ref(), shape, tolerance)?;
+        let this = slf.get();
+        let known = (slf.as_any(), &this.solution);
+        let linear = Linear::new(known, this.shape.as_ref(), shape, tolerance)?;
         linear.jvp(py, directions, gap)
     }
 
@@ -419,14 +426,16 @@ impl PySolution {
     /// 1.0
     #[pyo3(signature = (cotangent, wrt=None, *, shape=None, tolerance=1e-9))]
     fn vjp(
-        &self,
+        slf: &Bound<'_, Self>,
         py: Python<'_>,
         cotangent: &Bound<'_, PyAny>,
         wrt: Option<Vec<String>>,
         shape: Option<&Bound<'_, PyAny>>,
         tolerance: f64,
     ) -> PyResult<PyGradient> {
-        let linear = Linear::new(&self.solution, self.shape.as_ref(), shape, tolerance)?;
+        let this = slf.get();
+        let known = (slf.as_any(), &this.solution);
+        let linear = Linear::new(known, this.shape.as_ref(), shape, tolerance)?;
         linear.vjp(py, cotangent, wrt)
     }
 

@@ -126,7 +126,7 @@ def test_a_solution_that_was_pickled_takes_its_shape(solution: nacre.Solution) -
 
 def test_sums_and_shifts_name_their_parts() -> None:
     roller = nacre.Roller(5e-3, profile=nacre.LogarithmicProfile(1e-6, 2e-3, 1e-3, 0.9))
-    grid = nacre.Grid(shape=(24, 24), size=(2.4e-3, 6e-5))
+    grid = nacre.Grid(shape=(24, 24), size=(2.4e-3, 9e-5))
     solution = nacre.solve(roller, STEEL, grid=grid, load=50.0)
     assert {"shape.radius", "shape.profile.amplitude", "shape.profile.end_factor"} <= set(
         solution.gradient("approach")

@@ -1,21 +1,14 @@
-//! `nacre.Gradient` and `nacre.Direction`: derivatives of a solved contact.
+//! `nacre.Gradient`: derivatives of outputs of a solved contact.
 
-use std::sync::Arc;
-
-use ndarray::Array2;
 use numpy::PyArray2;
-use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyList, PyTuple};
 
+use super::linear::{Linear, Made};
 use super::output::{name, output};
-use crate::contact::Solution;
-use crate::error::Result;
-use crate::gradient::{Direction, Gradient, LinearOptions, Linearisation, Output};
+use crate::gradient::{Gradient, Output};
 use crate::python::arguments::{read_only, real_matrix};
-use crate::python::background::{self, Caller};
-use crate::python::shapes::{Shape, shape};
-use crate::surface::Surface;
 
 /// Derivatives of one output of a solved contact, by the paths of the parameters.
 ///
@@ -35,74 +28,34 @@ use crate::surface::Surface;
 pub(in crate::python) struct PyGradient {
     gradient: Gradient,
     linear: Linear,
-}
-
-/// What a linearisation is made of again, for steps that are asked for later.
-#[derive(Clone)]
-pub(super) struct Linear {
-    pub(super) solution: Arc<Solution>,
-    pub(super) shape: Option<Shape>,
-    pub(super) options: LinearOptions,
+    made: Made,
 }
 
 impl Linear {
-    /// A solution with the shape that is given, or that it was made with.
-    pub(super) fn new(
-        solution: &Arc<Solution>,
-        known: Option<&Shape>,
-        given: Option<&Bound<'_, PyAny>>,
-        tolerance: f64,
-    ) -> PyResult<Self> {
-        let given = given
-            .map(|given| Ok::<_, PyErr>(shape(given)?.get().0.clone()))
-            .transpose()?;
-        Ok(Self {
-            solution: Arc::clone(solution),
-            shape: given.or_else(|| known.cloned()),
-            options: LinearOptions { tolerance },
-        })
-    }
-
-    /// Result of `work` on the linearisation, in the background, where Ctrl-C stops it.
-    fn run<T: Send + 'static>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(&Linearisation, &mut Caller<()>) -> Result<Option<T>> + Send + 'static,
-    ) -> PyResult<T> {
-        let Self {
-            solution,
-            shape,
-            options,
-        } = self.clone();
-        let found = background::run(py, None, move |caller: &mut Caller<()>| {
-            let shape = shape.as_ref().map(|shape| shape as &dyn Surface);
-            let watch = &mut || caller.go_on();
-            match Linearisation::plan_watched(&solution, shape, &options, watch)? {
-                Some(plan) => work(&plan, caller),
-                None => Ok(None),
-            }
-        })?;
-        found?.ok_or_else(|| PyValueError::new_err("the linear solve was stopped"))
-    }
-
-    /// Gradients of `outputs` with respect to the parameters `wrt`.
+    /// Gradients of `outputs`, which `method` makes of as many `objects`, with respect to the parameters `wrt`.
     fn gradients(
         &self,
         py: Python<'_>,
+        (method, objects): (&'static str, Vec<Bound<'_, PyAny>>),
         outputs: Vec<Output>,
         wrt: Option<Vec<String>>,
     ) -> PyResult<Vec<PyGradient>> {
+        let asked = wrt.clone();
         let found = self.run(py, move |plan, caller| {
             let wrt: Option<Vec<&str>> = wrt
                 .as_ref()
                 .map(|paths| paths.iter().map(String::as_str).collect());
             plan.gradients_watched(&outputs, wrt.as_deref(), &mut || caller.go_on())
         })?;
-        let made = |gradient| PyGradient {
-            gradient,
-            linear: self.clone(),
+        let made = |(gradient, object): (Gradient, Bound<'_, PyAny>)| {
+            let arguments = (object, asked.clone()).into_pyobject(py)?;
+            Ok(PyGradient {
+                gradient,
+                linear: self.clone(),
+                made: self.made(py, method, arguments)?,
+            })
         };
-        Ok(found.into_iter().map(made).collect())
+        found.into_iter().zip(objects).map(made).collect()
     }
 
     /// Gradient of one output, or a list of those of a list.
@@ -112,19 +65,16 @@ impl Linear {
         outputs: &Bound<'py, PyAny>,
         wrt: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        const METHOD: &str = "gradient";
         if let Ok(list) = outputs.cast::<PyList>() {
-            let parsed = list.iter().map(|one| output(&one));
-            let found = self.gradients(py, parsed.collect::<PyResult<_>>()?, wrt)?;
-            return Ok(PyList::new(
-                py,
-                found
-                    .into_iter()
-                    .map(|one| Py::new(py, one))
-                    .collect::<PyResult<Vec<_>>>()?,
-            )?
-            .into_any());
+            let objects: Vec<_> = list.iter().collect();
+            let parsed = objects.iter().map(output).collect::<PyResult<_>>()?;
+            let found = self.gradients(py, (METHOD, objects), parsed, wrt)?;
+            let found = found.into_iter().map(|one| Py::new(py, one));
+            return Ok(PyList::new(py, found.collect::<PyResult<Vec<_>>>()?)?.into_any());
         }
-        let mut found = self.gradients(py, vec![output(outputs)?], wrt)?;
+        let parsed = vec![output(outputs)?];
+        let mut found = self.gradients(py, (METHOD, vec![outputs.clone()]), parsed, wrt)?;
         Ok(Bound::new(py, found.remove(0))?.into_any())
     }
 
@@ -135,37 +85,9 @@ impl Linear {
         cotangent: &Bound<'_, PyAny>,
         wrt: Option<Vec<String>>,
     ) -> PyResult<PyGradient> {
-        let weights = real_matrix("cotangent", cotangent)?;
-        Ok(self
-            .gradients(py, vec![Output::Weighted(weights)], wrt)?
-            .remove(0))
-    }
-
-    /// Change of the solution along `directions`, a mapping of paths to rates, and along a rate of the gap.
-    pub(super) fn jvp(
-        &self,
-        py: Python<'_>,
-        directions: Option<&Bound<'_, PyAny>>,
-        gap: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<PyDirection> {
-        let mut rates: Vec<(String, f64)> = Vec::new();
-        if let Some(given) = directions {
-            let given = given.cast::<PyDict>().map_err(|_| {
-                PyTypeError::new_err("directions must be a dict of paths and their rates")
-            })?;
-            for (path, rate) in given {
-                rates.push((path.extract()?, rate.extract()?));
-            }
-        }
-        let gap = gap.map(|gap| real_matrix("gap", gap)).transpose()?;
-        let found = self.run(py, move |plan, caller| {
-            let rates: Vec<(&str, f64)> = rates
-                .iter()
-                .map(|(path, rate)| (path.as_str(), *rate))
-                .collect();
-            plan.jvp_watched(&rates, gap.as_deref(), &mut || caller.go_on())
-        })?;
-        Ok(PyDirection(found))
+        let weights = vec![Output::Weighted(real_matrix("cotangent", cotangent)?)];
+        let mut found = self.gradients(py, ("vjp", vec![cotangent.clone()]), weights, wrt)?;
+        Ok(found.remove(0))
     }
 }
 
@@ -279,6 +201,17 @@ impl PyGradient {
         PyList::new(py, self.paths())?.call_method0("__iter__")
     }
 
+    fn __eq__(&self, other: &Self) -> bool {
+        self.gradient == other.gradient
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        self.made.reduced(py)
+    }
+
     fn __repr__(&self) -> String {
         let items = self
             .items()
@@ -289,53 +222,6 @@ impl PyGradient {
             "Gradient({} = {:.6e}, {{{items}}})",
             self.output(),
             self.gradient.value
-        )
-    }
-}
-
-/// Change of a solved contact along a direction of parameters; `Solution.jvp` makes it.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
-/// >>> change = solution.jvp({"load": 1.0})
-/// >>> round(change.approach * 10.0 / solution.approach, 2)
-/// 0.67
-#[pyclass(name = "Direction", module = "nacre", frozen)]
-pub(in crate::python) struct PyDirection(Direction);
-
-#[pymethods]
-impl PyDirection {
-    /// Change of the pressure ``(nx, ny)``; 0 outside the contact.
-    #[getter]
-    fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let pressure: Array2<f64> = self.0.pressure.clone();
-        read_only(py, pressure)
-    }
-
-    /// Change of the approach.
-    #[getter]
-    fn approach(&self) -> f64 {
-        self.0.approach
-    }
-
-    /// Change of the tilts.
-    #[getter]
-    fn tilt(&self) -> (f64, f64) {
-        self.0.tilt.into()
-    }
-
-    /// Largest step along the direction, of either sign, for which the contact keeps its cells to first order.
-    #[getter]
-    fn valid_step(&self) -> f64 {
-        self.0.valid_step
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "Direction(approach={:.6e}, tilt=({:.6e}, {:.6e}), valid_step={:.3e})",
-            self.0.approach, self.0.tilt[0], self.0.tilt[1], self.0.valid_step
         )
     }
 }
