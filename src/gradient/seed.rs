@@ -187,39 +187,56 @@ impl Seed {
         }
     }
 
+    /// The peak of parabolas through the cell of the largest pressure and its neighbours. Neighbours that tie share it: their
+    /// parabolas differ by third differences of the pressure alone.
     fn located_peak(state: &State) -> Self {
         let p = &state.pressure;
-        let [(k, value), (_, next)] = largest(p);
-        let mut seed = Self::new(state, value);
-        seed.pressure[k] = 1.0;
+        let [(first, value), _] = largest(p);
         let ny = state.tangent.window()[1].len();
-        let nx = p.len() / ny;
-        let (i, j) = (k / ny, k % ny);
-        let lines = [(i, nx, ny), (j, ny, 1)];
-        for (at, n, stride) in lines {
+        let tied: Vec<usize> = (0..p.len())
+            .filter(|&k| value - p[k] <= TIE * value)
+            .collect();
+        let mut seed = Self::new(state, 0.0);
+        let share = 1.0 / tied.len() as f64;
+        for &k in &tied {
+            seed.value += share * Self::add_peak(state, k, share, &mut seed.pressure);
+        }
+        seed.pressure = state.masked(&seed.pressure);
+        let apart =
+            |k: &usize| (k / ny).abs_diff(first / ny) > 1 || (k % ny).abs_diff(first % ny) > 1;
+        if tied.iter().any(apart) {
+            seed.warning = Some(
+                "cells apart from each other have the largest pressure: the derivative of the peak is a mean of those of \
+                 each, and differs on both sides"
+                    .to_owned(),
+            );
+        }
+        seed
+    }
+
+    /// Peak of the parabolas around cell k; adds `share` of its weights to `weights`.
+    fn add_peak(state: &State, k: usize, share: f64, weights: &mut [f64]) -> f64 {
+        let p = &state.pressure;
+        let ny = state.tangent.window()[1].len();
+        let (i, j, nx) = (k / ny, k % ny, p.len() / ny);
+        let mut value = p[k];
+        weights[k] += share;
+        for (at, n, stride) in [(i, nx, ny), (j, ny, 1)] {
             if at == 0 || at + 1 >= n {
                 continue;
             }
             let cells = [k - stride, k, k + stride];
             // By the envelope theorem, the place of the peak needs no derivative.
-            if let Some(weights) = parabola(cells.map(|k| p[k])) {
-                let sum: f64 = cells.iter().zip(weights).map(|(k, w)| w * p[*k]).sum();
-                seed.value += sum - value;
-                for (cell, weight) in cells.into_iter().zip(weights) {
-                    seed.pressure[cell] += weight;
+            if let Some(parabola) = parabola(cells.map(|k| p[k])) {
+                for (cell, weight) in cells.into_iter().zip(parabola) {
+                    value += weight * p[cell];
+                    weights[cell] += share * weight;
                 }
-                seed.pressure[k] -= 1.0;
+                value -= p[k];
+                weights[k] -= share;
             }
         }
-        seed.pressure = state.masked(&seed.pressure);
-        if value - next <= TIE * value {
-            seed.warning = Some(
-                "several cells have the largest pressure: the located peak belongs to one of them, and its derivative with \
-                 respect to what parts them, such as a tilt or a shift, is that of one side"
-                    .to_owned(),
-            );
-        }
-        seed
+        value
     }
 
     /// Displacement, or gap, of weighted cells.
