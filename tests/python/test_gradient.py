@@ -5,6 +5,7 @@ import pickle
 import signal
 import threading
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,19 +29,23 @@ def solution() -> nacre.Solution:
 def test_a_gradient_is_a_mapping_of_paths(solution: nacre.Solution) -> None:
     gradient = solution.gradient("approach")
     layer = "body.layers[0]"
-    assert list(gradient) == gradient.keys() == [
-        f"{layer}.material.young",
-        f"{layer}.material.poisson",
-        f"{layer}.thickness",
-        "body.substrate.young",
-        "body.substrate.poisson",
-        "counterbody.substrate.young",
-        "counterbody.substrate.poisson",
-        "shape.radius",
-        "load",
-        "eccentricity[0]",
-        "tilt[1]",
-    ]
+    assert (
+        list(gradient)
+        == gradient.keys()
+        == [
+            f"{layer}.material.young",
+            f"{layer}.material.poisson",
+            f"{layer}.thickness",
+            "body.substrate.young",
+            "body.substrate.poisson",
+            "counterbody.substrate.young",
+            "counterbody.substrate.poisson",
+            "shape.radius",
+            "load",
+            "eccentricity[0]",
+            "tilt[1]",
+        ]
+    )
     assert dict(gradient.items()) == {path: gradient[path] for path in gradient}
     assert len(gradient) == len(gradient.values()) == 11
     assert "load" in gradient
@@ -82,7 +87,12 @@ def test_derivatives_equal_differences_within_the_valid_step(solution: nacre.Sol
 
 def test_several_outputs_give_a_list(solution: nacre.Solution) -> None:
     stress = {"stress": "von_mises", "interface": 0, "side": "above"}
-    outputs = [("pressure_norm", 8.0), ("pressure", (0.0, 0.0)), "participation_area", stress]
+    outputs: list[Any] = [
+        ("pressure_norm", 8.0),
+        ("pressure", (0.0, 0.0)),
+        "participation_area",
+        stress,
+    ]
     found = solution.gradient(outputs, ["load", "shape.radius"])
     assert [one.output for one in found] == [
         "pressure_norm 8",
@@ -133,7 +143,9 @@ def test_sums_and_shifts_name_their_parts() -> None:
     )
     both = nacre.Sphere(5e-3).shifted(1e-6, 0.0) + nacre.Sphere(8e-3)
     paths = nacre.solve(both, STEEL, grid=GRID, load=5.0).gradient("approach").keys()
-    assert {"shape.parts[0].radius", "shape.parts[0].shift[0]", "shape.parts[1].radius"} <= set(paths)
+    assert {"shape.parts[0].radius", "shape.parts[0].shift[0]", "shape.parts[1].radius"} <= set(
+        paths
+    )
 
 
 @pytest.mark.parametrize(
@@ -160,15 +172,13 @@ def test_what_has_no_derivative_is_refused(
 def test_wrong_arguments_are_refused(solution: nacre.Solution) -> None:
     with pytest.raises(TypeError, match="a word, a pair or a dict"):
         solution.gradient(3.0)  # type: ignore[call-overload]
-    with pytest.raises(ValueError, match="moment.0. has no derivative"):
+    with pytest.raises(ValueError, match=r"moment\[0\] has no derivative"):
         solution.gradient("approach", ["moment[0]"])
     with pytest.raises(ValueError, match="tolerance must be above 0"):
         solution.gradient("approach", tolerance=0.0)
     with pytest.raises(ValueError, match="expected shape"):
         solution.vjp(np.ones((2, 2)))
-    unfinished = nacre.solve(
-        BALL, STEEL, grid=GRID, load=5.0, max_iterations=1, check=False
-    )
+    unfinished = nacre.solve(BALL, STEEL, grid=GRID, load=5.0, max_iterations=1, check=False)
     with pytest.raises(ValueError, match="did not converge"):
         unfinished.gradient("approach")
 
@@ -186,9 +196,9 @@ def test_ctrl_c_stops_it() -> None:
     thread = threading.Thread(target=interrupt)
     thread.start()
     began = time.perf_counter()
+    many: list[Any] = [("pressure_norm", 8.0)] * 1000
+    begin.set()
     with pytest.raises(KeyboardInterrupt):
-        begin.set()
-        for _ in range(1000):
-            solution.gradient(("pressure_norm", 8.0))
+        solution.gradient(many)
     thread.join()
     assert time.perf_counter() - began < 20.0
