@@ -151,10 +151,10 @@ pub trait Surface: fmt::Debug + Send + Sync {
     ///
     /// ```
     /// use nacre::{Grid, Sphere, Surface};
-    /// let (sphere, grid) = (Sphere::new(5.0)?, Grid::new([3, 1], [9.0, 1.0])?);
+    /// let (sphere, grid) = (Sphere::new(5.0)?, Grid::new([3, 3], [9.0, 9.0])?);
     /// assert_eq!(sphere.parameters(), [("radius".to_owned(), 5.0)]);
     /// // At x = 3: 1 − R/√(R² − x²) = 1 − 5/4.
-    /// assert!((sphere.gap_derivative("radius", &grid)?[[2, 0]] + 0.25).abs() < 1e-15);
+    /// assert!((sphere.gap_derivative("radius", &grid)?[[2, 1]] + 0.25).abs() < 1e-15);
     /// # Ok::<(), nacre::Error>(())
     /// ```
     fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
