@@ -181,3 +181,68 @@ fn a_solution_from_its_fields_has_the_same_derivatives() -> Result<()> {
     }
     Ok(())
 }
+
+/// Grids that repeat along one direction or both: derivatives of a coated body in contact with a wavy surface.
+#[test]
+fn derivatives_on_periodic_grids_equal_differences() -> Result<()> {
+    let mut worst = 0.0_f64;
+    for periodic in [[true, true], [true, false], [false, true]] {
+        let grid = nacre::Grid::new([20, 22], [2.0, 2.2])?.periodic(periodic)?;
+        let (x, y) = (grid.x(), grid.y());
+        let gaps = ndarray::Array2::from_shape_fn((20, 22), |(i, j)| {
+            // The longest wave where the grid repeats, a parabola where it does not.
+            let along = |at: f64, size: f64, repeats: bool| match repeats {
+                true => 0.02 * (1.0 - (std::f64::consts::TAU * (at - 0.03) / size).cos()),
+                false => 0.1 * (at - 0.05) * (at - 0.05),
+            };
+            along(x[i], 2.0, periodic[0]) + along(y[j], 2.2, periodic[1])
+        });
+        let coat = nacre::Layer::new(nacre::Elastic::new(3.0, 0.25)?, 0.3)?;
+        let case = Case {
+            body: nacre::HalfSpace::new(nacre::Elastic::new(1.0, 0.3)?, [coat])?,
+            counterbody: None,
+            grid,
+            shape: Box::new(Shared(gaps)),
+            motion: Motion::load(0.02),
+        };
+        let solution = case.solve(1e-11)?;
+        let plan = Linearisation::plan(&solution, None, &LinearOptions { tolerance: 1e-12 })?;
+        let outputs = [
+            Output::Approach,
+            Output::PressureNorm(8.0),
+            Output::Displacement([0.7, -0.8]),
+        ];
+        let gradients = plan.gradients(&outputs, None)?;
+        for (k, parameter) in plan.parameters().iter().enumerate() {
+            let path = parameter.to_string();
+            let theta = value_of(&case, parameter);
+            let step = (0.25 * plan.valid_step(&path)?).min(1e-3 * theta.abs().max(1e-2));
+            let at = |factor: f64| -> Result<Vec<f64>> {
+                let one = moved(&case, parameter, factor * step)
+                    .ok_or(nacre::Error::Inconsistent("no case"))?;
+                Ok(values(&one, &outputs)?.0)
+            };
+            let found = [at(1.0)?, at(-1.0)?, at(0.5)?, at(-0.5)?];
+            for (j, gradient) in gradients.iter().enumerate() {
+                let wide = (found[0][j] - found[1][j]) / (2.0 * step);
+                let narrow = (found[2][j] - found[3][j]) / step;
+                let difference = narrow + (narrow - wide) / 3.0;
+                let slope = gradient.values[k].1;
+                let scale = slope
+                    .abs()
+                    .max(1e-3 * gradient.value.abs() / theta.abs().max(1e-2));
+                let error = (difference - slope).abs() / scale;
+                if error > COMPACT {
+                    println!(
+                        "{periodic:?} {path} {:?}: {slope:e} {difference:e}",
+                        outputs[j]
+                    );
+                }
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("largest difference {worst:.1e}");
+    assert!(worst < COMPACT, "{worst:e}");
+    Ok(())
+}
