@@ -29,10 +29,13 @@ pub use cascade::discretisation::Discretisation;
 pub use hardness::Hardness;
 pub use motion::Motion;
 pub use options::{Algorithm, Options, Setup};
+pub(crate) use problem::patch::{block, bounds};
 pub use solution::Solution;
 pub use solution::carried::Balance;
 pub use solution::report::{Progress, Report};
+pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::Warning;
+
 pub use solver::{Solver, Termination};
 
 use plan::Plan;

@@ -29,6 +29,14 @@ pub enum Error {
         /// The word that was given.
         value: String,
     },
+    /// A quantity without a derivative, or one that is not known.
+    #[error("{what} has no derivative: {reason}")]
+    NotDifferentiable {
+        /// The quantity.
+        what: String,
+        /// Why, and what to take instead.
+        reason: &'static str,
+    },
     /// An array of the wrong shape.
     #[error("{name}: expected shape {expected:?}, got {found:?}")]
     Shape {

@@ -189,6 +189,17 @@ impl Grid {
         self.coordinates(1)
     }
 
+    /// A grid with the offsets of `cells` cells along x and y of this one, for coefficients that do not depend on where a
+    /// grid ends; where they do, in line contacts and where a grid repeats, this grid.
+    pub(crate) fn of_offsets(&self, cells: [usize; 2]) -> Self {
+        if self.is_line() || self.is_periodic() != [false; 2] {
+            return *self;
+        }
+        let [dx, dy] = self.spacing();
+        let size = [cells[0] as f64 * dx, cells[1] as f64 * dy];
+        Self::new(cells, size).unwrap_or(*self)
+    }
+
     /// Coordinates of cell centres along `axis`. They are computed from the centre of the grid, so
     /// that they are exactly symmetric about it.
     pub(crate) fn coordinates(&self, axis: usize) -> Array1<f64> {

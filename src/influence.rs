@@ -60,6 +60,16 @@ pub(crate) fn coefficients_on(
     threads: &Threads,
 ) -> Result<Array2<f64>> {
     check(body)?;
+    unchecked_coefficients(body, grid, method, threads)
+}
+
+/// [`coefficients_on`] for a response that may be negative, as derivatives of responses are.
+pub(crate) fn unchecked_coefficients(
+    body: &dyn Response,
+    grid: &Grid,
+    method: Method,
+    threads: &Threads,
+) -> Result<Array2<f64>> {
     let mut coefficients = match method {
         Method::Exact if grid.is_line() => line::coefficients(body, grid, threads)?,
         Method::Exact if grid.is_periodic() != [false; 2] => {

@@ -37,6 +37,7 @@
 //! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
 //! | [`mod@stress`] | stress and displacement below the surface |
 //! | [`friction`] | partial slip, histories and rolling |
+//! | [`gradient`] | derivatives of solved contacts |
 //!
 //! # Features
 //!
@@ -94,6 +95,8 @@ pub mod contact;
 pub mod stress;
 
 pub mod friction;
+
+pub mod gradient;
 
 #[cfg(feature = "serde")]
 mod serial;

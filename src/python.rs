@@ -40,7 +40,7 @@ mod core {
     #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
-    use super::solution::{PyReport, PySolution};
+    use super::solution::{PyDirection, PyGradient, PyReport, PySolution};
     #[pymodule_export]
     use super::stress::{
         PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,

@@ -25,6 +25,7 @@ mod layer;
 pub use body::{Body, Response};
 pub(crate) use body::{check, size};
 pub use compliance::Compliance;
+pub(crate) use derivatives::ResponseSlope;
 pub use derivatives::{asymptote_derivatives, normal_derivatives};
 
 use layer::Slab;

@@ -48,11 +48,14 @@ mod subcell;
 mod summary;
 
 pub use derived::Peak;
+pub(crate) use derived::Tensor;
 pub use field::Stress;
 pub use member::Member;
 pub use options::{Section, Side, StressOptions, StressProgress};
 pub use plan::StressPlan;
 pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
+
+pub(crate) use request::Weights;
 
 use half_space::Source;
 use request::stress_once;

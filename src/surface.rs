@@ -18,6 +18,7 @@ mod limited;
 mod profile;
 mod quadric;
 mod roller;
+mod slope;
 mod superposition;
 
 pub use height_map::HeightMap;
@@ -136,6 +137,36 @@ pub trait Surface: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Numbers of the shape on which its gaps depend smoothly, by name, with their values. None by default. Lengths at
+    /// which a shape is cut off are not among them: cells join and leave there one by one.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        Vec::new()
+    }
+
+    /// Derivative of [`Surface::gaps`] with respect to the number `name` of [`Surface::parameters`], (nx, ny); 0 where
+    /// the gap is +∞.
+    ///
+    /// # Errors
+    /// A name that is not in the list, and those of [`Surface::gaps`].
+    ///
+    /// ```
+    /// use nacre::{Grid, Sphere, Surface};
+    /// let (sphere, grid) = (Sphere::new(5.0)?, Grid::new([3, 3], [9.0, 9.0])?);
+    /// assert_eq!(sphere.parameters(), [("radius".to_owned(), 5.0)]);
+    /// // At x = 3: 1 − R/√(R² − x²) = 1 − 5/4.
+    /// assert!((sphere.gap_derivative("radius", &grid)?[[2, 1]] + 0.25).abs() < 1e-15);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        let _ = grid;
+        Err(slope::absent(name))
+    }
+
+    /// Whether gaps depend smoothly on where the shape lies. Default: yes.
+    fn is_smooth(&self) -> bool {
+        true
+    }
+
     /// This shape, moved by (x, y) \[m\].
     ///
     /// # Errors
@@ -184,12 +215,26 @@ macro_rules! forward_surface {
             fn rolling_direction(&self) -> Option<[f64; 2]> {
                 (**self).rolling_direction()
             }
+            fn parameters(&self) -> Vec<(String, f64)> {
+                (**self).parameters()
+            }
+            fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+                (**self).gap_derivative(name, grid)
+            }
+            fn is_smooth(&self) -> bool {
+                (**self).is_smooth()
+            }
         }
     };
 }
 forward_surface!(&S);
 forward_surface!(Box<S>);
 forward_surface!(Arc<S>);
+
+/// Names of the shifts.
+const SHIFTS: [&str; 2] = ["shift[0]", "shift[1]"];
+/// Step of differences with respect to a shift, in cells.
+const SHIFT_STEP: f64 = 0.02;
 
 /// A shape that is moved in the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -252,6 +297,43 @@ impl<S: Surface> Surface for Shifted<S> {
     fn rolling_direction(&self) -> Option<[f64; 2]> {
         self.shape.rolling_direction()
     }
+
+    /// The parameters of the shape, and its shifts where no end is cut off.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let mut parameters = self.shape.parameters();
+        let extents = self.shape.extent();
+        for (axis, name) in SHIFTS.into_iter().enumerate() {
+            let moves = !matches!(extents[axis], Extent::CutOff(_) | Extent::Endless);
+            if moves && self.shape.is_smooth() {
+                parameters.push((name.to_owned(), self.by[axis]));
+            }
+        }
+        parameters
+    }
+
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        let [x, y] = grid.center();
+        let listed = self.parameters().iter().any(|(one, _)| one == name);
+        match SHIFTS.iter().position(|shift| *shift == name) {
+            Some(axis) if listed => {
+                // A small part of a cell, over which the slope of the shape hardly changes.
+                let step = SHIFT_STEP * grid.spacing()[axis];
+                slope::difference(self.by[axis], step, |by| {
+                    let mut moved = self.by;
+                    moved[axis] = by;
+                    Shifted::by(&self.shape, moved).gaps(grid)
+                })
+            }
+            _ => {
+                let moved = grid.centered_at([x - self.by[0], y - self.by[1]])?;
+                self.shape.gap_derivative(name, &moved)
+            }
+        }
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.shape.is_smooth()
+    }
 }
 
 /// A shape whose gap is the sum of the gaps of two shapes.
@@ -284,6 +366,25 @@ impl<A: Surface, B: Surface> Surface for Sum<A, B> {
 
     fn grid(&self) -> Option<Grid> {
         self.0.grid().or_else(|| self.1.grid())
+    }
+
+    /// Numbers of the first shape, as `parts[0].…`, and of the second, as `parts[1].…`.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let mut parameters = slope::of_part(0, self.0.parameters());
+        parameters.extend(slope::of_part(1, self.1.parameters()));
+        parameters
+    }
+
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        match slope::part(name) {
+            Some((0, name)) => self.0.gap_derivative(name, grid),
+            Some((1, name)) => self.1.gap_derivative(name, grid),
+            _ => Err(slope::absent(name)),
+        }
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.0.is_smooth() && self.1.is_smooth()
     }
 
     /// Direction of the part that has one, as that of a roller with roughness; `None` where two differ.

@@ -53,7 +53,7 @@ CHAIN = [
         "traction",
         "contact",
     ),
-    *("stress", "friction", "serial", "python"),
+    *("stress", "friction", "gradient", "serial", "python"),
 ]
 FILES = 12
 LINES = 400

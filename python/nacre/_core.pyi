@@ -1,5 +1,5 @@
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, Final, Literal, Protocol, Self, TypeAlias, Unpack, final, overload
 
@@ -19,10 +19,12 @@ __all__ = [
     "Convolution",
     "CreepCoefficients",
     "Cylinder",
+    "Direction",
     "Elastic",
     "FlatPunch",
     "FrictionReport",
     "FrictionSolution",
+    "Gradient",
     "Grid",
     "HalfSpace",
     "HeightMap",
@@ -58,6 +60,7 @@ _Real: TypeAlias = npt.NDArray[np.floating | np.integer | np.bool]
 _Vector: TypeAlias = _Real | Sequence[float]
 _Matrix: TypeAlias = _Real | Sequence[Sequence[float] | _Real]
 _Pair: TypeAlias = tuple[float, float]
+_Output: TypeAlias = str | tuple[str, float] | tuple[str, _Pair] | dict[str, Any]
 _Ends: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image", "spectral"]
@@ -693,6 +696,40 @@ class Solution:
     @property
     def line_load(self) -> _Field: ...
     def stiffness(self) -> _Field: ...
+    @overload
+    def gradient(
+        self,
+        output: _Output,
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Gradient: ...
+    @overload
+    def gradient(
+        self,
+        output: list[_Output],
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> list[Gradient]: ...
+    def jvp(
+        self,
+        directions: dict[str, float] | None = None,
+        gap: _Matrix | None = None,
+        *,
+        shape: Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Direction: ...
+    def vjp(
+        self,
+        cotangent: _Matrix,
+        wrt: Sequence[str] | None = None,
+        *,
+        shape: Shape | None = None,
+        tolerance: float = 1e-9,
+    ) -> Gradient: ...
     def stress(
         self, z: float | _Vector, **keywords: Unpack[_keywords.SolutionStress]
     ) -> Stress: ...
@@ -778,6 +815,43 @@ class Stress:
     def to_dict(self) -> dict[str, Any]: ...
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> Stress: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class Gradient:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def output(self) -> str: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def gap(self) -> _Field: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def valid_step(self) -> dict[str, float]: ...
+    def keys(self) -> list[str]: ...
+    def values(self) -> list[float]: ...
+    def items(self) -> list[tuple[str, float]]: ...
+    def __getitem__(self, path: str, /) -> float: ...
+    def __contains__(self, path: str, /) -> bool: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class Direction:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @property
+    def pressure(self) -> _Field: ...
+    @property
+    def approach(self) -> float: ...
+    @property
+    def tilt(self) -> _Pair: ...
+    @property
+    def valid_step(self) -> float: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final

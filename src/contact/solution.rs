@@ -5,6 +5,7 @@ pub(super) mod gap;
 mod outline;
 pub(super) mod report;
 mod stiffness;
+pub(super) mod tangent;
 pub(super) mod warnings;
 
 use ndarray::{Array1, Array2};

@@ -123,7 +123,7 @@ impl Addition {
     }
 
     /// Entry of the operator for cells of two rows at a `distance` along y.
-    pub(super) fn entry(&self, rows: [usize; 2], distance: usize) -> f64 {
+    pub(crate) fn entry(&self, rows: [usize; 2], distance: usize) -> f64 {
         let coefficients = self.coefficients.get_or_init(|| self.inverted());
         let [here, there] = rows.map(|row| self.row(row));
         let mut sum = 0.0;

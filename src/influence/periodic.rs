@@ -9,6 +9,7 @@ use ndarray::{Array2, Zip};
 
 use super::exact::{CellInfluence, WHOLE_CELLS};
 use super::line;
+use crate::body::Substrate;
 use crate::error::{Error, Result};
 use crate::fft::inverse_even;
 use crate::grid::Grid;
@@ -89,7 +90,11 @@ pub(super) fn sampled(body: &dyn Response, grid: &Grid, threads: &Threads) -> Re
 /// Displacement under a unit pressure everywhere, on a rigid base; 0 on an elastic one, without the local compliance.
 fn uniform(body: &dyn Response) -> f64 {
     let limits = body.asymptotes();
-    match limits.long > 0.0 {
+    // A derivative of the response of layers has limits of either sign.
+    let elastic = body.half_space().map_or(limits.long > 0.0, |body| {
+        matches!(body.substrate(), Substrate::Elastic(_))
+    });
+    match elastic {
         true => 0.0,
         false => limits.constant,
     }

@@ -7,6 +7,7 @@ mod logarithmic;
 mod profiles;
 mod quadric;
 mod roller;
+mod surface;
 
 pub(super) use base::{PyShape, Shape, register, shape};
 pub(super) use logarithmic::PyLogarithmicProfile;

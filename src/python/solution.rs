@@ -14,6 +14,7 @@ use super::arguments::keywords::Keywords;
 use super::arguments::{count, read_only};
 use super::background::{self, Caller};
 use super::errors::{ConvergenceError, NacreWarning};
+use super::shapes::Shape;
 use super::state::{self, Reduced, from_dict_docs, to_dict_docs};
 use super::stress::keywords::{
     issue_warnings, options, progress_docs, run_signature, section, section_docs,
@@ -25,10 +26,18 @@ use super::words::Word;
 use crate::contact::{Hardness, Solution, Termination};
 use crate::stress::Member;
 
+mod direction;
+mod gradient;
+mod linear;
 mod named;
+mod output;
 mod report;
 
+pub(super) use direction::PyDirection;
+pub(super) use gradient::PyGradient;
 pub(super) use report::PyReport;
+
+use linear::Linear;
 
 /// A solved contact. Fields are ``(nx, ny)``, at cell centres, and read-only.
 ///
@@ -41,6 +50,8 @@ pub(super) use report::PyReport;
 #[pyclass(name = "Solution", module = "nacre", frozen)]
 pub(super) struct PySolution {
     solution: Arc<Solution>,
+    /// Shape that the contact was solved with, where it is known.
+    shape: Option<Shape>,
     pressure: PyOnceLock<Py<PyArray2<f64>>>,
     gap: PyOnceLock<Py<PyArray2<f64>>>,
     displacement: PyOnceLock<Py<PyArray2<f64>>>,
@@ -51,6 +62,7 @@ impl From<Solution> for PySolution {
     fn from(solution: Solution) -> Self {
         Self {
             solution: Arc::new(solution),
+            shape: None,
             pressure: PyOnceLock::new(),
             gap: PyOnceLock::new(),
             displacement: PyOnceLock::new(),
@@ -70,13 +82,14 @@ impl PySolution {
         Arc::unwrap_or_clone(self.solution)
     }
 
-    /// Solution whose warnings were issued.
+    /// Solution for a `shape`, whose warnings were issued.
     ///
     /// # Errors
     /// With `check`, a `ConvergenceError` if the tolerance was not met.
     pub(super) fn finished(
         py: Python<'_>,
         solution: Solution,
+        shape: &Shape,
         tolerance: f64,
         check: bool,
     ) -> PyResult<Self> {
@@ -85,12 +98,16 @@ impl PySolution {
             let message = CString::new(warning.to_string())?;
             PyErr::warn(py, &category, &message, 1)?;
         }
+        let made = |solution: Solution| Self {
+            shape: Some(shape.clone()),
+            ..solution.into()
+        };
         if !check || solution.report.termination != Termination::IterationLimit {
-            return Ok(solution.into());
+            return Ok(made(solution));
         }
         let message = solution.report.not_converged(tolerance);
         let error = ConvergenceError::new_err(message.to_string());
-        let unfinished = Bound::new(py, Self::from(solution))?;
+        let unfinished = Bound::new(py, made(solution))?;
         error.value(py).setattr("solution", unfinished)?;
         Err(error)
     }
@@ -273,6 +290,153 @@ impl PySolution {
             py,
             Array2::from(stiffness.unwrap_or_default().to_vec()),
         ))
+    }
+
+    /// Derivatives of an output with respect to all parameters of the contact.
+    ///
+    /// They are those of the discrete contact with its cells, exact but for the tolerance of one linear
+    /// solve for each output. Against the continuum they are in error by some 2e-4 with 64 cells along
+    /// the radius of the contact, see :doc:`/theory/gradients`.
+    ///
+    /// Parameters
+    /// ----------
+    /// output : str, tuple, dict or list
+    ///     ``"approach"``, ``"tilt[0]"``, ``"tilt[1]"``, ``"load"``, ``"moment[0]"``, ``"moment[1]"``,
+    ///     ``"located_peak"``, ``"cell_peak"``, ``"participation_area"`` or ``"area_estimate"``;
+    ///     ``("pressure_norm", r)``, ``("pressure", (x, y))``, ``("displacement", (x, y))`` or
+    ///     ``("gap", (x, y))``; a dict of a stress, with ``stress`` (``"xx"`` to ``"xz"``,
+    ///     ``"von_mises"``, ``"principal[0]"``, ``"max_shear"``, ``"plane_shear"``), one of ``at=(x, y, z)``,
+    ///     ``layer`` and ``interface``, and ``depths``, ``sharpness``, ``side``, ``body``, ``friction`` and
+    ///     ``direction``; or a list of these.
+    /// wrt : list of str, optional
+    ///     Paths of the parameters, such as ``"body.layers[0].material.young"``, ``"shape.radius"`` or
+    ///     ``"load"``; all by default.
+    /// shape : Shape, optional
+    ///     Shape that the contact was solved with, which a solution from a file does not know.
+    /// tolerance : float, optional
+    ///     Residual of the linear solves, relative to their right sides.
+    ///
+    /// Returns
+    /// -------
+    /// Gradient or list of Gradient
+    ///     Derivatives by path, and with respect to the gap of each cell.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the output, a parameter or the solution has no derivative; the message says what to take instead.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> ball = nacre.Sphere(5e-3)
+    /// >>> solution = nacre.solve(ball, steel, load=10.0)
+    /// >>> peak = solution.gradient("located_peak")
+    /// >>> round(peak["shape.radius"] * 5e-3 / peak.value, 2)  # p0 ~ R^(-2/3)
+    /// -0.67
+    #[pyo3(signature = (output, wrt=None, *, shape=None, tolerance=1e-9))]
+    fn gradient<'py>(
+        slf: &Bound<'_, Self>,
+        py: Python<'py>,
+        output: &Bound<'py, PyAny>,
+        wrt: Option<Vec<String>>,
+        shape: Option<&Bound<'py, PyAny>>,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let this = slf.get();
+        let known = (slf.as_any(), &this.solution);
+        let linear = Linear::new(known, this.shape.as_ref(), shape, tolerance)?;
+        linear.gradient(py, output, wrt)
+    }
+
+    /// Change of the solution along a direction of parameters.
+    ///
+    /// Parameters
+    /// ----------
+    /// directions : dict, optional
+    ///     Rates of the parameters, by path.
+    /// gap : array_like, optional
+    ///     Rate of the undeformed gap ``(nx, ny)``.
+    /// shape : Shape, optional
+    ///     Shape that the contact was solved with, which a solution from a file does not know.
+    /// tolerance : float, optional
+    ///     Residual of the linear solve, relative to its right side.
+    ///
+    /// Returns
+    /// -------
+    /// Direction
+    ///     Changes of pressure, approach and tilt, and the step for which the contact keeps its cells.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a parameter or the solution has no derivative.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> change = solution.jvp({"load": 1.0})
+    /// >>> round(float(change.pressure.sum() / solution.pressure.sum()), 6)
+    /// 0.1
+    #[pyo3(signature = (directions=None, gap=None, *, shape=None, tolerance=1e-9))]
+    fn jvp(
+        slf: &Bound<'_, Self>,
+        py: Python<'_>,
+        directions: Option<&Bound<'_, PyAny>>,
+        gap: Option<&Bound<'_, PyAny>>,
+        shape: Option<&Bound<'_, PyAny>>,
+        tolerance: f64,
+    ) -> PyResult<PyDirection> {
+        let this = slf.get();
+        let known = (slf.as_any(), &this.solution);
+        let linear = Linear::new(known, this.shape.as_ref(), shape, tolerance)?;
+        linear.jvp(py, directions, gap)
+    }
+
+    /// Derivatives of ``(cotangent * pressure).sum()``: a cotangent of the pressure times its Jacobian.
+    ///
+    /// Parameters
+    /// ----------
+    /// cotangent : array_like
+    ///     Weights of the pressures ``(nx, ny)``.
+    /// wrt : list of str, optional
+    ///     Paths of the parameters; all by default.
+    /// shape : Shape, optional
+    ///     Shape that the contact was solved with, which a solution from a file does not know.
+    /// tolerance : float, optional
+    ///     Residual of the linear solve, relative to its right side.
+    ///
+    /// Returns
+    /// -------
+    /// Gradient
+    ///     Derivatives by path, and with respect to the gap of each cell.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If a parameter or the solution has no derivative.
+    ///
+    /// Examples
+    /// --------
+    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
+    /// >>> total = solution.vjp(solution.pressure * 0.0 + 1.0, ["load"])
+    /// >>> round(total["load"] * 10.0 / total.value, 6)
+    /// 1.0
+    #[pyo3(signature = (cotangent, wrt=None, *, shape=None, tolerance=1e-9))]
+    fn vjp(
+        slf: &Bound<'_, Self>,
+        py: Python<'_>,
+        cotangent: &Bound<'_, PyAny>,
+        wrt: Option<Vec<String>>,
+        shape: Option<&Bound<'_, PyAny>>,
+        tolerance: f64,
+    ) -> PyResult<PyGradient> {
+        let this = slf.get();
+        let known = (slf.as_any(), &this.solution);
+        let linear = Linear::new(known, this.shape.as_ref(), shape, tolerance)?;
+        linear.vjp(py, cotangent, wrt)
     }
 
     #[doc = concat!("stress($self, z, *, body='body', ", section_signature!(), ", ", traction_signature!(), ", ", run_signature!(), ")\n--\n")]

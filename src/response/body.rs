@@ -224,16 +224,16 @@ fn not_negative(name: &'static str, value: f64) -> Result<()> {
     })
 }
 
-/// Size of α û_z/p̂ \[1/Pa\]: the larger of its limits; where both are 0, the largest value at octaves
+/// Size of α û_z/p̂ \[1/Pa\] without its sign: the larger of its limits; where both are 0, the largest value at octaves
 /// between the body's lengths.
 pub(crate) fn size(body: &dyn Response) -> f64 {
     let limits = body.asymptotes();
-    let larger = limits.short.max(limits.long);
+    let larger = limits.short.abs().max(limits.long.abs());
     match body.lengths() {
         Some([shortest, longest]) if larger <= 0.0 => {
             let octaves = (longest / shortest).log2().ceil() as i32;
             (0..=octaves)
-                .map(|octave| body.normal(f64::from(octave).exp2() / longest))
+                .map(|octave| body.normal(f64::from(octave).exp2() / longest).abs())
                 .fold(0.0, f64::max)
         }
         _ => larger,

@@ -18,11 +18,50 @@
 //!
 //! which is 0 for a layer like what it lies on.
 
-use super::Asymptotes;
 use super::compliance::Compliance;
 use super::layer::{Slab, of_energy};
+use super::{Asymptotes, Response};
 use crate::body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
 use crate::material::Elastic;
+
+/// Derivative of a half-space's response with respect to one of its numbers, as a response that influence coefficients
+/// are made of. It has the limits that derivatives have, which may be negative.
+#[derive(Debug, Clone)]
+pub(crate) struct ResponseSlope {
+    body: HalfSpace,
+    parameter: BodyParameter,
+    limits: Asymptotes,
+}
+
+impl ResponseSlope {
+    pub(crate) fn new(body: &HalfSpace, parameter: BodyParameter) -> Self {
+        Self {
+            body: body.clone(),
+            parameter,
+            limits: asymptote_derivatives(body, &[parameter])[0],
+        }
+    }
+}
+
+impl Response for ResponseSlope {
+    fn normal(&self, wavenumber: f64) -> f64 {
+        let mut slope = [0.0];
+        normal_derivatives(&self.body, &[self.parameter], wavenumber, &mut slope);
+        slope[0]
+    }
+
+    fn asymptotes(&self) -> Asymptotes {
+        self.limits
+    }
+
+    fn lengths(&self) -> Option<[f64; 2]> {
+        self.body.lengths()
+    }
+
+    fn half_space(&self) -> Option<&HalfSpace> {
+        Some(&self.body)
+    }
+}
 
 /// State of one layer under a unit pressure on the surface.
 struct State {

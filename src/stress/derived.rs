@@ -6,7 +6,7 @@ use super::field::Stress;
 
 /// Stress at one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tensor {
+pub(crate) struct Tensor {
     pub(super) xx: f64,
     pub(super) yy: f64,
     pub(super) zz: f64,
@@ -29,7 +29,7 @@ pub struct Peak {
 
 impl Tensor {
     /// The tensor from its components in the order of [`Stress::components`].
-    pub(super) fn new([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> Self {
+    pub(crate) fn new([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> Self {
         Self {
             xx,
             yy,
@@ -64,7 +64,7 @@ impl Tensor {
 
     /// Principal stresses, the largest first, by Jacobi's rotations, which lose no digits where two
     /// are equal: Golub & Van Loan, Matrix Computations, 4th ed. (2013), §8.5.
-    pub(super) fn principal(&self) -> [f64; 3] {
+    pub(crate) fn principal(&self) -> [f64; 3] {
         let mut a = self.matrix();
         // Entries off the diagonal fall quadratically: three sweeps are usual.
         for _ in 0..8 {

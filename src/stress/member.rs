@@ -139,6 +139,26 @@ impl Solution {
         source.complete(threads, progress)
     }
 
+    /// A plan of the stress in `body`, which stands for one of the bodies, under `pressure` that is uniform over each
+    /// cell.
+    ///
+    /// # Errors
+    /// As [`Solution::stress_plan`].
+    pub(crate) fn uniform_stress_plan(
+        &self,
+        member: Member,
+        body: &HalfSpace,
+        pressure: &Array2<f64>,
+    ) -> Result<StressPlan> {
+        let source = Source {
+            body,
+            pressure,
+            form: Form::Uniform,
+            ..self.source(member)?
+        };
+        source.complete_unwatched(None)
+    }
+
     /// The layers of one of the bodies.
     ///
     /// # Errors

@@ -111,6 +111,11 @@ impl StressPlan {
         Some(cells.map_or(ends.clone(), |cells| cells + &ends))
     }
 
+    /// Whether the body has free ends whose stress is added.
+    pub(super) fn has_ends(&self) -> bool {
+        self.ends.is_some()
+    }
+
     /// The body.
     pub fn body(&self) -> &HalfSpace {
         &self.whole.body

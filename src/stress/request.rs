@@ -2,19 +2,23 @@
 
 use std::ops::ControlFlow;
 
-use ndarray::{Array1, Array3};
+use ndarray::{Array1, Array2, Array3};
 
 use super::field::Stress;
 use super::friction::Sliding;
-use super::half_space::{Source, components};
+use super::half_space::{PlaneEvaluator, Source, components};
 use super::options::{StressOptions, StressProgress};
 use super::plan::{PlaneStress, PointStress, StressPlan};
 use super::section::{Points, place};
+use super::subcell::STRESSES;
 use crate::body::HalfSpace;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::parallel::check_memory;
 use crate::response::interior::Place;
+
+/// Weights of the components σ_xx … σ_xz in each cell, in C order.
+pub(crate) type Weights = [Vec<f64>; STRESSES];
 
 impl StressPlan {
     /// Stress at `depths`.
@@ -41,6 +45,32 @@ impl StressPlan {
         let request = Request::checked(body, grid, &self.whole.sliding, depths, options)?;
         check_memory(grid.shape(), request.memory())?;
         Ok(request.evaluate(self, progress))
+    }
+
+    /// Σ_c Σ_k K_c[k − i] w_c[k] in the cells i that the plan's pressure loads: the derivative with respect to the pressure
+    /// of each cell of Σ w σ at depth `z`, of which [`StressPlan::stress`] gives σ. Other cells hold no meaning.
+    ///
+    /// A kernel is even or odd along x and y, so that its transpose is itself with a sign for each odd direction.
+    ///
+    /// # Errors
+    /// As [`StressPlan::stress`]; a body with free ends, whose stress is no convolution.
+    pub(crate) fn transposed(
+        &self,
+        z: f64,
+        weights: &Weights,
+        options: &StressOptions,
+    ) -> Result<Array2<f64>> {
+        if self.has_ends() || self.whole.solved.is_some() {
+            return Err(Error::Inconsistent(
+                "derivatives of stresses need a body without free ends, under a pressure that is uniform over cells",
+            ));
+        }
+        let place = place(&self.whole.body, z, options.side)?;
+        let friction = self.whole.sliding.traction(&self.whole.body, options)?;
+        let mut evaluator = PlaneEvaluator::new(&self.whole, friction, false);
+        let mut sums = Array2::zeros(self.whole.grid.shape());
+        evaluator.transposed(&place, weights, &mut sums);
+        Ok(sums)
     }
 }
 

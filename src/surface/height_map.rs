@@ -174,4 +174,9 @@ impl Surface for HeightMap {
     fn grid(&self) -> Option<Grid> {
         Some(self.grid)
     }
+
+    /// Not: the gap has corners at the samples.
+    fn is_smooth(&self) -> bool {
+        false
+    }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::counterpart::sagitta;
+use super::slope::sagitta_slope;
 use crate::error::{Error, Result, positive};
 
 mod logarithmic;
@@ -68,6 +69,48 @@ impl Profile {
             Self::Crowned(profile) => profile.drop(0.5 * (a + b)),
             Self::Logarithmic(profile) => profile.integral(from, to) / (to - from),
             Self::Sampled(profile) => profile.integral(from, to) / (to - from),
+        }
+    }
+
+    /// Numbers on which the drop depends smoothly, by their names in case files.
+    pub(super) fn parameters(&self) -> Vec<(String, f64)> {
+        let named = |name: &str, value: f64| (name.to_owned(), value);
+        match self {
+            Self::Crowned(profile) => vec![
+                named("flat_length", profile.flat_length),
+                named("crown_radius", profile.crown_radius),
+            ],
+            Self::Logarithmic(profile) => {
+                let numbers = profile.parameters().into_iter();
+                numbers
+                    .map(|(name, value)| named(&format!("profile.{name}"), value))
+                    .collect()
+            }
+            Self::Sampled(profile) => {
+                let drops = profile.samples.iter().enumerate();
+                drops
+                    .map(|(k, [_, drop])| named(&format!("profile.drop[{k}]"), *drop))
+                    .collect()
+            }
+        }
+    }
+
+    /// Derivative of [`Profile::mean_drop`], where that is finite, with respect to the number `name`; `None` for a name
+    /// that is not among the parameters.
+    pub(super) fn mean_drop_slope(&self, name: &str, a: f64, b: f64) -> Option<f64> {
+        let [low, high] = self.ends();
+        let (from, to) = (a.max(low), b.min(high));
+        match self {
+            Self::Crowned(profile) => profile.slope(name, 0.5 * (a + b)),
+            Self::Logarithmic(profile) => {
+                let integral = profile.integral_slope(name.strip_prefix("profile.")?, from, to)?;
+                Some(integral / (to - from))
+            }
+            Self::Sampled(profile) => {
+                let number = name.strip_prefix("profile.drop[")?.strip_suffix(']')?;
+                let number: usize = number.parse().ok()?;
+                Some(profile.hat(number)?.integral(from, to) / (to - from))
+            }
         }
     }
 
@@ -151,6 +194,24 @@ impl CrownedProfile {
         let beyond = (x.abs() - 0.5 * self.flat_length).max(0.0);
         sagitta(self.crown_radius, beyond * beyond)
     }
+
+    /// Derivative of the drop with respect to a number.
+    fn slope(&self, name: &str, x: f64) -> Option<f64> {
+        let beyond = (x.abs() - 0.5 * self.flat_length).max(0.0);
+        let square = beyond * beyond;
+        match name {
+            "crown_radius" => Some(sagitta_slope(self.crown_radius, square)),
+            "flat_length" => {
+                let under = self.crown_radius * self.crown_radius - square;
+                Some(if under > 0.0 {
+                    -0.5 * beyond / under.sqrt()
+                } else {
+                    0.0
+                })
+            }
+            _ => None,
+        }
+    }
 }
 
 /// A measured profile: drops at increasing positions, with linear interpolation, and +∞ beyond.
@@ -198,6 +259,15 @@ impl SampledProfile {
     /// Position and drop of each sample \[m\].
     pub fn samples(&self) -> impl Iterator<Item = [f64; 2]> {
         self.samples.iter().copied()
+    }
+
+    /// The profile with a drop of 1 at one of the samples, and 0 at the others.
+    fn hat(&self, number: usize) -> Option<Self> {
+        let mut samples: Vec<[f64; 2]> = self.samples.iter().map(|[x, _]| [*x, 0.0]).collect();
+        samples.get_mut(number)?[1] = 1.0;
+        Some(Self {
+            samples: samples.into(),
+        })
     }
 
     /// Positions of the samples; of very many samples, the highest of each of [`MARKS`] groups.

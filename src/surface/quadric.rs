@@ -1,8 +1,12 @@
 //! Spheres, paraboloids, cylinders and flat punches.
 
 use super::counterpart::{Counterpart, sagitta};
-use super::{Extent, Surface};
+use ndarray::Array2;
+
+use super::slope::{absent, by_difference, sagitta_slope};
+use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result, positive};
+use crate::grid::Grid;
 
 /// Rolling direction of a shape whose axis lies along x.
 pub(super) const ACROSS: [f64; 2] = [0.0, 1.0];
@@ -96,6 +100,46 @@ impl Surface for Sphere {
     fn radii(&self) -> [f64; 2] {
         self.counterpart.smaller([self.radius; 2])
     }
+
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let own = [("radius", Some(self.radius))];
+        let counter = COUNTER_RADII.into_iter().zip(self.counter_radii());
+        present(own.into_iter().chain(counter))
+    }
+
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        if name == "radius" {
+            let (x, y) = (grid.x(), grid.y());
+            let square = |i: usize, j: usize| x[i] * x[i] + y[j] * y[j];
+            return Ok(sampled(grid, |i, j| {
+                sagitta_slope(self.radius, square(i, j))
+            }));
+        }
+        let (axis, radius) = counter_radius(name, self.counter_radii())?;
+        by_difference(radius, |radius| {
+            let radii = replaced(self.counter_radii(), axis, radius);
+            self.with_counter_radii(radii)?.gaps(grid)
+        })
+    }
+}
+
+/// Names and values of the numbers that a shape has.
+fn present<'a>(numbers: impl Iterator<Item = (&'a str, Option<f64>)>) -> Vec<(String, f64)> {
+    let named = |(name, value): (&str, Option<f64>)| Some((name.to_owned(), value?));
+    numbers.filter_map(named).collect()
+}
+
+/// Axis and value of the radius `name` of a counterpart.
+fn counter_radius(name: &str, radii: [Option<f64>; 2]) -> Result<(usize, f64)> {
+    let axis = COUNTER_RADII.iter().position(|one| *one == name);
+    let found = axis.and_then(|axis| Some((axis, radii[axis]?)));
+    found.ok_or_else(|| absent(name))
+}
+
+/// `radii` with another one on an axis.
+fn replaced(mut radii: [Option<f64>; 2], axis: usize, radius: f64) -> [Option<f64>; 2] {
+    radii[axis] = Some(radius);
+    radii
 }
 
 /// An elliptic paraboloid: h = x²/2R_x + y²/2R_y.
@@ -174,6 +218,29 @@ impl Surface for Paraboloid {
     fn radii(&self) -> [f64; 2] {
         self.counterpart.smaller([self.radius_x, self.radius_y])
     }
+
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let own = [
+            ("radius_x", Some(self.radius_x)),
+            ("radius_y", Some(self.radius_y)),
+        ];
+        let counter = COUNTER_RADII.into_iter().zip(self.counter_radii());
+        present(own.into_iter().chain(counter))
+    }
+
+    /// −x²/2R², for its own radii and those of its counterpart.
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        let (axis, radius) = match name {
+            "radius_x" => (0, self.radius_x),
+            "radius_y" => (1, self.radius_y),
+            _ => counter_radius(name, self.counter_radii())?,
+        };
+        let coordinates = [grid.x(), grid.y()];
+        Ok(sampled(grid, |i, j| {
+            let ratio = coordinates[axis][[i, j][axis]] / radius;
+            -0.5 * ratio * ratio
+        }))
+    }
 }
 
 /// A cylinder of infinite length along x: h = R − √(R² − y²), and +∞ for |y| > R.
@@ -247,6 +314,29 @@ impl Surface for Cylinder {
         [f64::INFINITY, self.counterpart.smaller([self.radius; 2])[1]]
     }
 
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let numbers = [
+            ("radius", Some(self.radius)),
+            ("counter_radius", self.counter_radius()),
+        ];
+        present(numbers.into_iter())
+    }
+
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        match (name, self.counter_radius()) {
+            ("radius", _) => {
+                let y = grid.y();
+                Ok(sampled(grid, |_, j| {
+                    sagitta_slope(self.radius, y[j] * y[j])
+                }))
+            }
+            ("counter_radius", Some(radius)) => by_difference(radius, |radius| {
+                self.with_counter_radius(radius)?.gaps(grid)
+            }),
+            _ => Err(absent(name)),
+        }
+    }
+
     fn rolling_direction(&self) -> Option<[f64; 2]> {
         Some(ACROSS)
     }
@@ -293,5 +383,10 @@ impl Surface for FlatPunch {
 
     fn extent(&self) -> [Extent; 2] {
         [Extent::Within([-self.radius, self.radius]); 2]
+    }
+
+    /// Not: cells join and leave its face one by one.
+    fn is_smooth(&self) -> bool {
+        false
     }
 }

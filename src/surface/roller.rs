@@ -1,10 +1,11 @@
 //! Rollers of finite length.
 
-use ndarray::Array2;
+use ndarray::{Array1, Array2};
 
 use super::counterpart::{Counterpart, sagitta};
 use super::profile::{CrownedProfile, Profile};
 use super::quadric::{ACROSS, convex};
+use super::slope::{absent, by_difference, sagitta_slope};
 use super::{Extent, Surface, sampled};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
@@ -154,6 +155,18 @@ impl Roller {
         self.length.is_none_or(|length| x.abs() <= 0.5 * length)
     }
 
+    /// Drops of the rows of `grid`; +∞ beyond the ends.
+    fn drops(&self, grid: &Grid) -> Array1<f64> {
+        let half = 0.5 * grid.spacing()[0];
+        grid.x().mapv(|x| {
+            if self.reaches(x) {
+                self.profile.mean_drop(x - half, x + half)
+            } else {
+                f64::INFINITY
+            }
+        })
+    }
+
     /// Gap R − √((R − d)² − y²) to a plane for the drop d, computed from (R − d)² − y² = R² − (d (2R − d) + y²).
     fn gap_at(&self, drop: f64, y: f64) -> f64 {
         if drop > self.radius {
@@ -174,15 +187,7 @@ impl Surface for Roller {
     }
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
-        let half = 0.5 * grid.spacing()[0];
-        let (x, y) = (grid.x(), grid.y());
-        let drops = x.mapv(|x| {
-            if self.reaches(x) {
-                self.profile.mean_drop(x - half, x + half)
-            } else {
-                f64::INFINITY
-            }
-        });
+        let (drops, y) = (self.drops(grid), grid.y());
         Ok(sampled(grid, |i, j| self.gap_at(drops[i], y[j])))
     }
 
@@ -224,5 +229,45 @@ impl Surface for Roller {
 
     fn rolling_direction(&self) -> Option<[f64; 2]> {
         Some(ACROSS)
+    }
+
+    /// Radii, and the numbers of the profile: `flat_length` and `crown_radius`, `profile.amplitude`,
+    /// `profile.flat_length` and `profile.end_factor`, or `profile.drop[k]`.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let mut parameters = vec![("radius".to_owned(), self.radius)];
+        parameters.extend(
+            self.counter_radius()
+                .map(|r| ("counter_radius".to_owned(), r)),
+        );
+        parameters.extend(self.profile.parameters());
+        parameters
+    }
+
+    /// With the root of [`Roller`], ∂h/∂R = 1 − (R − d)/√ and ∂h/∂d = (R − d)/√.
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        let (drops, y) = (self.drops(grid), grid.y());
+        let per_radius = |drop: f64, y: f64| match drop < self.radius {
+            true => sagitta_slope(self.radius - drop, y * y),
+            false => 0.0,
+        };
+        match (name, self.counter_radius()) {
+            ("radius", _) => Ok(sampled(grid, |i, j| per_radius(drops[i], y[j]))),
+            ("counter_radius", Some(radius)) => by_difference(radius, |radius| {
+                self.clone().with_counter_radius(radius)?.gaps(grid)
+            }),
+            _ => {
+                let half = 0.5 * grid.spacing()[0];
+                let slopes: Option<Vec<f64>> = (grid.x().iter().zip(&drops))
+                    .map(|(x, drop)| match drop.is_finite() {
+                        true => self.profile.mean_drop_slope(name, x - half, x + half),
+                        false => Some(0.0),
+                    })
+                    .collect();
+                let slopes = slopes.ok_or_else(|| absent(name))?;
+                Ok(sampled(grid, |i, j| {
+                    slopes[i] * (1.0 - per_radius(drops[i], y[j]))
+                }))
+            }
+        }
     }
 }

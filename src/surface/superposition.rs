@@ -2,6 +2,7 @@
 
 use ndarray::Array2;
 
+use super::slope::{absent, of_part, part};
 use super::{Extent, Surface};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -83,6 +84,31 @@ impl<S: Surface> Surface for Superposition<S> {
             marks.dedup();
             marks
         })
+    }
+
+    /// Numbers of the only shape or, of several, each with the prefix `parts[k].`.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        match &self.0[..] {
+            [only] => only.parameters(),
+            shapes => {
+                let shapes = shapes.iter().enumerate();
+                shapes
+                    .flat_map(|(k, shape)| of_part(k, shape.parameters()))
+                    .collect()
+            }
+        }
+    }
+
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        match (&self.0[..], part(name)) {
+            ([only], _) => only.gap_derivative(name, grid),
+            (shapes, Some((k, name))) if k < shapes.len() => shapes[k].gap_derivative(name, grid),
+            _ => Err(absent(name)),
+        }
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.0.iter().all(Surface::is_smooth)
     }
 
     /// Direction of the shapes that have one; `None` where two differ.

@@ -1,20 +1,14 @@
 //! The tangent stiffness of a solved contact.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
+use super::tangent::Tangent;
 use crate::contact::Solution;
-use crate::contact::options::Setup;
-use crate::contact::plan::{bodies, operator};
 use crate::contact::problem::constraint::NonNegative;
-use crate::contact::problem::patch::{block, bounds};
-use crate::contact::solver::linear_cg;
-use crate::convolution::{Convolution, Workspace};
-use crate::ends::Ends;
+use crate::contact::problem::patch::bounds;
 use crate::error::Result;
-use crate::grid::{Window, full_window, repeating};
-use crate::influence::memory;
-use crate::parallel::{Threads, check_memory, dot};
+use crate::grid::full_window;
+use crate::parallel::dot;
 
 /// Residual of the linear systems. The error of the stiffness is its square.
 const TOLERANCE: f64 = 1e-9;
@@ -65,17 +59,17 @@ impl Solution {
         let mut columns: Vec<[Vec<f64>; 2]> = Vec::new();
         for freedom in 0..3 {
             let right = tangent.column(freedom);
-            let Some(pressure) = tangent.solve(&right, watch)? else {
+            let Some(pressure) = tangent.solve(&right, TOLERANCE, watch)? else {
                 return Ok(None);
             };
             columns.push([right, pressure]);
         }
         // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
-        let mut workspace = tangent.convolution.workspace();
+        let mut workspace = tangent.convolution().workspace();
         let mut stiffness = [[0.0; 3]; 3];
         for (j, [b, x]) in columns.iter().enumerate() {
             let mut rest = vec![0.0; b.len()];
-            tangent.restricted(&tangent.convolution, x, &mut rest, &mut workspace);
+            tangent.apply_on_contact(x, &mut rest, &mut workspace);
             rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
             for (i, [b, y]) in columns.iter().enumerate() {
                 stiffness[i][j] = dot(b, x) + dot(y, &rest);
@@ -91,59 +85,7 @@ impl Solution {
     }
 }
 
-/// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
-struct Tangent {
-    convolution: Convolution,
-    inverse: Convolution,
-    contact: Vec<bool>,
-    coordinates: [Vec<f64>; 2],
-    origin: [f64; 2],
-    scale: [f64; 2],
-    cell_area: f64,
-    /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
-    raise: f64,
-}
-
 impl Tangent {
-    fn plan(solution: &Solution, window: Window) -> Result<Self> {
-        let (report, grid) = (&solution.report, solution.grid());
-        let [x, y] = &window;
-        let shape = [x.len(), y.len()];
-        check_memory(
-            grid.shape(),
-            2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
-        )?;
-        let threads = Arc::new(Threads::new(None)?);
-        let setup = Setup {
-            counterbody: report.counterbody.clone(),
-            method: report.method,
-            threads: None,
-        };
-        let (coefficients, datum) = operator(&report.body, &setup, grid, &threads)?;
-        let corner = block(&coefficients, &full_window(shape)).to_owned();
-        let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, &threads)?;
-        let additions = additions.iter().map(|addition| addition.on_rows(x.clone()));
-        let repeats = repeating(grid, &window);
-        let convolution = Convolution::plan_repeated(&corner, repeats, threads)?;
-        let convolution = convolution.plus(additions.collect());
-        let [_, inverse] = convolution.preconditioner(&corner, repeats);
-        let contact = block(&solution.pressure, &window);
-        let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
-        let coordinates = [part(0), part(1)];
-        let middle = |line: &Vec<f64>| 0.5 * (line[0] + line[line.len() - 1]);
-        let half = |axis: usize| 0.5 * shape[axis] as f64 * grid.spacing()[axis];
-        Ok(Self {
-            inverse,
-            convolution,
-            contact: contact.iter().map(|&p| NonNegative.is_free(p)).collect(),
-            origin: [middle(&coordinates[0]), middle(&coordinates[1])],
-            scale: [half(0), half(1)],
-            coordinates,
-            cell_area: grid.cell_area(),
-            raise: datum.raise() * grid.cell_area(),
-        })
-    }
-
     /// Turns the tangent for K into that for K − s 1ᵀ1, by the formula of Sherman & Morrison.
     fn lower_datum(&self, stiffness: &mut [[f64; 3]; 3]) {
         let column = stiffness.map(|row| row[0]);
@@ -155,20 +97,6 @@ impl Tangent {
         }
     }
 
-    /// A column of B.
-    fn column(&self, freedom: usize) -> Vec<f64> {
-        let [x, y] = &self.coordinates;
-        let cells = x.iter().flat_map(|&x| y.iter().map(move |&y| [x, y]));
-        let value = |at: [f64; 2]| match freedom {
-            0 => 1.0,
-            k => (at[k - 1] - self.origin[k - 1]) / self.scale[k - 1],
-        };
-        let inside = cells.zip(&self.contact);
-        inside
-            .map(|(at, &inside)| if inside { value(at) } else { 0.0 })
-            .collect()
-    }
-
     /// Aᵀ S A dA, where (1, x, y) = (columns of B) A.
     fn about_origin(&self, scaled: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
         let ([x, y], [lx, ly]) = (self.origin, self.scale);
@@ -178,37 +106,5 @@ impl Tangent {
             (0..3).map(|i| a[i] * row(i)).sum::<f64>() * self.cell_area
         };
         columns.map(|a| columns.map(|b| form(a, b)))
-    }
-
-    /// `out` = `operator` `input` on the contact, 0 elsewhere.
-    fn restricted(
-        &self,
-        operator: &Convolution,
-        input: &[f64],
-        out: &mut [f64],
-        workspace: &mut Workspace,
-    ) {
-        operator.apply_slices(input, out, workspace);
-        for (out, inside) in out.iter_mut().zip(&self.contact) {
-            if !inside {
-                *out = 0.0;
-            }
-        }
-    }
-
-    /// K_CC⁻¹ `right`; `None` where `watch` breaks.
-    fn solve(
-        &self,
-        right: &[f64],
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Vec<f64>>> {
-        let [mut first, mut second] = [self.convolution.workspace(), self.convolution.workspace()];
-        linear_cg::solve(
-            right,
-            |input, out| self.restricted(&self.convolution, input, out, &mut first),
-            |input, out| self.restricted(&self.inverse, input, out, &mut second),
-            TOLERANCE,
-            watch,
-        )
     }
 }

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::python::arguments::Repr;
 use crate::python::arguments::keywords::{self, Keywords};
 use crate::python::background::{self, Caller};
-use crate::python::shapes::{PyShape, shape};
+use crate::python::shapes::{PyShape, Shape, shape};
 use crate::python::solution::PySolution;
 
 /// Shape and motion of a case.
@@ -65,6 +65,10 @@ pub(super) fn solve_many(
         parsed.push(case(&item?).map_err(|error| of_case(py, error, number))?);
     }
     let (total, tolerance) = (parsed.len(), options.tolerance);
+    let shapes: Vec<Shape> = parsed
+        .iter()
+        .map(|(shape, _)| shape.get().0.clone())
+        .collect();
     let finished = Finished::default();
     lock(&finished).resize_with(total, || None);
     let (contact, kept) = (Arc::clone(contact), Arc::clone(&finished));
@@ -102,7 +106,10 @@ pub(super) fn solve_many(
     let solved = std::mem::take(&mut *lock(&finished));
     let mut solutions: Vec<Option<Py<PySolution>>> = Vec::with_capacity(total);
     for (number, solved) in solved.into_iter().enumerate() {
-        let outcome = solved.map(|solved| PySolution::finished(py, solved?, tolerance, check));
+        let finished = |solved: Result<Solution>| {
+            PySolution::finished(py, solved?, &shapes[number], tolerance, check)
+        };
+        let outcome = solved.map(finished);
         let solution = match outcome {
             None => None,
             Some(Ok(solution)) => Some(Py::new(py, solution)?),

@@ -162,11 +162,12 @@ impl Call {
             ..
         } = self;
         let tolerance = options.tolerance;
+        let pressed = shape.clone();
         let solution = background::run(py, progress, move |caller| {
             work(&shape, &motion, &options, &mut |report| {
                 caller.ask(|| (PyReport(report.clone()),))
             })
         })?;
-        PySolution::finished(py, solution?, tolerance, check)
+        PySolution::finished(py, solution?, &pressed, tolerance, check)
     }
 }

@@ -3,18 +3,15 @@
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::error::Result;
-use crate::grid::Grid;
 use crate::python::arguments::{Real, Repr, array_repr, hash, remade};
 use crate::python::grid::PyGrid;
-use crate::surface::{self, Extent, Profile, Shifted, Superposition, Surface};
+use crate::surface::{self, Profile, Shifted, Superposition, Surface};
 
 /// A kind of shape with a Python class of the same name. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface {
@@ -37,7 +34,7 @@ macro_rules! kinds {
 
         impl Shape {
             /// Calls `f` with the surface that this is.
-            fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
+            pub(super) fn with<R>(&self, f: impl FnOnce(&dyn Surface) -> R) -> R {
                 match self {
                     $(Self::$kind(shape) => f(shape),)*
                     Self::Combined(shape) => f(shape.flat()),
@@ -237,30 +234,6 @@ impl Shape {
             texts.push(format!("{name}={text}"));
         }
         Ok(format!("{class}({})", texts.join(", ")))
-    }
-}
-
-impl Surface for Shape {
-    fn gap(&self, x: f64, y: f64) -> f64 {
-        self.with(|shape| shape.gap(x, y))
-    }
-    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
-        self.with(|shape| shape.gaps(grid))
-    }
-    fn extent(&self) -> [Extent; 2] {
-        self.with(|shape| shape.extent())
-    }
-    fn marks(&self) -> [Vec<f64>; 2] {
-        self.with(|shape| shape.marks())
-    }
-    fn radii(&self) -> [f64; 2] {
-        self.with(|shape| shape.radii())
-    }
-    fn grid(&self) -> Option<Grid> {
-        self.with(|shape| shape.grid())
-    }
-    fn rolling_direction(&self) -> Option<[f64; 2]> {
-        self.with(|shape| shape.rolling_direction())
     }
 }
 

@@ -3,6 +3,8 @@
 
 use std::ops::ControlFlow;
 
+use ndarray::Array2;
+
 use super::plan::{HalfSpacePlan, transforms_memory};
 use crate::fft::{KernelRows, Workspace};
 use crate::grid::Grid;
@@ -121,6 +123,44 @@ impl<'a> PlaneEvaluator<'a> {
             plan.threads.run(add);
         }
         ControlFlow::Continue(())
+    }
+
+    /// Adds to `sums` (nx, ny) the convolutions of `weights`, one for each stress, with the transposed kernels at `place`.
+    pub(in crate::stress) fn transposed(
+        &mut self,
+        place: &Place,
+        weights: &[Vec<f64>; STRESSES],
+        sums: &mut Array2<f64>,
+    ) {
+        let plan = self.plan;
+        plan.threads.run(|| self.coefficients(place));
+        let mut part = vec![0.0; sums.len()];
+        for (number, weights) in weights.iter().enumerate() {
+            if weights.iter().all(|w| *w == 0.0) {
+                continue;
+            }
+            let factors = self.loads.iter().map(|load| {
+                let odd = load.odd()[number].into_iter().filter(|odd| *odd).count();
+                if odd == 1 { -load.factor } else { load.factor }
+            });
+            let sets: Vec<_> = factors.zip(&self.rows).collect();
+            plan.threads.run(|| {
+                let input = plan
+                    .transform
+                    .transform(weights, &mut self.workspace, &plan.threads);
+                plan.transform.convolve_parities(
+                    &input,
+                    (&plan.quarter, &sets),
+                    number..number + 1,
+                    &mut [&mut part],
+                    &mut self.workspace,
+                    &plan.threads,
+                );
+            });
+            sums.iter_mut()
+                .zip(&part)
+                .for_each(|(sum, part)| *sum += part);
+        }
     }
 
     /// Computes the coefficients of all loads at `place`. On the threads of the caller.

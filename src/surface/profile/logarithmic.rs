@@ -187,6 +187,62 @@ impl LogarithmicProfile {
         self.one_sided(a.abs().min(b.abs()), a.abs().max(b.abs()))
     }
 
+    /// Numbers on which the drop depends smoothly. The end factor 1 is none: the drop is infinite at the ends there, and
+    /// nowhere else.
+    pub(super) fn parameters(&self) -> Vec<(&'static str, f64)> {
+        let mut parameters = vec![
+            ("amplitude", self.amplitude),
+            ("flat_length", self.flat_length),
+        ];
+        if self.end_factor < 1.0 {
+            parameters.push(("end_factor", self.end_factor));
+        }
+        parameters
+    }
+
+    /// Derivative of [`LogarithmicProfile::integral`] with respect to a number. With u and f as in the formula of the
+    /// profile, and the length L less the flat length F,
+    ///
+    /// ```text
+    /// ∂d/∂A = d/A      ∂d/∂F = −2 A f u (1 − u)/[(1 − f u²)(L − F)]      ∂d/∂f = A u²/(1 − f u²)
+    /// ```
+    pub(super) fn integral_slope(&self, name: &str, a: f64, b: f64) -> Option<f64> {
+        let (f, crowned) = (self.end_factor, self.length - self.flat_length);
+        let along = |x: f64| ((2.0 * x - self.flat_length).max(0.0) / crowned).min(1.0);
+        let one_sided = |a: f64, b: f64, slope: &dyn Fn(f64, f64) -> f64| {
+            let (from, to) = (along(a), along(b));
+            // dx = (L − F)/2 du.
+            0.5 * crowned * if to > from { slope(from, to) } else { 0.0 }
+        };
+        let both = |slope: &dyn Fn(f64, f64) -> f64| {
+            if a < 0.0 && b > 0.0 {
+                return one_sided(0.0, -a, slope) + one_sided(0.0, b, slope);
+            }
+            one_sided(a.abs().min(b.abs()), a.abs().max(b.abs()), slope)
+        };
+        match name {
+            "amplitude" => Some(self.integral(a, b) / self.amplitude),
+            "flat_length" => {
+                let factor = -2.0 * self.amplitude * f / crowned;
+                let slope = |u: f64| u * (1.0 - u) / ((1.0 - u) * (1.0 + u) + (1.0 - f) * u * u);
+                Some(factor * both(&|from, to| gauss(from, to, slope)))
+            }
+            "end_factor" if f < 1.0 => {
+                let slope = |u: f64| u * u / (1.0 - f * u * u);
+                let root = f.sqrt();
+                // u²/(1 − f u²) has the integral [atanh(√f u)/√f − u]/f, for use next to its pole.
+                let closed = |u: f64| ((root * u).atanh() / root - u) / f;
+                let integral =
+                    |from: f64, to: f64| match 1.0 - root * to >= 0.5 * root * (to - from) {
+                        true => gauss(from, to, slope),
+                        false => closed(to) - closed(from),
+                    };
+                Some(self.amplitude * both(&integral))
+            }
+            _ => None,
+        }
+    }
+
     /// Integral of the drop between two positions 0 ≤ a ≤ b \[m²\]. With v² = f u²,
     ///
     /// ```text

@@ -1,0 +1,257 @@
+//! The tangent operator of a solved contact: K on the cells in contact, and the columns of B.
+
+use std::ops::ControlFlow;
+use std::sync::{Arc, OnceLock};
+
+use ndarray::Array2;
+
+use crate::contact::Solution;
+use crate::contact::options::Setup;
+use crate::contact::plan::{bodies, operator};
+use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::patch::block;
+use crate::contact::solver::linear_cg;
+use crate::convolution::{Addition, Convolution, Workspace};
+use crate::ends::Ends;
+use crate::error::Result;
+use crate::grid::{Grid, Window, full_window, repeating};
+use crate::influence::{Method, memory};
+use crate::parallel::{Threads, check_memory, dot};
+use crate::response::Body;
+
+/// Residual of a linear solve, relative to its right side, below which it is rounding.
+const ROUNDING: f64 = 1e-15;
+
+/// Part of a right side beside a span below which there is none, 100 times its rounding.
+const NOTHING: f64 = 1e-13;
+
+/// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
+pub(crate) struct Tangent {
+    window: Window,
+    convolution: Convolution,
+    inverse: Convolution,
+    pub(crate) contact: Vec<bool>,
+    pub(crate) coordinates: [Vec<f64>; 2],
+    pub(super) origin: [f64; 2],
+    pub(super) scale: [f64; 2],
+    pub(super) cell_area: f64,
+    /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
+    pub(crate) raise: f64,
+    /// Coefficients at the offsets of the window, and what the ends of bodies add to them.
+    coefficients: Array2<f64>,
+    additions: Vec<Addition>,
+    source: (Body, Setup, Grid),
+    /// Coefficients of the whole grid, once they are needed.
+    far: OnceLock<Array2<f64>>,
+}
+
+impl Tangent {
+    /// Plans the tangent of `solution` on the cells of `window`, which holds all that are in contact.
+    ///
+    /// # Errors
+    /// Too little memory, and those of planning the contact.
+    pub(crate) fn plan(solution: &Solution, window: Window) -> Result<Self> {
+        let (report, grid) = (&solution.report, solution.grid());
+        let [x, y] = &window;
+        let shape = [x.len(), y.len()];
+        check_memory(
+            grid.shape(),
+            2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
+        )?;
+        let threads = Arc::new(Threads::new(None)?);
+        let setup = Setup {
+            counterbody: report.counterbody.clone(),
+            method: report.method,
+            threads: None,
+        };
+        let near = match report.method {
+            Method::Exact => grid.of_offsets(shape),
+            _ => *grid,
+        };
+        let (coefficients, datum) = operator(&report.body, &setup, &near, &threads)?;
+        let corner = block(&coefficients, &full_window(shape)).to_owned();
+        let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, &threads)?;
+        let within = additions.iter().map(|addition| addition.on_rows(x.clone()));
+        let repeats = repeating(grid, &window);
+        let convolution = Convolution::plan_repeated(&corner, repeats, threads)?;
+        let convolution = convolution.plus(within.collect());
+        let [_, inverse] = convolution.preconditioner(&corner, repeats);
+        let contact = block(&solution.pressure, &window);
+        let part = |axis: usize| grid.coordinates(axis).to_vec()[window[axis].clone()].to_vec();
+        let coordinates = [part(0), part(1)];
+        let middle = |line: &Vec<f64>| 0.5 * (line[0] + line[line.len() - 1]);
+        let half = |axis: usize| 0.5 * shape[axis] as f64 * grid.spacing()[axis];
+        Ok(Self {
+            window: window.clone(),
+            inverse,
+            convolution,
+            contact: contact.iter().map(|&p| NonNegative.is_free(p)).collect(),
+            origin: [middle(&coordinates[0]), middle(&coordinates[1])],
+            scale: [half(0), half(1)],
+            coordinates,
+            cell_area: grid.cell_area(),
+            raise: datum.raise() * grid.cell_area(),
+            coefficients,
+            additions,
+            source: (report.body.clone(), setup, *grid),
+            far: OnceLock::new(),
+        })
+    }
+
+    /// A column of B.
+    pub(crate) fn column(&self, freedom: usize) -> Vec<f64> {
+        let [x, y] = &self.coordinates;
+        let cells = x.iter().flat_map(|&x| y.iter().map(move |&y| [x, y]));
+        let value = |at: [f64; 2]| match freedom {
+            0 => 1.0,
+            k => (at[k - 1] - self.origin[k - 1]) / self.scale[k - 1],
+        };
+        let inside = cells.zip(&self.contact);
+        inside
+            .map(|(at, &inside)| if inside { value(at) } else { 0.0 })
+            .collect()
+    }
+
+    /// Counts the columns of B from the origin instead of the middle of the window, as it must be where the approach is
+    /// prescribed and its column is not among them.
+    pub(crate) fn centre_at_origin(&mut self) {
+        self.origin = [0.0; 2];
+    }
+
+    /// A⁻ᵀ `sums`, where (1, x, y) = (columns of B) A.
+    pub(crate) fn to_scaled(&self, [one, x, y]: [f64; 3]) -> [f64; 3] {
+        let ([x0, y0], [lx, ly]) = (self.origin, self.scale);
+        [one, (x - x0 * one) / lx, (y - y0 * one) / ly]
+    }
+
+    /// A⁻¹ `factors`: factors of (1, x, y) from those of the columns of B.
+    pub(crate) fn unscaled(&self, [one, x, y]: [f64; 3]) -> [f64; 3] {
+        let ([x0, y0], [lx, ly]) = (self.origin, self.scale);
+        let (x, y) = (x / lx, y / ly);
+        [one - x0 * x - y0 * y, x, y]
+    }
+
+    /// Makes [`Tangent::entry`] hold for cells whose distance is below `offsets` along x and y.
+    ///
+    /// # Errors
+    /// Those of planning the contact.
+    pub(crate) fn reach(&self, offsets: [usize; 2]) -> Result<()> {
+        let known = [self.coefficients.nrows(), self.coefficients.ncols()];
+        let is_near = offsets[0] <= known[0] && offsets[1] <= known[1];
+        if !is_near && self.far.get().is_none() {
+            let (body, setup, grid) = &self.source;
+            let threads = Arc::new(Threads::new(None)?);
+            let (coefficients, _) = operator(body, setup, grid, &threads)?;
+            self.far.get_or_init(|| coefficients);
+        }
+        Ok(())
+    }
+
+    /// Displacement of a cell of the grid under unit pressure on another, with the datum of the tangent. Cells farther apart
+    /// than the window is wide need [`Tangent::reach`] first.
+    pub(crate) fn entry(&self, one: [usize; 2], other: [usize; 2]) -> f64 {
+        let [i, j] = [0, 1].map(|axis| one[axis].abs_diff(other[axis]));
+        let added = self.additions.iter();
+        let added: f64 = added.map(|added| added.entry([one[0], other[0]], j)).sum();
+        self.far.get().unwrap_or(&self.coefficients)[[i, j]] + added
+    }
+
+    /// The window of the grid's cells.
+    pub(crate) fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// K on the whole window.
+    pub(crate) fn convolution(&self) -> &Convolution {
+        &self.convolution
+    }
+
+    /// `out` = K `input` on the contact, 0 elsewhere.
+    pub(super) fn apply_on_contact(
+        &self,
+        input: &[f64],
+        out: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
+        self.restricted(&self.convolution, input, out, workspace);
+    }
+
+    /// `out` = `operator` `input` on the contact, 0 elsewhere.
+    fn restricted(
+        &self,
+        operator: &Convolution,
+        input: &[f64],
+        out: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
+        operator.apply_slices(input, out, workspace);
+        for (out, inside) in out.iter_mut().zip(&self.contact) {
+            if !inside {
+                *out = 0.0;
+            }
+        }
+    }
+
+    /// `out` = K `input` on the contact, 0 elsewhere.
+    pub(crate) fn apply(&self, input: &[f64], out: &mut [f64]) {
+        let mut workspace = self.convolution.workspace();
+        self.restricted(&self.convolution, input, out, &mut workspace);
+    }
+
+    /// K_CC⁻¹ `right`, to a residual of `tolerance` relative to `right`; `None` where `watch` breaks.
+    ///
+    /// # Errors
+    /// As [`linear_cg::solve`].
+    pub(super) fn solve(
+        &self,
+        right: &[f64],
+        tolerance: f64,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<Vec<f64>>> {
+        self.solve_beside(right, &[], tolerance, watch)
+    }
+
+    /// The field y without a part in `span`, which is orthonormal, for which `right` − K y lies in it, to a residual of
+    /// `tolerance` relative to `right` beside the span; `None` where `watch` breaks.
+    ///
+    /// # Errors
+    /// As [`linear_cg::solve`].
+    pub(crate) fn solve_beside(
+        &self,
+        right: &[f64],
+        span: &[&[f64]],
+        tolerance: f64,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<Vec<f64>>> {
+        let [mut first, mut second] = [self.convolution.workspace(), self.convolution.workspace()];
+        let beside = |values: &mut [f64]| {
+            for column in span {
+                let factor = dot(column, values);
+                for (v, q) in values.iter_mut().zip(*column) {
+                    *v -= factor * q;
+                }
+            }
+        };
+        let mut rest = right.to_vec();
+        beside(&mut rest);
+        // What is left beside the span may be rounding.
+        let part = dot(&rest, &rest).sqrt() / dot(right, right).sqrt().max(f64::MIN_POSITIVE);
+        if part <= NOTHING {
+            return Ok(Some(vec![0.0; right.len()]));
+        }
+        let tolerance = tolerance.max(ROUNDING / part);
+        linear_cg::solve(
+            &rest,
+            |input, out| {
+                self.restricted(&self.convolution, input, out, &mut first);
+                beside(out);
+            },
+            |input, out| {
+                self.restricted(&self.inverse, input, out, &mut second);
+                beside(out);
+            },
+            tolerance,
+            watch,
+        )
+    }
+}

@@ -1,0 +1,120 @@
+//! Derivatives of contacts of coated paraboloids approach those of the continuum.
+
+use nacre::gradient::{LinearOptions, Linearisation, Output};
+use nacre::{Contact, Elastic, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result, Setup};
+use serde_json::Value;
+
+use crate::support::reference::{cases, number};
+
+/// Cells along the contact radius.
+const CELLS: f64 = 64.0;
+
+/// Parts of a cell by which grids are moved; the number of cells in contact differs from each to the next.
+const SHIFTS: [[f64; 2]; 5] = [
+    [0.0, 0.0],
+    [0.5, 0.0],
+    [0.5, 0.5],
+    [0.23, 0.11],
+    [0.35, 0.71],
+];
+
+/// Errors of ∂ ln δ and ∂ ln p0 at 64 cells a radius: each, their mean square over the shifts, and their mean. They are
+/// those of a fixed number of cells in contact, not of the linear solves.
+const BARS: [f64; 3] = [1e-3, 4e-4, 2e-4];
+
+/// [`BARS`] for Poisson's ratios, of which that of a thin coating with ν = 0.45 has the largest error.
+const POISSON: [f64; 3] = [1.2e-3, 7e-4, 2e-4];
+
+/// Paths of the parameters, and their names in the data: Poisson's ratios are no logarithms.
+const PATHS: [(&str, &str, bool); 6] = [
+    ("body.layers[0].material.young", "d/dlnE1", true),
+    ("body.layers[0].material.poisson", "d/dnu1", false),
+    ("body.substrate.young", "d/dlnE2", true),
+    ("body.substrate.poisson", "d/dnu2", false),
+    ("body.layers[0].thickness", "d/dlnh", true),
+    ("load", "d/dlnW", true),
+];
+
+/// Errors of all derivatives with one shift: of ln δ, then of ln p0.
+fn errors(case: &Value, shift: [f64; 2]) -> Result<Vec<f64>> {
+    let of = |key: &str| number(case, key);
+    let coat = Layer::new(Elastic::new(of("E1"), of("nu1"))?, of("h"))?;
+    let body = HalfSpace::new(Elastic::new(of("E2"), of("nu2"))?, [coat])?;
+    let cell = of("a") / CELLS;
+    let cells = (2.0 * CELLS) as usize + 12;
+    let grid = Grid::new([cells; 2], [cells as f64 * cell; 2])?;
+    let grid = grid.centered_at(shift.map(|part| part * cell))?;
+    let shape = Paraboloid::new(of("R"), of("R"))?;
+    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let solution = contact.solve(&shape, &Motion::load(of("W")), &Options::default())?;
+    let plan = Linearisation::plan(&solution, Some(&shape), &LinearOptions::default())?;
+    let outputs = [Output::Approach, Output::Pressure([0.0, 0.0])];
+    let mut found = Vec::new();
+    for (gradient, name) in plan
+        .gradients(&outputs, None)?
+        .iter()
+        .zip(["ln_delta", "ln_p0"])
+    {
+        assert!(gradient.warnings.is_empty(), "{:?}", gradient.warnings);
+        let mut compare = |slope: f64, key: &str| {
+            let expected = number(&case["derivatives"][key], name);
+            // Derivatives with respect to Poisson's ratio are up to 3 where a coating is almost incompressible.
+            found.push((slope / gradient.value - expected) / expected.abs().max(1.0));
+        };
+        for (path, key, logarithm) in PATHS {
+            let slope = gradient.get(path).unwrap_or(f64::NAN);
+            let factor = match path {
+                _ if !logarithm => 1.0,
+                "load" => of("W"),
+                "body.layers[0].thickness" => of("h"),
+                "body.substrate.young" => of("E2"),
+                _ => of("E1"),
+            };
+            compare(slope * factor, key);
+        }
+        let radii = ["shape.radius_x", "shape.radius_y"];
+        let sum: f64 = radii.iter().filter_map(|path| gradient.get(path)).sum();
+        compare(sum * of("R"), "d/dlnR");
+    }
+    Ok(found)
+}
+
+#[test]
+fn derivatives_of_coated_paraboloids_equal_those_of_the_continuum() -> Result<()> {
+    // Of logarithms, and of Poisson's ratios.
+    let mut worst = [[0.0_f64; 3]; 2];
+    let data = cases("sphere_derivatives.json");
+    let cases = data.iter();
+    // Central pressures below the peak belong to rubber on a hard base, whose error is that of its values.
+    let cases = cases
+        .filter(|case| case["tip"] == "paraboloid" && number(case, "peak_over_p0") < 1.0 + 1e-12);
+    let mut count = 0;
+    for case in cases {
+        let found: Result<Vec<Vec<f64>>> =
+            SHIFTS.iter().map(|shift| errors(case, *shift)).collect();
+        let found = found?;
+        for k in 0..found[0].len() {
+            let at = || found.iter().map(move |errors| errors[k]);
+            let of = |power: i32| at().map(|e| e.powi(power)).sum::<f64>() / SHIFTS.len() as f64;
+            let largest = at().fold(0.0, |a: f64, e| a.max(e.abs()));
+            let poisson = usize::from(matches!(k % 7, 1 | 3));
+            for (worst, found) in
+                worst[poisson]
+                    .iter_mut()
+                    .zip([largest, of(2).sqrt(), of(1).abs()])
+            {
+                *worst = worst.max(found);
+            }
+        }
+        count += 1;
+    }
+    println!("{count} cases: each, mean square, mean {worst:?}");
+    for (worst, bars) in worst.iter().zip([BARS, POISSON]) {
+        assert!(
+            worst.iter().zip(bars).all(|(worst, bar)| *worst < bar),
+            "{worst:?}"
+        );
+    }
+    assert!(count >= 4);
+    Ok(())
+}
