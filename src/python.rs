@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, words, arguments, background,
-//! state, bodies, grid, shapes, coefficients, stress, solution, contact.
+//! state, bodies, grid, indent, shapes, coefficients, stress, solution, contact.
 
 use pyo3::prelude::*;
 
@@ -12,6 +12,7 @@ mod coefficients;
 mod contact;
 mod errors;
 mod grid;
+mod indent;
 mod shapes;
 mod solution;
 mod state;
@@ -45,7 +46,7 @@ mod core {
     use super::stress::{
         PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,
     };
-    use super::{bodies::PyRigid, shapes, state};
+    use super::{bodies::PyRigid, indent, shapes, state};
     use pyo3::prelude::*;
 
     #[pymodule_init]
@@ -68,6 +69,19 @@ mod core {
             "contact_modulus",
             wrap_pyfunction!(contact_modulus, module)?,
         )?;
+        // The names of `nacre.indent`.
+        let py = module.py();
+        module.setattr("Tip", py.get_type::<indent::PyTip>())?;
+        module.setattr("Adhesion", py.get_type::<indent::PyAdhesion>())?;
+        module.setattr("Indentation", py.get_type::<indent::PyIndentation>())?;
+        module.setattr("IndentState", py.get_type::<indent::PyIndentState>())?;
+        module.setattr(
+            "StateDerivative",
+            py.get_type::<indent::PyStateDerivative>(),
+        )?;
+        module.setattr("IndentCurve", py.get_type::<indent::PyIndentCurve>())?;
+        module.setattr("PullOff", py.get_type::<indent::PyPullOff>())?;
+        module.setattr("slope_of", wrap_pyfunction!(indent::slope_of, module)?)?;
         state::add_restorers(module)
     }
 }

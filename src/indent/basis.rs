@@ -83,7 +83,9 @@ impl Basis {
         if ratio <= NODAL {
             let count = (8.0 + 2.0 * ratio).max(1.0 + 4.3 * ratio);
             let count = (finer * count).ceil() as usize;
-            let nodes = panels.into_iter().flat_map(|panel| panel.nodes(rule(count)));
+            let nodes = panels
+                .into_iter()
+                .flat_map(|panel| panel.nodes(rule(count)));
             return Self::Nodes(nodes.collect());
         }
         let count = (finer * (34.0 + 10.0 * ratio.sqrt())).ceil() as usize;
@@ -173,7 +175,8 @@ impl Basis {
                     for (q, alpha) in waves.alpha.iter().enumerate() {
                         spherical_bessel(alpha * half, &mut bessel);
                         // cos(αc + kπ/2) repeats every four.
-                        let phase = (0..4).map(|k| (alpha * middle + f64::from(k) * FRAC_PI_2).cos());
+                        let phase =
+                            (0..4).map(|k| (alpha * middle + f64::from(k) * FRAC_PI_2).cos());
                         let phase: Vec<f64> = phase.collect();
                         for (k, j) in bessel.iter().enumerate() {
                             let scale = ((2 * k + 1) as f64 * 2.0 * half).sqrt();
@@ -245,7 +248,11 @@ mod tests {
         let mut j = vec![0.0; 120];
         for y in [1e-9, 1e-3, 0.7, 20.0, 60.0] {
             spherical_bessel(y, &mut j);
-            let sum: f64 = j.iter().enumerate().map(|(k, j)| (2 * k + 1) as f64 * j * j).sum();
+            let sum: f64 = j
+                .iter()
+                .enumerate()
+                .map(|(k, j)| (2 * k + 1) as f64 * j * j)
+                .sum();
             assert!((sum - 1.0).abs() < 1e-13, "{y}: {sum}");
             assert!((j[0] - if y > 0.0 { y.sin() / y } else { 1.0 }).abs() < 1e-15);
         }

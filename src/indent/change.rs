@@ -128,26 +128,45 @@ impl Point {
             let shape = rates.as_ref().map_or(0.0, |rates| f * rates[k][0]);
             f_rate * (self.approach - tip.transform(s)[0]) - shape
         };
-        let known: Vec<f64> = places.iter().enumerate().map(|(k, s)| known(k, *s)).collect();
+        let known: Vec<f64> = places
+            .iter()
+            .enumerate()
+            .map(|(k, s)| known(k, *s))
+            .collect();
         let mut right = system.basis.project(&known);
         let mut g = vec![0.0; hat.len()];
         if let Some(excess_rate) = excess_rate {
             g = times(excess_rate, &hat);
             let coupled = system.couple(&g);
-            right.iter_mut().zip(coupled).for_each(|(right, c)| *right -= c);
+            right
+                .iter_mut()
+                .zip(coupled)
+                .for_each(|(right, c)| *right -= c);
         }
         let mut values = system.solve(right);
         let mut change = system.transform(&values);
         // Along the curve: a punch, and what the wider contact adds.
         let along = |values: &mut Vec<f64>, change: &mut Vec<f64>, approach: f64, radius: f64| {
             let [punch, _] = &parts.values;
-            values.iter_mut().zip(punch).for_each(|(v, p)| *v += approach * p);
+            values
+                .iter_mut()
+                .zip(punch)
+                .for_each(|(v, p)| *v += approach * p);
             let [punch, _] = &parts.hats;
-            change.iter_mut().zip(punch).for_each(|(v, p)| *v += approach * p);
+            change
+                .iter_mut()
+                .zip(punch)
+                .for_each(|(v, p)| *v += approach * p);
             if edge.abs() > 0.0 && radius.abs() > 0.0 {
                 let (more, hat, _) = self.widening(edge);
-                values.iter_mut().zip(more).for_each(|(v, m)| *v += radius * m);
-                change.iter_mut().zip(hat).for_each(|(v, m)| *v += radius * m);
+                values
+                    .iter_mut()
+                    .zip(more)
+                    .for_each(|(v, m)| *v += radius * m);
+                change
+                    .iter_mut()
+                    .zip(hat)
+                    .for_each(|(v, m)| *v += radius * m);
             }
         };
         let a = self.radius;
@@ -253,7 +272,9 @@ impl Change<'_> {
         let waves = stack.level(a + far).map(|level| (self.wider(level), level));
         let at = |(r, u): (&f64, f64)| -> f64 {
             if *r <= a {
-                let shape = self.rate.map_or(0.0, |rate| point.parts.tip.gap_rate(rate, *r));
+                let shape = self
+                    .rate
+                    .map_or(0.0, |rate| point.parts.tip.gap_rate(rate, *r));
                 return self.approach - shape;
             }
             let moved = match edge.abs() > 0.0 {
@@ -272,14 +293,20 @@ impl Change<'_> {
     fn wider(&self, level: &Level) -> Vec<f64> {
         let point = self.point;
         let system = &point.parts.system;
-        if system.level.as_ref().is_some_and(|own| std::ptr::eq(&**own, level)) {
+        if system
+            .level
+            .as_ref()
+            .is_some_and(|own| std::ptr::eq(&**own, level))
+        {
             return self.density.g.clone();
         }
         let rows = system.basis.transforms(&level.waves);
         let sum = |values: &[f64]| {
             let mut sums = vec![0.0; level.waves.len()];
             for (row, value) in rows.iter().zip(values) {
-                sums.iter_mut().zip(row).for_each(|(sum, b)| *sum += value * b);
+                sums.iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, b)| *sum += value * b);
             }
             sums
         };
@@ -287,10 +314,16 @@ impl Change<'_> {
         let moved = point.exact_edge() * self.radius;
         let (mut cos, mut sin) = (change.clone(), change.clone());
         level.waves.circular(point.radius, &mut cos, &mut sin);
-        change.iter_mut().zip(&cos).for_each(|(sum, cos)| *sum += moved * cos);
+        change
+            .iter_mut()
+            .zip(&cos)
+            .for_each(|(sum, cos)| *sum += moved * cos);
         let mut g = times(&level.excess, &change);
         if let Some(number) = self.number {
-            let own = times(point.parts.stack.excess_rate(level, number), &sum(&point.values()));
+            let own = times(
+                point.parts.stack.excess_rate(level, number),
+                &sum(&point.values()),
+            );
             g.iter_mut().zip(own).for_each(|(g, own)| *g += own);
         }
         g

@@ -11,7 +11,7 @@
 //! load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived for nacre; on a bare body they are Maugis's closed form
 //! (J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T).
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use spec_math::cephes64::j1;
@@ -73,10 +73,17 @@ impl Zone {
             return zone;
         };
         let own = zone.transform(&level.waves);
-        let right = system.couple(&times(&level.excess, &own)).iter().map(|c| -c).collect();
+        let right = system
+            .couple(&times(&level.excess, &own))
+            .iter()
+            .map(|c| -c)
+            .collect();
         zone.values = system.solve(right);
         zone.hat = system.transform(&zone.values);
-        zone.hat.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        zone.hat
+            .iter_mut()
+            .zip(own)
+            .for_each(|(sum, own)| *sum += own);
         zone.edge = -system.couple_edge(&times(&level.excess, &zone.hat));
         zone
     }
@@ -100,7 +107,9 @@ impl Zone {
 
     /// ψ̂(α) at all waves; t = c cos η.
     pub(super) fn transform(&self, waves: &Waves) -> Vec<f64> {
-        let thicknesses = self.thickness.map_or(0.0, |h| (self.outer - self.inner) / h);
+        let thicknesses = self
+            .thickness
+            .map_or(0.0, |h| (self.outer - self.inner) / h);
         let count = NODES + (8.0 * thicknesses).ceil() as usize;
         let most = 0.5 * self.reach().atan2(self.inner);
         let mut sums = vec![0.0; waves.len()];
@@ -108,7 +117,9 @@ impl Zone {
         for (angle, w) in rule(count).nodes(most, most) {
             waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
             let weight = -2.0 / PI * self.strength * w * (self.outer * angle.sin()).powi(2);
-            sums.iter_mut().zip(&cos).for_each(|(sum, cos)| *sum += weight * cos);
+            sums.iter_mut()
+                .zip(&cos)
+                .for_each(|(sum, cos)| *sum += weight * cos);
         }
         sums
     }
@@ -176,7 +187,11 @@ pub(super) fn contact(
         }
         let zone = Zone::around(&parts, outer, strength);
         let approach = parts.hertzian() + (zone.density() - zone.edge) / parts.edge[0];
-        let mut point = Point::new(Arc::clone(&parts), Adhesion::Maugis { work, strength }, approach);
+        let mut point = Point::new(
+            Arc::clone(&parts),
+            Adhesion::Maugis { work, strength },
+            approach,
+        );
         point.load += zone.load() + 2.0 * PI * dot(&zone.values, &parts.system.ones);
         point.outer_radius = Some(outer);
         point.zone = Some(zone);
@@ -225,7 +240,11 @@ impl Apart {
         // u/A1 at c and on the axis.
         let (mut edge, mut axis) = (-2.0 / PI * strength * c, -strength * c);
         if let Some(level) = stack.level(2.0 * c) {
-            let hat = level.waves.alpha.iter().map(|alpha| -strength * c * j1(alpha * c) / alpha);
+            let hat = level
+                .waves
+                .alpha
+                .iter()
+                .map(|alpha| -strength * c * j1(alpha * c) / alpha);
             let hat: Vec<f64> = hat.collect();
             let g = times(&level.excess, &hat);
             edge += bessel_sum(&g, &level.waves.alpha, c);
@@ -272,7 +291,9 @@ impl Apart {
 
 #[cfg(test)]
 mod tests {
-    use super::{FRAC_PI_2, PI, Zone};
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::Zone;
     use crate::indent::waves::Waves;
 
     /// A zone from the axis on is a disc of uniform stress: its load, its transform J₁, its displacement at the edge, and the
@@ -282,7 +303,12 @@ mod tests {
         let (c, strength) = (0.7, 3.0);
         let zone = Zone::alone(0.0, c, strength, Some(1.0));
         assert!((zone.load() / (-PI * c * c * strength) - 1.0).abs() < 1e-14);
-        assert!((zone.inside(0.3, 0.0) / (-2.0 / PI * strength) - (c / (c * c - 0.09_f64).sqrt()).min(1.0).asin()).abs() < 1e-14);
+        assert!(
+            (zone.inside(0.3, 0.0) / (-2.0 / PI * strength)
+                - (c / (c * c - 0.09_f64).sqrt()).min(1.0).asin())
+            .abs()
+                < 1e-14
+        );
         let waves = Waves::plan(1.0, 3.0, 1.0, |alpha| (-alpha).exp());
         for (alpha, found) in waves.alpha.iter().zip(zone.transform(&waves)) {
             let due = -strength * c * spec_math::cephes64::j1(alpha * c) / alpha;
@@ -303,7 +329,11 @@ mod tests {
                 })
                 .sum();
             let due = -2.0 / PI * strength * sum * FRAC_PI_2 / f64::from(fine);
-            assert!((zone.abel(r) / due - 1.0).abs() < 1e-6, "{r}: {} {due}", zone.abel(r));
+            assert!(
+                (zone.abel(r) / due - 1.0).abs() < 1e-6,
+                "{r}: {} {due}",
+                zone.abel(r)
+            );
         }
     }
 }

@@ -110,7 +110,9 @@ impl Table {
             };
             2.0 / n as f64 * self.rows.iter().enumerate().map(term).sum::<f64>()
         };
-        (n - 2..=n).map(|j| coefficient(j).abs()).fold(0.0, f64::max)
+        (n - 2..=n)
+            .map(|j| coefficient(j).abs())
+            .fold(0.0, f64::max)
     }
 
     /// Barycentric weights of the rows at ln a, normed.
@@ -135,7 +137,11 @@ impl Table {
     }
 
     fn column(&self, weights: &[f64], column: usize) -> f64 {
-        weights.iter().zip(&self.rows).map(|(w, row)| w * row[column]).sum()
+        weights
+            .iter()
+            .zip(&self.rows)
+            .map(|(w, row)| w * row[column])
+            .sum()
     }
 }
 
@@ -226,9 +232,11 @@ impl Indent {
     /// Tables for approaches in ascending radius; none where they are not resolved.
     fn tables(&self, approaches: &[f64], parameters: &[Parameter]) -> Result<Option<Vec<Table>>> {
         let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
-        let (low, high) = approaches.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), a| {
-            (low.min(*a), high.max(*a))
-        });
+        let (low, high) = approaches
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), a| {
+                (low.min(*a), high.max(*a))
+            });
         let low = match is_adhering {
             true => self.pull_off(Control::Approach)?.radius,
             false => self.at_approach(low)?.radius,
@@ -271,9 +279,8 @@ impl Indent {
                 return Ok([0.0; 3]);
             }
             let change = point.derivative(Variable::Parameter(*parameter), Held::Radius)?;
-            let of_profile = change.stiffness * point.approach
-                + point.stiffness * change.approach
-                - change.load;
+            let of_profile =
+                change.stiffness * point.approach + point.stiffness * change.approach - change.load;
             Ok([
                 change.stiffness / point.stiffness,
                 of_profile / profile,
@@ -312,7 +319,12 @@ impl Indent {
     }
 
     /// A point from the tables.
-    fn interpolated(&self, tables: &[Table], approach: f64, parameters: &[Parameter]) -> Result<Entry> {
+    fn interpolated(
+        &self,
+        tables: &[Table],
+        approach: f64,
+        parameters: &[Parameter],
+    ) -> Result<Entry> {
         let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
         let logs = if is_adhering { 4 } else { 3 };
         let table_at = |log: f64| {

@@ -131,11 +131,18 @@ impl Density<'_> {
             panels.flat_map(|panel| panel.nodes(rule)).unzip();
         let places: Vec<f64> = angles.iter().map(|angle| r * angle.sin()).collect();
         let values = self.at(&places);
-        values.iter().zip(&weights).map(|([value, _], w)| w * value).sum()
+        values
+            .iter()
+            .zip(&weights)
+            .map(|([value, _], w)| w * value)
+            .sum()
     }
 }
 
 /// ∫ g J₀(αr) over waves.
 pub(super) fn bessel_sum(g: &[f64], alpha: &[f64], r: f64) -> f64 {
-    g.iter().zip(alpha).map(|(g, alpha)| g * j0(alpha * r)).sum()
+    g.iter()
+        .zip(alpha)
+        .map(|(g, alpha)| g * j0(alpha * r))
+        .sum()
 }

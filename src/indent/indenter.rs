@@ -259,7 +259,12 @@ impl Indent {
     }
 
     /// The contact of smaller radius at a `value`.
-    fn unstable(&self, of: impl Fn(&Point) -> f64, value: f64, [low, high]: [f64; 2]) -> Result<Point> {
+    fn unstable(
+        &self,
+        of: impl Fn(&Point) -> f64,
+        value: f64,
+        [low, high]: [f64; 2],
+    ) -> Result<Point> {
         let error = |log: f64| Ok(of(&self.state(log.exp())?) - value);
         let mut start = high;
         while start > low.max(1e-6 * high) {
@@ -365,7 +370,9 @@ impl Indent {
                     Control::Approach => approach,
                 };
                 match self.least(control) {
-                    Ok(point) if of(point.load, point.approach) < of(apart.load, apart.approach) => {
+                    Ok(point)
+                        if of(point.load, point.approach) < of(apart.load, apart.approach) =>
+                    {
                         Ok(touching(point))
                     }
                     _ => Ok(PullOff {
@@ -389,7 +396,12 @@ impl Indent {
         }
         // δ(c) falls from −w/σ₀ and may rise again before the tip touches.
         let at = |part: f64| {
-            Apart::new(&self.stack, &self.tip, part * touching.outer_radius, numbers)
+            Apart::new(
+                &self.stack,
+                &self.tip,
+                part * touching.outer_radius,
+                numbers,
+            )
         };
         let approach = |part: f64| at(part).approach;
         let slope = |part: f64| Ok(approach(part * (1.0 + 1e-5)) - approach(part * (1.0 - 1e-5)));

@@ -35,7 +35,10 @@ impl Parts {
         let places = system.basis.places();
         let profile: Vec<f64> = places.iter().map(|s| f * tip.transform(*s)[0]).collect();
         let punch = system.ones.iter().map(|one| f * one).collect();
-        let rights = [(punch, f), (system.basis.project(&profile), f * tip.transform(a)[0])];
+        let rights = [
+            (punch, f),
+            (system.basis.project(&profile), f * tip.transform(a)[0]),
+        ];
         let mut loads = [0.0; 2];
         let mut edge = [0.0; 2];
         let mut hats = [Vec::new(), Vec::new()];

@@ -120,7 +120,11 @@ impl Point {
             if let Some(zone) = &self.zone {
                 // φ goes on into the zone, so that no edge is singular.
                 let from_contact = match *r < a {
-                    true => Density { edge: 0.0, ..self.density() }.pressure(*r),
+                    true => Density {
+                        edge: 0.0,
+                        ..self.density()
+                    }
+                    .pressure(*r),
                     false => 0.0,
                 };
                 return from_contact + zone.inside(*r, a);
@@ -155,7 +159,9 @@ impl Point {
                 return self.approach - self.parts.tip.gap(*r);
             }
             let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(*r));
-            let layers = waves.as_ref().map_or(0.0, |[g, alpha]| bessel_sum(g, alpha, *r));
+            let layers = waves
+                .as_ref()
+                .map_or(0.0, |[g, alpha]| bessel_sum(g, alpha, *r));
             short * (density.abel(*r) + zone + layers)
         };
         Ok(r.iter().map(at).collect())
@@ -181,7 +187,11 @@ impl Point {
         let own = self.parts.system.level.as_ref()?;
         // The level of a cohesive zone may already be wider.
         let level = self.parts.stack.level(self.radius + far)?;
-        let level = if level.length > own.length { level } else { own };
+        let level = if level.length > own.length {
+            level
+        } else {
+            own
+        };
         let (alpha, excess) = (level.waves.alpha.clone(), &level.excess);
         let hat = match Arc::ptr_eq(level, own) {
             true => self.hat(),
@@ -190,7 +200,9 @@ impl Point {
                 let values = self.values();
                 let mut hat = vec![0.0; alpha.len()];
                 for (row, value) in rows.iter().zip(&values) {
-                    hat.iter_mut().zip(row).for_each(|(sum, b)| *sum += value * b);
+                    hat.iter_mut()
+                        .zip(row)
+                        .for_each(|(sum, b)| *sum += value * b);
                 }
                 if let Some(zone) = &self.zone {
                     let own = zone.transform(&level.waves);
@@ -249,7 +261,11 @@ impl Point {
         );
         // φ that falls towards the edge has a positive pressure.
         let places = [0.1, 0.5, 0.999].map(|part| part * self.radius);
-        let falls = self.density().at(&places).iter().all(|[_, slope]| *slope <= 0.0);
+        let falls = self
+            .density()
+            .at(&places)
+            .iter()
+            .all(|[_, slope]| *slope <= 0.0);
         if !falls || !self.parts.tip.is_convex() {
             let inside = (1..10).map(|k| 0.1 * f64::from(k) * self.radius);
             let inside: Vec<f64> = inside.collect();
@@ -260,8 +276,14 @@ impl Point {
             }
         }
         if !self.parts.tip.is_convex() {
-            let outside: Vec<f64> = (1..20).map(|k| self.radius * (1.0 + 0.05 * f64::from(k))).collect();
-            if self.gap(&outside)?.iter().any(|gap| *gap < -1e-9 * self.approach) {
+            let outside: Vec<f64> = (1..20)
+                .map(|k| self.radius * (1.0 + 0.05 * f64::from(k)))
+                .collect();
+            if self
+                .gap(&outside)?
+                .iter()
+                .any(|gap| *gap < -1e-9 * self.approach)
+            {
                 return Err(NO_DISC);
             }
         }

@@ -82,7 +82,8 @@ pub(super) fn bracketed(
         let inverse = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
         t = match inverse {
             true => {
-                fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+                fa / (fb - fa) * fc / (fb - fc)
+                    + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
             }
             false => 0.5,
         };

@@ -74,7 +74,7 @@ impl Stack {
     /// Plans `bodies`, which touch in the contact.
     ///
     /// # Errors
-    /// No bodies, all of them rigid, one with a local compliance.
+    /// No bodies, all of them rigid, one with a local compliance or with free ends.
     pub fn plan(bodies: &[Body]) -> Result<Self> {
         Self::with_resolution(bodies, 1.0)
     }
@@ -89,6 +89,15 @@ impl Stack {
         if bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0) {
             return Err(Error::Inconsistent(
                 "bodies must be at least one, elastic, and without a local compliance",
+            ));
+        }
+        let ends = |body: &Body| {
+            body.half_space()
+                .is_some_and(|body| body.ends() != [None; 2])
+        };
+        if bodies.iter().any(ends) {
+            return Err(Error::Inconsistent(
+                "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
             ));
         }
         let tops = bodies
@@ -191,7 +200,13 @@ impl Stack {
                 .collect();
             let most = own.iter().map(Vec::len).max().unwrap_or(0);
             let mut slopes = vec![0.0; most];
-            for (q, (alpha, w)) in level.waves.alpha.iter().zip(&level.waves.weight).enumerate() {
+            for (q, (alpha, w)) in level
+                .waves
+                .alpha
+                .iter()
+                .zip(&level.waves.weight)
+                .enumerate()
+            {
                 // M = response/short − 1.
                 let ratio = level.excess[q] + w;
                 let mut first = 0;

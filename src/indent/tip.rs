@@ -354,9 +354,7 @@ impl Tip {
                 // −r g'/2, by a difference whose error is 1e-10 of g.
                 -(self.gap(r * (1.0 + h)) - self.gap(r * (1.0 - h))) / (4.0 * h)
             }
-            TipParameter::Number(number) => {
-                self.rates(number).iter().map(|term| term.gap(r)).sum()
-            }
+            TipParameter::Number(number) => self.rates(number).iter().map(|term| term.gap(r)).sum(),
         }
     }
 

@@ -87,7 +87,8 @@ impl Waves {
 
     /// cos αs at all wavenumbers, into `cos`, and sin αs into `sin`.
     pub(super) fn circular(&self, s: f64, cos: &mut [f64], sin: &mut [f64]) {
-        let lanes = |values: &[f64]| -> Lanes { Lanes::from([values[0], values[1], values[2], values[3]]) };
+        let lanes =
+            |values: &[f64]| -> Lanes { Lanes::from([values[0], values[1], values[2], values[3]]) };
         let exact = |k: usize, cos: &mut [f64], sin: &mut [f64]| {
             let (y, x) = (lanes(&self.alpha[k..k + 4]) * Lanes::splat(s)).sin_cos();
             cos[k..k + 4].copy_from_slice(&x.to_array());

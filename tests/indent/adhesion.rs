@@ -103,8 +103,8 @@ fn branches_of_the_curve() -> Result<()> {
     let last = indent.pull_off(Control::Load)?;
     for part in [0.5, 0.9, 0.999] {
         let load = part * last.load;
-        let [stable, unstable] = [Branch::Stable, Branch::Unstable]
-            .map(|branch| indent.at(Control::Load, load, branch));
+        let [stable, unstable] =
+            [Branch::Stable, Branch::Unstable].map(|branch| indent.at(Control::Load, load, branch));
         let (stable, unstable) = (stable?, unstable?);
         assert!((stable.load / load - 1.0).abs() < 1e-10);
         assert!((unstable.load / load - 1.0).abs() < 1e-10);
@@ -142,7 +142,10 @@ fn maugis_on_bare_and_coated_bodies() -> Result<()> {
         for row in case["rows"].as_array().into_iter().flatten() {
             let (lambda, due) = (number(&row["lambda_"]), number(&row["pull_off_over_piwR"]));
             let found = pull_off(&stack, lambda)?;
-            assert!((found - due).abs() < 1e-5, "{ratio} {lambda}: {found} {due}");
+            assert!(
+                (found - due).abs() < 1e-5,
+                "{ratio} {lambda}: {found} {due}"
+            );
         }
         let jkr = Indent::new(&stack, &tip).with_adhesion(Adhesion::Jkr { work: WORK })?;
         let due = -jkr.pull_off(Control::Load)?.load / (PI * WORK);

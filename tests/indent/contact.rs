@@ -122,7 +122,11 @@ fn bare_bodies_are_sneddons() -> Result<()> {
         let point = Indent::new(&stack, &tip).at_radius(a)?;
         assert!((point.approach / approach - 1.0).abs() < 1e-12, "{tip:?}");
         // Eight nodes integrate s^1.5 to 1e-6; the rule is made for whole powers.
-        let error = if approach < 0.15 && tip == power(1.5)? { 1e-5 } else { 1e-12 };
+        let error = if approach < 0.15 && tip == power(1.5)? {
+            1e-5
+        } else {
+            1e-12
+        };
         assert!(
             (point.load / load - 1.0).abs() < error,
             "{tip:?}: {} {load}",
@@ -146,13 +150,17 @@ fn bare_bodies_are_sneddons() -> Result<()> {
         let (x, root) = (a / r, (r * r - a * a).sqrt());
         let due = ((2.0 * a * a - r * r) * x.asin() + a * root) / (PI * 5.0);
         let found = point.displacement(&[r])?[0];
-        assert!((found - due).abs() < 1e-13 * point.approach, "{r}: {found} {due}");
+        assert!(
+            (found - due).abs() < 1e-13 * point.approach,
+            "{r}: {found} {due}"
+        );
     }
     Ok(())
 }
 
 /// n (√π/2) Γ(n/2)/Γ((n+1)/2) for n = 3/2: Γ(3/4) = 1.2254167024651777, Γ(5/4) = 0.9064024770554771.
-const THREE_HALVES: f64 = 1.5 * 0.886_226_925_452_758 * 1.225_416_702_465_177_7 / 0.906_402_477_055_477_1;
+const THREE_HALVES: f64 =
+    1.5 * 0.886_226_925_452_758 * 1.225_416_702_465_177_7 / 0.906_402_477_055_477_1;
 
 /// The load and the approach that a radius gives give the radius back; along the curve dP/dδ = S.
 #[test]
@@ -223,6 +231,10 @@ fn wrong_input_is_refused() -> Result<()> {
     assert!(indent.at_radius(0.3)?.pressure(&[-1.0]).is_err());
     let wide = Indent::new(&stack, &Tip::paraboloid(1e6)?).at_radius(103.0);
     assert!(wide.is_err_and(|error| error.to_string().contains("1024 times")));
-    assert!(Indent::new(&stack, &Tip::flat_punch(1.0)?).at_radius(1.0).is_err());
+    assert!(
+        Indent::new(&stack, &Tip::flat_punch(1.0)?)
+            .at_radius(1.0)
+            .is_err()
+    );
     Ok(())
 }

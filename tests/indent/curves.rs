@@ -34,7 +34,11 @@ fn curves_equal_states() -> Result<()> {
         (sphere, Adhesion::Dmt { work: 0.01 }, &work[..]),
         (blunt, Adhesion::None, &parameters[..]),
         (sampled, Adhesion::None, &parameters[..]),
-        (Form::FlatPunch { radius: 0.3 }, Adhesion::None, &parameters[..]),
+        (
+            Form::FlatPunch { radius: 0.3 },
+            Adhesion::None,
+            &parameters[..],
+        ),
     ];
     for (form, adhesion, parameters) in cases {
         let stack = Stack::plan(&[coated(4.0, 1.0)?.into()])?;
@@ -50,10 +54,17 @@ fn curves_equal_states() -> Result<()> {
             };
             touching += 1;
             let size = point.load.abs() + 0.01;
-            assert!((curve.load[k] - point.load).abs() < 1e-8 * size, "{form:?} {adhesion:?} {approach}");
+            assert!(
+                (curve.load[k] - point.load).abs() < 1e-8 * size,
+                "{form:?} {adhesion:?} {approach}"
+            );
             assert!((curve.radius[k] / point.radius - 1.0).abs() < 1e-8);
             let held = point.derivative(Variable::Held, Held::Approach)?.load;
-            assert!((curve.slope[k] / held - 1.0).abs() < 1e-7, "{} {held}", curve.slope[k]);
+            assert!(
+                (curve.slope[k] / held - 1.0).abs() < 1e-7,
+                "{} {held}",
+                curve.slope[k]
+            );
             for (found, parameter) in curve.derivatives[k].iter().zip(parameters) {
                 let variable = Variable::Parameter(*parameter);
                 let due = point.derivative(variable, Held::Approach)?.load;

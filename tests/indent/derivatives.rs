@@ -97,19 +97,20 @@ fn differences() -> Result<()> {
                 continue;
             }
             let tip_numbers = [3.0, 4.5];
-            let solve = |n: &[f64; 10], t: [f64; 2], work: f64, held, value: f64| -> Result<Point> {
-                let adhesion = match adhesion {
-                    Adhesion::None => Adhesion::None,
-                    _ => Adhesion::Jkr { work },
+            let solve =
+                |n: &[f64; 10], t: [f64; 2], work: f64, held, value: f64| -> Result<Point> {
+                    let adhesion = match adhesion {
+                        Adhesion::None => Adhesion::None,
+                        _ => Adhesion::Jkr { work },
+                    };
+                    let tip = Tip::new(form(t[0], t[1]))?;
+                    let indent = Indent::new(&stack(n)?, &tip).with_adhesion(adhesion)?;
+                    match held {
+                        Held::Radius => indent.at_radius(value),
+                        Held::Load => indent.at_load(value),
+                        Held::Approach => indent.at_approach(value),
+                    }
                 };
-                let tip = Tip::new(form(t[0], t[1]))?;
-                let indent = Indent::new(&stack(n)?, &tip).with_adhesion(adhesion)?;
-                match held {
-                    Held::Radius => indent.at_radius(value),
-                    Held::Load => indent.at_load(value),
-                    Held::Approach => indent.at_approach(value),
-                }
-            };
             for held in [Held::Load, Held::Approach, Held::Radius] {
                 // What is held is one line of the code: two tips show it.
                 if k == 4 && held == Held::Radius || k > 0 && k < 4 && held != Held::Load {
@@ -129,7 +130,8 @@ fn differences() -> Result<()> {
                     .collect();
                 assert_eq!(variables.len(), 10);
                 // The interfaces are in order: layer, layer, substrate, counterbody.
-                let tips = [0, 1].map(|k| Variable::Parameter(Parameter::Tip(TipParameter::Number(k))));
+                let tips =
+                    [0, 1].map(|k| Variable::Parameter(Parameter::Tip(TipParameter::Number(k))));
                 let count = Tip::new(form(3.0, 4.5))?.numbers().len();
                 variables.extend(&tips[..count]);
                 variables.push(Variable::Held);
@@ -138,7 +140,8 @@ fn differences() -> Result<()> {
                 }
                 for (number, variable) in variables.iter().enumerate() {
                     let at = |step: f64| -> Result<Point> {
-                        let (mut n, mut t, mut work, mut value) = (numbers, tip_numbers, 0.02, value);
+                        let (mut n, mut t, mut work, mut value) =
+                            (numbers, tip_numbers, 0.02, value);
                         match variable {
                             Variable::Held => value *= 1.0 + step,
                             Variable::Parameter(Parameter::Work) => work *= 1.0 + step,

@@ -31,7 +31,10 @@ fn all_thicknesses_and_moduli() -> Result<()> {
             let share = if h > 1.0 { 1.0 / h } else { h };
             if share * contrast <= 0.02 {
                 let error = point.load / bare - 1.0;
-                assert!(error.abs() < 3.0 * share * contrast, "{ratio} {h}: {error:e}");
+                assert!(
+                    error.abs() < 3.0 * share * contrast,
+                    "{ratio} {h}: {error:e}"
+                );
             }
         }
     }
@@ -45,7 +48,9 @@ fn random_stacks() -> Result<()> {
     let mut state = 12345_u64;
     let mut random = move || {
         // Knuth's linear congruence, upper bits.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     for case in 0..200 {
@@ -87,9 +92,15 @@ fn random_stacks() -> Result<()> {
             (of(&p) - 8.0 * of(&q) + 8.0 * of(&r) - of(&s)) / (12.0 * 1e-3 * a)
         };
         let [load, approach] = [slope(|p| p.load), slope(|p| p.approach)];
-        assert!((load / (point.stiffness * approach) - 1.0).abs() < 1e-8, "{case}");
+        assert!(
+            (load / (point.stiffness * approach) - 1.0).abs() < 1e-8,
+            "{case}"
+        );
         let stiffness = slope(|p| p.stiffness);
-        assert!((point.stiffness_slope / stiffness - 1.0).abs() < 1e-8, "{case}");
+        assert!(
+            (point.stiffness_slope / stiffness - 1.0).abs() < 1e-8,
+            "{case}"
+        );
     }
     Ok(())
 }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -19,7 +18,6 @@ Noise = Literal["relative", "absolute"]
 
 NUISANCES = ("contact_point", "drift", "compliance")
 """Nuisances of a curve: the depth of its zero [m], a drift [m/s], the machine's compliance [m/N]."""
-NUISANCE = re.compile(r"(?:curves\[(\d+)\]\.)?(contact_point|drift|compliance)$")
 RANGES = {
     "young": 1e4,
     "thickness": 1e3,
@@ -53,10 +51,11 @@ class System:
         adhesion: core.Adhesion | None = None,
     ) -> System:
         """Return the system of these arguments, elastic materials as half-spaces."""
-        bodies = [core.HalfSpace(b) if isinstance(b, core.Elastic) else b for b in (body,)]
+        if isinstance(body, core.Elastic):
+            body = core.HalfSpace(body)
         if isinstance(counterbody, core.Elastic):
             counterbody = core.HalfSpace(counterbody)
-        return cls(bodies[0], tip, counterbody, adhesion)
+        return cls(body, tip, counterbody, adhesion)
 
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""
@@ -98,16 +97,16 @@ class System:
 
     def narrowed(self, factor: float) -> System:
         """Return the system with lateral lengths divided by a factor, but for those of the tip."""
-        bodies = [
-            b and _changed_body(b, "", {}, factor) for b in (self.body, self.counterbody)
-        ]
+        counterbody = self.counterbody
+        if counterbody is not None:
+            counterbody = _changed_body(counterbody, "", {}, factor)
         adhesion = self.adhesion
         if adhesion is not None:
             adhesion = getattr(core.Adhesion, adhesion.kind)(adhesion.work * factor)
-        assert bodies[0] is not None
-        return replace(self, body=bodies[0], counterbody=bodies[1], adhesion=adhesion)
+        body = _changed_body(self.body, "", {}, factor)
+        return replace(self, body=body, counterbody=counterbody, adhesion=adhesion)
 
-    def curve(self, approach: Array, wrt: Sequence[str], area: float = 1.0) -> core.IndentCurve:
+    def curve(self, approach: Array, wrt: Sequence[str] = ()) -> core.IndentCurve:
         """Return the loads at these approaches."""
         made = core.Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
         return made.curve(approach=approach, wrt=wrt)

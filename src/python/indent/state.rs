@@ -1,0 +1,246 @@
+//! States of an indentation: `IndentState` and `StateDerivative`.
+
+use ndarray::ArrayD;
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::super::arguments::real_array;
+use crate::Result;
+use crate::indent::{Held, Parameter, Point, Variable};
+
+/// Values in the shape of what was given: a number or an array.
+pub(super) fn shaped<'py>(
+    py: Python<'py>,
+    values: Vec<f64>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
+    if shape.is_empty() {
+        return Ok(values[0].into_pyobject(py)?.into_any());
+    }
+    let array = ArrayD::from_shape_vec(shape.to_vec(), values);
+    let array =
+        array.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
+    Ok(array.into_pyarray(py).into_any())
+}
+
+/// Contacts of an indentation, one for each load, approach or radius that was given, in the shape of the latter.
+///
+/// Examples
+/// --------
+/// >>> body = nacre.HalfSpace(nacre.Elastic(70e9, 0.33))
+/// >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(10e-6))
+/// >>> state = test.at(load=[1e-3, 2e-3])
+/// >>> state.approach.shape
+/// (2,)
+#[pyclass(name = "IndentState", module = "nacre.indent", frozen)]
+pub(in crate::python) struct PyIndentState {
+    pub(super) points: Vec<Point>,
+    pub(super) shape: Vec<usize>,
+    pub(super) held: Held,
+    pub(super) parameters: Vec<(String, Parameter)>,
+}
+
+impl PyIndentState {
+    fn each<'py>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&Point) -> f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        shaped(py, self.points.iter().map(of).collect(), &self.shape)
+    }
+
+    /// Values at distances r of all points, in the shape of the points followed by that of r.
+    fn field<'py>(
+        &self,
+        r: &Bound<'py, PyAny>,
+        of: impl Fn(&Point, &[f64]) -> Result<Vec<f64>> + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = r.py();
+        let r = real_array("r", r)?;
+        let shape = [&self.shape, r.shape()].concat();
+        let r: Vec<f64> = r.into_iter().collect();
+        let points = &self.points;
+        let all = py.detach(|| points.iter().map(|p| of(p, &r)).collect::<Result<Vec<_>>>())?;
+        shaped(py, all.into_iter().flatten().collect(), &shape)
+    }
+}
+
+#[pymethods]
+impl PyIndentState {
+    /// Contact radius [m].
+    #[getter]
+    fn radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |point| point.radius)
+    }
+
+    /// Load [N], below 0 where the tip is pulled.
+    #[getter]
+    fn load<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |point| point.load)
+    }
+
+    /// Approach [m].
+    #[getter]
+    fn approach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |point| point.approach)
+    }
+
+    /// Stiffness of this contact area [N/m]: that of unloading, and without adhesion the slope of the curve.
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |point| point.stiffness)
+    }
+
+    /// Derivative of the stiffness with respect to the contact radius [N/m^2].
+    #[getter]
+    fn stiffness_slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |point| point.stiffness_slope)
+    }
+
+    /// Radius up to which the surfaces attract each other [m]: that of the contact but for Maugis's adhesion.
+    #[getter]
+    fn outer_radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, |point| point.outer_radius.unwrap_or(point.radius))
+    }
+
+    /// Pressure [Pa] at distances r from the axis [m], 0 outside of the contact, infinite below a sharp tip and at a sharp edge. Its
+    /// shape is that of the state followed by that of r.
+    fn pressure<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        self.field(r, Point::pressure)
+    }
+
+    /// Displacement of both surfaces together [m] at distances r from the axis [m], positive into the bodies.
+    fn displacement<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        self.field(r, Point::displacement)
+    }
+
+    /// Gap between tip and surface [m] at distances r from the axis [m], infinite beyond the tip.
+    fn gap<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        self.field(r, Point::gap)
+    }
+
+    /// Derivatives with respect to parameters by path, where what was given is held.
+    ///
+    /// Parameters
+    /// ----------
+    /// wrt : list of str, optional
+    ///     Paths as `Indentation.parameters` lists them; all of them by default.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to StateDerivative
+    ///     Derivatives of radius, load, approach and stiffness, per unit of the parameter.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no such parameter, or the adhesion is Maugis's, which has no derivatives.
+    #[pyo3(signature = (wrt=None))]
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        wrt: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let chosen = chosen(&self.parameters, wrt)?;
+        let found = PyDict::new(py);
+        for (path, parameter) in chosen {
+            let (points, held) = (&self.points, self.held);
+            let values = py.detach(|| -> Result<Vec<[f64; 4]>> {
+                let at = |point: &Point| {
+                    let change = point.derivative(Variable::Parameter(parameter), held)?;
+                    Ok([
+                        change.radius,
+                        change.load,
+                        change.approach,
+                        change.stiffness,
+                    ])
+                };
+                points.iter().map(at).collect()
+            })?;
+            let shape = self.shape.clone();
+            found.set_item(path, Py::new(py, PyStateDerivative { values, shape })?)?;
+        }
+        Ok(found)
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.points[..] {
+            [point] => format!(
+                "<IndentState: radius {:.4e} m, load {:.4e} N, approach {:.4e} m>",
+                point.radius, point.load, point.approach
+            ),
+            points => format!("<IndentState: {} contacts>", points.len()),
+        }
+    }
+}
+
+/// Parameters of these paths, or all.
+pub(super) fn chosen(
+    known: &[(String, Parameter)],
+    wrt: Option<Vec<String>>,
+) -> PyResult<Vec<(String, Parameter)>> {
+    let Some(paths) = wrt else {
+        return Ok(known.to_vec());
+    };
+    let find = |path: String| {
+        let found = known.iter().find(|(own, _)| *own == path).cloned();
+        found.ok_or_else(|| {
+            let all: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
+            pyo3::exceptions::PyValueError::new_err(format!(
+                "wrt must be paths among {}, got {path:?}",
+                all.join(", ")
+            ))
+        })
+    };
+    paths.into_iter().map(find).collect()
+}
+
+/// Derivatives of the states of an indentation with respect to one parameter, in the shape of the states.
+///
+/// Examples
+/// --------
+/// >>> body = nacre.HalfSpace(nacre.Elastic(70e9, 0.33))
+/// >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.paraboloid(10e-6))
+/// >>> state = test.at(load=1e-3)
+/// >>> change = state.derivatives(["body.substrate.young"])["body.substrate.young"]
+/// >>> round(change.approach * 70e9 / state.approach, 6)  # Hertz: -2/3
+/// -0.666667
+#[pyclass(name = "StateDerivative", module = "nacre.indent", frozen)]
+pub(in crate::python) struct PyStateDerivative {
+    values: Vec<[f64; 4]>,
+    shape: Vec<usize>,
+}
+
+impl PyStateDerivative {
+    fn each<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Bound<'py, PyAny>> {
+        shaped(py, self.values.iter().map(|v| v[k]).collect(), &self.shape)
+    }
+}
+
+#[pymethods]
+impl PyStateDerivative {
+    /// Derivative of the contact radius.
+    #[getter]
+    fn radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, 0)
+    }
+
+    /// Derivative of the load.
+    #[getter]
+    fn load<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, 1)
+    }
+
+    /// Derivative of the approach.
+    #[getter]
+    fn approach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, 2)
+    }
+
+    /// Derivative of the stiffness.
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, 3)
+    }
+}
