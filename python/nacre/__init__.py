@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from nacre import design as design
     from nacre import friction as friction
     from nacre import hertz as hertz
+    from nacre import indent as indent
     from nacre import paper as paper
     from nacre import plot as plot
     from nacre import rough as rough
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 __all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
 
-LAZY = ("case", "design", "friction", "hertz", "paper", "plot", "rough")
+LAZY = ("case", "design", "friction", "hertz", "indent", "paper", "plot", "rough")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

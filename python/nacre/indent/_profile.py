@@ -259,7 +259,9 @@ def _structure(model: Model, best: Estimate, k: int) -> str:
     body = system.body
     if name.endswith(".thickness") and name.startswith("body.layers["):
         number = int(name[len("body.layers[") : name.index("]")])
-        below = body.layers[number + 1].material if number + 1 < len(body.layers) else body.substrate
+        below = (
+            body.layers[number + 1].material if number + 1 < len(body.layers) else body.substrate
+        )
         own = body.layers[number].material
         if isinstance(below, type(own)) and abs(math.log(own.young / below.young)) < 0.1:
             return ". The layer is hardly stiffer or softer than what is beneath it"

@@ -1,0 +1,45 @@
+"""Indentation by axisymmetric tips: exact on any stack of layers, with adhesion, and fits of curves.
+
+The contact of a body of revolution is solved without a grid, from the frequency response of the
+layers alone. For shapes that are not of revolution, loads off the axis and friction there is
+`nacre.solve`.
+
+Examples
+--------
+>>> glass, film = nacre.Elastic(70e9, 0.22), nacre.Elastic(3e9, 0.4)
+>>> body = nacre.HalfSpace(glass, [nacre.Layer(film, thickness=1e-6)])
+>>> test = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(5e-6))
+>>> state = test.at(approach=[50e-9, 100e-9])
+>>> state.load.round(5)
+array([0.00019, 0.00061])
+"""
+
+from nacre._core import (
+    Adhesion,
+    Indentation,
+    IndentCurve,
+    IndentState,
+    PullOff,
+    StateDerivative,
+    Tip,
+    slope_of,
+)
+from nacre.indent.checks import ContactPoint, check, contact_point, suspicious_units
+from nacre.indent.curves import Curve, read
+
+__all__ = [
+    "Adhesion",
+    "ContactPoint",
+    "Curve",
+    "IndentCurve",
+    "IndentState",
+    "Indentation",
+    "PullOff",
+    "StateDerivative",
+    "Tip",
+    "check",
+    "contact_point",
+    "read",
+    "slope_of",
+    "suspicious_units",
+]

@@ -1,0 +1,238 @@
+"""Result of a fit of indentation curves."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre.indent.classical import Classical, classical
+from nacre.indent.curves import Curve
+from nacre.units import PARAMETERS, written
+from nacre.values import FORMAT, decode, encode
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+
+UNITS = PARAMETERS | {
+    **{"work": "N/m", "flat": "m", "strength": "Pa"},
+    **{"contact_point": "m", "drift": "m/s", "compliance": "m/N"},
+}
+"""SI units of parameters by the last part of their names."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """Estimates of `fit`, how sure they are, and whether the data tell them at all."""
+
+    estimates: dict[str, float]
+    """Value of each parameter, nuisances after the free ones; in natural units."""
+    standard_errors: dict[str, float]
+    """Standard errors; those of logarithms are these over the estimates."""
+    covariance: Array
+    """Covariance of the parameters in their order."""
+    correlation: Array
+    """Correlation of the parameters, of the logarithms where these are fitted."""
+    intervals: dict[str, tuple[float, float]]
+    """Intervals of 95 %: by profile likelihood of free parameters, linear of nuisances."""
+    reasons: dict[str, str]
+    """Why a parameter is not identifiable, for those that are not."""
+    residuals: list[Array]
+    """Residuals of each curve: ln(F/P) for relative noise, F − P [N] for absolute."""
+    loads: list[Array]
+    """Loads P of the model at the points of each curve [N]."""
+    approaches: list[Array]
+    """True depths of the points of each curve, without nuisances [m]."""
+    chi2: float
+    """Sum of the squares of weighted residuals, with priors."""
+    dof: int
+    """Degrees of freedom."""
+    sigma: float
+    """Standard deviation of the noise, as given or as estimated: a share, or of the largest force."""
+    is_sigma_known: bool
+    """Whether the noise was given."""
+    noise: Literal["relative", "absolute"]
+    """Kind of noise."""
+    condition: float
+    """Condition number of the Jacobian with columns of unit length: a symptom only."""
+    is_profiled: bool
+    """Whether intervals are profiled, and other starts were tried."""
+    free: tuple[str, ...]
+    """Free parameters of the indentation."""
+    curves: list[Curve]
+    """Curves as given."""
+    body: core.HalfSpace
+    """Body with the estimates."""
+    tip: core.Tip
+    """Tip with the estimates; an area is not part of it."""
+    counterbody: core.HalfSpace | None
+    """Counterbody with the estimates."""
+    adhesion: core.Adhesion | None
+    """Adhesion with the estimates."""
+    evaluations: int
+    """How often the curves were computed."""
+
+    @property
+    def identifiable(self) -> dict[str, bool]:
+        """Whether the data tell each free parameter."""
+        return {name: name not in self.reasons for name in self.free}
+
+    @property
+    def is_identifiable(self) -> bool:
+        """Whether the data tell all free parameters."""
+        return not self.reasons
+
+    def classical(self, curve: int = 0) -> list[Classical]:
+        """Return what customary formulae would have said, with their bias against the fit.
+
+        Parameters
+        ----------
+        curve : int
+            Number of the curve.
+
+        Returns
+        -------
+        list of Classical
+            A row for each formula that applies to the tip and the body.
+        """
+        clean = Curve(self.approaches[curve], self.curves[curve].force)
+        return classical(clean, self.body, self.tip)
+
+    def plot(self, axes: Axes | None = None, *, curve: int = 0) -> Axes:
+        """Draw the data and the model; without axes, the residuals below, in a new figure."""
+        from nacre.plot import indent
+
+        return indent.fit_plot(self, axes, curve=curve)
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Write one page with curves, residuals and the table: PDF, PNG or SVG by the ending."""
+        from nacre.plot import indent
+
+        indent.fit_report(self, path)
+
+    def __repr__(self) -> str:
+        """Return a line with the estimates."""
+        said = ", ".join(f"{name} {self._value(name)}" for name in self.free)
+        verdict = "identifiable" if self.is_identifiable else "not identifiable"
+        return f"<Fit of {said}: {verdict}>"
+
+    def __str__(self) -> str:
+        """Return the table."""
+        rows = [["parameter", "estimate", "±", "95 % interval", ""]]
+        for name in self.estimates:
+            low, high = (self._written(name, end) for end in self.intervals[name])
+            error = self._written(name, self.standard_errors[name], 2)
+            verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
+            rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = [
+            "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+            for row in rows
+        ]
+        lines += [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
+        if self.noise == "relative":
+            noise = f"{100 * self.sigma:.3g} % of the force"
+        else:
+            noise = written(self.sigma, "N", 3)
+        points = sum(map(len, self.curves))
+        lines.append(
+            f"noise {noise} ({'given' if self.is_sigma_known else 'estimated'}), "
+            f"χ² {self.chi2 if self.is_sigma_known else self.dof:.4g} at {self.dof} degrees of "
+            f"freedom, {points} points, condition {self.condition:.3g}"
+        )
+        if not self.is_profiled:
+            lines.append("intervals are linear, and no other start was tried: profile=False")
+        return "\n".join(lines)
+
+    def _value(self, name: str) -> str:
+        return self._written(name, self.estimates[name])
+
+    def _written(self, name: str, value: float, digits: int = 4) -> str:
+        if not math.isfinite(value):
+            return f"{value}"
+        return written(value, UNITS.get(name.rpartition(".")[2], ""), digits)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fit as plain data with names, for JSON."""
+        state: dict[str, Any] = {"format": FORMAT, "nacre": core.__version__, "kind": "Fit"}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == "curves":
+                value = [
+                    {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
+                    for c in value
+                ]
+            state[field.name] = _plain(value) if field.name in KEPT else encode(value)
+        return state
+
+    @staticmethod
+    def from_dict(data: Mapping[str, Any]) -> Fit:
+        """Return the fit of what `to_dict` returned.
+
+        Raises
+        ------
+        ValueError
+            If a key is missing or unknown, or a newer version wrote the data.
+        """
+        state = dict(data)
+        version, kind = state.pop("format", None), state.pop("kind", None)
+        writer = state.pop("nacre", None)
+        if kind != "Fit":
+            raise ValueError(f"the key 'kind' must be 'Fit', got {kind!r}")
+        if not isinstance(version, int) or version > FORMAT:
+            raise ValueError(
+                f"the data have format {version}, written by nacre {writer}; nacre "
+                f"{core.__version__} reads formats up to {FORMAT}: install a newer version"
+            )
+        names = {field.name for field in fields(Fit)}
+        if wrong := names ^ state.keys():
+            raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
+        for name in names - {"curves"}:
+            value = state[name]
+            if name in KEPT:
+                state[name] = _restored(value)
+            elif isinstance(value, dict | str) and name in ("body", "counterbody"):
+                state[name] = decode(value)
+        state["curves"] = [
+            Curve(c["depth"], c["force"], time=c["time"], name=c["name"]) for c in state["curves"]
+        ]
+        for name in ("covariance", "correlation"):
+            state[name] = np.array(state[name], dtype=np.float64)
+        for name in ("residuals", "loads", "approaches"):
+            state[name] = [np.array(part, dtype=np.float64) for part in state[name]]
+        state["intervals"] = {k: (low, high) for k, (low, high) in state["intervals"].items()}
+        state["free"] = tuple(state["free"])
+        return Fit(**state)
+
+
+KEPT = ("tip", "adhesion")
+"""Fields whose values become the call that makes them."""
+
+
+def _plain(value: Any) -> Any:
+    """Return the call that makes a value as its class, the name of the method, and arguments."""
+    if value is None:
+        return None
+    make, arguments, *_ = value.__reduce__()
+    if make is getattr:  # a pickle of a static method's result may be nested
+        raise TypeError(f"{value!r} cannot be kept")
+    return json.loads(json.dumps([type(value).__name__, make.__name__, encode(list(arguments))]))
+
+
+def _restored(data: Any) -> Any:
+    if data is None:
+        return None
+    kind, name, arguments = data
+    if kind not in ("Tip", "Adhesion") or name.startswith("__"):
+        raise ValueError(f"a tip or an adhesion was expected, got {kind}.{name}")
+    made = getattr(core, kind)
+    return (made if name == kind else getattr(made, name))(*arguments)

@@ -1,0 +1,202 @@
+"""What customary formulae make of an indentation curve, and their bias."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre.indent.curves import Curve
+
+Array = npt.NDArray[np.float64]
+
+EPSILON = 0.75
+"""Factor ε of Oliver and Pharr for paraboloids, which is used for pyramids, too."""
+DOERNER_NIX = 0.25
+"""Exponent α of Doerner and Nix, found by experiment."""
+TOP = 0.1
+"""Share of the points, the deepest, from which the slope at the largest force is taken."""
+STIFFER = 10.0
+"""Ratio of base to layer from which a base counts as rigid for Dimitriadis' series."""
+
+
+class Classical(NamedTuple):
+    """An estimate of a reduced modulus by a customary formula."""
+
+    method: str
+    """Name of the formula."""
+    modulus: float
+    """Reduced modulus of the layer at the surface, as the formula has it [Pa]."""
+    bias: float
+    """Relative difference from the reduced modulus of that layer in the body."""
+    source: str
+    """Author, year and equation."""
+
+
+def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) -> list[Classical]:
+    """Return what customary formulae say of a curve, against a body that is known.
+
+    Parameters
+    ----------
+    curve : Curve
+        Elastic curve whose zero is the contact.
+    body : HalfSpace or Elastic
+        Body, such as that of a fit. Formulae that correct for the substrate take its constants and
+        the thickness of the first layer from here.
+    tip : Tip
+        Rigid tip.
+
+    Returns
+    -------
+    list of Classical
+        Estimates of the reduced modulus E* = E/(1 − ν²) of the layer at the surface.
+
+    Raises
+    ------
+    ValueError
+        If the curve has no contact.
+
+    Notes
+    -----
+    Formulae without a correction: Hertz' or Sneddon's law of a bare body at the largest depth and
+    by least squares; Oliver and Pharr, J. Mater. Res. 7 (1992) 1564-1583,
+    doi:10.1557/JMR.1992.1564, S = 2 a E* with the area at the depth of contact δ − 0.75 P/S. With a
+    correction of that modulus E: Doerner and Nix, J. Mater. Res. 1 (1986) 601-609,
+    doi:10.1557/JMR.1986.0601, 1/E = (1 − w)/E1* + w/E2*, w = exp(−0.25 h/δ_c); R. B. King, Int. J.
+    Solids Struct. 23 (1987) 1657-1664, doi:10.1016/0020-7683(87)90116-8, in this form with a weight
+    of h/a, whose exponent he gives as a graph, here replaced by Gao's function; Gao, Chiu and Lee,
+    Int. J. Solids Struct. 29 (1992) 2471-2492, doi:10.1016/0020-7683(92)90004-D, whose functions
+    weigh shear moduli and Poisson's ratios; Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810,
+    doi:10.1016/S0006-3495(02)75620-8, eq. (12), the series for a sphere on a thin incompressible
+    layer bonded to a rigid base.
+
+    Examples
+    --------
+    >>> steel, tip = nacre.Elastic(210e9, 0.3), nacre.indent.Tip.paraboloid(10e-6)
+    >>> depth = np.linspace(1e-9, 100e-9, 50)
+    >>> made = nacre.indent.Indentation(steel, tip).curve(approach=depth)
+    >>> rows = nacre.indent.classical(nacre.indent.Curve(depth, made.load), steel, tip)
+    >>> [(row.method, abs(round(row.bias, 2))) for row in rows]
+    [('Hertz, largest depth', 0.0), ('Hertz, least squares', 0.0), ('Oliver and Pharr', 0.0)]
+    """
+    if isinstance(body, core.Elastic):
+        body = core.HalfSpace(body)
+    top = body.layers[0].material if body.layers else body.substrate
+    if not isinstance(top, core.Elastic):
+        raise ValueError("body must have an elastic surface, got a rigid one")
+    true = top.plane_strain_modulus
+    touching = (curve.depth > 0) & (curve.force > 0)
+    if touching.sum() < 3:
+        raise ValueError(f"curve must have three points in contact, got {int(touching.sum())}")
+    order = np.argsort(curve.depth[touching], kind="stable")
+    depth, force = curve.depth[touching][order], curve.force[touching][order]
+    unit = core.Indentation(core.HalfSpace(core.Elastic(1.0, 0.0)), tip)
+    bare = np.asarray(unit.curve(approach=depth).load)
+    law = {"cone": "Sneddon", "power": "Sneddon", "flat_punch": "Sneddon"}.get(tip.kind, "Hertz")
+    rows: list[tuple[str, float, str]] = [
+        (f"{law}, largest depth", float(force[-1] / bare[-1]), "Hertz 1882, Sneddon 1965"),
+        (f"{law}, least squares", float(force @ bare / (bare @ bare)), "Hertz 1882, Sneddon 1965"),
+    ]
+    found = oliver_pharr(depth, force, tip)
+    if found is not None:
+        apparent, radius, contact_depth = found
+        rows.append(("Oliver and Pharr", apparent, "Oliver, Pharr 1992"))
+        rows += _corrected(body, top, apparent, radius, contact_depth)
+    if series := _dimitriadis(body, top, depth, force, tip):
+        rows.append(("Dimitriadis", series, "Dimitriadis et al. 2002, eq. (12)"))
+    return [Classical(name, value, value / true - 1, source) for name, value, source in rows]
+
+
+def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, float, float] | None:
+    """Return reduced modulus, contact radius and depth of contact at the largest depth.
+
+    The slope is that of a parabola through the deepest tenth of the points. None where the depth of
+    contact is not positive.
+    """
+    count = min(depth.size, max(5, round(TOP * depth.size)))
+    reach = float(depth[-1])
+    bend, tilt, there = np.polyfit(depth[-count:] / reach - 1, force[-count:], min(2, count - 2))
+    slope = float(tilt) / reach
+    load = float(there) if bend is not None else float(force[-1])
+    contact = reach - EPSILON * load / slope
+    radius = _radius(tip, contact)
+    if slope <= 0 or radius is None:
+        return None
+    return slope / (2 * radius), radius, contact
+
+
+def _radius(tip: core.Tip, depth: float) -> float | None:
+    """Return the radius of the tip's section at a depth from its apex."""
+    if tip.kind == "flat_punch":
+        return float(tip.numbers["radius"])
+    if depth <= 0:
+        return None
+    if tip.kind in ("paraboloid", "sphere"):
+        # The customary form for spheres is that of a paraboloid.
+        return math.sqrt(2 * float(tip.numbers["radius"]) * depth)
+    low, high = 1e-3 * depth, 1e3 * depth
+    for _ in range(200):
+        middle = math.sqrt(low * high)
+        try:
+            is_inside = float(tip.gap(middle)) < depth
+        except ValueError:
+            is_inside = False
+        low, high = (middle, high) if is_inside else (low, middle)
+        if high / low < 1 + 1e-12:
+            break
+    return middle
+
+
+def _corrected(
+    body: core.HalfSpace, top: core.Elastic, apparent: float, radius: float, contact: float
+) -> list[tuple[str, float, str]]:
+    """Return the modulus of the layer by corrections of an apparent modulus for the substrate."""
+    base = body.substrate
+    if len(body.layers) != 1 or not isinstance(base, core.Elastic):
+        return []
+    thickness = body.layers[0].thickness
+    ratio, below = thickness / radius, 1 / base.plane_strain_modulus
+    rows = []
+    share = math.exp(-DOERNER_NIX * thickness / contact) if contact > 0 else 0.0
+    rows.append(
+        ("Doerner and Nix", (1 - share) / (1 / apparent - share * below), "Doerner, Nix 1986")
+    )
+    shear, lateral = gao_weights(ratio, top.poisson)
+    rows.append(("King", shear / (1 / apparent - (1 - shear) * below), "King 1987"))
+    poisson = 1 - base.poisson + (base.poisson - top.poisson) * lateral
+    mixed = 0.5 * apparent * poisson
+    modulus = 2 * (base.shear + (mixed - base.shear) / shear) / (1 - top.poisson)
+    rows.append(("Gao", modulus, "Gao, Chiu, Lee 1992"))
+    # Negative values mean that the correction has no solution.
+    return [(name, value if value > 0 else math.nan, source) for name, value, source in rows]
+
+
+def gao_weights(ratio: float, poisson: float) -> tuple[float, float]:
+    """Return Gao's functions I0 (of the shear modulus) and I1 (of Poisson's ratio) at h/a.
+
+    ``I0 = 2/π atan ξ + [(1 − 2ν) ξ ln(1 + 1/ξ²) − ξ/(1 + ξ²)]/(2π (1 − ν))``,
+    ``I1 = 2/π atan ξ + ξ/π ln(1 + 1/ξ²)``.
+    """
+    log = ratio * math.log1p(1 / ratio**2)
+    part = (1 - 2 * poisson) * log - ratio / (1 + ratio**2)
+    base = 2 / math.pi * math.atan(ratio)
+    return base + part / (2 * math.pi * (1 - poisson)), base + log / math.pi
+
+
+def _dimitriadis(
+    body: core.HalfSpace, top: core.Elastic, depth: Array, force: Array, tip: core.Tip
+) -> float | None:
+    """Return the reduced modulus of a thin layer on a rigid base, by least squares."""
+    if tip.kind not in ("paraboloid", "sphere") or len(body.layers) != 1:
+        return None
+    base = body.substrate
+    if isinstance(base, core.Elastic) and base.young < STIFFER * top.young:
+        return None
+    radius = float(tip.numbers["radius"])
+    x = np.sqrt(radius * depth) / body.layers[0].thickness
+    series = 1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4
+    shape = 4 / 3 * math.sqrt(radius) * depth**1.5 * series
+    return float(force @ shape / (shape @ shape))

@@ -1,0 +1,351 @@
+"""Fits of indentation curves that say how sure they are."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+from nacre.indent._model import Model, System
+from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
+from nacre.indent._result import Fit
+from nacre.indent.checks import check, contact_point, suspicious_units
+from nacre.indent.curves import Curve
+
+Array = npt.NDArray[np.float64]
+Data = Curve | Sequence[Curve] | tuple[npt.ArrayLike, npt.ArrayLike]
+
+__all__ = ["Fit", "fit"]
+
+WEAK = 100.0
+"""Ratio of the moduli of a body up to which a Hertzian modulus is expected near their mean."""
+
+
+def fit(
+    data: Data,
+    body: core.HalfSpace | core.Elastic,
+    tip: core.Tip,
+    free: Sequence[str],
+    *,
+    counterbody: core.HalfSpace | core.Elastic | None = None,
+    adhesion: core.Adhesion | None = None,
+    nuisance: Sequence[str] = (),
+    noise: Literal["relative", "absolute"] = "relative",
+    sigma: float | None = None,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    starts: Sequence[Mapping[str, float]] | None = None,
+    profile: bool = True,
+    progress: Callable[[str], None] | None = None,
+) -> Fit:
+    """Fit indentation curves by least squares; needs ``nacre-contact[fit]``.
+
+    The true depth is d − d0 − v t − C F, with the nuisances contact point d0, drift v and
+    compliance C of the machine.
+
+    Parameters
+    ----------
+    data : Curve, sequence of Curve, or pair of array_like
+        Loading or unloading, as depth and force or as `Curve`; see `Curve.loading`. Several curves
+        share the body and the tip, and have nuisances of their own.
+    body : HalfSpace or Elastic
+        Body with all that is known, and starting values of what is free.
+    tip : Tip
+        Tip, likewise.
+    free : sequence of str
+        Free parameters as `Indentation.parameters` lists them, such as
+        ``"body.layers[0].material.young"``, ``"body.layers[0].thickness"``,
+        ``"body.substrate.young"``, ``"tip.radius"`` or ``"tip.area"``.
+    counterbody : HalfSpace or Elastic, optional
+        Body of the tip; rigid by default.
+    adhesion : Adhesion, optional
+        Adhesion within the contact (JKR) or outside (DMT).
+    nuisance : sequence of str
+        Any of "contact_point", "drift" (curves with a time) and "compliance".
+    noise : {"relative", "absolute"}
+        Noise of the force: a share of each force, or the same at each point.
+    sigma : float, optional
+        Standard deviation of the noise, a share or [N]. By default it is estimated from the
+        residuals, as a share of a curve's largest force where it is absolute; intervals are then
+        Student's.
+    prior : mapping, optional
+        What is known otherwise of free parameters: value and standard deviation by name.
+    bounds : mapping, optional
+        Least and largest value by name.
+    starts : sequence of mapping, optional
+        Further starts, values by name. By default three times and a third of each free thickness,
+        or of the first parameter where no thickness is free.
+    profile : bool
+        Whether intervals are found by profile likelihood, and other starts are tried. Otherwise
+        they are linear, and only these decide what is identifiable.
+    progress : callable, optional
+        Function that is called with a short text at each stage.
+
+    Returns
+    -------
+    Fit
+        Estimates, errors, intervals, and for each parameter whether the data tell it.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not one of those above, or the data hold no contact.
+
+    Warns
+    -----
+    NacreWarning
+        If points are out of order, unloading is mixed in, or a unit is likely to be wrong.
+
+    Notes
+    -----
+    A parameter is identifiable if its 95 % interval by profile likelihood closes within the bounds
+    and is at most a factor of exp(0.5) either way, if this agrees with the linear interval within a
+    factor of 1.5, and if no other start leads to a minimum outside of it with a χ² that is less
+    than 3.84 above the least. These criteria are nacre's own.
+
+    Moduli, thicknesses, radii and the work of adhesion are fitted by their logarithms.
+
+    Examples
+    --------
+    >>> tip = nacre.indent.Tip.paraboloid(10e-6)
+    >>> glass = nacre.Elastic(70e9, 0.2)
+    >>> coating = nacre.Layer(nacre.Elastic(3e9, 0.3), 2e-6)
+    >>> body = nacre.HalfSpace(glass, layers=[coating])
+    >>> depth = np.linspace(10e-9, 300e-9, 40)
+    >>> made = nacre.indent.Indentation(body, tip).curve(approach=depth)
+    >>> noise = 1 + 0.01 * np.random.default_rng(1).standard_normal(40)
+    >>> guess = nacre.HalfSpace(glass, layers=[nacre.Layer(nacre.Elastic(1e9, 0.3), 2e-6)])
+    >>> young = "body.layers[0].material.young"
+    >>> found = nacre.indent.fit((depth, made.load * noise), guess, tip, [young])
+    >>> found.is_identifiable, bool(abs(found.estimates[young] / 3e9 - 1) < 0.02)
+    (True, True)
+    """
+    curves = _curves(data)
+    _check_arguments(noise, sigma, nuisance)
+    system = System.of(body, tip, counterbody, adhesion)
+    for curve in curves:
+        check(curve, stacklevel=3)
+        _check_units(curve, system)
+    model = Model(
+        curves,
+        system,
+        free,
+        nuisance,
+        noise=noise,
+        sigma=sigma,
+        prior=prior or {},
+        bounds=bounds or {},
+    )
+    if model.dof < 1:
+        raise ValueError(
+            f"data must have more points than free parameters, {len(model.names)}, got "
+            f"{model.depth.size}"
+        )
+    tell = progress or (lambda text: None)
+    tell("first estimate")
+    start = _start(model)
+    best = _best(model, start)
+    minima: list[tuple[Array, float]] = []
+    if profile:
+        places = others(model, best.x) if starts is None else _places(model, starts, best.x)
+        for number, place in enumerate(places, 1):
+            tell(f"start {number} of {len(places)}")
+            x = minimum(model, np.clip(place, model.low, model.high), rough=True)
+            if (chi2 := model.chi2(x)) < best.chi2 - 1e-3 * best.variance:
+                minima.append((best.x, best.chi2))
+                best = estimated(model, minimum(model, x))
+            else:
+                minima.append((x, chi2))
+    ends: dict[str, tuple[float, float]] = {}
+    if profile:
+        for k, unknown in enumerate(model.unknowns):
+            if not unknown.kind:
+                tell(f"interval of {unknown.name}")
+                ends[unknown.name] = interval(model, best, k)
+    return _result(model, best, ends, minima, profile)
+
+
+def _curves(data: Data) -> list[Curve]:
+    if isinstance(data, Curve):
+        return [data]
+    items = list(data)
+    if items and all(isinstance(item, Curve) for item in items):
+        return [item for item in items if isinstance(item, Curve)]
+    if len(items) in (2, 3) and not any(isinstance(item, Curve) for item in items):
+        depth, force, *time = items
+        return [Curve(depth, force, time=time[0] if time else None)]  # type: ignore[arg-type]
+    raise TypeError(
+        "data must be a Curve, a sequence of Curves, or depth and force (and time), got "
+        f"{len(items)} items"
+    )
+
+
+def _check_arguments(noise: str, sigma: float | None, nuisance: Sequence[str]) -> None:
+    if noise not in ("relative", "absolute"):
+        raise ValueError(f"noise must be 'relative' or 'absolute', got {noise!r}")
+    if sigma is not None and not 0 < sigma < math.inf:
+        raise ValueError(f"sigma must be positive and finite, got {sigma}")
+    if isinstance(nuisance, str):
+        raise TypeError(f"nuisance must be a sequence of names, got {nuisance!r}")
+
+
+def _check_units(curve: Curve, system: System) -> None:
+    """Warn if depth or force is far from what the body's starting values say."""
+    tip, body = system.tip, system.body
+    size = tip.end_radius
+    if size is None and "slope" in tip.numbers:
+        # The sphere that has the cone's force at this depth, by Sneddon's and Hertz' laws.
+        size = (1.5 / (math.pi * tip.numbers["slope"])) ** 2 * float(np.ptp(curve.depth))
+    if size is None:
+        return
+    moduli = [layer.material.plane_strain_modulus for layer in body.layers]
+    if isinstance(body.substrate, core.Elastic):
+        moduli.append(body.substrate.plane_strain_modulus)
+    if max(moduli) > WEAK * min(moduli):
+        return
+    expected = math.sqrt(max(moduli) * min(moduli))
+    if system.counterbody is not None and isinstance(system.counterbody.substrate, core.Elastic):
+        other = system.counterbody.substrate.plane_strain_modulus
+        expected = 1 / (1 / expected + 1 / other)
+    sentence = suspicious_units(curve, tip_size=size, modulus=expected)
+    if sentence is not None:
+        name = f" of {curve.name!r}" if curve.name else ""
+        warnings.warn(f"{sentence}{name}", core.NacreWarning, stacklevel=4)
+
+
+def _start(model: Model) -> Array:
+    """Return where the fit starts: the given values, with moduli scaled to the forces."""
+    x = np.zeros(len(model.unknowns))
+    guessed = x.copy()
+    for k, unknown in enumerate(model.unknowns):
+        if unknown.kind == "contact_point":
+            curve = model.curves[unknown.curve]
+            try:
+                found = contact_point(curve, baseline="none").depth
+            except ValueError:
+                continue
+            if model.noise == "relative":
+                found = min(found, float(curve.depth.min()) - 1e-3 * unknown.scale)
+            guessed[k] = unknown.place(min(max(found, unknown.low), unknown.high))
+    best = min((_scaled(model, x), _scaled(model, guessed)), key=model.chi2)
+    if not math.isfinite(model.chi2(best)):
+        load, _ = model.loads(best)
+        apart = int((load <= 0).sum())
+        raise ValueError(
+            f"data must lie in contact at the start, got {apart} of {load.size} points where "
+            f"nothing touches: free the contact point, or shift the curve by contact_point(…).depth"
+        )
+    if not (model.approach(best) > 0).any() and model.system.adhesion is None:
+        raise ValueError(
+            "no depth lies in contact at the start: the depth has another zero or sign"
+        )
+    return best
+
+
+def _scaled(model: Model, x: Array) -> Array:
+    """Return x with the free moduli scaled to the mean force."""
+    moduli = [k for k, name in enumerate(model.names) if name.endswith(".young")]
+    if not moduli:
+        return x
+    try:
+        load, _ = model.loads(x)
+    except (ValueError, RuntimeError):
+        return x
+    touching = (load > 0.01 * load.max()) & (model.force > 0)
+    if not touching.any() or load.max() <= 0:
+        return x
+    shift = float(np.median(np.log(model.force[touching] / load[touching])))
+    scaled = x.copy()
+    scaled[moduli] += shift
+    scaled = np.clip(scaled, model.low, model.high)
+    return scaled if abs(shift) > 0.3 and model.chi2(scaled) < model.chi2(x) else x
+
+
+def _best(model: Model, start: Array) -> Estimate:
+    best = estimated(model, minimum(model, start))
+    if model.prior and not model.is_known:
+        # Priors are weighed against residuals, whose size the residuals themselves tell.
+        for _ in range(3):
+            model.trusting(math.sqrt(_scatter(model, best.x)))
+            best = estimated(model, minimum(model, best.x))
+    return best
+
+
+def _scatter(model: Model, x: Array) -> float:
+    residuals = model.at(x)[0][: model.depth.size]
+    return float(residuals @ residuals) / max(residuals.size - len(model.unknowns), 1)
+
+
+def _places(model: Model, starts: Sequence[Mapping[str, float]], x: Array) -> list[Array]:
+    places = []
+    for values in starts:
+        place = x.copy()
+        for name, value in values.items():
+            if name not in model.names:
+                raise ValueError(f"starts must name parameters of the fit, got {name!r}")
+            k = model.names.index(name)
+            place[k] = model.unknowns[k].place(value)
+        places.append(place)
+    return places
+
+
+def _result(
+    model: Model,
+    best: Estimate,
+    ends: dict[str, tuple[float, float]],
+    minima: list[tuple[Array, float]],
+    profile: bool,
+) -> Fit:
+    x, rates = best.x, model.rates(best.x)
+    spread = best.spread
+    intervals = {}
+    for k, unknown in enumerate(model.unknowns):
+        half = best.quantile * spread[k]
+        pair = ends.get(unknown.name, (float(x[k]) - half, float(x[k]) + half))
+        low, high = (_value(unknown.value, end) for end in pair)
+        intervals[unknown.name] = low, high
+    load, _ = model.loads(x)
+    rest = np.log(model.force / load) if model.noise == "relative" else model.force - load
+    approach = model.approach(x)
+    sigma = 1 / float(model.weight[0]) * (1.0 if model.is_known else math.sqrt(best.variance))
+    with np.errstate(invalid="ignore"):
+        covariance = best.covariance * np.outer(rates, rates)
+    system = model.fitted(x)
+    return Fit(
+        estimates=model.values(x),
+        standard_errors={n: float(s) for n, s in zip(model.names, spread * rates, strict=True)},
+        covariance=covariance,
+        correlation=best.correlation,
+        intervals=intervals,
+        reasons=reasons(model, best, ends, minima),
+        residuals=[rest[part] for part in model.parts],
+        loads=[load[part] for part in model.parts],
+        approaches=[approach[part] for part in model.parts],
+        chi2=best.chi2,
+        dof=model.dof,
+        sigma=sigma,
+        is_sigma_known=model.is_known,
+        noise=model.noise,
+        condition=best.condition,
+        is_profiled=profile,
+        free=tuple(model.free),
+        curves=model.curves,
+        body=system.body,
+        tip=system.tip,
+        counterbody=system.counterbody,
+        adhesion=system.adhesion,
+        evaluations=model.evaluations,
+    )
+
+
+def _value(value: Callable[[float], float], end: float) -> float:
+    """Return the value at an end, which may be open."""
+    try:
+        return value(end)
+    except OverflowError:
+        return math.inf

@@ -1,0 +1,146 @@
+"""Pictures of fits of indentation curves."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nacre._extras import extra
+from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
+from nacre.units import Scale
+
+with extra("plot"):
+    import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
+
+if TYPE_CHECKING:
+    from nacre.indent.fit import Fit
+
+
+def fit_plot(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
+    """Draw the data and the model of a fit; without axes, the residuals below, in a new figure.
+
+    Parameters
+    ----------
+    fit
+        A fit.
+    axes
+        Axes to draw into; a new figure with the residuals by default.
+    curve
+        Number of the curve.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes of data and model.
+    """
+    with styled():
+        if axes is not None:
+            _draw(fit, axes, curve)
+            return axes
+        size = (0.6 * WIDTH, 0.55 * WIDTH)
+        figure, (upper, lower) = plt.subplots(
+            2, 1, figsize=size, layout="constrained", sharex=True, height_ratios=(3, 1)
+        )
+        _draw(fit, upper, curve)
+        upper.set_xlabel("")
+        _residuals(fit, lower, curve)
+        figure.align_ylabels()
+    result: Axes = upper
+    return result
+
+
+def residuals(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
+    """Draw the residuals of a fit over depth; the band is two standard deviations of the noise."""
+    with styled():
+        axes = axes or new_axes(0.6, 0.25)
+        _residuals(fit, axes, curve)
+    return axes
+
+
+def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
+    """Write a page with the data, the residuals, and the table of a fit.
+
+    Parameters
+    ----------
+    fit
+        A fit.
+    path
+        File, whose ending is the format: ``.pdf``, ``.png``, ``.svg``.
+    """
+    rows = [str(fit), "", _comparison(fit)]
+    with styled():
+        figure = plt.figure(figsize=(WIDTH, 1.3 * WIDTH), layout="constrained")
+        upper, lower, below = figure.subplots(3, 1, height_ratios=(3, 1.2, 2.6))
+        for number in range(len(fit.curves)):
+            _draw(fit, upper, number)
+            _residuals(fit, lower, number)
+        upper.set_title(", ".join(c.name for c in fit.curves if c.name))
+        below.axis("off")
+        text = "\n".join(rows)
+        widest = max(map(len, text.splitlines()))
+        # A monospaced letter is 0.6 of its size wide.
+        size = min(8.0, 72 * WIDTH / (0.6 * widest))
+        below.text(0, 1, text, family="monospace", size=size, va="top", transform=below.transAxes)
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def _comparison(fit: Fit) -> str:
+    rows = [["formula", "E* of the surface", "bias"]]
+    for row in fit.classical():
+        scale = Scale.of(row.modulus, "Pa")
+        value = f"{scale.factor * row.modulus:.4g} {scale.unit}"
+        rows.append([row.method, value, f"{100 * row.bias:+.1f} %"])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
+
+
+def _draw(fit: Fit, axes: Axes, number: int) -> None:
+    curve = fit.curves[number]
+    depth = Scale.of(float(np.abs(curve.depth).max()), "m")
+    force = Scale.of(float(np.abs(curve.force).max()), "N")
+    colour = COLOURS[number % len(COLOURS)]
+    order = np.argsort(curve.depth, kind="stable")
+    axes.plot(
+        depth.factor * curve.depth,
+        force.factor * curve.force,
+        linestyle="none",
+        marker="o",
+        ms=3,
+        mfc="none",
+        color=colour,
+        label=curve.name or "data",
+    )
+    axes.plot(
+        depth.factor * curve.depth[order],
+        force.factor * fit.loads[number][order],
+        color="black" if number == 0 else colour,
+        label="fit" if number == 0 else None,
+    )
+    axes.set_xlabel(f"depth [{depth.unit}]")
+    axes.set_ylabel(f"force [{force.unit}]")
+    axes.legend()
+
+
+def _residuals(fit: Fit, axes: Axes, number: int) -> None:
+    curve, rest = fit.curves[number], fit.residuals[number]
+    depth = Scale.of(float(np.abs(curve.depth).max()), "m")
+    if fit.noise == "relative":
+        factor, label = 100.0, "residual [%]"
+    else:
+        scale = Scale.of(float(np.abs(rest).max()), "N")
+        factor, label = scale.factor, f"residual [{scale.unit}]"
+    axes.axhspan(-2 * factor * fit.sigma, 2 * factor * fit.sigma, color="0.93", zorder=0)
+    axes.axhline(0.0, color="0.6", linewidth=0.6)
+    look = {"linestyle": "none", "marker": "o", "ms": 2.5}
+    axes.plot(
+        depth.factor * curve.depth, factor * rest, color=COLOURS[number % len(COLOURS)], **look
+    )
+    axes.set_xlabel(f"depth [{depth.unit}]")
+    axes.set_ylabel(label)
