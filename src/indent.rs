@@ -15,34 +15,31 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `tip` | profiles, and their F |
-//! | `waves`, `stack` | M of the bodies at the nodes of a quadrature, which all radii share |
-//! | `basis`, `system` | functions on the contact, and their linear system |
+//! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, and their linear system |
 //! | `parts`, `point`, `density` | the two solutions of one radius; states, pressure, displacement |
-//! | `adhesion`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
+//! | `adhesion`, `zone`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
 //! | `change` | derivatives |
 //! | `curve` | whole curves by interpolation |
-//! | `indenter` | states by radius, load and approach; pull-off |
+//! | `indenter`, `pull_off` | states by radius, load and approach; pull-off and jump into contact |
 
 mod adhesion;
-mod basis;
 mod change;
 mod cohesion;
 mod curve;
 mod density;
+mod equation;
 mod indenter;
 mod parts;
 mod point;
-mod root;
-mod stack;
-mod system;
+mod pull_off;
 mod tip;
-mod waves;
+mod zone;
 
 pub use adhesion::{Adhesion, Branch, Control};
 pub use change::{Change, Held, Variable};
 pub use cohesion::Apart;
 pub use curve::Curve;
-pub use indenter::{Indent, PullOff};
-pub use point::Point;
-pub use stack::{Parameter, Stack};
+pub use equation::stack::{Parameter, Stack};
+pub use indenter::Indent;
+pub use point::{Point, PullOff};
 pub use tip::{Form, Tip, TipParameter, slope_of};

@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, words, arguments, background,
-//! state, bodies, grid, indent, shapes, coefficients, stress, solution, contact.
+//! state, bodies, grid, shapes, coefficients, stress, solution, contact.
 
 use pyo3::prelude::*;
 
@@ -12,7 +12,6 @@ mod coefficients;
 mod contact;
 mod errors;
 mod grid;
-mod indent;
 mod shapes;
 mod solution;
 mod state;
@@ -46,7 +45,7 @@ mod core {
     use super::stress::{
         PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,
     };
-    use super::{bodies::PyRigid, indent, shapes, state};
+    use super::{bodies::PyRigid, shapes, shapes::indent, state};
     use pyo3::prelude::*;
 
     #[pymodule_init]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::stack::Parameter;
+use super::equation::stack::Parameter;
 use super::tip::{Tip, TipParameter};
 use crate::error::{Result, positive};
 

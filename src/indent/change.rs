@@ -12,9 +12,9 @@ use std::f64::consts::PI;
 
 use super::adhesion::Adhesion;
 use super::density::{Density, bessel_sum};
+use super::equation::stack::{Level, Parameter};
+use super::equation::system::times;
 use super::point::{Point, distance};
-use super::stack::{Level, Parameter};
-use super::system::times;
 use super::tip::TipParameter;
 use crate::error::{Error, Result};
 use crate::parallel::dot;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
 use super::change::{Held, Variable};
+use super::equation::root::newton;
+use super::equation::stack::Parameter;
 use super::indenter::Indent;
 use super::point::Point;
-use super::root::newton;
-use super::stack::Parameter;
 use crate::error::{Error, Result, finite};
 
 /// Last Chebyshev coefficients of the logarithms at which a table counts as resolved.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use spec_math::cephes64::j0;
 
-use super::basis::{Panel, rule};
+use super::equation::basis::{Panel, rule};
 use super::parts::Parts;
 use super::tip::TipParameter;
 

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::stack::Stack;
-use super::system::{System, times};
+use super::equation::stack::Stack;
+use super::equation::system::{System, times};
 use super::tip::Tip;
 use crate::error::Result;
 use crate::parallel::dot;

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::adhesion::Adhesion;
-use super::cohesion::Zone;
+use super::adhesion::{Adhesion, Control};
 use super::density::{Density, bessel_sum};
+use super::equation::system::times;
 use super::parts::Parts;
-use super::system::times;
+use super::zone::Zone;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
 
@@ -289,6 +289,23 @@ impl Point {
         }
         Ok(())
     }
+}
+
+/// The last stable state of a tip that is pulled off.
+#[derive(Debug, Clone)]
+pub struct PullOff {
+    /// What was given.
+    pub control: Control,
+    /// Load \[N\], below 0.
+    pub load: f64,
+    /// Approach \[m\].
+    pub approach: f64,
+    /// Contact radius \[m\]; 0 where the tip lets go while the surfaces attract each other without touching.
+    pub radius: f64,
+    /// Radius \[m\] up to which the surfaces attract each other, with the adhesion of Maugis and Dugdale.
+    pub outer_radius: Option<f64>,
+    /// The contact; none where the surfaces do not touch.
+    pub point: Option<Point>,
 }
 
 /// An error unless `r` is a distance from the axis.

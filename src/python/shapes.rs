@@ -3,6 +3,7 @@
 mod base;
 mod height_map;
 pub(super) mod hertz;
+pub(super) mod indent;
 mod logarithmic;
 mod profiles;
 mod quadric;

@@ -11,7 +11,7 @@ const STEPS: usize = 200;
 ///
 /// # Errors
 /// Those of `f`.
-pub(super) fn newton(
+pub(in crate::indent) fn newton(
     mut f: impl FnMut(f64) -> Result<[f64; 2]>,
     [mut low, mut high]: [f64; 2],
     start: f64,
@@ -49,7 +49,7 @@ pub(super) fn newton(
 ///
 /// # Errors
 /// Those of `f`, and signs that do not differ.
-pub(super) fn bracketed(
+pub(in crate::indent) fn bracketed(
     mut f: impl FnMut(f64) -> Result<f64>,
     [low, high]: [f64; 2],
 ) -> Result<f64> {

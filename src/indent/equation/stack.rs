@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::tip::TipParameter;
+use super::super::tip::TipParameter;
 use super::waves::Waves;
 use crate::body::BodyParameter;
 use crate::error::{Error, Result};
 use crate::response::{Body, asymptote_derivatives, normal_derivatives};
 
 /// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
-pub(super) const MOST_RATIO: f64 = 1024.0;
+pub(in crate::indent) const MOST_RATIO: f64 = 1024.0;
 
 /// Longest oscillation of the first level, in top layers: that of contacts of a radius of one.
 const FIRST_LENGTH: f64 = 2.0;
@@ -32,12 +32,12 @@ pub enum Parameter {
 
 /// The response at the wavenumbers of one quadrature.
 #[derive(Debug)]
-pub(super) struct Level {
+pub(in crate::indent) struct Level {
     /// Longest oscillation over α that the waves resolve \[m\].
-    pub(super) length: f64,
-    pub(super) waves: Waves,
+    pub(in crate::indent) length: f64,
+    pub(in crate::indent) waves: Waves,
     /// Weights times M(α).
-    pub(super) excess: Vec<f64>,
+    pub(in crate::indent) excess: Vec<f64>,
     /// Weights times the derivative of M with respect to each parameter of the bodies.
     rates: OnceLock<Vec<Vec<f64>>>,
 }
@@ -79,8 +79,8 @@ impl Stack {
         Self::with_resolution(bodies, 1.0)
     }
 
-    /// The same bodies with `finer` times as many nodes of all quadratures.
-    pub(super) fn refined(&self, finer: f64) -> Result<Self> {
+    /// These bodies with `finer` times as many nodes of all quadratures.
+    pub(in crate::indent) fn refined(&self, finer: f64) -> Result<Self> {
         Self::with_resolution(&self.0.bodies, finer)
     }
 
@@ -150,23 +150,23 @@ impl Stack {
         self.0.thickness.map_or(f64::INFINITY, |h| MOST_RATIO * h)
     }
 
-    pub(super) fn finer(&self) -> f64 {
+    pub(in crate::indent) fn finer(&self) -> f64 {
         self.0.finer
     }
 
     /// lim α û/p̂ for short waves \[1/Pa\].
-    pub(super) fn short(&self) -> f64 {
+    pub(in crate::indent) fn short(&self) -> f64 {
         self.0.short
     }
 
     /// Derivative of the modulus E* with respect to the `number`th parameter, relative to E*.
-    pub(super) fn modulus_rate(&self, number: usize) -> f64 {
+    pub(in crate::indent) fn modulus_rate(&self, number: usize) -> f64 {
         -self.0.short_rates[number] / self.0.short
     }
 
     /// Response for functions that oscillate over lengths up to `length` in α; none where it is that of bare bodies. The
     /// longest level serves beyond.
-    pub(super) fn level(&self, length: f64) -> Option<&Arc<Level>> {
+    pub(in crate::indent) fn level(&self, length: f64) -> Option<&Arc<Level>> {
         let h = self.0.thickness?;
         let doublings = (length / (FIRST_LENGTH * h)).log2().ceil().max(0.0) as usize;
         let number = doublings.min(LEVELS - 1);
@@ -189,7 +189,7 @@ impl Stack {
     }
 
     /// Weights times the derivative of M with respect to the `number`th parameter, at the waves of `level`.
-    pub(super) fn excess_rate<'a>(&self, level: &'a Level, number: usize) -> &'a [f64] {
+    pub(in crate::indent) fn excess_rate<'a>(&self, level: &'a Level, number: usize) -> &'a [f64] {
         let rates = level.rates.get_or_init(|| {
             let shared = &self.0;
             let mut all = vec![vec![0.0; level.waves.len()]; shared.parameters.len()];

@@ -16,23 +16,23 @@ const MORE: usize = 24;
 static RULES: [OnceLock<Rule>; 1024] = [const { OnceLock::new() }; 1024];
 
 /// The rule of `count` nodes, computed once.
-pub(super) fn rule(count: usize) -> &'static Rule {
+pub(in crate::indent) fn rule(count: usize) -> &'static Rule {
     let count = count.clamp(1, RULES.len() - 1);
     RULES[count].get_or_init(|| Rule::gauss_legendre(count))
 }
 
 /// Part of the contact on which the profile has no kink.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Panel {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(in crate::indent) struct Panel {
+    pub(in crate::indent) low: f64,
+    pub(in crate::indent) high: f64,
     /// Whether the profile has roots of the distance from the lower end, as beyond a kink.
-    pub(super) has_root: bool,
+    pub(in crate::indent) has_root: bool,
 }
 
 impl Panel {
     /// Panels from 0 to `high` that end at the kinks.
-    pub(super) fn between(low: f64, kinks: &[f64], high: f64) -> Vec<Self> {
+    pub(in crate::indent) fn between(low: f64, kinks: &[f64], high: f64) -> Vec<Self> {
         let inside = kinks.iter().copied().filter(|b| *b > low && *b < high);
         let mut panels = Vec::new();
         let (mut start, mut has_root) = (low, false);
@@ -48,7 +48,7 @@ impl Panel {
     }
 
     /// Nodes and weights; a root is taken away by squares.
-    pub(super) fn nodes(self, rule: &Rule) -> Vec<(f64, f64)> {
+    pub(in crate::indent) fn nodes(self, rule: &Rule) -> Vec<(f64, f64)> {
         let length = self.high - self.low;
         match self.has_root {
             false => rule
@@ -64,7 +64,7 @@ impl Panel {
 
 /// Orthonormal functions on \[0, a\].
 #[derive(Debug, Clone)]
-pub(super) enum Basis {
+pub(in crate::indent) enum Basis {
     /// Values at nodes times the roots of their weights (Nyström's method).
     Nodes(Vec<(f64, f64)>),
     /// Legendre polynomials on panels (Galerkin's method): each panel and the number of its polynomials.
@@ -77,7 +77,12 @@ impl Basis {
     ///
     /// The response of layers is smooth over some thickness of the top layer: eight nodes and two for each thickness in the
     /// radius, from three thicknesses on 4.3 for each, leave 1e-10 at all contrasts; found by trial. Polynomials cluster at the edge, where the pressure varies over a thickness: 34 + 10 √(a/h).
-    pub(super) fn new(a: f64, thickness: Option<f64>, kinks: &[f64], finer: f64) -> Self {
+    pub(in crate::indent) fn new(
+        a: f64,
+        thickness: Option<f64>,
+        kinks: &[f64],
+        finer: f64,
+    ) -> Self {
         let ratio = thickness.map_or(0.0, |h| a / h);
         let panels = Panel::between(0.0, kinks, a);
         if ratio <= NODAL {
@@ -93,7 +98,7 @@ impl Basis {
     }
 
     /// Number of functions.
-    pub(super) fn len(&self) -> usize {
+    pub(in crate::indent) fn len(&self) -> usize {
         match self {
             Self::Nodes(nodes) => nodes.len(),
             Self::Polynomials(panels) => panels.iter().map(|(_, count)| count).sum(),
@@ -101,7 +106,7 @@ impl Basis {
     }
 
     /// Places at which [`Basis::project`] needs a function.
-    pub(super) fn places(&self) -> Vec<f64> {
+    pub(in crate::indent) fn places(&self) -> Vec<f64> {
         match self {
             Self::Nodes(nodes) => nodes.iter().map(|(s, _)| *s).collect(),
             Self::Polynomials(panels) => panels
@@ -113,7 +118,7 @@ impl Basis {
     }
 
     /// ∫ f bᵢ for each function, of the values of f at [`Basis::places`].
-    pub(super) fn project(&self, values: &[f64]) -> Vec<f64> {
+    pub(in crate::indent) fn project(&self, values: &[f64]) -> Vec<f64> {
         match self {
             Self::Nodes(nodes) => nodes
                 .iter()
@@ -150,7 +155,7 @@ impl Basis {
     }
 
     /// Transforms b̂ᵢ(α) = ∫ bᵢ(t) cos αt dt at all waves, one row for each function.
-    pub(super) fn transforms(&self, waves: &Waves) -> Vec<Vec<f64>> {
+    pub(in crate::indent) fn transforms(&self, waves: &Waves) -> Vec<Vec<f64>> {
         match self {
             Self::Nodes(nodes) => {
                 let mut sin = vec![0.0; waves.len()];
@@ -239,7 +244,7 @@ fn spherical_bessel(y: f64, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::{Basis, Panel, spherical_bessel};
-    use crate::indent::waves::Waves;
+    use crate::indent::equation::waves::Waves;
     use crate::kernel::quadrature::Rule;
 
     /// Recurrence and the sum Σ (2k+1) j_k² = 1 (Abramowitz & Stegun, 10.1.50), below, at and above the orders.

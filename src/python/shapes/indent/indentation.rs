@@ -5,8 +5,8 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::super::arguments::{Real, read_only, real_array};
-use super::super::bodies::{PyHalfSpace, body};
+use super::super::super::arguments::{Real, read_only, real_array};
+use super::super::super::bodies::{PyHalfSpace, body};
 use super::adhesion::PyAdhesion;
 use super::state::{PyIndentState, chosen};
 use super::tip::PyTip;

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::super::arguments::{Real, hash, mapped, real_array};
+use super::super::super::arguments::{Real, hash, mapped, real_array};
 use crate::indent::{self, Form, Tip};
 
 /// Half angle of the cone whose area at each depth is that of Berkovich's pyramid, 24.5 times the depth squared [rad].

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::super::arguments::{Real, hash};
+use super::super::super::arguments::{Real, hash};
 use crate::indent::Adhesion;
 
 /// Adhesion of tip and surface, made by one of its static methods.

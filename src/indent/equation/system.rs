@@ -3,28 +3,28 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::super::tip::Tip;
 use super::basis::Basis;
 use super::stack::{Level, Stack};
-use super::tip::Tip;
 use crate::dense::{backward, cholesky, forward};
 use crate::error::{Error, Result};
 use crate::parallel::dot;
 
 /// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.
 #[derive(Debug)]
-pub(super) struct System {
+pub(in crate::indent) struct System {
     /// Contact radius a \[m\].
-    pub(super) radius: f64,
-    pub(super) basis: Basis,
+    pub(in crate::indent) radius: f64,
+    pub(in crate::indent) basis: Basis,
     /// Response at the waves; none of bare bodies.
-    pub(super) level: Option<Arc<Level>>,
+    pub(in crate::indent) level: Option<Arc<Level>>,
     /// Transforms of the functions at the waves.
     rows: Vec<Vec<f64>>,
     factor: Vec<Vec<f64>>,
     /// ∫ bᵢ.
-    pub(super) ones: Vec<f64>,
+    pub(in crate::indent) ones: Vec<f64>,
     /// cos αa and sin αa at the waves.
-    pub(super) edge: [Vec<f64>; 2],
+    pub(in crate::indent) edge: [Vec<f64>; 2],
 }
 
 impl System {
@@ -32,7 +32,7 @@ impl System {
     ///
     /// # Errors
     /// A radius beyond those that are computed, and a response that is not positive.
-    pub(super) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
+    pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
         tip.check_radius(a)?;
         if a > stack.largest_radius() {
             return Err(Error::Parameter {
@@ -73,12 +73,12 @@ impl System {
     }
 
     /// B⁻¹ `right`.
-    pub(super) fn solve(&self, right: Vec<f64>) -> Vec<f64> {
+    pub(in crate::indent) fn solve(&self, right: Vec<f64>) -> Vec<f64> {
         backward(&self.factor, forward(&self.factor, right))
     }
 
     /// p̂(α) = ∫ φ cos αt dt at the waves, of a φ in the basis.
-    pub(super) fn transform(&self, values: &[f64]) -> Vec<f64> {
+    pub(in crate::indent) fn transform(&self, values: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.waves()];
         for (row, value) in self.rows.iter().zip(values) {
             for (sum, b) in sums.iter_mut().zip(row) {
@@ -89,7 +89,7 @@ impl System {
     }
 
     /// 2/π Σ g b̂ᵢ over the waves, for each function.
-    pub(super) fn couple(&self, g: &[f64]) -> Vec<f64> {
+    pub(in crate::indent) fn couple(&self, g: &[f64]) -> Vec<f64> {
         match self.level {
             Some(_) => self.rows.iter().map(|row| 2.0 / PI * dot(row, g)).collect(),
             None => vec![0.0; self.ones.len()],
@@ -97,17 +97,17 @@ impl System {
     }
 
     /// 2/π Σ g cos αa over the waves.
-    pub(super) fn couple_edge(&self, g: &[f64]) -> f64 {
+    pub(in crate::indent) fn couple_edge(&self, g: &[f64]) -> f64 {
         2.0 / PI * dot(&self.edge[0], g)
     }
 
     /// Number of waves.
-    pub(super) fn waves(&self) -> usize {
+    pub(in crate::indent) fn waves(&self) -> usize {
         self.edge[0].len()
     }
 
     /// Weights times M(α); none of bare bodies.
-    pub(super) fn excess(&self) -> &[f64] {
+    pub(in crate::indent) fn excess(&self) -> &[f64] {
         self.level.as_ref().map_or(&[], |level| &level.excess)
     }
 }
@@ -131,6 +131,6 @@ fn products(rows: &[Vec<f64>], m: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Products of the elements.
-pub(super) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
+pub(in crate::indent) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
 }

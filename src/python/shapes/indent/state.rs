@@ -5,7 +5,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::super::arguments::real_array;
+use super::super::super::arguments::real_array;
 use crate::Result;
 use crate::indent::{Held, Parameter, Point, Variable};
 

@@ -28,11 +28,11 @@ const ROTATIONS: usize = 64;
 
 /// A quadrature over the wavenumbers: panels that halve towards 0, then panels of equal length.
 #[derive(Debug, Clone)]
-pub(super) struct Waves {
+pub(in crate::indent) struct Waves {
     /// Wavenumbers α \[1/m\].
-    pub(super) alpha: Vec<f64>,
+    pub(in crate::indent) alpha: Vec<f64>,
     /// Weights \[1/m\].
-    pub(super) weight: Vec<f64>,
+    pub(in crate::indent) weight: Vec<f64>,
     /// Nodes before the panels of equal length.
     graded: usize,
     /// Length of the equal panels \[1/m\].
@@ -42,7 +42,7 @@ pub(super) struct Waves {
 impl Waves {
     /// Waves for top layers of `thickness` \[m\] and functions that oscillate over lengths up to `length` \[m\] in α;
     /// `excess` is M(α). `finer` divides all panels.
-    pub(super) fn plan(
+    pub(in crate::indent) fn plan(
         thickness: f64,
         length: f64,
         finer: f64,
@@ -81,12 +81,12 @@ impl Waves {
     }
 
     /// Number of wavenumbers.
-    pub(super) fn len(&self) -> usize {
+    pub(in crate::indent) fn len(&self) -> usize {
         self.alpha.len()
     }
 
     /// cos αs at all wavenumbers, into `cos`, and sin αs into `sin`.
-    pub(super) fn circular(&self, s: f64, cos: &mut [f64], sin: &mut [f64]) {
+    pub(in crate::indent) fn circular(&self, s: f64, cos: &mut [f64], sin: &mut [f64]) {
         let lanes =
             |values: &[f64]| -> Lanes { Lanes::from([values[0], values[1], values[2], values[3]]) };
         let exact = |k: usize, cos: &mut [f64], sin: &mut [f64]| {
