@@ -1,5 +1,7 @@
 //! States of an indentation.
 
+mod interior;
+
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -10,6 +12,8 @@ use super::parts::Parts;
 use super::zone::Zone;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
+
+pub use interior::InteriorStress;
 
 /// One state of an indentation.
 #[derive(Debug, Clone)]

@@ -158,3 +158,55 @@ fn maugis_on_bare_and_coated_bodies() -> Result<()> {
     }
     Ok(())
 }
+
+/// With a cohesive zone the load is the derivative of the energy: U = ½ ∫ p u dA of the elastic bodies, − w on the contact and
+/// −(w − σ₀ g) where the gap is g < w/σ₀.
+#[test]
+fn the_load_is_the_derivative_of_the_energy() -> Result<()> {
+    let (work, strength) = (WORK, 0.35);
+    for stack in [
+        Stack::plan(&[coated(4.0, 0.5)?.into()])?,
+        Stack::plan(&[Elastic::new(0.91, 0.3)?.into()])?,
+    ] {
+        let indent = Indent::new(&stack, &Tip::paraboloid(1.0)?)
+            .with_adhesion(Adhesion::Maugis { work, strength })?;
+        let energy = |a: f64| -> Result<[f64; 3]> {
+            let point = indent.at_radius(a)?;
+            let outer = point.outer_radius.unwrap_or(a);
+            // r = a sin θ and r = a + (c − a) sin²θ take away the roots at a and c.
+            let count = 200;
+            let (mut sum, step) = (0.0, 0.5 * PI / f64::from(count));
+            let angles: Vec<f64> = (0..count).map(|k| (f64::from(k) + 0.5) * step).collect();
+            let inside: Vec<f64> = angles.iter().map(|angle| a * angle.sin()).collect();
+            let (pressure, displaced) = (point.pressure(&inside)?, point.displacement(&inside)?);
+            for (k, angle) in angles.iter().enumerate() {
+                let density = 0.5 * pressure[k] * displaced[k] - work;
+                sum += density * 2.0 * PI * inside[k] * a * angle.cos() * step;
+            }
+            let width = outer - a;
+            let zone: Vec<f64> = angles
+                .iter()
+                .map(|angle| a + width * angle.sin().powi(2))
+                .collect();
+            let (displaced, gap) = (point.displacement(&zone)?, point.gap(&zone)?);
+            for (k, angle) in angles.iter().enumerate() {
+                let density = -0.5 * strength * displaced[k] - (work - strength * gap[k]);
+                sum += density * 2.0 * PI * zone[k] * width * (2.0 * angle).sin() * step;
+            }
+            Ok([sum, point.approach, point.load])
+        };
+        for a in [0.6, 1.3] {
+            let h = 1e-2;
+            let [p, q, r, s] = [-2.0, -1.0, 1.0, 2.0].map(|k: f64| energy(a * (1.0 + h * k)));
+            let (p, q, r, s) = (p?, q?, r?, s?);
+            let slope = |k: usize| p[k] - 8.0 * q[k] + 8.0 * r[k] - s[k];
+            let (found, due) = (slope(0) / slope(1), energy(a)?[2]);
+            // The midpoint rule leaves 1e-5 where the pressure has a vertical tangent at the edge.
+            assert!(
+                (found - due).abs() < 3e-5 * due.abs().max(1.0),
+                "{a}: {found} {due}"
+            );
+        }
+    }
+    Ok(())
+}

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nacre::indent::{Form, Indent, Stack, Tip};
-use nacre::{Elastic, Error, HalfSpace, Layer, Result};
+use nacre::{Elastic, Error, HalfSpace, Layer, Result, Substrate};
 use serde_json::Value;
 
 use super::support::{body, number, reference};
@@ -72,6 +72,45 @@ fn two_programs_find_the_same() -> Result<()> {
                     error.abs() < 1e-9,
                     "{} a {a} r {place}: {found} {due}",
                     case["name"]
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Contact radius, approach and peak under a load, of an earlier program: coated bodies in units of the substrate's Hertz
+/// contact, and layers on a rigid base in those of the layer's; eleven digits.
+#[test]
+fn coated_spheres_under_a_load() -> Result<()> {
+    for (name, is_rigid) in [
+        ("sphere_coated.json", false),
+        ("sphere_rigid_base.json", true),
+    ] {
+        for case in reference(name)["cases"].as_array().into_iter().flatten() {
+            let get = |key: &str| number(&case[key]);
+            let (nu, ratio) = (
+                get("poisson"),
+                case["modulus_ratio"].as_f64().unwrap_or(1.0),
+            );
+            // E* = 1, R = 1 and W = 4/3 make a_H = δ_H = 1 and p_H = 2/π.
+            let young = 1.0 - nu * nu;
+            let layer = Layer::new(Elastic::new(ratio * young, nu)?, get("h"))?;
+            let base = match is_rigid {
+                true => Substrate::Rigid,
+                false => Substrate::Elastic(Elastic::new(young, nu)?),
+            };
+            let stack = Stack::plan(&[HalfSpace::new(base, [layer])?.into()])?;
+            let point = Indent::new(&stack, &Tip::paraboloid(1.0)?).at_load(4.0 / 3.0)?;
+            let peak = point.pressure(&[0.0])?[0] / (2.0 / PI);
+            for (found, key, error) in [
+                (point.radius, "radius", 1e-9),
+                (point.approach, "approach", 1e-9),
+                (peak, "peak", 1e-8),
+            ] {
+                assert!(
+                    (found / get(key) - 1.0).abs() < error,
+                    "{case}: {key} {found}"
                 );
             }
         }
@@ -160,7 +199,7 @@ fn bare_bodies_are_sneddons() -> Result<()> {
 
 /// n (√π/2) Γ(n/2)/Γ((n+1)/2) for n = 3/2: Γ(3/4) = 1.2254167024651777, Γ(5/4) = 0.9064024770554771.
 const THREE_HALVES: f64 =
-    1.5 * 0.886_226_925_452_758 * 1.225_416_702_465_177_7 / 0.906_402_477_055_477_1;
+    1.5 * 0.886_226_925_452_758 * 1.225_416_702_465_177_7 / 0.906_402_477_055_477;
 
 /// The load and the approach that a radius gives give the radius back; along the curve dP/dδ = S.
 #[test]
@@ -207,6 +246,63 @@ fn radius_load_and_approach_are_one() -> Result<()> {
             assert!((slope / point.stiffness - 1.0).abs() < 1e-6, "{form:?} {a}");
         }
     }
+    Ok(())
+}
+
+/// Stresses below a paraboloid on a bare body: on the axis Huber's closed form (Johnson, Contact Mechanics (1985), eqs (3.45)),
+/// and with a layer of the same material the same; σ_zz and σ_rz are continuous across interfaces, and the force across each
+/// plane is the load.
+#[test]
+fn stresses_below_the_surface() -> Result<()> {
+    let steel = Elastic::new(2.0, 0.3)?;
+    let equal = HalfSpace::new(steel, [Layer::new(steel, 0.4)?])?;
+    for body in [HalfSpace::from(steel), equal] {
+        let stack = Stack::plan(&[body.into()])?;
+        let point = Indent::new(&stack, &Tip::paraboloid(8.0)?).at_radius(1.0)?;
+        let peak = point.pressure(&[0.0])?[0];
+        for z in [0.01, 0.4, 0.48, 2.0_f64] {
+            let found = point.stress(0, z, &[0.0])?[0];
+            let (cone, pole) = (1.0 - z * (1.0 / z).atan(), 1.0 / (1.0 + z * z));
+            let [zz, rr] = [-peak * pole, -peak * (1.3 * cone - 0.5 * pole)];
+            assert!(
+                (found.zz - zz).abs() < 1e-9 * peak,
+                "{z}: {} {zz}",
+                found.zz
+            );
+            assert!(
+                (found.rr - rr).abs() < 1e-9 * peak,
+                "{z}: {} {rr}",
+                found.rr
+            );
+            assert!((found.tt - rr).abs() < 1e-9 * peak && found.rz.abs() < 1e-12);
+            assert!((found.von_mises() - (zz - rr).abs()).abs() < 2e-9 * peak);
+        }
+    }
+    let coat = HalfSpace::new(steel, [Layer::new(Elastic::new(7.0, 0.2)?, 0.4)?])?;
+    let stack = Stack::plan(&[coat.into()])?;
+    let point = Indent::new(&stack, &Tip::sphere(8.0)?).at_radius(1.0)?;
+    let r = [0.0, 0.6, 1.0, 1.7];
+    let [above, below] = [0.4 * (1.0 - 1e-9), 0.4].map(|z| point.stress(0, z, &r));
+    for (above, below) in above?.iter().zip(below?) {
+        assert!((above.zz - below.zz).abs() < 1e-7 && (above.rz - below.rz).abs() < 1e-7);
+        assert!((above.rr - below.rr).abs() > 1e-3);
+    }
+    // Midpoints in ln r from 1e-3 to 1e3; σ_zz falls as r⁻⁵.
+    let r: Vec<f64> = (0..600)
+        .map(|k| (-7.0 + 14.0 * (f64::from(k) + 0.5) / 600.0).exp())
+        .collect();
+    let stress = point.stress(0, 0.7, &r)?;
+    let force: f64 = stress
+        .iter()
+        .zip(&r)
+        .map(|(s, r)| -s.zz * 2.0 * PI * r * r * 14.0 / 600.0)
+        .sum();
+    assert!(
+        (force / point.load - 1.0).abs() < 1e-4,
+        "{force} {}",
+        point.load
+    );
+    assert!(point.stress(0, 0.0, &[0.0]).is_err() && point.stress(1, 1.0, &[0.0]).is_err());
     Ok(())
 }
 

@@ -4,21 +4,21 @@ use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 use serde_json::Value;
 
 /// Numbers of other programs, from the folder of test data.
-pub fn reference(name: &str) -> Value {
+pub(crate) fn reference(name: &str) -> Value {
     let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
 /// A number of a reference.
-pub fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value
         .as_f64()
         .unwrap_or_else(|| panic!("{value} must be a number"))
 }
 
 /// The body of a case.
-pub fn body(case: &Value) -> Result<HalfSpace> {
+pub(crate) fn body(case: &Value) -> Result<HalfSpace> {
     let elastic = |v: &Value| Elastic::new(number(&v["young"]), number(&v["poisson"]));
     let layers = case["layers"]
         .as_array()
@@ -41,7 +41,7 @@ pub fn body(case: &Value) -> Result<HalfSpace> {
 }
 
 /// A coat of E1/E2 = `ratio` and thickness `h` on E2* = 1, ν = 0.3 both.
-pub fn coated(ratio: f64, h: f64) -> Result<HalfSpace> {
+pub(crate) fn coated(ratio: f64, h: f64) -> Result<HalfSpace> {
     let substrate = Elastic::new(1.0 - 0.09, 0.3)?;
     let coat = Elastic::new(ratio * substrate.young(), 0.3)?;
     HalfSpace::new(substrate, [Layer::new(coat, h)?])

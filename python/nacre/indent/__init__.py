@@ -11,7 +11,7 @@ Examples
 >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(5e-6))
 >>> state = test.at(approach=[50e-9, 100e-9])
 >>> state.load.round(5)
-array([0.00019, 0.00061])
+array([0.00021, 0.00076])
 """
 
 from nacre._core import (

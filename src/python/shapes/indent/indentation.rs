@@ -39,7 +39,7 @@ use crate::response::Body;
 /// >>> test = nacre.indent.Indentation(body, nacre.indent.Tip.sphere(5e-6))
 /// >>> state = test.at(load=1e-3)
 /// >>> f"{state.approach * 1e9:.1f} nm, contact radius {state.radius * 1e9:.0f} nm"
-/// '135.6 nm, contact radius 864 nm'
+/// '115.5 nm, contact radius 938 nm'
 #[pyclass(name = "Indentation", module = "nacre.indent", frozen)]
 pub(in crate::python) struct PyIndentation {
     indent: Indent,
@@ -303,7 +303,7 @@ impl PyIndentation {
     /// ...     nacre.Elastic(1e6, 0.5), nacre.indent.Tip.paraboloid(1e-5), adhesion=nacre.indent.Adhesion.jkr(0.05)
     /// ... )
     /// >>> last = test.pull_off()
-    /// >>> round(last.load / (-1.5 * math.pi * 0.05 * 1e-5), 9)
+    /// >>> round(last.load / (-1.5 * 3.141592653589793 * 0.05 * 1e-5), 9)
     /// 1.0
     #[pyo3(signature = (control="load"))]
     fn pull_off(&self, py: Python<'_>, control: &str) -> PyResult<PyPullOff> {

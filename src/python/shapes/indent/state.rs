@@ -5,9 +5,9 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::super::super::arguments::real_array;
+use super::super::super::arguments::{Real, real_array};
 use crate::Result;
-use crate::indent::{Held, Parameter, Point, Variable};
+use crate::indent::{Held, InteriorStress, Parameter, Point, Variable};
 
 /// Values in the shape of what was given: a number or an array.
 pub(super) fn shaped<'py>(
@@ -118,6 +118,49 @@ impl PyIndentState {
     /// Gap between tip and surface [m] at distances r from the axis [m], infinite beyond the tip.
     fn gap<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         self.field(r, Point::gap)
+    }
+
+    /// Stresses in the body below the surface.
+    ///
+    /// Parameters
+    /// ----------
+    /// r : array_like
+    ///     Distances from the axis [m].
+    /// z : float
+    ///     Depth [m], at least 2e-3 of the contact radius. On an interface the stresses are those below it.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to numpy.ndarray
+    ///     rr, tt, zz, rz and von_mises [Pa], tension positive, each in the shape of the state followed by that of r.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the depth is too small or below a rigid base, a distance is negative, or the adhesion is Maugis's.
+    fn stress<'py>(&self, r: &Bound<'py, PyAny>, z: Real) -> PyResult<Bound<'py, PyDict>> {
+        let py = r.py();
+        let found = PyDict::new(py);
+        let of: [(&str, fn(&InteriorStress) -> f64); 5] = [
+            ("rr", |s| s.rr),
+            ("tt", |s| s.tt),
+            ("zz", |s| s.zz),
+            ("rz", |s| s.rz),
+            ("von_mises", InteriorStress::von_mises),
+        ];
+        let r = real_array("r", r)?;
+        let shape = [&self.shape, r.shape()].concat();
+        let r: Vec<f64> = r.into_iter().collect();
+        let points = &self.points;
+        let all = py.detach(|| {
+            let all = points.iter().map(|point| point.stress(0, z.0, &r));
+            all.collect::<Result<Vec<_>>>()
+        })?;
+        for (name, of) in of {
+            let values = all.iter().flatten().map(of).collect();
+            found.set_item(name, shaped(py, values, &shape)?)?;
+        }
+        Ok(found)
     }
 
     /// Derivatives with respect to parameters by path, where what was given is held.

@@ -1,0 +1,128 @@
+//! Stresses below the surface of an indentation.
+
+use spec_math::cephes64::{j0, j1};
+
+use super::{Point, distance};
+use crate::error::{Error, Result};
+use crate::indent::equation::waves::Waves;
+use crate::response::interior::{Column, Place};
+
+/// Depth, in contact radii, above which the waves that matter are too many.
+const SHALLOWEST: f64 = 2e-3;
+
+/// Stresses at one place below the surface \[Pa\], tension positive, in the frame of the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InteriorStress {
+    /// σ_rr.
+    pub rr: f64,
+    /// σ_θθ.
+    pub tt: f64,
+    /// σ_zz.
+    pub zz: f64,
+    /// σ_rz.
+    pub rz: f64,
+}
+
+impl InteriorStress {
+    /// Equivalent stress of von Mises \[Pa\].
+    pub fn von_mises(&self) -> f64 {
+        let squares =
+            (self.rr - self.tt).powi(2) + (self.tt - self.zz).powi(2) + (self.zz - self.rr).powi(2);
+        (0.5 * squares + 3.0 * self.rz * self.rz).sqrt()
+    }
+}
+
+impl Point {
+    /// Stresses in the body of this number at the depth `z` \[m\], at each distance r from the axis \[m\]. On an interface they are those of
+    /// the layer below it.
+    ///
+    /// With P, τ and (σ_LL ± σ_TT)/2 = S, D of the response under a unit pressure, and H_ν f = ∫ p̂ f J_ν(αr) α dα,
+    ///
+    /// ```text
+    /// σ_zz = −H₀ P      σ_rz = H₁ τ      σ_rr, σ_θθ = H₀ S ∓ H₂ D
+    /// ```
+    ///
+    /// # Errors
+    /// A distance that is negative or not finite, a depth below 2e-3 of the contact radius, no such half-space, a cohesive zone.
+    pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
+        r.iter().try_for_each(|r| distance(*r))?;
+        if !(z.is_finite() && z >= SHALLOWEST * self.radius) {
+            return Err(Error::Parameter {
+                name: "z",
+                requirement: "at least 2e-3 of the contact radius, and finite; at the surface, see the pressure",
+                value: z,
+            });
+        }
+        let bodies = self.parts.stack.bodies();
+        let body = bodies.get(body).and_then(|body| body.half_space());
+        let body = body.ok_or(Error::Inconsistent(
+            "body must be one of the half-spaces that are indented",
+        ))?;
+        if self.zone.is_some() {
+            return Err(Error::Inconsistent(
+                "there are no stresses with the adhesion of Maugis and Dugdale: take Jkr or Dmt",
+            ));
+        }
+        let mut place = Place::surface(body);
+        let mut top = 0.0;
+        for (number, depth) in body.interfaces().iter().enumerate() {
+            if z >= *depth {
+                top = *depth;
+                place.layer = number + 1;
+            }
+        }
+        place.depth = z;
+        place.below_top = z - top;
+        let below = body.layers().get(place.layer);
+        place.material = match (below, body.substrate()) {
+            (Some(layer), _) => layer.material(),
+            (None, crate::body::Substrate::Elastic(material)) => material,
+            (None, crate::body::Substrate::Rigid) => {
+                return Err(Error::Parameter {
+                    name: "z",
+                    requirement: "above the rigid base",
+                    value: z,
+                });
+            }
+        };
+        // All decays with e^{−αz}: TAIL/thickness = 48/z ends at e^{−48}; J_ν and p̂ oscillate over r and a.
+        let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
+        let layers = body.interfaces().into_iter().reduce(f64::min);
+        let thinnest = layers.map_or(z / 3.0, |h| h.min(z / 3.0));
+        let waves = Waves::plan(
+            z / 3.0,
+            (self.radius + far).max(z / 3.0),
+            (z / 3.0 / thinnest).max(1.0),
+            |_| 0.0,
+        );
+        let rows = self.parts.system.basis.transforms(&waves);
+        let values = self.values();
+        let mut sums = vec![[0.0; 4]; r.len()];
+        for (q, (alpha, weight)) in waves.alpha.iter().zip(&waves.weight).enumerate() {
+            let hat: f64 = rows
+                .iter()
+                .zip(&values)
+                .map(|(row, value)| row[q] * value)
+                .sum();
+            let fields = Column::new(body, *alpha).at(body, &place).pressure;
+            let (along, across) = fields.lateral_stress(place.material);
+            let (mean, difference) = (0.5 * (along + across), 0.5 * (along - across));
+            let load = weight * hat * alpha;
+            for (sum, r) in sums.iter_mut().zip(r) {
+                let x = alpha * r;
+                let (zeroth, first) = (j0(x), j1(x));
+                let second = if x > 1e-4 {
+                    2.0 * first / x - zeroth
+                } else {
+                    x * x / 8.0
+                };
+                sum[0] += load * (mean * zeroth - difference * second);
+                sum[1] += load * (mean * zeroth + difference * second);
+                sum[2] -= load * fields.p * zeroth;
+                sum[3] += load * fields.tau * first;
+            }
+        }
+        let stress = |[rr, tt, zz, rz]: [f64; 4]| InteriorStress { rr, tt, zz, rz };
+        Ok(sums.into_iter().map(stress).collect())
+    }
+}
