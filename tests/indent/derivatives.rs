@@ -113,7 +113,7 @@ fn differences() -> Result<()> {
                 };
             for held in [Held::Load, Held::Approach, Held::Radius] {
                 // What is held is one line of the code: two tips show it.
-                if k == 4 && held == Held::Radius || k > 0 && k < 4 && held != Held::Load {
+                if k == 4 && held == Held::Radius || k > 0 && held != Held::Load {
                     continue;
                 }
                 let value = match held {

@@ -4,11 +4,18 @@ use spec_math::cephes64::{j0, j1};
 
 use super::{Point, distance};
 use crate::error::{Error, Result};
+use crate::indent::equation::basis::{Panel, rule};
 use crate::indent::equation::waves::Waves;
 use crate::response::interior::{Column, Place};
 
 /// Depth, in contact radii, above which the waves that matter are too many.
-const SHALLOWEST: f64 = 2e-3;
+const SHALLOWEST: f64 = 1e-2;
+
+/// Nodes of a panel of the contact.
+const FINE: usize = 32;
+
+/// Phase over a panel that its nodes resolve: half of it and twelve is at most their number.
+const PHASE: f64 = 40.0;
 
 /// Stresses at one place below the surface \[Pa\], tension positive, in the frame of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,13 +50,13 @@ impl Point {
     /// ```
     ///
     /// # Errors
-    /// A distance that is negative or not finite, a depth below 2e-3 of the contact radius, no such half-space, a cohesive zone.
+    /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius, no such half-space, a cohesive zone.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
         r.iter().try_for_each(|r| distance(*r))?;
         if !(z.is_finite() && z >= SHALLOWEST * self.radius) {
             return Err(Error::Parameter {
                 name: "z",
-                requirement: "at least 2e-3 of the contact radius, and finite; at the surface, see the pressure",
+                requirement: "at least 1e-2 of the contact radius, and finite; at the surface, see the pressure",
                 value: z,
             });
         }
@@ -95,19 +102,13 @@ impl Point {
             (z / 3.0 / thinnest).max(1.0),
             |_| 0.0,
         );
-        let rows = self.parts.system.basis.transforms(&waves);
-        let values = self.values();
+        let hat = self.fine_transform(&waves);
         let mut sums = vec![[0.0; 4]; r.len()];
         for (q, (alpha, weight)) in waves.alpha.iter().zip(&waves.weight).enumerate() {
-            let hat: f64 = rows
-                .iter()
-                .zip(&values)
-                .map(|(row, value)| row[q] * value)
-                .sum();
             let fields = Column::new(body, *alpha).at(body, &place).pressure;
             let (along, across) = fields.lateral_stress(place.material);
             let (mean, difference) = (0.5 * (along + across), 0.5 * (along - across));
-            let load = weight * hat * alpha;
+            let load = weight * hat[q] * alpha;
             for (sum, r) in sums.iter_mut().zip(r) {
                 let x = alpha * r;
                 let (zeroth, first) = (j0(x), j1(x));
@@ -124,5 +125,44 @@ impl Point {
         }
         let stress = |[rr, tt, zz, rz]: [f64; 4]| InteriorStress { rr, tt, zz, rz };
         Ok(sums.into_iter().map(stress).collect())
+    }
+
+    /// p̂ at waves that are shorter than the nodes of the contact resolve: of φ at panels of at most `PHASE` radians.
+    fn fine_transform(&self, waves: &Waves) -> Vec<f64> {
+        let (a, tip) = (self.radius, &self.parts.tip);
+        let shortest = waves
+            .alpha
+            .iter()
+            .fold(0.0_f64, |most, alpha| most.max(*alpha));
+        let (mut places, mut weights) = (Vec::new(), Vec::new());
+        for panel in Panel::between(0.0, tip.kinks(), a) {
+            let count = (shortest * (panel.high - panel.low) / PHASE)
+                .ceil()
+                .max(1.0);
+            let length = (panel.high - panel.low) / count;
+            for k in 0..count as usize {
+                let low = panel.low + k as f64 * length;
+                let part = Panel {
+                    low,
+                    high: low + length,
+                    has_root: panel.has_root && k == 0,
+                };
+                for (place, weight) in part.nodes(rule(FINE)) {
+                    places.push(place);
+                    weights.push(weight);
+                }
+            }
+        }
+        let density = self.density().at(&places);
+        let mut hat = vec![0.0; waves.alpha.len()];
+        let (mut cos, mut sin) = (hat.clone(), hat.clone());
+        for (place, (weight, [value, _])) in places.iter().zip(weights.iter().zip(density)) {
+            waves.circular(*place, &mut cos, &mut sin);
+            let weight = weight * value;
+            hat.iter_mut()
+                .zip(&cos)
+                .for_each(|(hat, cos)| *hat += weight * cos);
+        }
+        hat
     }
 }

@@ -127,7 +127,7 @@ impl PyIndentState {
     /// r : array_like
     ///     Distances from the axis [m].
     /// z : float
-    ///     Depth [m], at least 2e-3 of the contact radius. On an interface the stresses are those below it.
+    ///     Depth [m], at least 1e-2 of the contact radius. On an interface the stresses are those below it.
     ///
     /// Returns
     /// -------
