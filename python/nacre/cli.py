@@ -33,7 +33,8 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
-        import nacre._case_commands  # adds commands to app
+        import nacre._case_commands
+        import nacre.indent.case  # both add commands to app
         from nacre._commands import app
         from nacre.case import CaseError
     except ModuleNotFoundError as missing:

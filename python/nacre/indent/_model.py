@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +18,7 @@ Array = npt.NDArray[np.float64]
 Noise = Literal["relative", "absolute"]
 
 NUISANCES = ("contact_point", "drift", "compliance")
-"""Nuisances of a curve: the depth of its zero [m], a drift [m/s], the machine's compliance [m/N]."""
+"""Nuisances of a curve: depth of its zero [m], drift [m/s], compliance of the machine [m/N]."""
 RANGES = {
     "young": 1e4,
     "thickness": 1e3,
@@ -199,7 +200,7 @@ class Model:
         self.depth = np.concatenate([curve.depth for curve in curves])
         self.force = np.concatenate([curve.force for curve in curves])
         ends = np.cumsum([0, *(len(curve) for curve in curves)])
-        self.parts = [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
+        self.parts = [slice(int(a), int(b)) for a, b in itertools.pairwise(ends)]
         if noise == "relative":
             if (self.force <= 0).any():
                 wrong = int((self.force <= 0).sum())

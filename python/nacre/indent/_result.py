@@ -57,7 +57,7 @@ class Fit:
     dof: int
     """Degrees of freedom."""
     sigma: float
-    """Standard deviation of the noise, as given or as estimated: a share, or of the largest force."""
+    """Standard deviation of the noise, given or estimated: a share of the force, or a force [N]."""
     is_sigma_known: bool
     """Whether the noise was given."""
     noise: Literal["relative", "absolute"]
