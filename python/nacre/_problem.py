@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -25,6 +26,10 @@ ACCURATE = 1e-9
 
 class Enough(Exception):
     """No more solves are allowed."""
+
+
+SIZE = re.compile(r"young$|^load$|^moment")
+"""Numbers to which all stresses together are proportional, for given shapes and tilts."""
 
 
 @dataclass
@@ -60,7 +65,9 @@ class Problem:
     plans: dict[int, tuple[core.Contact, str]] = field(default_factory=dict)
 
     def named(self, x: Array) -> dict[str, float]:
-        return {s.name: s.value(float(v)) for s, v in zip(self.scales, x, strict=True)}
+        # Fifteen digits, so that a start and a bound are themselves again.
+        pairs = zip(self.scales, x, strict=True)
+        return {scale.name: float(f"{scale.value(float(v)):.15g}") for scale, v in pairs}
 
     def arguments(self, x: Array, case: Mapping[str, Any]) -> dict[str, Any]:
         """Return arguments of a solve."""
@@ -87,8 +94,13 @@ class Problem:
     def best(self) -> Point:
         """Return the best point on these cells: within the limits if there is one."""
         points = list(self.known.values())
-        lacking = [max(-float(p.slack.min(initial=0.0)), 10 * self.tolerance) for p in points]
+        lacking = [max(-float(p.slack.min(initial=0.0)), self.tolerance) for p in points]
         return min(zip(lacking, points, strict=True), key=lambda pair: (pair[0], pair[1].value))[1]
+
+    def scaled(self, x: Array, factor: float) -> tuple[float, Array]:
+        """Return the objective and its slope, times a factor."""
+        point = self.at(x)
+        return factor * point.value, factor * point.slope
 
     def at(self, x: Array) -> Point:
         """Return the evaluation at a point."""
@@ -116,8 +128,12 @@ class Problem:
             made = self.arguments(x, case)
             changes = self.changes(x, case, grid)
             solution = self.solved(k, made, last[k] if last else None)
-            paths = sorted({path for change, _ in changes for path in change})
-            gradients = solution.gradient(wanted, paths)
+            paths = {path for change, _ in changes for path in change}
+            soft = [
+                isinstance(o, dict) and not {"layer", "interface"}.isdisjoint(o) for o in wanted
+            ]
+            sizes = {p: v for p, v in numbers(made).items() if SIZE.search(p)} if any(soft) else {}
+            gradients = solution.gradient(wanted, sorted({*paths, *sizes}))
             self.solves += 1 + len(wanted)
             for j, gradient in enumerate(gradients):
                 outputs[k, j] = gradient.value
@@ -126,6 +142,12 @@ class Problem:
                     slopes[k, j, i] = sum(gradient[path] * rate for path, rate in change.items())
                     slopes[k, j, i] += gradient.gap[touched] @ gap[touched]
                 told += gradient.warnings
+                if soft[j]:
+                    # Its sharpness times its maximum is given, and the gradient keeps the
+                    # sharpness: its own sum over what scales the stress is the mean of the stress
+                    # with the weights of the soft maximum (Euler), to which the slope belongs.
+                    weighted = sum(gradient[path] * value for path, value in sizes.items())
+                    slopes[k, j] *= gradient.value / weighted
             solutions.append(solution)
         values = outputs[:, 0]
         if self.across != 1 and not np.all(values > 0):

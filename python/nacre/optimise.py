@@ -185,10 +185,8 @@ def optimise(
     )
     x = np.array([scale.x(start[scale.name]) for scale in scales])
     box = [(scale.low, scale.high) for scale in scales]
-    options: dict[str, Any] = {"method": "SLSQP", "options": {"ftol": tolerance / 10}}
-    if not constraints:
-        options = {"method": "L-BFGS-B", "options": {"ftol": tolerance / 10, "gtol": tolerance}}
-    else:
+    options: dict[str, Any] = {"method": "SLSQP" if constraints else "L-BFGS-B"}
+    if constraints:
         slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
         options["constraints"] = [{"type": "ineq", **slack}]
     termination = "converged"
@@ -216,14 +214,23 @@ def optimise(
                     keep(x)
                 for _ in range(1 + RESTARTS):
                     before = problem.at(x).value
+                    # The first step of both methods is the slope: it is made as long as 1.
+                    factor = max(1.0, 1.0 / max(float(np.abs(problem.at(x).slope).max()), 1e-2))
+                    ends = {"ftol": tolerance / 10}
+                    ends |= (
+                        {"ftol": factor * tolerance / 10}
+                        if constraints
+                        else {"gtol": factor * tolerance}
+                    )
                     found = minimize(
-                        lambda x: (problem.at(x).value, problem.at(x).slope),
+                        lambda x, factor=factor: problem.scaled(x, factor),
                         *(x,),
-                        **{"jac": True, "bounds": box, "callback": keep, **options},
+                        **{"jac": True, "bounds": box, "callback": keep, "options": ends},
+                        **options,
                     )
                     x = problem.best().x
                     termination = "converged" if found.success else "line search"
-                    if found.success or before - problem.at(x).value < tolerance:
+                    if before - problem.at(x).value < tolerance:
                         break
         except Enough:
             termination = "solve limit"
