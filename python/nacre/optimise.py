@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Limits = Sequence[tuple[Any, float]]
 
 RESTARTS = 3
-"""Fresh starts after line searches that failed, each where the last one ended."""
+"""Fresh starts where the last search ended, until one gains less than the tolerance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +215,7 @@ def optimise(
                 for _ in range(1 + RESTARTS):
                     before = problem.at(x).value
                     # The first step of both methods is the slope: it is made as long as 1.
-                    factor = max(1.0, 1.0 / max(float(np.abs(problem.at(x).slope).max()), 1e-2))
+                    factor = max(1.0, 1.0 / max(float(np.abs(problem.at(x).slope).max()), tolerance))
                     ends = {"ftol": tolerance / 10}
                     ends |= (
                         {"ftol": factor * tolerance / 10}
