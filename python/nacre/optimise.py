@@ -189,6 +189,9 @@ def optimise(
     if constraints:
         slack = {"fun": lambda x: problem.at(x).slack, "jac": lambda x: problem.at(x).d_slack}
         options["constraints"] = [{"type": "ineq", **slack}]
+    sides = np.array(box, dtype=np.float64).T  # None becomes NaN
+    sides = np.where(np.isnan(sides), [[-np.inf], [np.inf]], sides)
+    least = tolerance / 10
     termination = "converged"
     rows: list[dict[str, float]] = []
 
@@ -215,13 +218,11 @@ def optimise(
                 for _ in range(1 + RESTARTS):
                     before = problem.at(x).value
                     # The first step of both methods is the slope: it is made as long as 1.
-                    factor = max(1.0, 1.0 / max(float(np.abs(problem.at(x).slope).max()), tolerance))
-                    ends = {"ftol": tolerance / 10}
-                    ends |= (
-                        {"ftol": factor * tolerance / 10}
-                        if constraints
-                        else {"gtol": factor * tolerance}
-                    )
+                    slope = problem.at(x).slope
+                    steepest = float(np.abs(np.clip(x - slope, *sides) - x).max())
+                    factor = max(1.0, 1.0 / max(steepest, least))
+                    ends = {"ftol": least}
+                    ends |= {"ftol": factor * least} if constraints else {"gtol": factor * least}
                     found = minimize(
                         lambda x, factor=factor: problem.scaled(x, factor),
                         *(x,),
