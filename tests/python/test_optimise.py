@@ -61,7 +61,7 @@ def test_a_roller_is_that_of_nelder_and_mead_with_fewer_solves(best: Optimum) ->
         np.log([2.0, 0.9, 1.5e-5]),
         method="Nelder-Mead",
         bounds=np.log([BOUNDS[name] for name in NAMES]),
-        options={"xatol": 1e-3, "fatol": 1e-4, "maxfev": 60},
+        options={"xatol": 1e-3, "fatol": 1e-4, "maxfev": 45},
     )
     # The bar of issue 27. Nelder and Mead may be a little better or worse, as both stop early.
     assert found.fun == pytest.approx(1.0, abs=1e-3)
