@@ -1,7 +1,8 @@
 """Studies that a designer of coatings and bearings asks for, on top of `nacre.sweep`.
 
-Each function returns an `xarray.Dataset`, which `nacre.plot` draws. It passes on the other
-arguments of a solve, and `store`, `version`, `executor`, `retry` and `progress` of `nacre.sweep`.
+`optimise` has a module of its own. Each other function returns an `xarray.Dataset`, which
+`nacre.plot` draws. It passes on the other arguments of a solve, and `store`, `version`, `executor`,
+`retry` and `progress` of `nacre.sweep`.
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._keywords import Direction
 from nacre._outputs import Output, check_direction
+from nacre.optimise import Optimum, optimise
 from nacre.studies import ARGUMENTS, sweep
 from nacre.units import symbol
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["coating_chart", "load_curve", "tilt_curve"]
+__all__ = ["Optimum", "coating_chart", "load_curve", "optimise", "tilt_curve"]
 
 Values = Sequence[float] | npt.NDArray[np.float64]
 

@@ -8,6 +8,7 @@ functions as methods.
 from nacre.plot.friction import creep_curve, friction, loop
 from nacre.plot.interfaces import interface_map
 from nacre.plot.maps import overview, pressure_map
+from nacre.plot.optimise import course
 from nacre.plot.relief import relief, view
 from nacre.plot.rough import distribution, load_curve, patches, spectrum
 from nacre.plot.sections import compare, section
@@ -19,6 +20,7 @@ __all__ = [
     "STYLE",
     "chart",
     "compare",
+    "course",
     "creep_curve",
     "curve",
     "distribution",

@@ -1,0 +1,117 @@
+"""Parameters of an optimisation: what SciPy varies, and the numbers that paths name."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import nacre._core as core
+from nacre import values as plain
+
+Bounds = Mapping[str, tuple[float | None, float | None]]
+
+REACH = 0.25
+"""Change of a logarithm, or share of a width, that counts as a step of one."""
+FARTHEST = math.log(100.0)
+"""Largest change of a logarithm without a bound: a line search that is lost stays near numbers."""
+MOTIONS = ("eccentricity", "moment", "tilt")
+PATH = re.compile(r"\w+(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)*")
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Parameter, as the number of steps from 0 (of its logarithm from 1) that SciPy varies."""
+
+    name: str
+    log: bool
+    width: float
+    low: float | None
+    high: float | None
+
+    def x(self, value: float) -> float:
+        return math.log(value) / REACH if self.log else value / self.width
+
+    def value(self, x: float) -> float:
+        return math.exp(REACH * x) if self.log else self.width * x
+
+
+def scales_of(start: Mapping[str, float], bounds: Bounds) -> list[Scale]:
+    if not isinstance(start, Mapping) or not start:
+        raise TypeError(f"start must be a mapping of one parameter or more, got {start!r}")
+    if unknown := set(bounds) - set(start):
+        raise ValueError(f"bounds must be of parameters in start, got {sorted(unknown)}")
+    scales = []
+    for name, value in start.items():
+        low, high = bounds.get(name, (None, None))
+        low, high = (None if b is None or math.isinf(b) else float(b) for b in (low, high))
+        if not math.isfinite(value):
+            raise ValueError(f"start[{name!r}] must be finite, got {value!r}")
+        if (low is not None and value < low) or (high is not None and value > high):
+            raise ValueError(f"start[{name!r}] must be in its bounds {low, high}, got {value!r}")
+        if low is not None and low == high:
+            raise ValueError(f"bounds[{name!r}] must differ, got {low, high}")
+        log = value > 0 and (low is None or low > 0)
+        width = REACH * (high - low) if low is not None and high is not None else abs(value) * REACH
+        if not log and width == 0:
+            raise ValueError(f"bounds[{name!r}] must be two numbers where the start is 0")
+        scale = Scale(name, log, width, None, None)
+        ends = [None if b is None else scale.x(b) for b in (low, high)]
+        if log:
+            x, far = scale.x(value), FARTHEST / REACH
+            ends = [x + s * far if e is None else e for s, e in zip((-1, 1), ends, strict=True)]
+        scales.append(Scale(name, log, width, *ends))
+    return scales
+
+
+def numbers(made: Mapping[str, Any]) -> dict[str, float]:
+    """Return the numbers of a solve by path, but for those of the shape."""
+    found: dict[str, float] = {}
+    for side in ("body", "counterbody"):
+        body = made.get(side)
+        layers = body.layers if isinstance(body, core.HalfSpace) else ()
+        base = body.substrate if isinstance(body, core.HalfSpace) else body
+        materials = {f"{side}.substrate": base}
+        for k, layer in enumerate(layers):
+            found[f"{side}.layers[{k}].thickness"] = layer.thickness
+            materials[f"{side}.layers[{k}].material"] = layer.material
+        for path, material in materials.items():
+            if isinstance(material, core.Elastic):
+                found |= {f"{path}.young": material.young, f"{path}.poisson": material.poisson}
+    found |= {name: made[name] for name in ("load", "approach") if made.get(name) is not None}
+    for name in MOTIONS:
+        for k, value in enumerate(made.get(name) or ()):
+            if value is not None:
+                found[f"{name}[{k}]"] = value
+    return found
+
+
+def put(made: dict[str, Any], path: str, value: float) -> None:
+    """Replace the number at a path of the arguments of a solve."""
+    keys = re.findall(r"\w+", path)
+    if not PATH.fullmatch(path) or keys[0] not in made:
+        raise ValueError(f"start must name parameters of build by path, got {path!r}")
+    root = made[keys[0]]
+    if keys[0] in ("body", "counterbody") and isinstance(root, core.Elastic):
+        root = core.HalfSpace(root)
+    data = {keys[0]: plain.encode(root)}
+    place: Any = data
+    for key in keys[:-1]:
+        place = _inside(place, key, path)
+        if isinstance(place, dict) and len(place) == 1 and next(iter(place)) in plain.KINDS:
+            place = next(iter(place.values()))
+    if not isinstance(_inside(place, keys[-1], path), int | float):
+        raise ValueError(f"start must name numbers of build, got {path!r}")
+    place[int(keys[-1]) if isinstance(place, list) else keys[-1]] = value
+    made[keys[0]] = plain.decode(data[keys[0]])
+
+
+def _inside(place: Any, key: str, path: str) -> Any:
+    """Return what is at a key of plain data."""
+    if isinstance(place, dict) and key in place:
+        return place[key]
+    if isinstance(place, list) and key.isdecimal() and int(key) < len(place):
+        return place[int(key)]
+    raise ValueError(f"start must name parameters of build by path, got {path!r}: no {key}")
