@@ -1,4 +1,4 @@
-"""Indentation by axisymmetric tips: exact on any stack of layers, with adhesion, and fits of curves.
+"""Indentation by axisymmetric tips: exact on any stack of layers, with adhesion, and fits.
 
 The contact of a body of revolution is solved without a grid, from the frequency response of the
 layers alone. For shapes that are not of revolution, loads off the axis and friction there is
@@ -26,11 +26,13 @@ from nacre._core import (
 )
 from nacre.indent.checks import ContactPoint, check, contact_point, suspicious_units
 from nacre.indent.curves import Curve, read
+from nacre.indent.fit import Fit, fit
 
 __all__ = [
     "Adhesion",
     "ContactPoint",
     "Curve",
+    "Fit",
     "IndentCurve",
     "IndentState",
     "Indentation",
@@ -39,6 +41,7 @@ __all__ = [
     "Tip",
     "check",
     "contact_point",
+    "fit",
     "read",
     "slope_of",
     "suspicious_units",

@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-import nacre._core as core
+from nacre.indent._system import System
 from nacre.indent.curves import Curve
 
 Array = npt.NDArray[np.float64]
@@ -19,7 +19,7 @@ Noise = Literal["relative", "absolute"]
 
 NUISANCES = ("contact_point", "drift", "compliance")
 """Nuisances of a curve: depth of its zero [m], drift [m/s], compliance of the machine [m/N]."""
-RANGES = {
+RANGES: dict[str, float | tuple[float, float]] = {
     "young": 1e4,
     "thickness": 1e3,
     "work": 1e4,
@@ -32,105 +32,6 @@ OTHER = 100.0
 """Factor by which other parameters may differ, such as the numbers of a tip."""
 FARTHEST = 3.0
 """Range of a nuisance over the range of depth; the model needs some contact within the data."""
-
-
-@dataclass(frozen=True)
-class System:
-    """Arguments of an indentation, which parameters are written into."""
-
-    body: core.HalfSpace
-    tip: core.Tip
-    counterbody: core.HalfSpace | None
-    adhesion: core.Adhesion | None
-
-    @classmethod
-    def of(
-        cls,
-        body: core.HalfSpace | core.Elastic,
-        tip: core.Tip,
-        counterbody: core.HalfSpace | core.Elastic | None = None,
-        adhesion: core.Adhesion | None = None,
-    ) -> System:
-        """Return the system of these arguments, elastic materials as half-spaces."""
-        if isinstance(body, core.Elastic):
-            body = core.HalfSpace(body)
-        if isinstance(counterbody, core.Elastic):
-            counterbody = core.HalfSpace(counterbody)
-        return cls(body, tip, counterbody, adhesion)
-
-    def values(self) -> dict[str, float]:
-        """Return the value of each parameter that may be free, by its path."""
-        found: dict[str, float] = {}
-        for side, body in (("body", self.body), ("counterbody", self.counterbody)):
-            if body is None:
-                continue
-            for number, layer in enumerate(body.layers):
-                path = f"{side}.layers[{number}]"
-                found[f"{path}.material.young"] = layer.material.young
-                found[f"{path}.material.poisson"] = layer.material.poisson
-                found[f"{path}.thickness"] = layer.thickness
-            if isinstance(body.substrate, core.Elastic):
-                found[f"{side}.substrate.young"] = body.substrate.young
-                found[f"{side}.substrate.poisson"] = body.substrate.poisson
-        found |= {f"tip.{name}": float(value) for name, value in self.tip.numbers.items()}
-        found["tip.area"] = 1.0
-        if self.adhesion is not None:
-            found["adhesion.work"] = self.adhesion.work
-        return found
-
-    def changed(self, values: Mapping[str, float]) -> System:
-        """Return the system with other values of some parameters, but for the area of the tip."""
-        body = _changed_body(self.body, "body", values)
-        counterbody = self.counterbody
-        if counterbody is not None:
-            counterbody = _changed_body(counterbody, "counterbody", values)
-        tip, adhesion = self.tip, self.adhesion
-        numbers = {
-            path.removeprefix("tip."): value
-            for path, value in values.items()
-            if path.startswith("tip.") and path != "tip.area"
-        }
-        if numbers:
-            tip = getattr(core.Tip, tip.kind)(**{**tip.numbers, **numbers})
-        if adhesion is not None and "adhesion.work" in values:
-            adhesion = getattr(core.Adhesion, adhesion.kind)(values["adhesion.work"])
-        return System(body, tip, counterbody, adhesion)
-
-    def narrowed(self, factor: float) -> System:
-        """Return the system with lateral lengths divided by a factor, but for those of the tip."""
-        counterbody = self.counterbody
-        if counterbody is not None:
-            counterbody = _changed_body(counterbody, "", {}, factor)
-        adhesion = self.adhesion
-        if adhesion is not None:
-            adhesion = getattr(core.Adhesion, adhesion.kind)(adhesion.work * factor)
-        body = _changed_body(self.body, "", {}, factor)
-        return replace(self, body=body, counterbody=counterbody, adhesion=adhesion)
-
-    def curve(self, approach: Array, wrt: Sequence[str] = ()) -> core.IndentCurve:
-        """Return the loads at these approaches."""
-        made = core.Indentation(self.body, self.tip, self.counterbody, adhesion=self.adhesion)
-        return made.curve(approach=approach, wrt=wrt)
-
-
-def _changed_body(
-    body: core.HalfSpace, side: str, values: Mapping[str, float], narrower: float = 1.0
-) -> core.HalfSpace:
-    layers = []
-    for number, layer in enumerate(body.layers):
-        path, material = f"{side}.layers[{number}]", layer.material
-        young = values.get(f"{path}.material.young", material.young)
-        poisson = values.get(f"{path}.material.poisson", material.poisson)
-        thickness = values.get(f"{path}.thickness", layer.thickness) / narrower
-        new = core.Elastic(young, poisson)
-        layers.append(core.Layer(new, thickness, interface=layer.interface, name=layer.name))
-    substrate = body.substrate
-    if isinstance(substrate, core.Elastic):
-        substrate = core.Elastic(
-            values.get(f"{side}.substrate.young", substrate.young),
-            values.get(f"{side}.substrate.poisson", substrate.poisson),
-        )
-    return core.HalfSpace(substrate, layers=layers)
 
 
 @dataclass(frozen=True)
@@ -259,7 +160,7 @@ class Model:
         curve = self.curves[unknown.curve]
         if unknown.kind == "drift":
             assert curve.time is not None
-            return curve.time - curve.time[0]
+            return np.asarray(curve.time - curve.time[0])
         return curve.force if unknown.kind == "compliance" else 1.0
 
     def loads(self, x: Array) -> tuple[Array, Array]:
@@ -373,7 +274,7 @@ def _unknowns(
             raise ValueError(f"{path} must be positive where it is free, got {value}")
         last = path.rpartition(".")[2]
         spread = RANGES.get(last, OTHER)
-        usual = spread if isinstance(spread, tuple) else (value / spread, value * spread)
+        usual = (value / spread, value * spread) if isinstance(spread, float) else spread
         low, high = _bounds(path, bounds.get(path, usual), is_plain)
         if not low <= value <= high:
             raise ValueError(

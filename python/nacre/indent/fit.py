@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.indent._model import Model, System
+from nacre.indent._model import Model
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
 from nacre.indent._result import Fit
+from nacre.indent._system import System
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
 

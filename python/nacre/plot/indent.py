@@ -138,9 +138,7 @@ def _residuals(fit: Fit, axes: Axes, number: int) -> None:
         factor, label = scale.factor, f"residual [{scale.unit}]"
     axes.axhspan(-2 * factor * fit.sigma, 2 * factor * fit.sigma, color="0.93", zorder=0)
     axes.axhline(0.0, color="0.6", linewidth=0.6)
-    look = {"linestyle": "none", "marker": "o", "ms": 2.5}
-    axes.plot(
-        depth.factor * curve.depth, factor * rest, color=COLOURS[number % len(COLOURS)], **look
-    )
+    colour = COLOURS[number % len(COLOURS)]
+    axes.plot(depth.factor * curve.depth, factor * rest, "o", ms=2.5, color=colour)
     axes.set_xlabel(f"depth [{depth.unit}]")
     axes.set_ylabel(label)

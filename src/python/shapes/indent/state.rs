@@ -9,6 +9,9 @@ use super::super::super::arguments::{Real, real_array};
 use crate::Result;
 use crate::indent::{Held, InteriorStress, Parameter, Point, Variable};
 
+/// One number of a state of stress.
+type Component = fn(&InteriorStress) -> f64;
+
 /// Values in the shape of what was given: a number or an array.
 pub(super) fn shaped<'py>(
     py: Python<'py>,
@@ -141,7 +144,7 @@ impl PyIndentState {
     fn stress<'py>(&self, r: &Bound<'py, PyAny>, z: Real) -> PyResult<Bound<'py, PyDict>> {
         let py = r.py();
         let found = PyDict::new(py);
-        let of: [(&str, fn(&InteriorStress) -> f64); 5] = [
+        let of: [(&str, Component); 5] = [
             ("rr", |s| s.rr),
             ("tt", |s| s.tt),
             ("zz", |s| s.zz),
