@@ -30,6 +30,7 @@
 //! | [`hertz`] | closed forms for points, lines and ellipses, equivalent radii |
 //! | [`grid`], [`surface`] | cells of uniform pressure, undeformed shapes |
 //! | [`response`] | frequency response û(α)/p̂(α) of a body |
+//! | [`indent`] | indentation by axisymmetric tips, without a grid |
 //! | [`influence`] | influence coefficients `C[i, j]` |
 //! | [`convolution`] | displacement from pressure, by DC-FFT |
 //! | [`ends`] | free ends of bodies |

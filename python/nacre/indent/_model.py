@@ -20,8 +20,8 @@ Noise = Literal["relative", "absolute"]
 NUISANCES = ("contact_point", "drift", "compliance")
 """Nuisances of a curve: depth of its zero [m], drift [m/s], compliance of the machine [m/N]."""
 RANGES: dict[str, float | tuple[float, float]] = {
-    "young": 1e4,
-    "thickness": 1e3,
+    "young": 100.0,
+    "thickness": 30.0,
     "work": 1e4,
     "area": 10.0,
     "poisson": (0.0, 0.4999),

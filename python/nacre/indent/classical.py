@@ -17,8 +17,8 @@ EPSILON = 0.75
 """Factor ε of Oliver and Pharr for paraboloids, which is used for pyramids, too."""
 DOERNER_NIX = 0.25
 """Exponent α of Doerner and Nix, found by experiment."""
-TOP = 0.1
-"""Share of the points, the deepest, from which the slope at the largest force is taken."""
+UPPER = 0.4
+"""Share of the largest depth from which on points count for the slope at the largest force."""
 STIFFER = 10.0
 """Ratio of base to layer from which a base counts as rigid for Dimitriadis' series."""
 
@@ -113,17 +113,19 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
 def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, float, float] | None:
     """Return reduced modulus, contact radius and depth of contact at the largest depth.
 
-    The slope is that of a parabola through the deepest tenth of the points. None where the depth of
-    contact is not positive.
+    The slope is that of a parabola of the logarithms, whose points are the deeper ones. None where
+    the depth of contact is not positive.
     """
-    count = min(depth.size, max(5, round(TOP * depth.size)))
     reach = float(depth[-1])
-    bend, tilt, there = np.polyfit(depth[-count:] / reach - 1, force[-count:], min(2, count - 2))
-    slope = float(tilt) / reach
-    load = float(there) if bend is not None else float(force[-1])
+    upper = depth >= min(UPPER * reach, float(np.sort(depth)[-3]))
+    _, tilt, there = np.polyfit(np.log(depth[upper] / reach), np.log(force[upper]), 2)
+    load = math.exp(there)
+    slope = float(tilt) * load / reach
+    if slope <= 0:
+        return None
     contact = reach - EPSILON * load / slope
     radius = _radius(tip, contact)
-    if slope <= 0 or radius is None:
+    if radius is None:
         return None
     return slope / (2 * radius), radius, contact
 
