@@ -98,6 +98,7 @@ def test_contact_point_and_drift_together_are_not_identifiable() -> None:
     assert not fitted(case).is_identifiable
 
 
+@pytest.mark.filterwarnings("ignore:depth or force may be in a wrong unit")
 def test_a_thin_layer_on_a_rigid_base_trades_modulus_for_thickness() -> None:
     layer = nacre.Layer(nacre.Elastic(3e9, 0.3), 2e-8)
     body = nacre.HalfSpace(nacre.RIGID, [layer])

@@ -30,6 +30,8 @@ RANGES: dict[str, float | tuple[float, float]] = {
 incompressible layer has no limit of its derivatives."""
 OTHER = 100.0
 """Factor by which other parameters may differ, such as the numbers of a tip."""
+KEPT = 8
+"""Evaluations that are remembered: SciPy asks for residuals and Jacobian one after the other."""
 FARTHEST = 3.0
 """Range of a nuisance over the range of depth; the model needs some contact within the data."""
 
@@ -125,6 +127,7 @@ class Model:
         )
         self.evaluations = 0
         self._at: dict[bytes, tuple[Array, Array]] = {}
+        self._loads: dict[bytes, tuple[Array, Array]] = {}
 
     @property
     def dof(self) -> int:
@@ -165,6 +168,15 @@ class Model:
 
     def loads(self, x: Array) -> tuple[Array, Array]:
         """Return the load of each point, and its derivatives with respect to x."""
+        key = x.tobytes()
+        if key not in self._loads:
+            if len(self._loads) > KEPT:
+                self._loads.clear()
+            self._loads[key] = self._computed(x)
+        return self._loads[key]
+
+    def _computed(self, x: Array) -> tuple[Array, Array]:
+        self.evaluations += 1
         values = self._system_values(x)
         area = values.pop("tip.area", 1.0)
         system = self.system.changed(values)
@@ -195,13 +207,12 @@ class Model:
         """Return residuals and Jacobian; not numbers where the model has no value."""
         key = x.tobytes()
         if key not in self._at:
-            if len(self._at) > 8:
+            if len(self._at) > KEPT:
                 self._at.clear()
             self._at[key] = self._evaluated(x)
         return self._at[key]
 
     def _evaluated(self, x: Array) -> tuple[Array, Array]:
-        self.evaluations += 1
         try:
             load, columns = self.loads(x)
         except (ValueError, RuntimeError, OverflowError):

@@ -23,8 +23,8 @@ AGREEMENT = 1.5
 CLOSE = 1e-3
 """Last step, over the linear half-width, at which an end is found."""
 REACH = 2.302585092994046
-"""Distance of an end at which an interval counts as open: a factor of ten. Beyond it nothing more is
-to be learnt, and points on thinner layers cost seconds."""
+"""Distance of an end at which an interval counts as open: a factor of ten. Beyond it nothing more
+is to be learnt, and points on thinner layers cost seconds."""
 STEPS = 25
 """Most steps to an end; three or four suffice where the problem is nearly linear."""
 LONGEST = 1.0

@@ -204,16 +204,18 @@ def _check_units(curve: Curve, system: System) -> None:
         size = (1.5 / (math.pi * tip.numbers["slope"])) ** 2 * float(np.ptp(curve.depth))
     if size is None:
         return
-    moduli = [layer.material.plane_strain_modulus for layer in body.layers]
-    if isinstance(body.substrate, core.Elastic):
+    if not isinstance(body.substrate, core.Elastic):
+        modulus = None  # a thin layer seems stiffer by any factor
+    else:
+        moduli = [layer.material.plane_strain_modulus for layer in body.layers]
         moduli.append(body.substrate.plane_strain_modulus)
-    if max(moduli) > WEAK * min(moduli):
-        return
-    expected = math.sqrt(max(moduli) * min(moduli))
-    if system.counterbody is not None and isinstance(system.counterbody.substrate, core.Elastic):
-        other = system.counterbody.substrate.plane_strain_modulus
-        expected = 1 / (1 / expected + 1 / other)
-    sentence = suspicious_units(curve, tip_size=size, modulus=expected)
+        if max(moduli) > WEAK * min(moduli):
+            return
+        modulus = math.sqrt(max(moduli) * min(moduli))
+        other = system.counterbody
+        if other is not None and isinstance(other.substrate, core.Elastic):
+            modulus = 1 / (1 / modulus + 1 / other.substrate.plane_strain_modulus)
+    sentence = suspicious_units(curve, tip_size=size, modulus=modulus)
     if sentence is not None:
         name = f" of {curve.name!r}" if curve.name else ""
         warnings.warn(f"{sentence}{name}", core.NacreWarning, stacklevel=4)
@@ -233,7 +235,8 @@ def _start(model: Model) -> Array:
             if model.noise == "relative":
                 found = min(found, float(curve.depth.min()) - 1e-3 * unknown.scale)
             guessed[k] = unknown.place(min(max(found, unknown.low), unknown.high))
-    best = min((_scaled(model, x), _scaled(model, guessed)), key=model.chi2)
+    places = [x] if np.array_equal(x, guessed) else [x, guessed]
+    best = min((_scaled(model, place) for place in places), key=model.chi2)
     if not math.isfinite(model.chi2(best)):
         load, _ = model.loads(best)
         apart = int((load <= 0).sum())
