@@ -1,10 +1,10 @@
 """Coverage of the intervals of `nacre.indent.fit` on noisy curves: docs/indent_coverage.csv.
 
-The scenarios are the identifiable ones of tests/data/inverse.json: five coated bodies, their curves
-without noise, and the size of the noise. Each curve gets fresh noise, and is fitted as a user would:
-from a poor start, with unknown noise. Per free parameter: the share of the 95 % intervals by
-profile likelihood that hold the true value, and of the linear ones; per scenario: the share of
-curves with a parameter that is said not to be identifiable, which is false.
+The scenarios are the identifiable ones of tests/data/inverse.json: five coated bodies, their
+curves without noise, and the size of the noise. Each curve gets fresh noise, and is fitted as a
+user would: from a poor start, with unknown noise. Per free parameter: the share of the 95 %
+intervals by profile likelihood that hold the true value, and of the linear ones; per scenario: the
+share of curves with a parameter that is said not to be identifiable, which is false.
 
     .venv/bin/python benches/indent_coverage.py --curves 2000
 """

@@ -78,7 +78,8 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     >>> steel, tip = nacre.Elastic(210e9, 0.3), nacre.indent.Tip.paraboloid(10e-6)
     >>> depth = np.linspace(1e-9, 100e-9, 50)
     >>> made = nacre.indent.Indentation(steel, tip).curve(approach=depth)
-    >>> rows = nacre.indent.classical(nacre.indent.Curve(depth, made.load), steel, tip)
+    >>> from nacre.indent.classical import classical
+    >>> rows = classical(nacre.indent.Curve(depth, made.load), steel, tip)
     >>> [(row.method, abs(round(row.bias, 2))) for row in rows]
     [('Hertz, largest depth', 0.0), ('Hertz, least squares', 0.0), ('Oliver and Pharr', 0.0)]
     """
