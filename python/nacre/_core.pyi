@@ -950,7 +950,6 @@ class Convolution:
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
-@disjoint_base
 class Tip:
     @staticmethod
     def sphere(radius: float) -> Tip: ...
@@ -987,7 +986,6 @@ class Tip:
     def __reduce__(self) -> Any: ...
 
 @final
-@disjoint_base
 class Adhesion:
     @staticmethod
     def jkr(work: float) -> Adhesion: ...
@@ -1007,7 +1005,6 @@ class Adhesion:
     def __reduce__(self) -> Any: ...
 
 @final
-@disjoint_base
 class Indentation:
     def __new__(
         cls,
@@ -1043,7 +1040,6 @@ class Indentation:
     def work_from_pull_off(self, force: float, control: str = "load") -> float: ...
 
 @final
-@disjoint_base
 class IndentState:
     @property
     def radius(self) -> Any: ...
@@ -1064,7 +1060,6 @@ class IndentState:
     def derivatives(self, wrt: Sequence[str] | None = None) -> dict[str, StateDerivative]: ...
 
 @final
-@disjoint_base
 class StateDerivative:
     @property
     def radius(self) -> Any: ...
@@ -1076,7 +1071,6 @@ class StateDerivative:
     def stiffness(self) -> Any: ...
 
 @final
-@disjoint_base
 class IndentCurve:
     @property
     def approach(self) -> _Field: ...
@@ -1090,7 +1084,6 @@ class IndentCurve:
     def derivatives(self) -> _Field: ...
 
 @final
-@disjoint_base
 class PullOff:
     @property
     def load(self) -> float: ...
