@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+import textwrap
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nacre._extras import extra
 from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
-from nacre.units import Scale
+from nacre.units import Scale, written
 
 with extra("plot"):
     import matplotlib.pyplot as plt
@@ -17,6 +18,11 @@ with extra("plot"):
 
 if TYPE_CHECKING:
     from nacre.indent.fit import Fit
+
+LETTERS = 96
+"""Letters of a line of a report; longer ones are wrapped."""
+KEEP: dict[str, Any] = {"drop_whitespace": False, "subsequent_indent": "    "}
+"""Arguments of `textwrap.wrap` that keep the columns of tables."""
 
 
 def fit_plot(fit: Fit, axes: Axes | None = None, *, curve: int = 0) -> Axes:
@@ -70,7 +76,8 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
     path
         File, whose ending is the format: ``.pdf``, ``.png``, ``.svg``.
     """
-    rows = [str(fit), "", _comparison(fit)]
+    rows = [part for line in str(fit).splitlines() for part in textwrap.wrap(line, LETTERS, **KEEP)]
+    rows += ["", *_comparison(fit)]
     with styled():
         figure = plt.figure(figsize=(WIDTH, 1.3 * WIDTH), layout="constrained")
         upper, lower, below = figure.subplots(3, 1, height_ratios=(3, 1.2, 2.6))
@@ -79,26 +86,27 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
             _residuals(fit, lower, number)
         upper.set_title(", ".join(c.name for c in fit.curves if c.name))
         below.axis("off")
-        text = "\n".join(rows)
-        widest = max(map(len, text.splitlines()))
-        # A monospaced letter is 0.6 of its size wide.
-        size = min(8.0, 72 * WIDTH / (0.6 * widest))
-        below.text(0, 1, text, family="monospace", size=size, va="top", transform=below.transAxes)
+        look = {"family": "monospace", "va": "top", "transform": below.transAxes}
+        # A letter is 0.6 of its size wide; the page keeps a margin.
+        size = 0.9 * 72 * WIDTH / (0.6 * LETTERS)
+        said = below.text(0, 1, "\n".join(rows), size=size, **look)
+        said.set_in_layout(False)
         figure.savefig(path)
         plt.close(figure)
 
 
-def _comparison(fit: Fit) -> str:
+def _comparison(fit: Fit) -> list[str]:
     rows = [["formula", "E* of the surface", "bias"]]
     for row in fit.classical():
-        scale = Scale.of(row.modulus, "Pa")
-        value = f"{scale.factor * row.modulus:.4g} {scale.unit}"
-        rows.append([row.method, value, f"{100 * row.bias:+.1f} %"])
+        if np.isfinite(row.modulus):
+            rows.append([row.method, written(row.modulus, "Pa"), f"{100 * row.bias:+.1f} %"])
+        else:
+            rows.append([row.method, "no solution", ""])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join(
+    return [
         "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
-    )
+    ]
 
 
 def _draw(fit: Fit, axes: Axes, number: int) -> None:
