@@ -17,6 +17,7 @@ import json
 import math
 import multiprocessing
 import os
+import re
 import sys
 from collections import Counter
 from pathlib import Path
@@ -79,7 +80,8 @@ def block(task: tuple[int, int, int]) -> tuple[int, Counter[str]]:
             spread = found.standard_errors[PATHS[name]] / estimate
             counts[f"{name} linear"] += abs(math.log(value / estimate)) <= quantile * spread
         for reason in found.reasons.values():
-            counts[f"reason {reason.partition(';')[0][:40]}"] += 1
+            kind = re.sub(r"-?\d[\d.e+-]*", "…", reason.partition(";")[0])
+            counts[f"reason {kind}"] += 1
     return seed, counts
 
 
