@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -21,15 +20,11 @@ Array = npt.NDArray[np.float64]
 STEP = 1e-4
 """Step of the differences of shapes and arguments, which need no solve: error 1e-8 to 1e-9."""
 ACCURATE = 1e-9
-"""Tolerance of solves: errors enter gradients linearly (GRADIENTS, section 5)."""
+"""Tolerance of solves: errors of a solution enter its gradients linearly."""
 
 
 class Enough(Exception):
     """No more solves are allowed."""
-
-
-SIZE = re.compile(r"young$|^load$|^moment")
-"""Numbers to which all stresses together are proportional, for given shapes and tilts."""
 
 
 @dataclass
@@ -129,11 +124,7 @@ class Problem:
             changes = self.changes(x, case, grid)
             solution = self.solved(k, made, last[k] if last else None)
             paths = {path for change, _ in changes for path in change}
-            soft = [
-                isinstance(o, dict) and not {"layer", "interface"}.isdisjoint(o) for o in wanted
-            ]
-            sizes = {p: v for p, v in numbers(made).items() if SIZE.search(p)} if any(soft) else {}
-            gradients = solution.gradient(wanted, sorted({*paths, *sizes}))
+            gradients = solution.gradient(wanted, sorted(paths))
             self.solves += 1 + len(wanted)
             for j, gradient in enumerate(gradients):
                 outputs[k, j] = gradient.value
@@ -142,12 +133,6 @@ class Problem:
                     slopes[k, j, i] = sum(gradient[path] * rate for path, rate in change.items())
                     slopes[k, j, i] += gradient.gap[touched] @ gap[touched]
                 told += gradient.warnings
-                if soft[j]:
-                    # Its sharpness times its maximum is given, and the gradient keeps the
-                    # sharpness: its own sum over what scales the stress is the mean of the stress
-                    # with the weights of the soft maximum (Euler), to which the slope belongs.
-                    weighted = sum(gradient[path] * value for path, value in sizes.items())
-                    slopes[k, j] *= gradient.value / weighted
             solutions.append(solution)
         values = outputs[:, 0]
         if self.across != 1 and not np.all(values > 0):

@@ -95,7 +95,7 @@ pub enum StressPlace {
         layer: usize,
         /// Number of depths, 2 or more.
         depths: usize,
-        /// β times the largest value, see [`StressPlace::sharpness`].
+        /// β times about the largest value, see [`StressPlace::sharpness`].
         sharpness: f64,
     },
     /// Soft maximum over all cells at an interface.
@@ -104,14 +104,14 @@ pub enum StressPlace {
         interface: usize,
         /// Side of the interface.
         side: Side,
-        /// β times the largest value, see [`StressPlace::sharpness`].
+        /// β times about the largest value, see [`StressPlace::sharpness`].
         sharpness: f64,
     },
 }
 
 impl StressPlace {
-    /// Sharpness β max|σ| of a soft maximum (1/β) ln mean e^{βσ}; the soft maximum is below the largest of N values by
-    /// ln N/β at most. β is kept while differentiating.
+    /// Sharpness β s of a soft maximum (1/β) ln mean e^{βσ}, where s, the mean of order 32, is somewhat below the largest |σ|.
+    /// The soft maximum is below the largest of N values by ln N/β at most.
     pub fn sharpness(&self) -> Option<f64> {
         match *self {
             Self::Point(..) => None,

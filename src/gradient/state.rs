@@ -292,7 +292,7 @@ impl State {
     /// among such fields; χ = R⁻¹ Qᵀ (K ψ − `right`).
     ///
     /// # Errors
-    /// Those of the linear solve.
+    /// Errors of the linear solve.
     pub(super) fn saddle(
         &self,
         right: &[f64],

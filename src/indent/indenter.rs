@@ -14,6 +14,9 @@ use crate::error::{Error, Result, finite};
 /// Smallest contact radius, in end radii or thicknesses, at which a contact is looked for.
 const SMALLEST: f64 = 1e-9;
 
+/// Smallest contact radius, in any unit, where nothing has a length; its cube is a number of the machine.
+const TINY: f64 = 1e-60;
+
 /// A tip on a stack.
 #[derive(Debug, Clone)]
 pub struct Indent {
@@ -77,8 +80,9 @@ impl Indent {
     pub(super) fn range(&self) -> [f64; 2] {
         let [low, high] = self.tip.range();
         let high = high.min(self.stack.largest_radius());
+        // A cone on a bare body has no length of its own.
         let size = self.tip.end_radius().or(self.stack.thickness());
-        let low = low.max(SMALLEST * size.unwrap_or(1e-3).min(high));
+        let low = low.max(size.map_or(TINY, |size| SMALLEST * size.min(high)));
         [low * (1.0 + 1e-9), high * (1.0 - 1e-9)]
     }
 
@@ -91,14 +95,16 @@ impl Indent {
     ///
     /// # Errors
     /// A radius that is not above 0, that the tip cannot have, or beyond 1024 thicknesses of the top layer; a flat punch, whose
-    /// radius says nothing of its load; no state with a cohesive zone.
+    /// radius says nothing of its load; no state with a cohesive zone; a contact that is no disc.
     pub fn at_radius(&self, a: f64) -> Result<Point> {
         if self.tip.fixed_radius().is_some() {
             return Err(Error::Inconsistent(
                 "the contact of a flat punch has the radius of the punch at every load: give load or approach",
             ));
         }
-        self.state(a)
+        let point = self.state(a)?;
+        point.check_disc()?;
+        Ok(point)
     }
 
     pub(super) fn state(&self, a: f64) -> Result<Point> {

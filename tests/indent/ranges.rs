@@ -3,7 +3,7 @@
 use nacre::indent::{Form, Indent, Point, Stack, Tip};
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 
-use super::support::coated;
+use super::support::{EIGHTH, coated};
 
 /// Layers from 1e-3 to 1e3 of the contact radius, moduli from 1e-3 to 1e3 of the substrate's: no failure, P' = S δ' by
 /// differences, and 1.5 times as many nodes change load, approach and stiffness by less than 1e-9.
@@ -42,7 +42,7 @@ fn all_thicknesses_and_moduli() -> Result<()> {
 }
 
 /// Two hundred random stacks of up to four layers, rigid bases and slipping interfaces among them, with random tips: P_H' = S δ_H'
-/// and S' = 2π²φ₁²/E* by differences to 1e-8, and two resolutions agree to 1e-10.
+/// and S' = 2π²φ₁²/E* by differences, and two resolutions agree, each to 1e-10.
 #[test]
 fn random_stacks() -> Result<()> {
     let mut state = 12345_u64;
@@ -53,6 +53,7 @@ fn random_stacks() -> Result<()> {
             .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
+    let mut refused = 0;
     for case in 0..200 {
         let count = 1 + (4.0 * random()) as usize;
         let mut layers = Vec::new();
@@ -81,26 +82,36 @@ fn random_stacks() -> Result<()> {
         };
         let a = 10.0_f64.powf(1.5 * random() - 1.2);
         let indent = Indent::new(&stack, &tip);
-        let point = indent.at_radius(a)?;
+        let point = match indent.at_radius(a) {
+            Ok(point) => point,
+            // A tip that is flat in its middle may touch on a ring.
+            Err(error) => {
+                assert!(error.to_string().contains("no disc"), "{case}: {error}");
+                assert!(matches!(tip.form(), Form::Power { .. }), "{case}");
+                refused += 1;
+                continue;
+            }
+        };
         let error = indent.error_at(&point)?;
         assert!(error < 1e-10, "{case}: {error:e} at {a} of {stack:?}");
-        // Fourth-order differences in 1e-3 of ln a.
-        let near = [-2.0, -1.0, 1.0, 2.0].map(|k: f64| indent.at_radius(a * (1e-3 * k).exp()));
-        let [p, q, r, s] = near;
-        let (p, q, r, s) = (p?, q?, r?, s?);
+        // Differences of eighth order in 0.02 of ln a leave some 1e-12, and the rounding of 1e-13 over 0.02.
+        let near = (-4..=4).map(|k| indent.at_radius(a * (0.02 * f64::from(k)).exp()));
+        let near: Vec<Point> = near.collect::<Result<_>>()?;
         let slope = |of: fn(&Point) -> f64| {
-            (of(&p) - 8.0 * of(&q) + 8.0 * of(&r) - of(&s)) / (12.0 * 1e-3 * a)
+            let term = |k: usize| of(&near[4 + k]) - of(&near[4 - k]);
+            EIGHTH
+                .iter()
+                .zip(1..)
+                .map(|(c, k)| c * term(k))
+                .sum::<f64>()
+                / (0.02 * a)
         };
         let [load, approach] = [slope(|p| p.load), slope(|p| p.approach)];
-        assert!(
-            (load / (point.stiffness * approach) - 1.0).abs() < 1e-8,
-            "{case}"
-        );
-        let stiffness = slope(|p| p.stiffness);
-        assert!(
-            (point.stiffness_slope / stiffness - 1.0).abs() < 1e-8,
-            "{case}"
-        );
+        let error = load / (point.stiffness * approach) - 1.0;
+        assert!(error.abs() < 1e-10, "{case}: {error:e}");
+        let error = point.stiffness_slope / slope(|p| p.stiffness) - 1.0;
+        assert!(error.abs() < 1e-10, "{case}: {error:e}");
     }
+    assert!(refused <= 2, "{refused} of 200");
     Ok(())
 }

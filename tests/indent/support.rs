@@ -46,3 +46,25 @@ pub(crate) fn coated(ratio: f64, h: f64) -> Result<HalfSpace> {
     let coat = Elastic::new(ratio * substrate.young(), 0.3)?;
     HalfSpace::new(substrate, [Layer::new(coat, h)?])
 }
+
+/// Weights of f(x + kh) − f(x − kh), k = 1 … 4, in the first derivative of eighth order times h.
+pub(crate) const EIGHTH: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+
+/// Nodes and weights of Gauss and Legendre's rule of `n` points on \[0, 1\], by Newton's iteration.
+pub(crate) fn unit_rule(n: usize) -> Vec<[f64; 2]> {
+    let node = |i: usize| {
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..8 {
+            let (mut p, mut before) = (1.0, 0.0);
+            for k in 0..n {
+                let k = k as f64;
+                (p, before) = (((2.0 * k + 1.0) * x * p - k * before) / (k + 1.0), p);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        [0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope)]
+    };
+    (0..n).map(node).collect()
+}

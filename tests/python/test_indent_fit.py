@@ -279,7 +279,7 @@ def test_fits_are_drawn(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("ratio", "due"), [(0.1, 1.36), (0.5, 0.47), (2.0, -0.39), (10.0, -0.84)])
 def test_oliver_and_pharrs_bias_at_a_contact_as_wide_as_the_layer(ratio: float, due: float) -> None:
-    # a = h, ν = 0.3; the sheet has whole per cents.
+    # a = h, ν = 0.3; another program's biases, in whole per cents.
     layer = nacre.Layer(nacre.Elastic(ratio, 0.3), 1.0)
     body = nacre.HalfSpace(nacre.Elastic(1.0, 0.3), [layer])
     test = nacre.indent.Indentation(body, Tip.paraboloid(1e3))

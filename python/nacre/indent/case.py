@@ -18,13 +18,30 @@ from nacre._case_tables import Number, Numbers, Table, Text, Words
 from nacre._commands import app
 from nacre._schema import Body, CaseTable, Material, WrongValue, at
 from nacre.case import CaseError
-from nacre.units import display_units, written
+from nacre.files import replacing
+from nacre.units import display_units, symbol, written
 
 Values = Annotated[Number | Numbers, Words("a finite number, or a list of them")]
 
 
+NUMBERS: dict[str, tuple[str, ...]] = {
+    "sphere": ("radius",),
+    "paraboloid": ("radius",),
+    "cone": ("slope",),
+    "flat_punch": ("radius",),
+    "power": ("factor", "exponent"),
+    "rounded_cone": ("slope", "radius"),
+    "rounded_punch": ("flat", "radius"),
+    "flat_cone": ("flat", "slope"),
+    "profile": ("radii", "heights"),
+    "area_function": ("coefficients", "depth"),
+    "berkovich": (),
+}
+"""Keys of each kind of tip; a Berkovich tip may have a radius, and half_angle stands for slope."""
+
+
 class TipTable(Table):
-    """A tip, by its kind and the numbers of that kind."""
+    """Tip: its kind and the numbers of that kind."""
 
     kind: Text = "sphere"
     radius: Number | None = None
@@ -40,15 +57,19 @@ class TipTable(Table):
 
     def make(self) -> core.Tip:
         """Return the tip."""
+        if self.kind not in NUMBERS:
+            raise ValueError(f"kind must be one of {', '.join(NUMBERS)}, got {self.kind!r}")
         given = self.model_dump(exclude={"kind"}, exclude_none=True)
         if "half_angle" in given:
             if "slope" in given:
-                raise ValueError("must have one of slope and half_angle")
+                raise ValueError("there must be one of slope and half_angle, got both")
             given["slope"] = core.slope_of(given.pop("half_angle"))
-        made = None if self.kind.startswith("_") else getattr(core.Tip, self.kind, None)
-        if made is None or self.kind in ("kind", "numbers", "end_radius", "gap"):
-            raise ValueError(f"kind must be that of a tip, such as 'sphere', got {self.kind!r}")
-        return made(**given)  # type: ignore[no-any-return]
+        needed = set(NUMBERS[self.kind])
+        optional = {"radius"} if self.kind == "berkovich" else set()
+        if not needed <= set(given) <= needed | optional:
+            keys = ", ".join(NUMBERS[self.kind]) or "no further key but radius"
+            raise ValueError(f"a tip of kind {self.kind} has {keys}, got {', '.join(given)}")
+        return getattr(core.Tip, self.kind)(**given)  # type: ignore[no-any-return]
 
 
 class AdhesionTable(Table):
@@ -60,6 +81,8 @@ class AdhesionTable(Table):
 
     def make(self) -> core.Adhesion:
         """Return the adhesion."""
+        if (self.strength is None) != (self.kind != "maugis"):
+            raise ValueError("strength must be given for maugis, and for no other kind")
         given = self.model_dump(exclude={"kind"}, exclude_none=True)
         return getattr(core.Adhesion, self.kind)(**given)  # type: ignore[no-any-return]
 
@@ -70,7 +93,7 @@ class IndentTable(Table):
     load: Values | None = None
     approach: Values | None = None
     radius: Values | None = None
-    control: Literal["load", "displacement"] = "load"
+    control: Literal["load", "approach"] = "load"
 
     @model_validator(mode="after")
     def _one(self) -> IndentTable:
@@ -164,31 +187,43 @@ def _finite(data: Any) -> Any:
     return None if isinstance(data, float) and not math.isfinite(data) else data
 
 
+def _write(found: dict[str, Any], path: Path) -> None:
+    """Write a CSV file after a line that says which version wrote it, whole or not at all."""
+    head = [f"{name} [{symbol(unit)}]" for name, unit in COLUMNS.items()]
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        file.write(f"# source: nacre {core.__version__}\n")
+        rows = csv.writer(file)
+        rows.writerow(head)
+        rows.writerows(zip(*(found[name] for name in COLUMNS), strict=True))
+
+
 @app.command()
 def indent(
     case: Annotated[Path, typer.Argument(metavar="CASE.toml", show_default=False)],
-    as_json: Annotated[Path | None, typer.Option("--json", help="JSON file to write.")] = None,
-    as_csv: Annotated[Path | None, typer.Option("--csv", help="CSV file to write.")] = None,
+    save: Annotated[Path | None, typer.Option(help="CSV file to write.")] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON, in the units of the case.")
+    ] = False,
 ) -> None:
     """Solve the indentation that a case file describes.
 
     Tables units, materials, body and counterbody are those of `nacre schema`. [tip] has kind
-    (sphere, cone, ...) and its numbers; a cone has slope or half_angle. [adhesion], which may be
-    left out, has kind (jkr, dmt, maugis), work and, for maugis, strength. [indent] has one of load,
-    approach and radius, a number or a list, and control of the pull-off (load, displacement).
+    (sphere, cone, ...) and its numbers; a cone has slope or half_angle, in radians. [adhesion],
+    which may be left out, has kind (jkr, dmt, maugis), work and, for maugis, strength. [indent] has
+    one of load, approach and radius, a number or a list, and control of the pull-off (load,
+    approach).
     """
     described = read(case)
+    if save is not None and save.suffix != ".csv":
+        raise CaseError(f"--save must end in .csv, got {str(save)!r}")
     try:
         found = described.solve()
     except WrongValue as error:
         raise CaseError(f"{case}: {error}") from error
     with display_units(described.units):
-        print(_table(found))
-    if as_json is not None:
-        text = json.dumps({"units": described.units, **_finite(found)}, indent=2)
-        as_json.write_text(text + "\n", encoding="utf-8")
-    if as_csv is not None:
-        with as_csv.open("w", newline="", encoding="utf-8") as file:
-            rows = csv.writer(file)
-            rows.writerow(COLUMNS)
-            rows.writerows(zip(*(found[name] for name in COLUMNS), strict=True))
+        if as_json:
+            print(json.dumps(_finite(found), indent=2))
+        else:
+            print(_table(found))
+        if save is not None:
+            _write(found, save)

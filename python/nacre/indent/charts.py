@@ -41,8 +41,19 @@ def bulk_limit(
     Returns
     -------
     dict of str to ndarray
-        "hertz", "oliver_pharr" and "stiffness" (S/2a); NaN where the limit is not between 0.001
-        and 3.
+        "hertz", "oliver_pharr" and "stiffness" (S/2a); NaN, which pictures leave out, where the
+        limit is not between 0.001 and 3.
+
+    Raises
+    ------
+    ValueError
+        If the error or a ratio is not above 0.
+
+    Examples
+    --------
+    >>> limits = nacre.indent.charts.bulk_limit([0.1, 10.0])
+    >>> limits["oliver_pharr"].round(4)
+    array([0.011 , 0.0018])
     """
     if not error > 0:
         raise ValueError(f"error must be above 0, got {error}")

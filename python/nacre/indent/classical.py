@@ -15,8 +15,6 @@ Array = npt.NDArray[np.float64]
 
 EPSILON = 0.75
 """Factor ε of Oliver and Pharr for paraboloids, which is used for pyramids, too."""
-DOERNER_NIX = 0.25
-"""Exponent α of Doerner and Nix, found by experiment."""
 UPPER = 0.4
 """Share of the largest depth from which on points count for the slope at the largest force."""
 STIFFER = 10.0
@@ -64,12 +62,9 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     Formulae without a correction: Hertz' or Sneddon's law of a bare body at the largest depth and
     by least squares; Oliver and Pharr, J. Mater. Res. 7 (1992) 1564-1583,
     doi:10.1557/JMR.1992.1564, S = 2 a E* with the area at the depth of contact δ − 0.75 P/S. With a
-    correction of that modulus E: Doerner and Nix, J. Mater. Res. 1 (1986) 601-609,
-    doi:10.1557/JMR.1986.0601, 1/E = (1 − w)/E1* + w/E2*, w = exp(−0.25 h/δ_c); R. B. King, Int. J.
-    Solids Struct. 23 (1987) 1657-1664, doi:10.1016/0020-7683(87)90116-8, in this form with a weight
-    of h/a, whose exponent he gives as a graph, here replaced by Gao's function; Gao, Chiu and Lee,
-    Int. J. Solids Struct. 29 (1992) 2471-2492, doi:10.1016/0020-7683(92)90004-D, whose functions
-    weigh shear moduli and Poisson's ratios; Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810,
+    correction for the substrate: Gao, Chiu and Lee, Int. J. Solids Struct. 29 (1992) 2471-2492,
+    whose functions weigh shear moduli and Poisson's ratios, exactly to first order in the
+    difference of the materials; Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810,
     doi:10.1016/S0006-3495(02)75620-8, eq. (12), the series for a sphere on a thin incompressible
     layer bonded to a rigid base.
 
@@ -103,16 +98,16 @@ def classical(curve: Curve, body: core.HalfSpace | core.Elastic, tip: core.Tip) 
     ]
     found = oliver_pharr(depth, force, tip)
     if found is not None:
-        apparent, radius, contact_depth = found
+        apparent, radius = found
         rows.append(("Oliver and Pharr", apparent, "Oliver, Pharr 1992"))
-        rows += _corrected(body, top, apparent, radius, contact_depth)
+        rows += _corrected(body, top, apparent, radius)
     if series := _dimitriadis(body, top, depth, force, tip):
         rows.append(("Dimitriadis", series, "Dimitriadis et al. 2002, eq. (12)"))
     return [Classical(name, value, value / true - 1, source) for name, value, source in rows]
 
 
-def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, float, float] | None:
-    """Return reduced modulus, contact radius and depth of contact at the largest depth.
+def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, float] | None:
+    """Return reduced modulus and contact radius at the largest depth.
 
     The slope is that of a parabola of the logarithms, whose points are the deeper ones. None where
     the depth of contact is not positive.
@@ -128,7 +123,7 @@ def oliver_pharr(depth: Array, force: Array, tip: core.Tip) -> tuple[float, floa
     radius = _radius(tip, contact)
     if radius is None:
         return None
-    return slope / (2 * radius), radius, contact
+    return slope / (2 * radius), radius
 
 
 def _radius(tip: core.Tip, depth: float) -> float | None:
@@ -154,27 +149,18 @@ def _radius(tip: core.Tip, depth: float) -> float | None:
 
 
 def _corrected(
-    body: core.HalfSpace, top: core.Elastic, apparent: float, radius: float, contact: float
+    body: core.HalfSpace, top: core.Elastic, apparent: float, radius: float
 ) -> list[tuple[str, float, str]]:
-    """Return the modulus of the layer by corrections of an apparent modulus for the substrate."""
+    """Return the modulus of the layer by a correction of an apparent modulus for the substrate."""
     base = body.substrate
     if len(body.layers) != 1 or not isinstance(base, core.Elastic):
         return []
-    thickness = body.layers[0].thickness
-    ratio, below = thickness / radius, 1 / base.plane_strain_modulus
-    rows = []
-    share = math.exp(-DOERNER_NIX * thickness / contact) if contact > 0 else 0.0
-    rows.append(
-        ("Doerner and Nix", (1 - share) / (1 / apparent - share * below), "Doerner, Nix 1986")
-    )
-    shear, lateral = gao_weights(ratio, top.poisson)
-    rows.append(("King", shear / (1 / apparent - (1 - shear) * below), "King 1987"))
+    shear, lateral = gao_weights(body.layers[0].thickness / radius, top.poisson)
     poisson = 1 - base.poisson + (base.poisson - top.poisson) * lateral
     mixed = 0.5 * apparent * poisson
     modulus = 2 * (base.shear + (mixed - base.shear) / shear) / (1 - top.poisson)
-    rows.append(("Gao", modulus, "Gao, Chiu, Lee 1992"))
-    # Negative values mean that the correction has no solution.
-    return [(name, value if value > 0 else math.nan, source) for name, value, source in rows]
+    # A negative value means that the correction has no solution.
+    return [("Gao", modulus if modulus > 0 else math.nan, "Gao, Chiu, Lee 1992")]
 
 
 def gao_weights(ratio: float, poisson: float) -> tuple[float, float]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import textwrap
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nacre._extras import extra
+from nacre.files import replacing
 from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
 from nacre.units import Scale, written
 
@@ -91,7 +93,8 @@ def fit_report(fit: Fit, path: str | os.PathLike[str]) -> None:
         size = 0.9 * 72 * WIDTH / (0.6 * LETTERS)
         said = below.text(0, 1, "\n".join(rows), size=size, **look)
         said.set_in_layout(False)
-        figure.savefig(path)
+        with replacing(Path(path)) as temporary:
+            figure.savefig(temporary)
         plt.close(figure)
 
 

@@ -1,4 +1,4 @@
-"""Picture of how far bulk formulae hold on coatings."""
+"""Pictures of coatings under indentation: limits of bulk formulae, pull-off, information."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ with extra("plot"):
     from matplotlib.axes import Axes
 
 
+LABELS = {"hertz": "Hertz", "oliver_pharr": "Oliver and Pharr", "stiffness": r"$S/2a$"}
+
+
 def bulk_limit(
     ratios: npt.ArrayLike, limits: dict[str, npt.NDArray[np.float64]], axes: Axes | None = None
 ) -> Axes:
@@ -19,7 +22,36 @@ def bulk_limit(
     with styled():
         axes = axes or new_axes(0.7, 0.5)
         for number, (name, values) in enumerate(limits.items()):
-            axes.loglog(np.asarray(ratios), values, label=name.replace("_", " "), **look(number))
-        axes.set(xlabel="E1/E2", ylabel="largest a/h")
+            axes.loglog(np.asarray(ratios), values, label=LABELS[name], **look(number))
+        axes.set(xlabel=r"$E_1/E_2$", ylabel="largest $a/h$")
+        axes.legend()
+    return axes
+
+
+def pull_off(
+    thickness: npt.ArrayLike, forces: dict[float, npt.NDArray[np.float64]], axes: Axes | None = None
+) -> Axes:
+    """Draw forces of `nacre.indent.charts.pull_off_over_thickness` by the ratio of moduli."""
+    with styled():
+        axes = axes or new_axes(0.7, 0.5)
+        for number, (ratio, values) in enumerate(forces.items()):
+            label = rf"$E_1/E_2 = {ratio:g}$"
+            axes.semilogx(np.asarray(thickness), values, label=label, **look(number))
+        axes.axhline(1.5, color="0.6", linewidth=0.6)
+        axes.set(xlabel=r"thickness $h/a_0$", ylabel=r"pull-off over $\pi w R$")
+        axes.legend()
+    return axes
+
+
+def information(
+    reach: npt.ArrayLike, deviations: dict[str, npt.NDArray[np.float64]], axes: Axes | None = None
+) -> Axes:
+    """Draw deviations of `nacre.indent.charts.information` over the largest contact radius."""
+    labels = {"young": r"$\sigma(\ln E_1)$", "thickness": r"$\sigma(\ln h)$"}
+    with styled():
+        axes = axes or new_axes(0.7, 0.5)
+        for number, (name, values) in enumerate(deviations.items()):
+            axes.loglog(np.asarray(reach), values, label=labels[name], **look(number))
+        axes.set(xlabel="largest $a/h$", ylabel="standard deviation")
         axes.legend()
     return axes

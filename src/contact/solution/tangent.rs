@@ -134,7 +134,7 @@ impl Tangent {
     /// Makes [`Tangent::entry`] hold for cells whose distance is below `offsets` along x and y.
     ///
     /// # Errors
-    /// Those of planning the contact.
+    /// Errors of planning the contact.
     pub(crate) fn reach(&self, offsets: [usize; 2]) -> Result<()> {
         let known = [self.coefficients.nrows(), self.coefficients.ncols()];
         let is_near = offsets[0] <= known[0] && offsets[1] <= known[1];

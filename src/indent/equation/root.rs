@@ -10,7 +10,7 @@ const STEPS: usize = 200;
 /// 3rd ed., §9.4).
 ///
 /// # Errors
-/// Those of `f`.
+/// Errors of `f`.
 pub(in crate::indent) fn newton(
     mut f: impl FnMut(f64) -> Result<[f64; 2]>,
     [mut low, mut high]: [f64; 2],
@@ -48,7 +48,7 @@ pub(in crate::indent) fn newton(
 /// (1997) 145, doi:10.1016/S0965-9978(96)00051-8.
 ///
 /// # Errors
-/// Those of `f`, and signs that do not differ.
+/// Errors of `f`, and signs that do not differ.
 pub(in crate::indent) fn bracketed(
     mut f: impl FnMut(f64) -> Result<f64>,
     [low, high]: [f64; 2],
