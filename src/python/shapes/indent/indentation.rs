@@ -1,17 +1,18 @@
 //! `nacre.indent.Indentation`, and what it returns beside states.
 
 use ndarray::{Array1, Array2};
-use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::super::super::arguments::{Real, read_only, real_array};
+use super::super::super::background::{self, Caller};
 use super::super::super::bodies::{PyHalfSpace, body};
 use super::adhesion::PyAdhesion;
-use super::state::{PyIndentState, chosen};
+use super::results::{PyIndentCurve, PyPullOff};
+use super::state::{PyIndentState, chosen, worked};
 use super::tip::PyTip;
 use crate::Result;
-use crate::indent::{Branch, Control, Held, Indent, Parameter, Point, Stack, TipParameter};
+use crate::indent::{Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
 use crate::response::Body;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
@@ -56,6 +57,16 @@ fn control(word: &str) -> PyResult<Control> {
             "control must be \"load\" or \"approach\", got {word:?}"
         ))),
     }
+}
+
+/// Result of one piece of work, during which Ctrl-C is seen.
+fn one<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T> + Send + 'static,
+) -> PyResult<T> {
+    Ok(background::run(py, None, move |_: &mut Caller<()>| {
+        work()
+    })??)
 }
 
 /// Names of all parameters, with what they are.
@@ -202,22 +213,12 @@ impl PyIndentation {
             }
         };
         let shape = values.shape().to_vec();
-        let indent = &self.indent;
-        let solve = |value: f64| -> Result<Point> {
-            match held {
-                Held::Load => indent.at(Control::Load, value, branch),
-                Held::Approach => indent.at(Control::Approach, value, branch),
-                Held::Radius => indent.at_radius(value),
-            }
-        };
-        let mut points = Vec::new();
-        // In pieces, between which Ctrl-C is seen.
-        let values: Vec<f64> = values.into_iter().collect();
-        for piece in values.chunks(64) {
-            let solved = py.detach(|| piece.iter().map(|v| solve(*v)).collect::<Result<Vec<_>>>());
-            points.extend(solved?);
-            py.check_signals()?;
-        }
+        let indent = self.indent.clone();
+        let points = worked(py, values.into_iter().collect(), move |value| match held {
+            Held::Load => indent.at(Control::Load, *value, branch),
+            Held::Approach => indent.at(Control::Approach, *value, branch),
+            Held::Radius => indent.at_radius(*value),
+        })?;
         if points.is_empty() {
             return Err(PyValueError::new_err(
                 "no load, approach or radius was given: the array is empty",
@@ -266,9 +267,11 @@ impl PyIndentation {
         let approach: Vec<f64> = approach.into_iter().collect();
         let parameters = chosen(&self.parameters, Some(wrt))?.into_iter();
         let parameters: Vec<Parameter> = parameters.map(|(_, parameter)| parameter).collect();
-        let curve = py.detach(|| self.indent.curve(&approach, &parameters))?;
+        let count = parameters.len();
+        let (indent, at) = (self.indent.clone(), approach.clone());
+        let curve = one(py, move || indent.curve(&at, &parameters))?;
         let rows: Vec<f64> = curve.derivatives.into_iter().flatten().collect();
-        let derivatives = Array2::from_shape_vec((approach.len(), parameters.len()), rows);
+        let derivatives = Array2::from_shape_vec((approach.len(), count), rows);
         let derivatives = derivatives.map_err(|error| PyValueError::new_err(error.to_string()))?;
         let line = |values: Vec<f64>| read_only(py, Array1::from(values)).map(Bound::unbind);
         Ok(PyIndentCurve {
@@ -308,7 +311,8 @@ impl PyIndentation {
     #[pyo3(signature = (control="load"))]
     fn pull_off(&self, py: Python<'_>, control: &str) -> PyResult<PyPullOff> {
         let control = self::control(control)?;
-        let last = py.detach(|| self.indent.pull_off(control))?;
+        let indent = self.indent.clone();
+        let last = one(py, move || indent.pull_off(control))?;
         Ok(PyPullOff {
             load: last.load,
             approach: last.approach,
@@ -322,7 +326,8 @@ impl PyIndentation {
     #[pyo3(signature = (control="load"))]
     fn snap_in(&self, py: Python<'_>, control: &str) -> PyResult<PyIndentState> {
         let control = self::control(control)?;
-        let point = py.detach(|| self.indent.snap_in(control))?;
+        let indent = self.indent.clone();
+        let point = one(py, move || indent.snap_in(control))?;
         Ok(PyIndentState {
             points: vec![point],
             shape: vec![],
@@ -339,7 +344,8 @@ impl PyIndentation {
     #[pyo3(signature = (force, control="load"))]
     fn work_from_pull_off(&self, py: Python<'_>, force: Real, control: &str) -> PyResult<f64> {
         let control = self::control(control)?;
-        Ok(py.detach(|| self.indent.work_from_pull_off(force.0, control))?)
+        let indent = self.indent.clone();
+        one(py, move || indent.work_from_pull_off(force.0, control))
     }
 
     fn __repr__(&self) -> String {
@@ -355,44 +361,5 @@ impl PyIndentation {
             text += &format!(", adhesion={}", adhesion.__repr__());
         }
         text + ")"
-    }
-}
-
-/// Loads at approaches, with their derivatives; see `Indentation.curve`.
-#[pyclass(name = "IndentCurve", module = "nacre.indent", frozen, get_all)]
-pub(in crate::python) struct PyIndentCurve {
-    /// Approaches [m].
-    approach: Py<PyArray1<f64>>,
-    /// Loads [N].
-    load: Py<PyArray1<f64>>,
-    /// Contact radii [m].
-    radius: Py<PyArray1<f64>>,
-    /// dP/dδ along the curve [N/m].
-    slope: Py<PyArray1<f64>>,
-    /// Derivatives of the loads at given approach, (points, parameters), per unit of each parameter.
-    derivatives: Py<PyArray2<f64>>,
-}
-
-/// Last stable state of a tip that is pulled off; see `Indentation.pull_off`.
-#[pyclass(name = "PullOff", module = "nacre.indent", frozen, eq, get_all)]
-#[derive(PartialEq)]
-pub(in crate::python) struct PyPullOff {
-    /// Load [N], below 0.
-    load: f64,
-    /// Approach [m].
-    approach: f64,
-    /// Contact radius [m]; 0 where the surfaces attract each other without touching.
-    radius: f64,
-    /// Radius up to which the surfaces attract each other [m].
-    outer_radius: f64,
-}
-
-#[pymethods]
-impl PyPullOff {
-    fn __repr__(&self) -> String {
-        format!(
-            "PullOff(load={:?}, approach={:?}, radius={:?}, outer_radius={:?})",
-            self.load, self.approach, self.radius, self.outer_radius
-        )
     }
 }

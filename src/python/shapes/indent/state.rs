@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::super::super::arguments::{Real, real_array};
+use super::super::super::background::{self, Caller};
 use crate::Result;
 use crate::indent::{Held, InteriorStress, Parameter, Point, Variable};
 
@@ -25,6 +26,20 @@ pub(super) fn shaped<'py>(
     let array =
         array.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
     Ok(array.into_pyarray(py).into_any())
+}
+
+/// Results of `work` on each of the items, on a thread of its own, so that Ctrl-C is seen at once; the work ends before its
+/// next item then.
+pub(super) fn worked<I: Send + 'static, T: Send + 'static>(
+    py: Python<'_>,
+    items: Vec<I>,
+    work: impl Fn(&I) -> Result<T> + Send + 'static,
+) -> PyResult<Vec<T>> {
+    let results = background::run(py, None, move |caller: &mut Caller<()>| {
+        let going = items.iter().take_while(|_| caller.go_on().is_continue());
+        going.map(work).collect::<Result<Vec<T>>>()
+    })?;
+    Ok(results?)
 }
 
 /// Contacts of an indentation, one for each load, approach or radius that was given, in the shape of the latter.
@@ -57,14 +72,13 @@ impl PyIndentState {
     fn field<'py>(
         &self,
         r: &Bound<'py, PyAny>,
-        of: impl Fn(&Point, &[f64]) -> Result<Vec<f64>> + Sync,
+        of: fn(&Point, &[f64]) -> Result<Vec<f64>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = r.py();
         let r = real_array("r", r)?;
         let shape = [&self.shape, r.shape()].concat();
         let r: Vec<f64> = r.into_iter().collect();
-        let points = &self.points;
-        let all = py.detach(|| points.iter().map(|p| of(p, &r)).collect::<Result<Vec<_>>>())?;
+        let all = worked(py, self.points.clone(), move |point| of(point, &r))?;
         shaped(py, all.into_iter().flatten().collect(), &shape)
     }
 }
@@ -154,10 +168,8 @@ impl PyIndentState {
         let r = real_array("r", r)?;
         let shape = [&self.shape, r.shape()].concat();
         let r: Vec<f64> = r.into_iter().collect();
-        let points = &self.points;
-        let all = py.detach(|| {
-            let all = points.iter().map(|point| point.stress(0, z.0, &r));
-            all.collect::<Result<Vec<_>>>()
+        let all = worked(py, self.points.clone(), move |point| {
+            point.stress(0, z.0, &r)
         })?;
         for (name, of) in of {
             let values = all.iter().flatten().map(of).collect();
@@ -191,18 +203,15 @@ impl PyIndentState {
         let chosen = chosen(&self.parameters, wrt)?;
         let found = PyDict::new(py);
         for (path, parameter) in chosen {
-            let (points, held) = (&self.points, self.held);
-            let values = py.detach(|| -> Result<Vec<[f64; 4]>> {
-                let at = |point: &Point| {
-                    let change = point.derivative(Variable::Parameter(parameter), held)?;
-                    Ok([
-                        change.radius,
-                        change.load,
-                        change.approach,
-                        change.stiffness,
-                    ])
-                };
-                points.iter().map(at).collect()
+            let held = self.held;
+            let values = worked(py, self.points.clone(), move |point| {
+                let change = point.derivative(Variable::Parameter(parameter), held)?;
+                Ok([
+                    change.radius,
+                    change.load,
+                    change.approach,
+                    change.stiffness,
+                ])
             })?;
             let shape = self.shape.clone();
             found.set_item(path, Py::new(py, PyStateDerivative { values, shape })?)?;
