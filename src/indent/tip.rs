@@ -82,6 +82,10 @@ impl Tip {
         if kinks.len() > MOST_KINKS {
             kinks.clear();
         }
+        // A power that is no whole number has its root on the axis.
+        if matches!(form, Form::Power { exponent, .. } if exponent.fract() > 0.0) {
+            kinks.push(0.0);
+        }
         Ok(Self { form, terms, kinks })
     }
 

@@ -160,14 +160,8 @@ fn bare_bodies_are_sneddons() -> Result<()> {
     ] {
         let point = Indent::new(&stack, &tip).at_radius(a)?;
         assert!((point.approach / approach - 1.0).abs() < 1e-12, "{tip:?}");
-        // Eight nodes integrate s^1.5 to 1e-6; the rule is made for whole powers.
-        let error = if approach < 0.15 && tip == power(1.5)? {
-            1e-5
-        } else {
-            1e-12
-        };
         assert!(
-            (point.load / load - 1.0).abs() < error,
+            (point.load / load - 1.0).abs() < 1e-12,
             "{tip:?}: {} {load}",
             point.load
         );

@@ -9,6 +9,9 @@ use crate::kernel::quadrature::Rule;
 /// Contact radius, in thicknesses of the top layer, up to which values at nodes are cheaper than polynomials.
 const NODAL: f64 = 40.0;
 
+/// Nodes where the profile is no polynomial at the axis: they leave 1e-12 of s^1.3, whose square root they take.
+const ROOTED: f64 = 24.0;
+
 /// Nodes of the projection of a profile on polynomials, beyond their number.
 const MORE: usize = 24;
 
@@ -31,11 +34,12 @@ pub(in crate::indent) struct Panel {
 }
 
 impl Panel {
-    /// Panels from 0 to `high` that end at the kinks.
+    /// Panels from `low` to `high` that end at the kinks; a kink at `low` itself has its roots in the first panel.
     pub(in crate::indent) fn between(low: f64, kinks: &[f64], high: f64) -> Vec<Self> {
         let inside = kinks.iter().copied().filter(|b| *b > low && *b < high);
         let mut panels = Vec::new();
-        let (mut start, mut has_root) = (low, false);
+        let (mut start, mut has_root) =
+            (low, kinks.first().is_some_and(|b| *b >= low && *b <= low));
         for end in inside.chain(std::iter::once(high)) {
             panels.push(Self {
                 low: start,
@@ -87,7 +91,8 @@ impl Basis {
         let panels = Panel::between(0.0, kinks, a);
         if ratio <= NODAL {
             let count = (8.0 + 2.0 * ratio).max(1.0 + 4.3 * ratio);
-            let count = (finer * count).ceil() as usize;
+            let rooted = if panels[0].has_root { ROOTED } else { 0.0 };
+            let count = (finer * count.max(rooted)).ceil() as usize;
             let nodes = panels
                 .into_iter()
                 .flat_map(|panel| panel.nodes(rule(count)));

@@ -49,7 +49,8 @@ fn transforms_are_those_of_the_profiles() -> Result<()> {
             if k < 8 {
                 for panel in Panel::between(0.0, &kinks, std::f64::consts::FRAC_PI_2) {
                     for (angle, w) in panel.nodes(&rule) {
-                        let (r, h) = (s * angle.sin(), 1e-5);
+                        let r = s * angle.sin();
+                        let h = 1e-5 * r;
                         due += w * s * (tip.gap(r + h) - tip.gap(r - h)) / (2.0 * h);
                     }
                 }
