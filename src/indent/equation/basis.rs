@@ -39,7 +39,7 @@ impl Panel {
         let inside = kinks.iter().copied().filter(|b| *b > low && *b < high);
         let mut panels = Vec::new();
         let (mut start, mut has_root) =
-            (low, kinks.first().is_some_and(|b| *b >= low && *b <= low));
+            (low, kinks.first().is_some_and(|b| (b - low).abs() <= 0.0));
         for end in inside.chain(std::iter::once(high)) {
             panels.push(Self {
                 low: start,
