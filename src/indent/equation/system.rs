@@ -8,7 +8,7 @@ use super::basis::Basis;
 use super::stack::{Level, Stack};
 use crate::dense::{backward, cholesky, forward};
 use crate::error::{Error, Result};
-use crate::parallel::dot;
+use crate::parallel::{Lanes, dot};
 
 /// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.
 #[derive(Debug)]
@@ -115,19 +115,40 @@ impl System {
 /// Waves whose transforms of all functions stay in the nearest cache.
 const BLOCK: usize = 256;
 
-/// Σ m b̂ᵢ b̂ⱼ over the waves for j ≤ i, block by block.
+/// Σ m b̂ᵢ b̂ⱼ over the waves for j ≤ i, block by block, and by twos, whose four sums share what they read.
 fn products(rows: &[Vec<f64>], m: &[f64]) -> Vec<Vec<f64>> {
-    let mut sums: Vec<Vec<f64>> = (0..rows.len()).map(|i| vec![0.0; i + 1]).collect();
+    // One more column than needed in every second row.
+    let mut sums: Vec<Vec<f64>> = (0..rows.len()).map(|i| vec![0.0; (i + 2) & !1]).collect();
     for start in (0..m.len()).step_by(BLOCK) {
         let block = start..(start + BLOCK).min(m.len());
-        for (i, sums) in sums.iter_mut().enumerate() {
-            let weighted = times(&rows[i][block.clone()], &m[block.clone()]);
-            for (sum, row) in sums.iter_mut().zip(rows) {
-                *sum += dot(&weighted, &row[block.clone()]);
+        let row = |j: usize| &rows[j.min(rows.len() - 1)][block.clone()];
+        for (pair, sums) in sums.chunks_mut(2).enumerate() {
+            let weighted = [0, 1].map(|k| times(row(2 * pair + k), &m[block.clone()]));
+            for j in (0..=2 * pair).step_by(2) {
+                let more = four_dots([&weighted[0], &weighted[1]], [row(j), row(j + 1)]);
+                for (sums, more) in sums.iter_mut().zip(more) {
+                    sums[j] += more[0];
+                    sums[j + 1] += more[1];
+                }
             }
         }
     }
     sums
+}
+
+/// Sums of the products of each of two with each of two others, of equal lengths, a multiple of the lanes.
+fn four_dots(left: [&[f64]; 2], right: [&[f64]; 2]) -> [[f64; 2]; 2] {
+    let [a, b] = left.map(|values| values.as_chunks::<4>().0);
+    let [c, d] = right.map(|values| values.as_chunks::<4>().0);
+    let mut sums = [[Lanes::ZERO; 2]; 2];
+    for ((a, b), (c, d)) in a.iter().zip(b).zip(c.iter().zip(d)) {
+        let [a, b, c, d] = [a, b, c, d].map(|lanes| Lanes::new(*lanes));
+        sums[0][0] += a * c;
+        sums[0][1] += a * d;
+        sums[1][0] += b * c;
+        sums[1][1] += b * d;
+    }
+    sums.map(|pair| pair.map(Lanes::reduce_add))
 }
 
 /// Products of the elements.

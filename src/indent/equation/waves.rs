@@ -94,8 +94,16 @@ impl Waves {
             cos[k..k + 4].copy_from_slice(&x.to_array());
             sin[k..k + 4].copy_from_slice(&y.to_array());
         };
-        for k in (0..self.graded).step_by(4) {
+        // Each of the first panels is twice the one that follows it, but for the last two.
+        let doubled = self.graded.saturating_sub(2 * NODES);
+        for k in (doubled..self.graded).step_by(4) {
             exact(k, cos, sin);
+        }
+        for k in (0..doubled).step_by(4).rev() {
+            let (x, y) = (lanes(&cos[k + NODES..]), lanes(&sin[k + NODES..]));
+            let twice = y + y;
+            cos[k..k + 4].copy_from_slice(&(Lanes::ONE - twice * y).to_array());
+            sin[k..k + 4].copy_from_slice(&(twice * x).to_array());
         }
         let (turn_y, turn_x) = (self.width * s).sin_cos();
         let [turn_x, turn_y] = [Lanes::splat(turn_x), Lanes::splat(turn_y)];
