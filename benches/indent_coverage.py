@@ -96,6 +96,7 @@ def main() -> int:
     """Run the study; return 1 if a figure is out of its range."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--curves", type=int, default=2000, help="curves of each scenario")
+    parser.add_argument("--first", type=int, default=2000, help="number of the first, its noise")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--output", type=Path, default=ROOT / "docs/indent_coverage.csv")
     options = parser.parse_args()
@@ -105,9 +106,10 @@ def main() -> int:
     from rich.progress import track
 
     cases = scenarios()
+    last = options.first + options.curves
     tasks = [
-        (seed, first, min(BLOCK, options.curves - first))
-        for first in range(0, options.curves, BLOCK)
+        (seed, first, min(BLOCK, last - first))
+        for first in range(options.first, last, BLOCK)
         for seed in cases
     ]
     totals: dict[int, Counter[str]] = {seed: Counter() for seed in cases}

@@ -6,7 +6,10 @@
 //! B φ_θ = f_θ (δ − F) − f F_θ − 2/π ∫ M_θ b̂ p̂ dα      δ_θ φ₁(a) + φ_θ(a) = e_θ      S_θ = S f_θ/f − 4/f ∫ M_θ φ̂₁² dα
 //! ```
 //!
-//! What is given (radius, load or approach) is held by a change of the radius along the curve. Derived for nacre.
+//! What is given (radius, load or approach) is held by a change of the radius along the curve; the outer radius of a cohesive zone
+//! follows everything. Derived for nacre.
+
+mod outer;
 
 use std::f64::consts::PI;
 
@@ -16,8 +19,11 @@ use super::equation::stack::{Level, Parameter};
 use super::equation::system::times;
 use super::point::{Point, distance};
 use super::tip::TipParameter;
+use super::zone::Rate;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
+
+pub(super) use outer::Free;
 
 /// What was given of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,11 +56,15 @@ pub struct Change<'a> {
     pub approach: f64,
     /// Derivative of the stiffness.
     pub stiffness: f64,
+    /// Derivative of the outer radius of a cohesive zone.
+    pub outer_radius: Option<f64>,
     point: &'a Point,
     /// Derivative of lim α û/p̂, relative to it.
     short: f64,
     number: Option<usize>,
     rate: Option<TipParameter>,
+    /// Change of the cohesive zone.
+    zone: Rate,
     /// φ at fixed place, in the basis.
     values: Vec<f64>,
     density: Density<'a>,
@@ -64,23 +74,19 @@ impl Point {
     /// Derivatives with respect to `variable`, where `held` was given.
     ///
     /// # Errors
-    /// A number that this state does not depend on, an adhesion of Maugis and Dugdale, of which there are no derivatives, and a
-    /// radius held of a flat punch, whose load it does not give.
+    /// A number that this state does not depend on, and a radius held of a flat punch, whose load it does not give.
     pub fn derivative(&self, variable: Variable, held: Held) -> Result<Change<'_>> {
-        if self.zone.is_some() {
-            return Err(Error::Inconsistent(
-                "there are no derivatives with the adhesion of Maugis and Dugdale: take differences, or Jkr or Dmt",
-            ));
-        }
         let parts = &*self.parts;
         let (stack, tip, system) = (&parts.stack, &parts.tip, &parts.system);
-        let (f, edge) = (parts.f(), self.exact_edge());
+        let (f, edge) = (parts.f(), self.step());
         let is_flat = tip.fixed_radius().is_some();
         let unknown = Error::Inconsistent(
             "the state does not depend on this parameter: take one of the bodies, the tip or the adhesion",
         );
         let (mut number, mut rate, mut short) = (None, None, 0.0);
         let (mut widening, mut of_edge) = (0.0, 0.0);
+        // Of w/σ₀, and of the stress relative to it.
+        let (mut of_opening, mut of_stress) = (0.0, 0.0);
         let outside = match variable {
             Variable::Parameter(parameter) => self.adhesion.outside_rate(tip, parameter),
             Variable::Held => 0.0,
@@ -90,9 +96,17 @@ impl Point {
             Variable::Parameter(Parameter::Work) => match self.adhesion {
                 Adhesion::Jkr { work } => of_edge = edge / (2.0 * work),
                 Adhesion::Dmt { .. } => {}
+                Adhesion::Maugis { strength, .. } => of_opening = 1.0 / strength,
+                Adhesion::None => return Err(unknown),
+            },
+            Variable::Parameter(Parameter::Strength) => match (self.adhesion, &self.zone) {
+                (Adhesion::Maugis { work, strength }, Some(zone)) => {
+                    of_stress = 1.0 / strength;
+                    of_opening = -work / (strength * strength);
+                    of_edge = of_stress * zone.density();
+                }
                 _ => return Err(unknown),
             },
-            Variable::Parameter(Parameter::Strength) => return Err(unknown),
             Variable::Parameter(Parameter::Tip(own)) => {
                 if let TipParameter::Number(k) = own
                     && k >= tip.numbers().len()
@@ -145,30 +159,14 @@ impl Point {
         }
         let mut values = system.solve(right);
         let mut change = system.transform(&values);
-        // Along the curve: a punch, and what the wider contact adds.
-        let along = |values: &mut Vec<f64>, change: &mut Vec<f64>, approach: f64, radius: f64| {
-            let [punch, _] = &parts.values;
-            values
-                .iter_mut()
-                .zip(punch)
-                .for_each(|(v, p)| *v += approach * p);
-            let [punch, _] = &parts.hats;
-            change
-                .iter_mut()
-                .zip(punch)
-                .for_each(|(v, p)| *v += approach * p);
-            if edge.abs() > 0.0 && radius.abs() > 0.0 {
-                let (more, hat, _) = self.widening(edge);
-                values
-                    .iter_mut()
-                    .zip(more)
-                    .for_each(|(v, m)| *v += radius * m);
-                change
-                    .iter_mut()
-                    .zip(hat)
-                    .for_each(|(v, m)| *v += radius * m);
-            }
+        let add = |sum: &mut [f64], factor: f64, more: &[f64]| {
+            let pairs = sum.iter_mut().zip(more);
+            pairs.for_each(|(sum, more)| *sum += factor * more);
         };
+        if let Some(zone) = &self.zone {
+            add(&mut values, of_stress, &zone.answer.values);
+            add(&mut change, of_stress, &zone.answer.hat);
+        }
         let a = self.radius;
         let with_excess = |change: &[f64]| -> Vec<f64> {
             let own = times(system.excess(), change);
@@ -178,16 +176,30 @@ impl Point {
         let at_edge = f_rate * (self.approach - tip.transform(a)[0])
             - shape
             - system.couple_edge(&with_excess(&change));
-        let load_rate = |values: &[f64]| 2.0 * PI * dot(values, &system.ones);
-        let stiffness = self.stiffness;
-        // Approach and load at fixed radius, and their slopes along the curve.
+        let free = self.free();
+        // Approach, load and outer radius at fixed radius, and their slopes along the curve.
+        let mut fixed_edge = at_edge - of_edge;
+        let mut fixed_load = 2.0 * PI * dot(&values, &system.ones) - outside;
+        let mut fixed_outer = 0.0;
+        if let (Some(zone), Some(outer)) = (&self.zone, &free.outer) {
+            let rate_known = [f_rate * self.approach, f_rate];
+            let own = self.moved(rate_known, rate, with_excess(&change), at_edge);
+            let displaced = own.displaced(zone.outer) + of_stress * zone.abel(zone.outer);
+            let gap = self.displacement(&[zone.outer])?[0] * short
+                + stack.short() * displaced
+                + rate.map_or(0.0, |rate| tip.gap_rate(rate, zone.outer))
+                - of_opening;
+            fixed_outer = outer.following(gap);
+            fixed_edge += outer.edge * fixed_outer;
+            fixed_load += of_stress * zone.load() + outer.load * fixed_outer;
+        }
+        let given = if variable == Variable::Held { 1.0 } else { 0.0 };
         let (approach_rate, radius_rate, load);
         if is_flat {
-            let own = load_rate(&values) + self.stiffness_slope * self.approach * widening;
-            let given = if variable == Variable::Held { 1.0 } else { 0.0 };
+            let own = fixed_load + self.stiffness_slope * self.approach * widening;
             approach_rate = match held {
                 Held::Approach => given,
-                Held::Load => (given - own) / stiffness,
+                Held::Load => (given - own) / free.load,
                 Held::Radius => {
                     return Err(Error::Inconsistent(
                         "the radius of a flat punch does not give its load: hold load or approach",
@@ -195,12 +207,11 @@ impl Point {
                 }
             };
             radius_rate = widening;
-            load = own + stiffness * approach_rate;
+            load = own + free.load * approach_rate;
         } else {
-            let fixed = (of_edge - at_edge) / parts.edge[0];
-            let own = load_rate(&values) + stiffness * fixed - outside;
-            let [approach_slope, load_slope] = self.along();
-            let given = if variable == Variable::Held { 1.0 } else { 0.0 };
+            let fixed = -fixed_edge / free.edge;
+            let own = fixed_load + free.load * fixed;
+            let [approach_slope, load_slope] = self.along_with(&free);
             radius_rate = match held {
                 Held::Radius => given,
                 Held::Load => (given - own) / load_slope,
@@ -209,8 +220,24 @@ impl Point {
             approach_rate = fixed + approach_slope * radius_rate;
             load = own + load_slope * radius_rate;
         }
-        along(&mut values, &mut change, approach_rate, radius_rate);
-        let mut of_stiffness = -short * stiffness + self.stiffness_slope * radius_rate;
+        // Along the curve: a punch, what the wider contact adds, and the outer radius.
+        add(&mut values, approach_rate, &parts.values[0]);
+        add(&mut change, approach_rate, &parts.hats[0]);
+        if edge.abs() > 0.0 && radius_rate.abs() > 0.0 {
+            let (more, hat, _) = self.widening(edge);
+            add(&mut values, radius_rate, &more);
+            add(&mut change, radius_rate, &hat);
+        }
+        let outer_radius = free
+            .outer
+            .as_ref()
+            .map(|outer| fixed_outer + approach_rate * outer.following(outer.gap_of_approach));
+        let zone: Rate = [of_stress, outer_radius.unwrap_or(0.0)];
+        if let Some(outer) = &free.outer {
+            add(&mut values, zone[1], &outer.values);
+            add(&mut change, zone[1], &outer.hat);
+        }
+        let mut of_stiffness = -short * self.stiffness + self.stiffness_slope * radius_rate;
         if let Some(excess_rate) = excess_rate {
             let [punch, _] = &parts.hats;
             of_stiffness -= 4.0 / f * dot(&times(excess_rate, punch), punch);
@@ -223,19 +250,32 @@ impl Point {
             load,
             approach: approach_rate,
             stiffness: of_stiffness,
+            outer_radius,
             point: self,
             short,
             number,
             rate,
+            zone,
             values,
-            density: Density {
-                parts,
-                known,
-                rate,
-                g,
-                edge: at_edge,
-            },
+            density: self.moved(known, rate, g, at_edge),
         })
+    }
+
+    /// A change of the density.
+    fn moved(
+        &self,
+        known: [f64; 2],
+        rate: Option<TipParameter>,
+        g: Vec<f64>,
+        edge: f64,
+    ) -> Density<'_> {
+        Density {
+            parts: &self.parts,
+            known,
+            rate,
+            g,
+            edge,
+        }
     }
 }
 
@@ -247,13 +287,23 @@ impl Change<'_> {
     /// As [`Point::pressure`].
     pub fn pressure(&self, r: &[f64]) -> Result<Vec<f64>> {
         r.iter().try_for_each(|r| distance(*r))?;
-        let (a, edge) = (self.point.radius, self.point.exact_edge());
+        let (a, edge) = (self.point.radius, self.point.step());
+        let zone = self.point.zone.as_ref();
+        let density = Density {
+            edge: self.density.edge - zone.map_or(0.0, |zone| zone.density_rate(self.zone)),
+            g: self.density.g.clone(),
+            ..self.density
+        };
         let at = |r: &f64| {
+            if *r > a {
+                return zone.map_or(0.0, |zone| self.zone[0] * zone.outside(*r));
+            }
             if *r >= a || *r <= 0.0 && self.point.parts.tip.is_sharp() {
                 return 0.0;
             }
             let moved = edge * a * self.radius / ((a - r) * (a + r)).powf(1.5);
-            self.density.pressure(*r) - moved
+            let from_zone = zone.map_or(0.0, |zone| zone.inside_rate(self.zone, *r));
+            density.pressure(*r) - moved + from_zone
         };
         Ok(r.iter().map(at).collect())
     }
@@ -265,7 +315,8 @@ impl Change<'_> {
     pub fn displacement(&self, r: &[f64]) -> Result<Vec<f64>> {
         r.iter().try_for_each(|r| distance(*r))?;
         let point = self.point;
-        let (a, edge) = (point.radius, point.exact_edge());
+        let (a, edge) = (point.radius, point.step());
+        let zone = point.zone.as_ref();
         let stack = &point.parts.stack;
         let displaced = point.displacement(r)?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
@@ -284,7 +335,8 @@ impl Change<'_> {
             let layers = waves
                 .as_ref()
                 .map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
-            self.short * u + stack.short() * (self.density.abel(*r) + moved + layers)
+            let from_zone = zone.map_or(0.0, |zone| zone.abel_rate(self.zone, *r));
+            self.short * u + stack.short() * (self.density.abel(*r) + moved + from_zone + layers)
         };
         Ok(r.iter().zip(displaced).map(at).collect())
     }
@@ -311,19 +363,25 @@ impl Change<'_> {
             sums
         };
         let mut change = sum(&self.values);
-        let moved = point.exact_edge() * self.radius;
+        let moved = point.step() * self.radius;
         let (mut cos, mut sin) = (change.clone(), change.clone());
         level.waves.circular(point.radius, &mut cos, &mut sin);
         change
             .iter_mut()
             .zip(&cos)
             .for_each(|(sum, cos)| *sum += moved * cos);
+        let mut hat = sum(&point.values());
+        if let Some(zone) = &point.zone {
+            let pairs = change
+                .iter_mut()
+                .zip(zone.transform_rate(self.zone, &level.waves));
+            pairs.for_each(|(sum, more)| *sum += more);
+            let pairs = hat.iter_mut().zip(zone.transform(&level.waves));
+            pairs.for_each(|(sum, more)| *sum += more);
+        }
         let mut g = times(&level.excess, &change);
         if let Some(number) = self.number {
-            let own = times(
-                point.parts.stack.excess_rate(level, number),
-                &sum(&point.values()),
-            );
+            let own = times(point.parts.stack.excess_rate(level, number), &hat);
             g.iter_mut().zip(own).for_each(|(g, own)| *g += own);
         }
         g

@@ -51,13 +51,13 @@ pub(super) fn contact(
             parts = Arc::new(Parts::new(stack, tip, a, length)?);
         }
         let zone = Zone::around(&parts, outer, strength);
-        let approach = parts.hertzian() + (zone.density() - zone.edge) / parts.edge[0];
+        let approach = parts.hertzian() + (zone.density() - zone.answer.edge) / parts.edge[0];
         let mut point = Point::new(
             Arc::clone(&parts),
             Adhesion::Maugis { work, strength },
             approach,
         );
-        point.load += zone.load() + 2.0 * PI * dot(&zone.values, &parts.system.ones);
+        point.load += zone.load() + 2.0 * PI * dot(&zone.answer.values, &parts.system.ones);
         point.outer_radius = Some(outer);
         point.zone = Some(zone);
         let gap = point.gap(&[outer])?[0];

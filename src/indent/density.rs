@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use spec_math::cephes64::j0;
+use spec_math::cephes64::{j0, j1};
 
 use super::equation::basis::{Panel, rule};
 use super::parts::Parts;
@@ -62,6 +62,27 @@ impl Density<'_> {
         places.iter().enumerate().map(value).collect()
     }
 
+    /// Displacement over lim α û/p̂ at r ≥ a, where the waves resolve J₀(αr).
+    pub(super) fn displaced(&self, r: f64) -> f64 {
+        let level = self.parts.system.level.as_ref();
+        let layers = level.map_or(0.0, |level| bessel_sum(&self.g, &level.waves.alpha, r));
+        self.abel(r) + layers
+    }
+
+    /// Derivative of [`Density::displaced`] with respect to r > a.
+    pub(super) fn displaced_slope(&self, r: f64) -> f64 {
+        let level = self.parts.system.level.as_ref();
+        let layers = level.map_or(0.0, |level| bessel_slopes(&self.g, &level.waves.alpha, r));
+        self.abel_slope(r) + layers
+    }
+
+    /// Derivative of [`Density::abel`] with respect to r > a.
+    fn abel_slope(&self, r: f64) -> f64 {
+        let a = self.parts.system.radius;
+        let inside = self.in_angles(r, |[_, slope], angle| slope * angle.sin());
+        inside - self.edge * a / (r * ((r - a) * (r + a)).sqrt())
+    }
+
     /// φ'(a) at the edge.
     pub(super) fn edge_slope(&self) -> f64 {
         let parts = self.parts;
@@ -117,13 +138,17 @@ impl Density<'_> {
         singular - sum
     }
 
-    /// ∫₀^a φ(t)/√(r²−t²) dt at r ≥ a.
+    /// ∫₀^a φ(t)/√(r²−t²) dt at r ≥ a; t = r sin θ takes the root away.
     pub(super) fn abel(&self, r: f64) -> f64 {
+        self.in_angles(r, |[value, _], _| value)
+    }
+
+    /// ∫ f dθ of a function of φ and φ' at t = r sin θ, and of θ, over the contact; r ≥ a.
+    fn in_angles(&self, r: f64, f: impl Fn([f64; 2], f64) -> f64) -> f64 {
         let parts = self.parts;
         let a = parts.system.radius;
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
         let rule = rule((parts.stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
-        // t = r sin θ takes the root away.
         let angle = |t: f64| (t / r).min(1.0).asin();
         let kinks: Vec<f64> = parts.tip.kinks().iter().map(|b| angle(*b)).collect();
         let panels = Panel::between(0.0, &kinks, angle(a)).into_iter();
@@ -131,11 +156,8 @@ impl Density<'_> {
             panels.flat_map(|panel| panel.nodes(rule)).unzip();
         let places: Vec<f64> = angles.iter().map(|angle| r * angle.sin()).collect();
         let values = self.at(&places);
-        values
-            .iter()
-            .zip(&weights)
-            .map(|([value, _], w)| w * value)
-            .sum()
+        let terms = values.iter().zip(angles.iter().zip(&weights));
+        terms.map(|(value, (angle, w))| w * f(*value, *angle)).sum()
     }
 }
 
@@ -145,4 +167,10 @@ pub(super) fn bessel_sum(g: &[f64], alpha: &[f64], r: f64) -> f64 {
         .zip(alpha)
         .map(|(g, alpha)| g * j0(alpha * r))
         .sum()
+}
+
+/// Derivative of ∫ g J₀(αr) with respect to r.
+fn bessel_slopes(g: &[f64], alpha: &[f64], r: f64) -> f64 {
+    let terms = g.iter().zip(alpha);
+    terms.map(|(g, alpha)| -g * alpha * j1(alpha * r)).sum()
 }

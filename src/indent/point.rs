@@ -6,10 +6,11 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
+use super::change::Free;
 use super::density::{Density, bessel_sum};
 use super::equation::system::times;
 use super::parts::Parts;
-use super::zone::Zone;
+use super::zone::{Answer, Zone};
 use crate::error::{Error, Result};
 use crate::parallel::dot;
 
@@ -54,24 +55,24 @@ impl Point {
 
     /// φ in the basis.
     pub(super) fn values(&self) -> Vec<f64> {
-        self.combined(|parts| &parts.values, |zone| &zone.values)
+        self.combined(|parts| &parts.values, |answer| &answer.values)
     }
 
     /// p̂ at the waves, with that of a cohesive zone.
     pub(super) fn hat(&self) -> Vec<f64> {
-        self.combined(|parts| &parts.hats, |zone| &zone.hat)
+        self.combined(|parts| &parts.hats, |answer| &answer.hat)
     }
 
     fn combined<'a>(
         &'a self,
         of: impl Fn(&'a Parts) -> &'a [Vec<f64>; 2],
-        more: impl Fn(&'a Zone) -> &'a [f64],
+        more: impl Fn(&'a Answer) -> &'a [f64],
     ) -> Vec<f64> {
         let [punch, profile] = of(&self.parts);
         let pairs = punch.iter().zip(profile);
         let mut all: Vec<f64> = pairs.map(|(a, b)| self.approach * a - b).collect();
         if let Some(zone) = &self.zone {
-            for (value, more) in all.iter_mut().zip(more(zone)) {
+            for (value, more) in all.iter_mut().zip(more(&zone.answer)) {
                 *value += more;
             }
         }
@@ -81,7 +82,7 @@ impl Point {
     /// φ at the edge.
     pub(super) fn edge(&self) -> f64 {
         let [punch, profile] = self.parts.edge;
-        self.zone.as_ref().map_or(0.0, |zone| zone.edge) + self.approach * punch - profile
+        self.zone.as_ref().map_or(0.0, |zone| zone.answer.edge) + self.approach * punch - profile
     }
 
     /// The density of the state.
@@ -131,7 +132,7 @@ impl Point {
                     .pressure(*r),
                     false => 0.0,
                 };
-                return from_contact + zone.inside(*r, a);
+                return from_contact + zone.inside(*r);
             }
             if *r >= a {
                 return match density.edge.abs() > 0.0 {
@@ -218,25 +219,40 @@ impl Point {
         Some([times(excess, &hat), alpha])
     }
 
+    /// Step of the density at the edge: φ there, but for a cohesive zone, into which φ goes on.
+    pub(super) fn step(&self) -> f64 {
+        match self.zone {
+            Some(_) => 0.0,
+            None => self.exact_edge(),
+        }
+    }
+
     /// Derivatives of approach and load with respect to the contact radius, along the states of the same adhesion.
+    pub(super) fn along(&self) -> [f64; 2] {
+        self.along_with(&self.free())
+    }
+
+    /// The same, where `free` is known.
     ///
-    /// φ(a) = e(a), and φ changes at fixed t by that of a punch and, where its edge is not 0, by what the wider contact adds:
+    /// φ(a) = e(a), and φ changes at fixed t by that of a punch and, where the density has a step at the edge, by what the wider
+    /// contact adds. Around it there may be a cohesive zone, with e = ψ:
     ///
     /// ```text
     /// B φ_a = −2/π φ(a) ∫ M b̂ cos αa dα      δ' φ₁(a) = e' − φ'(a) − φ_a(a)      P' = S δ' + 2π [∫ φ_a + φ(a)]
     /// ```
-    pub(super) fn along(&self) -> [f64; 2] {
-        let edge = self.exact_edge();
+    pub(super) fn along_with(&self, free: &Free) -> [f64; 2] {
+        let edge = self.step();
         let system = &self.parts.system;
-        let mut needed = edge / (2.0 * self.radius) - self.density().edge_slope();
+        let around = self.zone.as_ref().map_or(0.0, Zone::slope);
+        let mut needed = edge / (2.0 * self.radius) + around - self.density().edge_slope();
         let mut more = edge;
         if edge.abs() > 0.0 {
             let (values, _, at_edge) = self.widening(edge);
             needed -= at_edge;
             more += dot(&values, &system.ones);
         }
-        let approach = needed / self.parts.edge[0];
-        [approach, self.stiffness * approach + 2.0 * PI * more]
+        let approach = needed / free.edge;
+        [approach, free.load * approach + 2.0 * PI * more]
     }
 
     /// φ_a of a density that is `edge` at the edge: in the basis, its transform with that of the wider contact, and at the edge.

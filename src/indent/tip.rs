@@ -172,6 +172,11 @@ impl Tip {
         }
     }
 
+    /// Slope g'(r) of the profile, within its [`Tip::range`].
+    pub(super) fn slope(&self, r: f64) -> f64 {
+        self.terms.iter().map(|term| term.slope(r)).sum()
+    }
+
     /// Whether the slope of the profile nowhere falls, so that the contact is a disc at every load.
     pub(super) fn is_convex(&self) -> bool {
         match self.form {
@@ -288,9 +293,12 @@ impl Tip {
     pub(super) fn gap_rate(&self, parameter: TipParameter, r: f64) -> f64 {
         match parameter {
             TipParameter::Area => {
-                let h = 1e-5;
-                // −r g'/2, by a difference whose error is 1e-10 of g.
-                -(self.gap(r * (1.0 + h)) - self.gap(r * (1.0 - h))) / (4.0 * h)
+                // Where the slope has no limit on the axis, the product vanishes.
+                if r > 0.0 {
+                    -0.5 * r * self.slope(r)
+                } else {
+                    0.0
+                }
             }
             TipParameter::Number(number) => self.rates(number).iter().map(|term| term.gap(r)).sum(),
         }

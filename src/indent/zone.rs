@@ -13,22 +13,36 @@ use super::equation::system::times;
 use super::equation::waves::Waves;
 use super::parts::Parts;
 
-/// Nodes of the integral over a zone, beside eight for each thickness of the top layer in it.
+/// Nodes of the integral over a panel of a zone, beside half of the phase of the shortest wave over it.
 const NODES: usize = 24;
+
+/// Phase of the shortest wave over a panel of a zone.
+const PHASE: f64 = 300.0;
 
 /// Nodes of the integrals with a root of r² − t².
 const ROOT_NODES: usize = 16;
 
+/// Change of a zone: that of its stress, relative to it, and that of its outer radius \[m\].
+pub(super) type Rate = [f64; 2];
+
+/// Rate of a zone that grows from nothing: the zone itself.
+const WHOLE: Rate = [1.0, 0.0];
+
 /// A cohesive zone, and what the contact answers to it at approach 0.
 #[derive(Debug, Clone)]
 pub(super) struct Zone {
-    inner: f64,
+    pub(super) inner: f64,
     pub(super) outer: f64,
     strength: f64,
-    thickness: Option<f64>,
+    pub(super) answer: Answer,
+}
+
+/// What a contact answers to the density around it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Answer {
     /// φ of the contact, in its basis.
     pub(super) values: Vec<f64>,
-    /// Transform of ψ and of this φ, at the waves.
+    /// Transform of this φ and of what it answers, at the waves.
     pub(super) hat: Vec<f64>,
     /// This φ at the edge.
     pub(super) edge: f64,
@@ -36,40 +50,38 @@ pub(super) struct Zone {
 
 impl Zone {
     /// The zone from `inner` to `outer` without an answer.
-    fn alone(inner: f64, outer: f64, strength: f64, thickness: Option<f64>) -> Self {
+    fn alone(inner: f64, outer: f64, strength: f64) -> Self {
         Self {
             inner,
             outer,
             strength,
-            thickness,
-            values: Vec::new(),
-            hat: Vec::new(),
-            edge: 0.0,
+            answer: Answer::default(),
         }
     }
 
     /// The zone around the contact of `parts`.
     pub(super) fn around(parts: &Parts, outer: f64, strength: f64) -> Self {
-        let system = &parts.system;
-        let mut zone = Self::alone(system.radius, outer, strength, parts.stack.thickness());
-        let Some(level) = &system.level else {
-            zone.values = vec![0.0; system.ones.len()];
-            return zone;
-        };
-        let own = zone.transform(&level.waves);
-        let right = system
-            .couple(&times(&level.excess, &own))
-            .iter()
-            .map(|c| -c)
-            .collect();
-        zone.values = system.solve(right);
-        zone.hat = system.transform(&zone.values);
-        zone.hat
-            .iter_mut()
-            .zip(own)
-            .for_each(|(sum, own)| *sum += own);
-        zone.edge = -system.couple_edge(&times(&level.excess, &zone.hat));
+        let mut zone = Self::alone(parts.system.radius, outer, strength);
+        zone.answer = zone.answer(parts, WHOLE);
         zone
+    }
+
+    /// What the contact answers to a change of the zone.
+    pub(super) fn answer(&self, parts: &Parts, rate: Rate) -> Answer {
+        let system = &parts.system;
+        let Some(level) = &system.level else {
+            return Answer {
+                values: vec![0.0; system.ones.len()],
+                ..Answer::default()
+            };
+        };
+        let own = self.transform_rate(rate, &level.waves);
+        let right = system.couple(&times(&level.excess, &own));
+        let values = system.solve(right.iter().map(|c| -c).collect());
+        let mut hat = system.transform(&values);
+        hat.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        let edge = -system.couple_edge(&times(&level.excess, &hat));
+        Answer { values, hat, edge }
     }
 
     /// √(c² − a²)
@@ -79,63 +91,108 @@ impl Zone {
 
     /// ψ at the inner edge.
     pub(super) fn density(&self) -> f64 {
-        -2.0 / PI * self.strength * self.reach()
+        self.density_rate(WHOLE)
+    }
+
+    /// Change of ψ at the inner edge.
+    pub(super) fn density_rate(&self, [stress, outer]: Rate) -> f64 {
+        let reach = self.reach();
+        -2.0 / PI * self.strength * (stress * reach + outer * self.outer / reach)
+    }
+
+    /// ψ' at the inner edge.
+    pub(super) fn slope(&self) -> f64 {
+        2.0 / PI * self.strength * self.inner / self.reach()
     }
 
     /// 2π ∫ ψ over the zone: its load.
     pub(super) fn load(&self) -> f64 {
-        let angle = self.reach().atan2(self.inner);
-        let area = self.outer * self.outer * angle - self.inner * self.reach();
-        -2.0 * self.strength * area
+        self.load_rate(WHOLE)
     }
 
-    /// ψ̂(α) at all waves; t = c cos η.
+    /// Change of its load.
+    pub(super) fn load_rate(&self, [stress, outer]: Rate) -> f64 {
+        let angle = self.reach().atan2(self.inner);
+        let area = self.outer * self.outer * angle - self.inner * self.reach();
+        -2.0 * self.strength * (stress * area + outer * 2.0 * self.outer * angle)
+    }
+
+    /// ψ̂(α) at all waves.
     pub(super) fn transform(&self, waves: &Waves) -> Vec<f64> {
-        let thicknesses = self
-            .thickness
-            .map_or(0.0, |h| (self.outer - self.inner) / h);
-        let count = NODES + (8.0 * thicknesses).ceil() as usize;
-        let most = 0.5 * self.reach().atan2(self.inner);
+        self.transform_rate(WHOLE, waves)
+    }
+
+    /// Change of ψ̂(α) at all waves; t = c cos η.
+    pub(super) fn transform_rate(&self, [stress, outer]: Rate, waves: &Waves) -> Vec<f64> {
+        let shortest = waves
+            .alpha
+            .iter()
+            .fold(0.0_f64, |most, alpha| most.max(*alpha));
+        let phase = shortest * (self.outer - self.inner);
+        let panels = (phase / PHASE).ceil().max(1.0);
+        // The phase is up to twice as dense as on average.
+        let count = NODES + (0.5 * phase * (2.0 / panels).min(1.0)).ceil() as usize;
+        let half = 0.5 * self.reach().atan2(self.inner) / panels;
         let mut sums = vec![0.0; waves.len()];
         let (mut cos, mut sin) = (sums.clone(), sums.clone());
-        for (angle, w) in rule(count).nodes(most, most) {
-            waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
-            let weight = -2.0 / PI * self.strength * w * (self.outer * angle.sin()).powi(2);
-            sums.iter_mut()
-                .zip(&cos)
-                .for_each(|(sum, cos)| *sum += weight * cos);
+        for panel in 0..panels as usize {
+            let middle = (2 * panel + 1) as f64 * half;
+            for (angle, w) in rule(count).nodes(middle, half) {
+                waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
+                let rate = stress * (self.outer * angle.sin()).powi(2) + outer * self.outer;
+                let weight = -2.0 / PI * self.strength * w * rate;
+                let pairs = sums.iter_mut().zip(&cos);
+                pairs.for_each(|(sum, cos)| *sum += weight * cos);
+            }
         }
         sums
     }
 
-    /// ∫ ψ/√(r²−t²) over a < t < min(r, c). With m = min(r, c), t = m cos η and η = ε sinh x, where ε is the distance from the
-    /// root's double zero.
+    /// ∫ ψ/√(r²−t²) over a < t < min(r, c).
     pub(super) fn abel(&self, r: f64) -> f64 {
+        self.abel_rate(WHOLE, r)
+    }
+
+    /// Change of ∫ ψ/√(r²−t²) over a < t < min(r, c). With m = min(r, c), t = m cos η and η = ε sinh x, where ε is the distance
+    /// from the root's double zero. At r = c that with the outer radius has no limit: it is −∞.
+    pub(super) fn abel_rate(&self, [stress, outer]: Rate, r: f64) -> f64 {
         let (a, c) = (self.inner, self.outer);
         let factor = -2.0 / PI * self.strength;
         let m = r.min(c);
         let most = ((m - a) * (m + a)).max(0.0).sqrt().atan2(a);
         let near = ((c - r) * (c + r)).abs().sqrt();
         if near <= 1e-12 * c {
-            return factor * (c - a);
+            return match outer.abs() > 0.0 {
+                true => -outer.signum() * f64::INFINITY,
+                false => stress * factor * (c - a),
+            };
         }
         let size = near / m;
         let integrand = |x: f64| {
             let eta = size * x.sinh();
             let sine = m * eta.sin();
+            let larger = (near * near + sine * sine).sqrt();
             let value = match r < c {
-                true => (near * near + sine * sine).sqrt(),
-                false => sine * sine / (near * near + sine * sine).sqrt(),
+                true => larger,
+                false => sine * sine / larger,
             };
-            value * size * x.cosh()
+            (stress * value + outer * c / larger) * size * x.cosh()
         };
         factor * rule(ROOT_NODES).over_panels(0.0, (most / size).asinh(), integrand)
     }
 
     /// Part of the pressure within the contact, r ≤ a, that is due to the zone; at its edge −σ₀.
-    pub(super) fn inside(&self, r: f64, a: f64) -> f64 {
-        let ratio = (self.outer - a) * (self.outer + a) / ((self.outer - r) * (self.outer + r));
-        -2.0 / PI * self.strength * ratio.sqrt().min(1.0).asin()
+    pub(super) fn inside(&self, r: f64) -> f64 {
+        self.inside_rate(WHOLE, r)
+    }
+
+    /// Change of −∫ ψ'/√(t²−r²) over the zone at r ≤ a.
+    pub(super) fn inside_rate(&self, [stress, outer]: Rate, r: f64) -> f64 {
+        let (a, c) = (self.inner, self.outer);
+        let rest = (c - r) * (c + r);
+        let angle = (self.reach() / rest.sqrt()).min(1.0).asin();
+        let wider = c * ((a - r) * (a + r)).max(0.0).sqrt() / (rest * self.reach());
+        -2.0 / PI * self.strength * (stress * angle + outer * wider)
     }
 
     /// Pressure beyond the contact.
@@ -159,10 +216,10 @@ mod tests {
     #[test]
     fn a_disc_of_uniform_stress() {
         let (c, strength) = (0.7, 3.0);
-        let zone = Zone::alone(0.0, c, strength, Some(1.0));
+        let zone = Zone::alone(0.0, c, strength);
         assert!((zone.load() / (-PI * c * c * strength) - 1.0).abs() < 1e-14);
         assert!(
-            (zone.inside(0.3, 0.0) / (-2.0 / PI * strength)
+            (zone.inside(0.3) / (-2.0 / PI * strength)
                 - (c / (c * c - 0.09_f64).sqrt()).min(1.0).asin())
             .abs()
                 < 1e-14

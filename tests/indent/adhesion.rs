@@ -218,3 +218,41 @@ fn the_load_is_the_derivative_of_the_energy() -> Result<()> {
     }
     Ok(())
 }
+
+/// Stresses on the axis below a contact with a cohesive zone, on a bare body: σ_zz of the pressures by Boussinesq's
+/// −3z³ ∫ p r/(r²+z²)^{5/2} dr (Johnson, Contact Mechanics (1985), eq. (3.20)), of which the zone's part is a closed form.
+#[test]
+fn stresses_with_a_cohesive_zone() -> Result<()> {
+    let stack = Stack::plan(&[Elastic::new(1.0, 0.3)?.into()])?;
+    let adhesion = Adhesion::Maugis {
+        work: 0.02,
+        strength: 0.1,
+    };
+    let indent = Indent::new(&stack, &Tip::paraboloid(2.0)?).with_adhesion(adhesion)?;
+    let point = indent.at_radius(0.5)?;
+    let (a, c) = (0.5, point.outer_radius.expect("a cohesive zone"));
+    // Midpoints in r = a sin θ, which takes the root at the edge away.
+    let count = 2000;
+    let step = 0.5 * PI / f64::from(count);
+    let angles: Vec<f64> = (0..count).map(|k| (f64::from(k) + 0.5) * step).collect();
+    let r: Vec<f64> = angles.iter().map(|angle| a * angle.sin()).collect();
+    let pressures = point.pressure(&r)?;
+    for z in [0.005_f64, 0.1, 0.5, 3.0] {
+        let inside: f64 = r
+            .iter()
+            .zip(&pressures)
+            .zip(&angles)
+            .map(|((r, p), angle)| p * r * a * angle.cos() * step / (r * r + z * z).powf(2.5))
+            .sum();
+        let end = |r: f64| -1.0 / (3.0 * (r * r + z * z).powf(1.5));
+        let due = -3.0 * z.powi(3) * (inside - 0.1 * (end(c) - end(a)));
+        let found = point.stress(0, z, &[0.0])?[0].zz;
+        // The midpoint rule leaves (step a/z)²: 6e-3 of 1e-4 at the smallest depth.
+        let error = 1e-8 + 2.0 * (step * a / z).powi(2);
+        assert!(
+            (found - due).abs() < error * pressures[0],
+            "{z}: {found} {due}"
+        );
+    }
+    Ok(())
+}

@@ -209,3 +209,113 @@ fn differences() -> Result<()> {
     }
     Ok(())
 }
+
+/// Where a cohesive zone surrounds the contact of a sphere on two layers, one of them slipping, with an elastic counterbody: at
+/// fixed radius, derivatives with respect to all numbers equal differences of fourth order, of load, approach, stiffness, outer
+/// radius, pressure within the contact and in the zone, and displacement in the zone and beyond. With load or approach held, they
+/// are those of fixed radius and along the curve, and equal differences, too.
+#[test]
+fn cohesive_zones() -> Result<()> {
+    let solve = |n: &[f64; 14]| -> Result<Point> {
+        let layers = [
+            Layer::new(Elastic::new(n[0], n[1])?, n[2])?,
+            Layer::new(Elastic::new(n[3], n[4])?, n[5])?.with_interface(Interface::Frictionless),
+        ];
+        let body = HalfSpace::new(Elastic::new(n[6], n[7])?, layers)?;
+        let stack = Stack::plan(&[body.into(), Elastic::new(n[8], n[9])?.into()])?;
+        let (work, strength) = (n[11], n[12]);
+        Indent::new(&stack, &Tip::sphere(n[10])?)
+            .with_adhesion(Adhesion::Maugis { work, strength })?
+            .at_radius(n[13])
+    };
+    let numbers = [
+        4.0, 0.2, 0.3, 0.5, 0.35, 0.7, 1.0, 0.3, 2.0, 0.25, 3.0, 0.03, 0.3, 0.6,
+    ];
+    let point = solve(&numbers)?;
+    let outer = point.outer_radius.expect("a cohesive zone");
+    // The zone is as wide as a fifth of the contact.
+    assert!(outer > 0.65 && outer < 0.85, "{outer}");
+    let (inside, outside) = ([0.0, 0.4, 0.61], [0.62, 1.2]);
+    let of = |p: &Point| -> Result<Vec<f64>> {
+        let zone = p.outer_radius.expect("a cohesive zone");
+        let numbers = [p.load, p.approach, p.stiffness, zone];
+        Ok([
+            &numbers[..],
+            &p.pressure(&inside)?,
+            &p.displacement(&outside)?,
+        ]
+        .concat())
+    };
+    let sizes = of(&point)?;
+    let stack_numbers = (0..10).map(|k| match k {
+        8 => Parameter::Body(1, BodyParameter::Young(0)),
+        9 => Parameter::Body(1, BodyParameter::Poisson(0)),
+        _ if k % 3 == 0 => Parameter::Body(0, BodyParameter::Young(k / 3)),
+        _ if k % 3 == 1 => Parameter::Body(0, BodyParameter::Poisson(k / 3)),
+        _ => Parameter::Body(0, BodyParameter::Thickness(k / 3)),
+    });
+    let variables = stack_numbers
+        .chain([
+            Parameter::Tip(TipParameter::Number(0)),
+            Parameter::Work,
+            Parameter::Strength,
+        ])
+        .map(Variable::Parameter)
+        .chain([Variable::Held]);
+    let along = point.derivative(Variable::Held, Held::Radius)?;
+    for (number, variable) in variables.enumerate() {
+        let change = point.derivative(variable, Held::Radius)?;
+        let zone = change.outer_radius.expect("a cohesive zone");
+        let found = [change.load, change.approach, change.stiffness, zone];
+        let found = [
+            &found[..],
+            &change.pressure(&inside)?,
+            &change.displacement(&outside)?,
+        ]
+        .concat();
+        // Fourth order in 1e-3 leaves 1e-10; states are known to 1e-12, which leaves 1e-9.
+        let h = 1e-3;
+        let at = |step: f64| {
+            let mut n = numbers;
+            n[number] *= 1.0 + step * h;
+            of(&solve(&n)?)
+        };
+        let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
+        for i in 0..found.len() {
+            let due = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
+            assert!(
+                (found[i] * numbers[number] - due).abs() < 2e-8 * (sizes[i].abs() + due.abs()),
+                "{variable:?} {i}: {} {due} of {}",
+                found[i] * numbers[number],
+                sizes[i]
+            );
+        }
+        if variable == Variable::Held {
+            continue;
+        }
+        for held in [Held::Load, Held::Approach] {
+            let kept = point.derivative(variable, held)?;
+            let fixed = [change.load, change.approach];
+            let slopes = [along.load, along.approach];
+            let rates = [0, 1].map(|k| fixed[k] + slopes[k] * kept.radius);
+            for (k, (found, due)) in [kept.load, kept.approach]
+                .into_iter()
+                .zip(rates)
+                .enumerate()
+            {
+                let size = fixed[k].abs() + (slopes[k] * kept.radius).abs();
+                assert!(
+                    (found - due).abs() < 1e-12 * size,
+                    "{variable:?} {held:?}: {found} {due}"
+                );
+            }
+            let held_rate = if held == Held::Load {
+                kept.load
+            } else {
+                kept.approach
+            };
+            assert!(held_rate.abs() < 1e-12 * fixed[0].abs().max(fixed[1].abs()));
+        }
+    }
+    Ok(())
+}

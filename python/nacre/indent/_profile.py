@@ -13,9 +13,9 @@ from nacre.indent._model import Model
 
 Array = npt.NDArray[np.float64]
 
-WIDEST = 0.5
+WIDEST = math.log(2.0)
 """Largest half-width of an interval of a logarithm at which its parameter counts as known: a factor
-of 1.65 either way."""
+of two either way."""
 WIDEST_PLAIN = 0.1
 """Largest half-width of the interval of a Poisson's ratio, a fifth of its range."""
 AGREEMENT = 1.5

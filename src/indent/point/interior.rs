@@ -50,7 +50,7 @@ impl Point {
     /// ```
     ///
     /// # Errors
-    /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius, no such half-space, a cohesive zone.
+    /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius, and no such half-space.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
         r.iter().try_for_each(|r| distance(*r))?;
         if !(z.is_finite() && z >= SHALLOWEST * self.radius) {
@@ -65,11 +65,6 @@ impl Point {
         let body = body.ok_or(Error::Inconsistent(
             "body must be one of the half-spaces that are indented",
         ))?;
-        if self.zone.is_some() {
-            return Err(Error::Inconsistent(
-                "there are no stresses with the adhesion of Maugis and Dugdale: take Jkr or Dmt",
-            ));
-        }
         let mut place = Place::surface(body);
         let mut top = 0.0;
         for (number, depth) in body.interfaces().iter().enumerate() {
@@ -92,13 +87,13 @@ impl Point {
                 });
             }
         };
-        // All decays with e^{−αz}: TAIL/thickness = 48/z ends at e^{−48}; J_ν and p̂ oscillate over r and a.
+        // All decays with e^{−αz}: TAIL/thickness = 48/z ends at e^{−48}; J_ν and p̂ oscillate over r and the outer radius.
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
         let layers = body.interfaces().into_iter().reduce(f64::min);
         let thinnest = layers.map_or(z / 3.0, |h| h.min(z / 3.0));
         let waves = Waves::plan(
             z / 3.0,
-            (self.radius + far).max(z / 3.0),
+            (self.outer_radius.unwrap_or(self.radius) + far).max(z / 3.0),
             (z / 3.0 / thinnest).max(1.0),
             |_| 0.0,
         );
@@ -162,6 +157,10 @@ impl Point {
             hat.iter_mut()
                 .zip(&cos)
                 .for_each(|(hat, cos)| *hat += weight * cos);
+        }
+        if let Some(zone) = &self.zone {
+            let pairs = hat.iter_mut().zip(zone.transform(waves));
+            pairs.for_each(|(sum, more)| *sum += more);
         }
         hat
     }

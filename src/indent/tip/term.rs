@@ -85,6 +85,19 @@ impl Term {
         }
     }
 
+    /// The slope g'(r) of a term that is no rate.
+    pub(super) fn slope(&self, r: f64) -> f64 {
+        match *self {
+            Self::Power {
+                factor, exponent, ..
+            } => factor * exponent * r.powf(exponent - 1.0),
+            Self::Sphere { radius } => r / ((radius - r) * (radius + r)).sqrt(),
+            Self::Step { at, slope } if r > at => slope,
+            Self::Hinge { at, curvature } => curvature * (r - at).max(0.0),
+            _ => 0.0,
+        }
+    }
+
     fn rate(&self) -> f64 {
         match *self {
             Self::Power { rate, .. } => rate,

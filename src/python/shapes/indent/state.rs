@@ -42,6 +42,21 @@ pub(super) fn worked<I: Send + 'static, T: Send + 'static>(
     Ok(results?)
 }
 
+/// Values at distances r of all points, in the shape of the points followed by that of r.
+fn field<'py>(
+    r: &Bound<'py, PyAny>,
+    points: &[Point],
+    shape: &[usize],
+    of: impl Fn(&Point, &[f64]) -> Result<Vec<f64>> + Send + 'static,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = r.py();
+    let r = real_array("r", r)?;
+    let shape = [shape, r.shape()].concat();
+    let r: Vec<f64> = r.into_iter().collect();
+    let all = worked(py, points.to_vec(), move |point| of(point, &r))?;
+    shaped(py, all.into_iter().flatten().collect(), &shape)
+}
+
 /// Contacts of an indentation, one for each load, approach or radius that was given, in the shape of the latter.
 ///
 /// Examples
@@ -68,18 +83,12 @@ impl PyIndentState {
         shaped(py, self.points.iter().map(of).collect(), &self.shape)
     }
 
-    /// Values at distances r of all points, in the shape of the points followed by that of r.
     fn field<'py>(
         &self,
         r: &Bound<'py, PyAny>,
         of: fn(&Point, &[f64]) -> Result<Vec<f64>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let py = r.py();
-        let r = real_array("r", r)?;
-        let shape = [&self.shape, r.shape()].concat();
-        let r: Vec<f64> = r.into_iter().collect();
-        let all = worked(py, self.points.clone(), move |point| of(point, &r))?;
-        shaped(py, all.into_iter().flatten().collect(), &shape)
+        field(r, &self.points, &self.shape, of)
     }
 }
 
@@ -154,7 +163,7 @@ impl PyIndentState {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the depth is too small or below a rigid base, a distance is negative, or the adhesion is Maugis's.
+    ///     If the depth is too small or below a rigid base, or a distance is negative.
     fn stress<'py>(&self, r: &Bound<'py, PyAny>, z: Real) -> PyResult<Bound<'py, PyDict>> {
         let py = r.py();
         let found = PyDict::new(py);
@@ -188,12 +197,12 @@ impl PyIndentState {
     /// Returns
     /// -------
     /// dict of str to StateDerivative
-    ///     Derivatives of radius, load, approach and stiffness, per unit of the parameter.
+    ///     Derivatives of all numbers and fields of the states, per unit of the parameter.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If there is no such parameter, or the adhesion is Maugis's, which has no derivatives.
+    ///     If there is no such parameter.
     #[pyo3(signature = (wrt=None))]
     fn derivatives<'py>(
         &self,
@@ -203,18 +212,25 @@ impl PyIndentState {
         let chosen = chosen(&self.parameters, wrt)?;
         let found = PyDict::new(py);
         for (path, parameter) in chosen {
-            let held = self.held;
+            let (variable, held) = (Variable::Parameter(parameter), self.held);
             let values = worked(py, self.points.clone(), move |point| {
-                let change = point.derivative(Variable::Parameter(parameter), held)?;
+                let change = point.derivative(variable, held)?;
                 Ok([
                     change.radius,
                     change.load,
                     change.approach,
                     change.stiffness,
+                    change.outer_radius.unwrap_or(change.radius),
                 ])
             })?;
-            let shape = self.shape.clone();
-            found.set_item(path, Py::new(py, PyStateDerivative { values, shape })?)?;
+            let derivative = PyStateDerivative {
+                points: self.points.clone(),
+                variable,
+                held,
+                values,
+                shape: self.shape.clone(),
+            };
+            found.set_item(path, Py::new(py, derivative)?)?;
         }
         Ok(found)
     }
@@ -263,7 +279,10 @@ pub(super) fn chosen(
 /// -0.666667
 #[pyclass(name = "StateDerivative", module = "nacre.indent", frozen)]
 pub(in crate::python) struct PyStateDerivative {
-    values: Vec<[f64; 4]>,
+    points: Vec<Point>,
+    variable: Variable,
+    held: Held,
+    values: Vec<[f64; 5]>,
     shape: Vec<usize>,
 }
 
@@ -297,5 +316,28 @@ impl PyStateDerivative {
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.each(py, 3)
+    }
+
+    /// Derivative of the radius up to which the surfaces attract each other: that of the contact but for Maugis's adhesion.
+    #[getter]
+    fn outer_radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.each(py, 4)
+    }
+
+    /// Derivative of the pressure at distances r from the axis [m], 0 outside of the contact. Its shape is that of the state
+    /// followed by that of r.
+    fn pressure<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let (variable, held) = (self.variable, self.held);
+        field(r, &self.points, &self.shape, move |point, r| {
+            point.derivative(variable, held)?.pressure(r)
+        })
+    }
+
+    /// Derivative of the displacement of both surfaces together at distances r from the axis [m].
+    fn displacement<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let (variable, held) = (self.variable, self.held);
+        field(r, &self.points, &self.shape, move |point, r| {
+            point.derivative(variable, held)?.displacement(r)
+        })
     }
 }
