@@ -9,7 +9,7 @@
 //! What is given (radius, load or approach) is held by a change of the radius along the curve; the outer radius of a cohesive zone
 //! follows everything. Derived for nacre.
 
-mod outer;
+mod along;
 
 use std::f64::consts::PI;
 
@@ -22,8 +22,6 @@ use super::tip::TipParameter;
 use super::zone::Rate;
 use crate::error::{Error, Result};
 use crate::parallel::dot;
-
-pub(super) use outer::Free;
 
 /// What was given of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

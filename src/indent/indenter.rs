@@ -212,25 +212,19 @@ impl Indent {
             low = top;
             top = (1.5 * top).min(high);
         }
-        let is_cohesive = matches!(self.adhesion, Adhesion::Maugis { .. });
         let mut last = None;
-        let log = if is_cohesive {
-            let error = |log: f64| Ok(of(&self.state(log.exp())?) - value);
-            bracketed(error, [low.ln(), top.ln()])?
-        } else {
-            let error = |log: f64| {
-                let point = self.state(log.exp())?;
-                let [approach, load] = point.along();
-                let slope = match control {
-                    Control::Load => load,
-                    Control::Approach => approach,
-                };
-                let found = [of(&point) - value, slope * point.radius];
-                last = Some(point);
-                Ok(found)
+        let error = |log: f64| {
+            let point = self.state(log.exp())?;
+            let [approach, load] = point.along();
+            let slope = match control {
+                Control::Load => load,
+                Control::Approach => approach,
             };
-            newton(error, [low.ln(), top.ln()], top.ln())?
+            let found = [of(&point) - value, slope * point.radius];
+            last = Some(point);
+            Ok(found)
         };
+        let log = newton(error, [low.ln(), top.ln()], top.ln())?;
         let point = match last {
             Some(point) if (point.radius / log.exp() - 1.0).abs() < 4.0 * f64::EPSILON => point,
             _ => self.state(log.exp())?,

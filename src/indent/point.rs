@@ -6,7 +6,6 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
-use super::change::Free;
 use super::density::{Density, bessel_sum};
 use super::equation::system::times;
 use super::parts::Parts;
@@ -225,48 +224,6 @@ impl Point {
             Some(_) => 0.0,
             None => self.exact_edge(),
         }
-    }
-
-    /// Derivatives of approach and load with respect to the contact radius, along the states of the same adhesion.
-    pub(super) fn along(&self) -> [f64; 2] {
-        self.along_with(&self.free())
-    }
-
-    /// The same, where `free` is known.
-    ///
-    /// φ(a) = e(a), and φ changes at fixed t by that of a punch and, where the density has a step at the edge, by what the wider
-    /// contact adds. Around it there may be a cohesive zone, with e = ψ:
-    ///
-    /// ```text
-    /// B φ_a = −2/π φ(a) ∫ M b̂ cos αa dα      δ' φ₁(a) = e' − φ'(a) − φ_a(a)      P' = S δ' + 2π [∫ φ_a + φ(a)]
-    /// ```
-    pub(super) fn along_with(&self, free: &Free) -> [f64; 2] {
-        let edge = self.step();
-        let system = &self.parts.system;
-        let around = self.zone.as_ref().map_or(0.0, Zone::slope);
-        let mut needed = edge / (2.0 * self.radius) + around - self.density().edge_slope();
-        let mut more = edge;
-        if edge.abs() > 0.0 {
-            let (values, _, at_edge) = self.widening(edge);
-            needed -= at_edge;
-            more += dot(&values, &system.ones);
-        }
-        let approach = needed / free.edge;
-        [approach, free.load * approach + 2.0 * PI * more]
-    }
-
-    /// φ_a of a density that is `edge` at the edge: in the basis, its transform with that of the wider contact, and at the edge.
-    pub(super) fn widening(&self, edge: f64) -> (Vec<f64>, Vec<f64>, f64) {
-        let system = &self.parts.system;
-        let outer = times(system.excess(), &system.edge[0]);
-        let right = system.couple(&outer).iter().map(|c| -edge * c).collect();
-        let values = system.solve(right);
-        let mut hat = system.transform(&values);
-        for (hat, cos) in hat.iter_mut().zip(&system.edge[0]) {
-            *hat += edge * cos;
-        }
-        let at_edge = -system.couple_edge(&times(system.excess(), &hat));
-        (values, hat, at_edge)
     }
 
     /// An error where the pressure is negative within the contact or the surfaces overlap outside of it, so that the

@@ -1,4 +1,4 @@
-//! Outer radius of a cohesive zone as a function of everything else.
+//! Derivatives along the states of one adhesion, on which the outer radius of a cohesive zone follows everything else.
 //!
 //! At fixed contact radius a, the edge condition D = φ(a) − ψ(a) = 0 and the gap G = g(c) + u(c) − δ − w/σ₀ = 0 at the outer radius
 //! depend on δ and c; a change of a at fixed δ and c changes neither the load nor G, since the density has no step at a:
@@ -19,37 +19,37 @@ use crate::parallel::dot;
 
 /// What a unit of approach does at fixed contact radius: to φ(a) − ψ(a) and to the load, with the outer radius that follows.
 #[derive(Debug)]
-pub(in crate::indent) struct Free {
-    pub(in crate::indent) edge: f64,
-    pub(in crate::indent) load: f64,
-    pub(in crate::indent) outer: Option<Outer>,
+pub(super) struct Free {
+    pub(super) edge: f64,
+    pub(super) load: f64,
+    pub(super) outer: Option<Outer>,
 }
 
 /// What a unit of the outer radius does at fixed contact radius and approach.
 #[derive(Debug)]
-pub(in crate::indent) struct Outer {
+pub(super) struct Outer {
     /// φ_c in the basis.
-    pub(in crate::indent) values: Vec<f64>,
+    pub(super) values: Vec<f64>,
     /// Transform of φ_c and of ψ_c at the waves.
-    pub(in crate::indent) hat: Vec<f64>,
+    pub(super) hat: Vec<f64>,
     /// D_c, P_c and G_c.
-    pub(in crate::indent) edge: f64,
-    pub(in crate::indent) load: f64,
-    pub(in crate::indent) gap: f64,
+    pub(super) edge: f64,
+    pub(super) load: f64,
+    pub(super) gap: f64,
     /// u₁(c) − 1.
-    pub(in crate::indent) gap_of_approach: f64,
+    pub(super) gap_of_approach: f64,
 }
 
 impl Outer {
     /// Change of the outer radius that keeps the gap there, where all else at fixed outer radius changes it by `gap`.
-    pub(in crate::indent) fn following(&self, gap: f64) -> f64 {
+    pub(super) fn following(&self, gap: f64) -> f64 {
         -gap / self.gap
     }
 }
 
 impl Point {
     /// What a unit of approach does at fixed contact radius.
-    pub(in crate::indent) fn free(&self) -> Free {
+    pub(super) fn free(&self) -> Free {
         let outer = self.zone.as_ref().map(|zone| self.outer(zone));
         let mut free = Free {
             edge: self.parts.edge[0],
@@ -62,6 +62,48 @@ impl Point {
             free.load += outer.load * following;
         }
         Free { outer, ..free }
+    }
+
+    /// Derivatives of approach and load with respect to the contact radius, along the states of the same adhesion.
+    pub(in crate::indent) fn along(&self) -> [f64; 2] {
+        self.along_with(&self.free())
+    }
+
+    /// Derivatives of approach and load along the curve, where `free` is known.
+    ///
+    /// φ(a) = e(a), and φ changes at fixed t by that of a punch and, where the density has a step at the edge, by what the wider
+    /// contact adds. Around it there may be a cohesive zone, with e = ψ:
+    ///
+    /// ```text
+    /// B φ_a = −2/π φ(a) ∫ M b̂ cos αa dα      δ' φ₁(a) = e' − φ'(a) − φ_a(a)      P' = S δ' + 2π [∫ φ_a + φ(a)]
+    /// ```
+    pub(super) fn along_with(&self, free: &Free) -> [f64; 2] {
+        let edge = self.step();
+        let system = &self.parts.system;
+        let around = self.zone.as_ref().map_or(0.0, Zone::slope);
+        let mut needed = edge / (2.0 * self.radius) + around - self.density().edge_slope();
+        let mut more = edge;
+        if edge.abs() > 0.0 {
+            let (values, _, at_edge) = self.widening(edge);
+            needed -= at_edge;
+            more += dot(&values, &system.ones);
+        }
+        let approach = needed / free.edge;
+        [approach, free.load * approach + 2.0 * PI * more]
+    }
+
+    /// φ_a of a density that is `edge` at the edge: in the basis, its transform with that of the wider contact, and at the edge.
+    pub(super) fn widening(&self, edge: f64) -> (Vec<f64>, Vec<f64>, f64) {
+        let system = &self.parts.system;
+        let outer = times(system.excess(), &system.edge[0]);
+        let right = system.couple(&outer).iter().map(|c| -edge * c).collect();
+        let values = system.solve(right);
+        let mut hat = system.transform(&values);
+        for (hat, cos) in hat.iter_mut().zip(&system.edge[0]) {
+            *hat += edge * cos;
+        }
+        let at_edge = -system.couple_edge(&times(system.excess(), &hat));
+        (values, hat, at_edge)
     }
 
     fn outer(&self, zone: &Zone) -> Outer {
