@@ -7,7 +7,7 @@ import threading
 import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -46,13 +46,13 @@ class Point:
     shape: core.Shape | None
     solution: core.Solution
     lowest: float
-    gradients: list[core.Gradient] | None = None
+    gradients: dict[str, core.Gradient] = field(default_factory=dict)
     told: set[str] | None = None
 
-    def tell(self, found: Iterable[str]) -> None:
+    def tell(self, *gradients: core.Gradient) -> None:
         """Warn of what makes derivatives doubtful, once."""
-        fresh = set(found) - (self.told or set())
-        self.told = (self.told or set()) | fresh
+        found = {sentence for gradient in gradients for sentence in gradient.warnings}
+        fresh, self.told = found - (self.told or set()), found | (self.told or set())
         for sentence in sorted(fresh):
             warnings.warn(sentence, core.NacreWarning, stacklevel=2)
 
@@ -129,43 +129,61 @@ class Differentiable:
         found: Point = self.points.at((names, len(x), digest), lambda: self._solved(names, x))
         return found
 
-    def values(self, point: Point) -> Array:
-        """Return the outputs."""
-        if all(isinstance(one, str) and one in READ for one in self.outputs.values()):
-            found = [READ[one](point.solution) for one in self.outputs.values()]
-        else:
-            found = [gradient.value for gradient in self._gradients(point)]
-        lifted = [point.lowest if one == "approach" else 0.0 for one in self.outputs.values()]
-        return np.array(found) + np.array(lifted)
+    def values(self, names: tuple[str, ...], x: Array) -> tuple[Array, Array]:
+        """Return the pressures of the cells and the outputs."""
+        point = self.point(names, x)
+        hard = [
+            name for name, one in self.outputs.items() if not (isinstance(one, str) and one in READ)
+        ]
+        gradients = self._gradients(point, hard)
+        found = {name: gradient.value for name, gradient in gradients.items()}
+        for name, one in self.outputs.items():
+            if name not in found:
+                found[name] = READ[one](point.solution)
+            if one == "approach":
+                found[name] += point.lowest
+        pressure: Array = point.solution.pressure.ravel()
+        return pressure, np.array([found[name] for name in self.outputs], dtype=np.float64)
 
-    def pressure_push(self, point: Point, rates: Array) -> Array:
+    def pressure_push(self, names: tuple[str, ...], x: Array, rates: Array) -> Array:
         """Return the rate of the pressure of each cell along a rate of the vector."""
-        n = len(point.names)
+        if not rates.any():
+            return np.zeros(self.cells)
+        point, n = self.point(names, x), len(names)
         gap = rates[n:].reshape(self.grid.shape) if len(rates) > n else None
-        along = dict(zip(point.names, rates[:n].tolist(), strict=True))
+        along = dict(zip(names, rates[:n].tolist(), strict=True))
         if point.told is None:  # A direction has no warnings, and this gradient needs no solve.
             none = np.zeros(self.grid.shape)
-            point.tell(point.solution.vjp(none, [], shape=point.shape).warnings)
-        return point.solution.jvp(along, gap, shape=point.shape).pressure.ravel()
+            point.tell(point.solution.vjp(none, [], shape=point.shape))
+        direction = point.solution.jvp(along, gap, shape=point.shape)
+        pressure: Array = direction.pressure.ravel()
+        return pressure
 
-    def pressure_pull(self, point: Point, weights: Array, size: int) -> Array:
+    def pressure_pull(self, names: tuple[str, ...], x: Array, weights: Array) -> Array:
         """Return the derivatives of a weighted sum of the pressures by the vector."""
-        weights = np.array(weights).reshape(self.grid.shape)
-        gradient = point.solution.vjp(weights, list(point.names), shape=point.shape)
-        point.tell(gradient.warnings)
-        return _row(gradient, point.names, size)
+        if not weights.any():
+            return np.zeros(len(x))
+        point, weights = self.point(names, x), np.array(weights).reshape(self.grid.shape)
+        gradient = point.solution.vjp(weights, list(names), shape=point.shape)
+        point.tell(gradient)
+        return _row(gradient, names, len(x))
 
-    def outputs_push(self, point: Point, rates: Array) -> Array:
+    def outputs_push(self, names: tuple[str, ...], x: Array, rates: Array) -> Array:
         """Return the rates of the outputs along a rate of the vector."""
-        rows = [_row(one, point.names, len(rates)) for one in self._gradients(point)]
-        return np.array([row @ rates for row in rows])
+        if not rates.any():
+            return np.zeros(len(self.outputs))
+        found = self._gradients(self.point(names, x), list(self.outputs))
+        return np.array([_row(found[name], names, len(x)) @ rates for name in self.outputs])
 
-    def outputs_pull(self, point: Point, weights: Array, size: int) -> Array:
+    def outputs_pull(self, names: tuple[str, ...], x: Array, weights: Array) -> Array:
         """Return the derivatives of a weighted sum of the outputs by the vector."""
-        total = np.zeros(size)
-        for weight, gradient in zip(weights, self._gradients(point), strict=True):
-            if weight:
-                total += weight * _row(gradient, point.names, size)
+        total = np.zeros(len(x))
+        if not weights.any():
+            return total
+        by_name = {name: w for name, w in zip(self.outputs, weights, strict=True) if w}
+        found = self._gradients(self.point(names, x), list(by_name))
+        for name, weight in by_name.items():
+            total += weight * _row(found[name], names, len(x))
         return total
 
     def _given(self) -> dict[str, Any]:
@@ -197,14 +215,14 @@ class Differentiable:
             error.add_note(f"in a differentiable solve, at {at or 'its arguments'}")
             raise
 
-    def _gradients(self, point: Point) -> list[core.Gradient]:
-        if point.gradients is None:
-            outputs, names = list(self.outputs.values()), list(point.names)
-            found = point.solution.gradient(outputs, names, shape=point.shape)
-            for gradient in found:
-                point.tell(gradient.warnings)
-            point.gradients = found
-        return point.gradients
+    def _gradients(self, point: Point, wanted: list[str]) -> dict[str, core.Gradient]:
+        """Return the derivatives of outputs, those that are not known in one go."""
+        if fresh := [name for name in wanted if name not in point.gradients]:
+            outputs = [self.outputs[name] for name in fresh]
+            found = point.solution.gradient(outputs, list(point.names), shape=point.shape)
+            point.tell(*found)
+            point.gradients |= dict(zip(fresh, found, strict=True))
+        return {name: point.gradients[name] for name in wanted}
 
 
 def _row(gradient: core.Gradient, names: tuple[str, ...], size: int) -> Array:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 import nacre._core as core
-from nacre._differentiable import Array, Differentiable, Outputs, Point
+from nacre._differentiable import Array, Differentiable, Outputs
 from nacre._extras import extra
 
 with extra("jax"):
@@ -17,6 +17,8 @@ with extra("jax"):
     import jax.numpy as jnp
 
 __all__ = ["Result", "solver"]
+
+Product = Callable[[tuple[str, ...], Array, Array], Array]
 
 
 class Result(NamedTuple):
@@ -155,28 +157,23 @@ def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
 
 def _function(contact: Differentiable, names: tuple[str, ...]) -> Any:
     """Return the function of a vector to (1, pressures, outputs), with its derivatives."""
-    count = len(contact.outputs)
+    cells, count = contact.cells, len(contact.outputs)
 
     def values(x: Array) -> Array:
-        point = contact.point(names, x)
-        found = contact.values(point)
-        return np.concatenate([[1.0], point.solution.pressure.ravel(), found])
+        return np.concatenate([[1.0], *contact.values(names, x)])
 
     def solved(x: Any) -> Any:
         if not isinstance(x, jax.core.Tracer):
-            values(np.asarray(x))  # raises the error of a solve that fails; the solution is kept
-        return _callback(values, 1 + contact.cells + count, x)
+            values(np.asarray(x))  # Raises the error of a solve that fails; a solution is kept.
+        return _callback(values, 1 + cells + count, x)
 
     def rule(primals: tuple[Any], tangents: tuple[Any]) -> tuple[Any, Any]:
         (x,), (rate,) = primals, tangents
         at = first(x)
-        found = [
-            _linear(contact, names, at, rate, contact.pressure_push, contact.pressure_pull, cells),
-            _linear(contact, names, at, rate, contact.outputs_push, contact.outputs_pull, count),
-        ]
-        return function(x), jnp.concatenate([jnp.zeros(1), *found])
+        pressure = _linear(contact.pressure_push, contact.pressure_pull, names, at, rate, cells)
+        outputs = _linear(contact.outputs_push, contact.outputs_pull, names, at, rate, count)
+        return function(x), jnp.concatenate([jnp.zeros(1), pressure, outputs])
 
-    cells = contact.cells
     first = _first()
     function = jax.custom_jvp(solved)
     function.defjvp(rule)
@@ -195,13 +192,7 @@ def _first() -> Any:
 
 
 def _linear(
-    contact: Differentiable,
-    names: tuple[str, ...],
-    x: Any,
-    rate: Any,
-    push: Callable[[Point, Array], Array],
-    pull: Callable[[Point, Array, int], Array],
-    count: int,
+    push: Product, pull: Product, names: tuple[str, ...], x: Any, rate: Any, count: int
 ) -> Any:
     """Return the product J `rate` of a Jacobian (count, len(x)), which JAX may transpose.
 
@@ -211,10 +202,10 @@ def _linear(
     size = len(x)
 
     def forward(x: Array, rate: Array) -> Array:
-        return push(contact.point(names, x), rate) if rate.any() else np.zeros(count)
+        return push(names, x, rate)
 
     def backward(x: Array, weights: Array) -> Array:
-        return pull(contact.point(names, x), weights, size) if weights.any() else np.zeros(size)
+        return pull(names, x, weights)
 
     def solve(_: Any, b: Any) -> Any:
         return b.at[size:].add(_callback(forward, count, x, b[:size]))

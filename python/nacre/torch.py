@@ -130,8 +130,8 @@ def solver(
 
 def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
     """Return a tensor of float64 on the CPU."""
-    if isinstance(value, int | float | np.floating | np.ndarray) and not isinstance(value, bool):
-        value = torch.as_tensor(float(value) if shape == () else value)
+    if isinstance(value, int | float | np.number | np.ndarray) and not isinstance(value, bool):
+        value = torch.tensor(float(value) if shape == () else value, dtype=torch.float64)
     if not isinstance(value, torch.Tensor):
         raise TypeError(f"{name} must be a number or a tensor, got {value!r}")
     if value.dtype != torch.float64 or tuple(value.shape) != shape or value.device.type != "cpu":
@@ -151,7 +151,7 @@ def _looped(function: Any, info: Any, in_dims: Any, *arguments: Any) -> tuple[An
 
     def element(k: int) -> Any:
         pairs = zip(arguments, in_dims, strict=True)
-        return function(*(a if dim is None else a.select(dim, k) for a, dim in pairs))
+        return function(*(a.select(dim, k) if isinstance(dim, int) else a for a, dim in pairs))
 
     rows = [element(k) for k in range(info.batch_size)]
     if isinstance(rows[0], tuple):
@@ -167,9 +167,8 @@ class _Solve(torch.autograd.Function):  # type: ignore[misc]
 
     @staticmethod
     def forward(contact: Differentiable, names: tuple[str, ...], x: Any) -> Any:
-        point = contact.point(names, x.detach().numpy())
-        pressure = point.solution.pressure.ravel()
-        return _tensor(pressure), _tensor(contact.values(point)), torch.tensor(pressure > 0)
+        pressure, values = contact.values(names, x.detach().numpy())
+        return _tensor(pressure), _tensor(values), torch.tensor(pressure > 0)
 
     @staticmethod
     def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
@@ -216,11 +215,9 @@ class _Pull(_First):
     def forward(
         contact: Differentiable, names: tuple[str, ...], x: Any, pressure: Any, outputs: Any
     ) -> Any:
-        point = contact.point(names, x.detach().numpy())
-        total = contact.outputs_pull(point, outputs.detach().numpy(), len(x))
-        if pressure.any():
-            total += contact.pressure_pull(point, pressure.detach().numpy(), len(x))
-        return _tensor(total)
+        x, pressure, outputs = (one.detach().numpy() for one in (x, pressure, outputs))
+        pulled = contact.pressure_pull(names, x, pressure)
+        return _tensor(pulled + contact.outputs_pull(names, x, outputs))
 
     @staticmethod
     def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
@@ -232,10 +229,9 @@ class _Push(_First):
 
     @staticmethod
     def forward(contact: Differentiable, names: tuple[str, ...], x: Any, rate: Any) -> Any:
-        point = contact.point(names, x.detach().numpy())
-        along = rate.detach().numpy()
-        pressure = contact.pressure_push(point, along)
-        return _tensor(pressure), _tensor(contact.outputs_push(point, along))
+        x, rate = x.detach().numpy(), rate.detach().numpy()
+        pressure = contact.pressure_push(names, x, rate)
+        return _tensor(pressure), _tensor(contact.outputs_push(names, x, rate))
 
     @staticmethod
     def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
