@@ -201,10 +201,8 @@ class Differentiable:
             if len(x) > n:
                 gap = x[n:].reshape(self.grid.shape)
                 lowest = float(gap.min())
-                spacing, center, periodic = self.grid.spacing, self.grid.center, self.grid.periodic
+                shape = self._surface(gap) if given is None else given + self._surface(gap)
                 # A height map has gaps from its highest sample on: the approach counts from there.
-                surface = core.HeightMap(-gap, spacing, center, periodic)
-                shape = surface if given is None else given + surface
                 if "approach" in made:
                     made["approach"] -= lowest
             planned = {name: made.pop(name) for name in PLANNED if name in made}
@@ -214,6 +212,12 @@ class Differentiable:
             at = ", ".join(f"{k} = {v:.6g}" for k, v in zip(names, x[:n], strict=True))
             error.add_note(f"in a differentiable solve, at {at or 'its arguments'}")
             raise
+
+    def _surface(self, gap: Array) -> core.HeightMap:
+        """Return the surface with these gaps, but for a constant; two equal rows for a line."""
+        grid = self.grid
+        heights = np.tile(-gap, (2, 1)) if grid.is_line else -gap
+        return core.HeightMap(heights, grid.spacing, grid.center, grid.periodic)
 
     def _gradients(self, point: Point, wanted: list[str]) -> dict[str, core.Gradient]:
         """Return the derivatives of outputs, those that are not known in one go."""
