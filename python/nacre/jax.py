@@ -164,17 +164,18 @@ def _function(contact: Differentiable, names: tuple[str, ...]) -> Any:
 
     def solved(x: Any) -> Any:
         if not isinstance(x, jax.core.Tracer):
-            values(np.asarray(x))  # Raises the error of a solve that fails; a solution is kept.
+            return jnp.asarray(values(np.asarray(x)))  # A solve that fails raises its error.
         return _callback(values, 1 + cells + count, x)
 
     def rule(primals: tuple[Any], tangents: tuple[Any]) -> tuple[Any, Any]:
         (x,), (rate,) = primals, tangents
         at = first(x)
-        pressure = _linear(contact.pressure_push, contact.pressure_pull, names, at, rate, cells)
-        outputs = _linear(contact.outputs_push, contact.outputs_pull, names, at, rate, count)
-        return function(x), jnp.concatenate([jnp.zeros(1), pressure, outputs])
+        return function(x), jnp.concatenate([jnp.zeros(1), pressure(at, rate), outputs(at, rate)])
 
     first = _first()
+    # Compiled once, also for calls that are not.
+    pressure = jax.jit(_product(contact.pressure_push, contact.pressure_pull, names, cells))
+    outputs = jax.jit(_product(contact.outputs_push, contact.outputs_pull, names, count))
     function = jax.custom_jvp(solved)
     function.defjvp(rule)
     return function
@@ -191,15 +192,12 @@ def _first() -> Any:
     return identity
 
 
-def _linear(
-    push: Product, pull: Product, names: tuple[str, ...], x: Any, rate: Any, count: int
-) -> Any:
+def _product(push: Product, pull: Product, names: tuple[str, ...], count: int) -> Any:
     """Return the product J `rate` of a Jacobian (count, len(x)), which JAX may transpose.
 
     JAX transposes and maps a linear solve whose two solvers are given: here that of a matrix
     with the inverse (1, 0; J, 1), applied to (rate, 0). It never multiplies by the matrix itself.
     """
-    size = len(x)
 
     def forward(x: Array, rate: Array) -> Array:
         return push(names, x, rate)
@@ -207,15 +205,20 @@ def _linear(
     def backward(x: Array, weights: Array) -> Array:
         return pull(names, x, weights)
 
-    def solve(_: Any, b: Any) -> Any:
-        return b.at[size:].add(_callback(forward, count, x, b[:size]))
+    def product(x: Any, rate: Any) -> Any:
+        size = len(x)
 
-    def transposed(_: Any, b: Any) -> Any:
-        return b.at[:size].add(_callback(backward, size, x, b[size:]))
+        def solve(_: Any, b: Any) -> Any:
+            return b.at[size:].add(_callback(forward, count, x, b[:size]))
 
-    b = jnp.concatenate([rate, jnp.zeros(count)])
-    found = jax.lax.custom_linear_solve(lambda b: b, b, solve, transposed, symmetric=True)
-    return found[size:]
+        def transposed(_: Any, b: Any) -> Any:
+            return b.at[:size].add(_callback(backward, size, x, b[size:]))
+
+        b = jnp.concatenate([rate, jnp.zeros(count)])
+        found = jax.lax.custom_linear_solve(lambda b: b, b, solve, transposed, symmetric=True)
+        return found[size:]
+
+    return product
 
 
 def _callback(function: Callable[..., Array], size: int, *arrays: Any) -> Any:
