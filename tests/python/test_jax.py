@@ -1,5 +1,6 @@
 """A contact is a function of JAX, with derivatives of both modes under jit and vmap."""
 
+import doctest
 import subprocess
 import sys
 import threading
@@ -209,3 +210,10 @@ def test_nacre_alone_does_not_import_jax() -> None:
     code = "import sys, nacre; assert 'jax' not in sys.modules and 'jax' in dir(nacre)"
     subprocess.run([sys.executable, "-c", code], check=True)
     assert callable(nacre.jax.solver)
+
+
+def test_the_example_is_true() -> None:
+    import nacre.jax
+
+    result = doctest.testmod(nacre.jax)
+    assert (result.attempted > 0, result.failed) == (True, 0)

@@ -1,5 +1,6 @@
 """A contact is a function of PyTorch, with derivatives of both modes, also in torch.func."""
 
+import doctest
 import subprocess
 import sys
 import threading
@@ -231,3 +232,10 @@ def test_nacre_alone_does_not_import_torch() -> None:
     code = "import sys, nacre; assert 'torch' not in sys.modules and 'torch' in dir(nacre)"
     subprocess.run([sys.executable, "-c", code], check=True)
     assert callable(nacre.torch.solver)
+
+
+def test_the_example_is_true() -> None:
+    import nacre.torch
+
+    result = doctest.testmod(nacre.torch)
+    assert (result.attempted > 0, result.failed) == (True, 0)
