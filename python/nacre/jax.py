@@ -109,7 +109,7 @@ def solver(
     >>> import jax, nacre.jax
     >>> jax.config.update("jax_enable_x64", True)
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> grid = nacre.Grid(shape=(32, 32), size=(2e-4, 2e-4))
+    >>> grid = nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4))
     >>> solve = nacre.jax.solver(nacre.Sphere(5e-3), steel, grid=grid, load=10.0)
     >>> approach = jax.jit(lambda load: solve({"load": load}).outputs["approach"])
     >>> load = 10.0
