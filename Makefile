@@ -22,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test check bench fuzz peers kappa develop stubs docs publishable
+.PHONY: help demo test check bench fuzz peers kappa torch develop stubs docs publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -66,6 +66,13 @@ peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--qu
 
 kappa: $(WHEEL) $(DEV) ## area of rough contacts of bare and coated bodies: docs/kappa.csv and its picture, in three minutes
 	$(BIN)/python benches/kappa.py
+
+# PyTorch is large: it is installed into a separate environment under target/torch.
+torch: $(WHEEL) ## tests of nacre.torch, with PyTorch in an environment of its own
+	$(PYTHON) -m venv $(TARGET)/torch
+	$(TARGET)/torch/bin/python -m pip install --quiet "$$(echo $(TARGET)/wheels/*.whl)[torch]" 'pytest>=9'
+	$(TARGET)/torch/bin/python -m pip install --quiet --force-reinstall --no-deps $(TARGET)/wheels/*.whl
+	$(TARGET)/torch/bin/python -m pytest tests/python/test_torch.py tests/python/test_differentiable.py
 
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)

@@ -37,6 +37,7 @@ numfig_secnum_depth = 1
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "undoc-members": False}
 autodoc_typehints = "none"
+autodoc_mock_imports = ["jax", "torch"]  # large, and only documented
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True

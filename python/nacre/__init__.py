@@ -31,14 +31,16 @@ if TYPE_CHECKING:
     from nacre import friction as friction
     from nacre import hertz as hertz
     from nacre import indent as indent
+    from nacre import jax as jax
     from nacre import paper as paper
     from nacre import plot as plot
     from nacre import rough as rough
+    from nacre import torch as torch
 
 __all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
 
-LAZY = ("case", "design", "friction", "hertz", "indent", "paper", "plot", "rough")
+LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "paper", "plot", "rough", "torch")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

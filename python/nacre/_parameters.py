@@ -18,6 +18,8 @@ REACH = 0.25
 FARTHEST = math.log(100.0)
 """Largest change of a logarithm without a bound: a line search that is lost stays near numbers."""
 MOTIONS = ("eccentricity", "moment", "tilt")
+SHIFTS = ("shift[0]", "shift[1]")
+KEY = re.compile(r"shift\[[01]\]|\w+")
 PATH = re.compile(r"\w+(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)*")
 
 
@@ -88,30 +90,59 @@ def numbers(made: Mapping[str, Any]) -> dict[str, float]:
     return found
 
 
-def put(made: dict[str, Any], path: str, value: float) -> None:
-    """Replace the number at a path of the arguments of a solve."""
-    keys = re.findall(r"\w+", path)
+def put(
+    made: dict[str, Any], path: str, value: float, *, names: str = "start", of: str = "build"
+) -> None:
+    """Replace the number at a path of the arguments of a solve.
+
+    Errors say that `names`, which gave the path, must name parameters of the arguments, `of`.
+    """
+    data, holder, index = _sought(made, path, names, of)
+    holder[index] = value
+    made |= {root: plain.decode(one) for root, one in data.items()}
+
+
+def number(made: Mapping[str, Any], path: str, *, names: str, of: str) -> float:
+    """Return the number at a path of the arguments of a solve, with the errors of `put`."""
+    _, holder, index = _sought(made, path, names, of)
+    return float(holder[index])
+
+
+def _sought(made: Mapping[str, Any], path: str, names: str, of: str) -> tuple[Any, Any, Any]:
+    """Return an argument as plain data, what holds the number at a path, and its index there."""
+    keys = KEY.findall(path)
     if not PATH.fullmatch(path) or keys[0] not in made:
-        raise ValueError(f"start must name parameters of build by path, got {path!r}")
+        raise ValueError(f"{names} must name parameters of {of} by path, got {path!r}")
     root = made[keys[0]]
     if keys[0] in ("body", "counterbody") and isinstance(root, core.Elastic):
         root = core.HalfSpace(root)
-    data = {keys[0]: plain.encode(root)}
-    place: Any = data
-    for key in keys[:-1]:
-        place = _inside(place, key, path)
-        if isinstance(place, dict) and len(place) == 1 and next(iter(place)) in plain.KINDS:
-            place = next(iter(place.values()))
-    if not isinstance(_inside(place, keys[-1], path), int | float):
-        raise ValueError(f"start must name numbers of build, got {path!r}")
-    place[int(keys[-1]) if isinstance(place, list) else keys[-1]] = value
-    made[keys[0]] = plain.decode(data[keys[0]])
+    data: Any = {keys[0]: plain.encode(root)}
+    holder, index = data, keys[0]
+    for key in keys[1:]:
+        slot = _slot(holder[index], key)
+        if slot is None:
+            raise ValueError(
+                f"{names} must name parameters of {of} by path, got {path!r}: no {key}"
+            )
+        holder, index = slot
+    if not isinstance(holder[index], int | float):
+        raise ValueError(f"{names} must name numbers of {of}, got {path!r}")
+    return data, holder, index
 
 
-def _inside(place: Any, key: str, path: str) -> Any:
-    """Return what is at a key of plain data."""
+def _slot(place: Any, key: str) -> tuple[Any, Any] | None:
+    """Return what holds the value at a key of plain data, and its index there."""
+    if isinstance(place, dict) and len(place) == 1:
+        ((kind, content),) = place.items()
+        if kind == "shifted":
+            shift = key in SHIFTS
+            return (content, 1 + SHIFTS.index(key)) if shift else _slot(content[0], key)
+        if kind == "sum" and key == "parts":
+            return place, kind
+        if kind in plain.KINDS:
+            place = content
     if isinstance(place, dict) and key in place:
-        return place[key]
+        return place, key
     if isinstance(place, list) and key.isdecimal() and int(key) < len(place):
-        return place[int(key)]
-    raise ValueError(f"start must name parameters of build by path, got {path!r}: no {key}")
+        return place, int(key)
+    return None

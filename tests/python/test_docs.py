@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -66,6 +67,10 @@ def test_the_pages_are_there() -> None:
 def test_what_a_page_prints_is_what_it_says(page: Path, tmp_path: Path) -> None:
     program, expected = [], []
     for block in blocks(page):
+        if "import jax\n" in block.text:
+            pytest.importorskip("jax")
+        if "import torch\n" in block.text and find_spec("torch") is None:
+            continue  # Large: `make torch` has it.
         if block.language == "python":
             program.append(f"{block.text}\nprint({SEPARATOR!r})\n")
             expected.append("")

@@ -1,0 +1,238 @@
+"""Contacts as functions that PyTorch differentiates and maps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+import nacre._core as core
+from nacre._differentiable import Array, Differentiable, Outputs
+from nacre._extras import extra
+
+with extra("torch"):
+    import torch
+
+__all__ = ["Result", "solver"]
+
+
+class Result(NamedTuple):
+    """Solved contact, as tensors of PyTorch.
+
+    Attributes
+    ----------
+    pressure : torch.Tensor
+        Pressure of each cell ``(nx, ny)`` [Pa].
+    outputs : dict of torch.Tensor
+        The outputs, by name.
+    in_contact : torch.Tensor
+        Whether each cell has a pressure ``(nx, ny)``; it has no derivative.
+    """
+
+    pressure: Any
+    outputs: dict[str, Any]
+    in_contact: Any
+
+
+class Solver(Protocol):
+    """Function that `solver` returns."""
+
+    def __call__(self, parameters: Mapping[str, Any], gap: Any = None) -> Result: ...
+
+
+def solver(
+    shape: core.Shape | None,
+    body: core.HalfSpace | core.Elastic,
+    counterbody: core.HalfSpace | core.Elastic | None = None,
+    *,
+    grid: core.Grid,
+    outputs: Outputs = ("approach",),
+    keep: int = 16,
+    **arguments: Any,
+) -> Solver:
+    """Return a contact as a function of some of its numbers, with derivatives of both modes.
+
+    Call it as ``solve(parameters, gap=None)``. `parameters` is a dict of paths, those of
+    `Solution.gradient` such as ``"load"`` or ``"body.layers[0].thickness"``, and numbers that
+    replace those given here. `gap` is added to the undeformed gap of the shape in each cell
+    ``(nx, ny)``. The result is a `Result`. It works with ``backward``, `torch.func.grad`,
+    `torch.func.jvp`, `torch.func.vmap` (one solve after the other) and what is made of them, in
+    float64 and on the CPU.
+
+    Parameters
+    ----------
+    shape : Shape or None
+        Undeformed shape. None if the gap of each call is the whole shape.
+    body, counterbody : HalfSpace or Elastic
+        Bodies, as for `nacre.solve`.
+    grid : Grid
+        Grid of all solves.
+    outputs : list of str or dict, optional
+        Outputs of `Solution.gradient`: words, or a dict of any outputs by names of your choice.
+    keep : int, optional
+        Number of solutions that are kept, so that their derivatives do not solve again.
+    **arguments
+        Other arguments of `nacre.solve`, such as the load. The tolerance is 1e-10 by default.
+
+    Returns
+    -------
+    callable
+        Function of `parameters` and `gap`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument cannot be right. Of a call: if a parameter or the gap has the wrong path,
+        dtype, device or shape. A solve that fails raises its own error.
+
+    Warns
+    -----
+    nacre.NacreWarning
+        If a cell is about to join or to leave the contact, where derivatives jump.
+
+    Notes
+    -----
+    Derivatives of the second order do not exist, and raise.
+
+    Examples
+    --------
+    >>> import torch, nacre.torch
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
+    >>> grid = nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4))
+    >>> solve = nacre.torch.solver(nacre.Sphere(5e-3), steel, grid=grid, load=10.0)
+    >>> load = torch.tensor(10.0, dtype=torch.float64, requires_grad=True)
+    >>> approach = solve({"load": load}).outputs["approach"]
+    >>> approach.log().backward()
+    >>> round(load.grad.item() * load.item(), 2)  # δ ~ W^(2/3)
+    0.67
+    """
+    given = {**arguments, "shape": shape, "body": body, "counterbody": counterbody, "grid": grid}
+    contact = Differentiable(given, outputs, keep)
+
+    def solve(parameters: Mapping[str, Any], gap: Any = None) -> Result:
+        if not isinstance(parameters, Mapping):
+            raise TypeError(f"parameters must be a dict of paths and numbers, got {parameters!r}")
+        names = tuple(sorted(parameters))
+        contact.check(names, gap is not None)
+        parts = [_checked(f"parameters[{name!r}]", parameters[name], ()) for name in names]
+        if gap is not None:
+            parts.append(_checked("gap", gap, contact.grid.shape))
+        flat = [part.reshape(-1) for part in parts]
+        x = torch.cat(flat or [torch.zeros(0, dtype=torch.float64)])
+        pressure, values, in_contact = _Solve.apply(contact, names, x)
+        shape = contact.grid.shape
+        by_name = {name: values[k] for k, name in enumerate(contact.outputs)}
+        return Result(pressure.reshape(shape), by_name, in_contact.reshape(shape))
+
+    return solve
+
+
+def _checked(name: str, value: Any, shape: tuple[int, ...]) -> Any:
+    """Return a tensor of float64 on the CPU."""
+    if isinstance(value, int | float | np.number | np.ndarray) and not isinstance(value, bool):
+        value = torch.tensor(float(value) if shape == () else value, dtype=torch.float64)
+    if not isinstance(value, torch.Tensor):
+        raise TypeError(f"{name} must be a number or a tensor, got {value!r}")
+    if value.dtype != torch.float64 or tuple(value.shape) != shape or value.device.type != "cpu":
+        raise TypeError(
+            f"{name} must be float64 of shape {shape} on the CPU, "
+            f"got {value.dtype} of shape {tuple(value.shape)} on {value.device}"
+        )
+    return value
+
+
+def _tensor(array: Array) -> Any:
+    return torch.tensor(array, dtype=torch.float64)
+
+
+def _looped(function: Any, info: Any, in_dims: Any, *arguments: Any) -> tuple[Any, Any]:
+    """Return the results of a function for each element of a batch, stacked."""
+
+    def element(k: int) -> Any:
+        pairs = zip(arguments, in_dims, strict=True)
+        return function(*(a.select(dim, k) if isinstance(dim, int) else a for a, dim in pairs))
+
+    rows = [element(k) for k in range(info.batch_size)]
+    if isinstance(rows[0], tuple):
+        return tuple(torch.stack(column) for column in zip(*rows, strict=True)), (0,) * len(rows[0])
+    return torch.stack(rows), 0
+
+
+SECOND = "a contact has first derivatives only: they cannot be differentiated again"
+
+
+class _Solve(torch.autograd.Function):  # type: ignore[misc]
+    """Pressures, outputs and flags of contact at a vector."""
+
+    @staticmethod
+    def forward(contact: Differentiable, names: tuple[str, ...], x: Any) -> Any:
+        pressure, values = contact.values(names, x.detach().numpy())
+        return _tensor(pressure), _tensor(values), torch.tensor(pressure > 0)
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+        ctx.contact, ctx.names, x = inputs
+        ctx.mark_non_differentiable(output[2])
+        ctx.save_for_backward(x)
+        ctx.save_for_forward(x)
+
+    @staticmethod
+    def backward(ctx: Any, *weights: Any) -> Any:
+        (x,) = ctx.saved_tensors
+        return None, None, _Pull.apply(ctx.contact, ctx.names, x, *weights[:2])
+
+    @staticmethod
+    def jvp(ctx: Any, *rates: Any) -> Any:
+        (x,) = ctx.saved_tensors
+        return *_Push.apply(ctx.contact, ctx.names, x, rates[2]), None
+
+    @staticmethod
+    def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
+        return _looped(_Solve.apply, info, in_dims, *arguments)
+
+
+class _First(torch.autograd.Function):  # type: ignore[misc]
+    """A derivative, which has no derivatives itself."""
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+        pass
+
+    @staticmethod
+    def backward(ctx: Any, *weights: Any) -> Any:
+        raise TypeError(SECOND)
+
+    @staticmethod
+    def jvp(ctx: Any, *rates: Any) -> Any:
+        raise TypeError(SECOND)
+
+
+class _Pull(_First):
+    """Derivatives of a weighted sum of pressures and outputs by the vector."""
+
+    @staticmethod
+    def forward(
+        contact: Differentiable, names: tuple[str, ...], x: Any, pressure: Any, outputs: Any
+    ) -> Any:
+        x, pressure, outputs = (one.detach().numpy() for one in (x, pressure, outputs))
+        pulled = contact.pressure_pull(names, x, pressure)
+        return _tensor(pulled + contact.outputs_pull(names, x, outputs))
+
+    @staticmethod
+    def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
+        return _looped(_Pull.apply, info, in_dims, *arguments)
+
+
+class _Push(_First):
+    """Rates of pressures and outputs along a rate of the vector."""
+
+    @staticmethod
+    def forward(contact: Differentiable, names: tuple[str, ...], x: Any, rate: Any) -> Any:
+        x, rate = x.detach().numpy(), rate.detach().numpy()
+        pressure = contact.pressure_push(names, x, rate)
+        return _tensor(pressure), _tensor(contact.outputs_push(names, x, rate))
+
+    @staticmethod
+    def vmap(info: Any, in_dims: Any, *arguments: Any) -> Any:
+        return _looped(_Push.apply, info, in_dims, *arguments)
