@@ -4,7 +4,9 @@ The scenarios are the identifiable ones of tests/data/inverse.json: five coated 
 curves without noise, and the size of the noise. Each curve gets fresh noise, and is fitted as a
 user would: from a poor start, with unknown noise. Per free parameter: the share of the 95 %
 intervals by profile likelihood that hold the true value, and of the linear ones; per scenario: the
-share of curves with a parameter that is said not to be identifiable, which is false.
+share of curves with a parameter that is said not to be identifiable, which is false. The widest
+interval at which a parameter counts as known was chosen with the noise of numbers below 2000, so
+that the figures are of the next ones.
 
     .venv/bin/python benches/indent_coverage.py --curves 2000
 """

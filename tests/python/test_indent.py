@@ -130,6 +130,30 @@ def test_derivatives_are_by_path_in_the_shape_of_the_state() -> None:
     assert state.stress([0.0, 1e-7], 1e-7)["zz"].shape == (2, 2)
 
 
+def test_pressures_are_in_proportion_to_moduli_work_and_strength() -> None:
+    # At a given radius: derivatives over logarithms add up to the pressure, and of shapes to nothing.
+    layer = nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-6)
+    body = nacre.HalfSpace(nacre.Elastic(70e9, 0.22), [layer])
+    adhesion = Adhesion.maugis(work=0.05, strength=50e6)
+    state = Indentation(body, Tip.sphere(5e-6), adhesion=adhesion).at(radius=[3e-7, 6e-7])
+    numbers = {
+        YOUNG: 3e9,
+        "body.substrate.young": 70e9,
+        "adhesion.work": 0.05,
+        "adhesion.strength": 50e6,
+    }
+    found = state.derivatives(list(numbers))
+    assert list(found) == list(numbers)
+    inside, outside = [0.0, 1e-7], [7e-7, 2e-6]
+    pressure = sum(found[path].pressure(inside) * value for path, value in numbers.items())
+    assert pressure == pytest.approx(state.pressure(inside), rel=1e-9)
+    moved = sum(found[path].displacement(outside) * value for path, value in numbers.items())
+    assert np.abs(moved).max() < 1e-9 * state.displacement(outside).max()
+    wider = sum(found[path].outer_radius * value for path, value in numbers.items())
+    assert np.abs(wider).max() < 1e-9 * state.outer_radius.min()
+    assert np.abs(found["adhesion.strength"].outer_radius).min() * 50e6 > 1e-9
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [

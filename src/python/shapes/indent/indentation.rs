@@ -12,7 +12,7 @@ use super::results::{PyIndentCurve, PyPullOff};
 use super::state::{PyIndentState, chosen, worked};
 use super::tip::PyTip;
 use crate::Result;
-use crate::indent::{Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
+use crate::indent::{Adhesion, Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
 use crate::response::Body;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
@@ -94,6 +94,9 @@ fn named(indent: &Indent) -> Vec<(String, Parameter)> {
     all.push(("tip.area".to_owned(), Parameter::Tip(TipParameter::Area)));
     if indent.adhesion().work().is_some() {
         all.push(("adhesion.work".to_owned(), Parameter::Work));
+    }
+    if matches!(indent.adhesion(), Adhesion::Maugis { .. }) {
+        all.push(("adhesion.strength".to_owned(), Parameter::Strength));
     }
     all
 }
