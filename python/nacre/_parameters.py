@@ -100,7 +100,7 @@ def put(made: dict[str, Any], path: str, value: float) -> None:
     place: Any = data
     for key in keys[:-1]:
         place = _inside(place, key, path)
-        if isinstance(place, dict) and len(place) == 1 and next(iter(place)) in plain.KINDS:
+        if isinstance(place, dict) and len(place) == 1 and next(iter(place)) in plain.CALLS:
             place = next(iter(place.values()))
     if not isinstance(_inside(place, keys[-1], path), int | float):
         raise ValueError(f"start must name numbers of build, got {path!r}")

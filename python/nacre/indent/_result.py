@@ -171,7 +171,7 @@ class Fit:
                     {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
                     for c in value
                 ]
-            state[field.name] = _plain(value) if field.name in KEPT else encode(value)
+            state[field.name] = encode(value)
         return state
 
     @staticmethod
@@ -196,12 +196,8 @@ class Fit:
         names = {field.name for field in fields(Fit)}
         if wrong := names ^ state.keys():
             raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
-        for name in names - {"curves"}:
-            value = state[name]
-            if name in KEPT:
-                state[name] = _restored(value)
-            elif isinstance(value, dict | str) and name in ("body", "counterbody"):
-                state[name] = decode(value)
+        for name in ("body", "tip", "counterbody", "adhesion"):
+            state[name] = decode(state[name])
         state["curves"] = [
             Curve(c["depth"], c["force"], time=c["time"], name=c["name"]) for c in state["curves"]
         ]
@@ -212,27 +208,3 @@ class Fit:
         state["intervals"] = {k: (low, high) for k, (low, high) in state["intervals"].items()}
         state["free"] = tuple(state["free"])
         return Fit(**state)
-
-
-KEPT = ("tip", "adhesion")
-"""Fields whose values become the call that makes them."""
-
-
-def _plain(value: Any) -> Any:
-    """Return the call that makes a value as its class, the name of the method, and arguments."""
-    if value is None:
-        return None
-    make, arguments, *_ = value.__reduce__()
-    if make is getattr:  # a pickle of a static method's result may be nested
-        raise TypeError(f"{value!r} cannot be kept")
-    return json.loads(json.dumps([type(value).__name__, make.__name__, encode(list(arguments))]))
-
-
-def _restored(data: Any) -> Any:
-    if data is None:
-        return None
-    kind, name, arguments = data
-    if kind not in ("Tip", "Adhesion") or name.startswith("__"):
-        raise ValueError(f"a tip or an adhesion was expected, got {kind}.{name}")
-    made = getattr(core, kind)
-    return (made if name == kind else getattr(made, name))(*arguments)
