@@ -182,7 +182,7 @@ def sweep(
         records = [journal.records[key] for key in keys]
         dataset = assembled(coordinates, records, wanted)
         if path is not None:
-            from nacre.files import replacing, write_dataset
+            from nacre._disk import replacing, write_dataset
 
             with replacing(path) as temporary:
                 write_dataset(dataset, temporary)

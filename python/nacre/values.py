@@ -12,7 +12,7 @@ import functools
 import hashlib
 import inspect
 import operator
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -133,6 +133,26 @@ def encode(value: Any, *, digest: bool = False) -> Any:
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
     return of(value)
+
+
+def checked_state(data: Mapping[str, Any], kind: str, names: Collection[str]) -> dict[str, Any]:
+    """Return the fields of a result's plain data, which must be of this kind and have these names.
+
+    Raises `ValueError` where they are not, or where a newer version wrote the data.
+    """
+    state = dict(data)
+    written, found = state.pop("format", None), state.pop("kind", None)
+    writer = state.pop("nacre", None)
+    if found != kind:
+        raise ValueError(f"the key 'kind' must be {kind!r}, got {found!r}")
+    if not isinstance(written, int) or written > FORMAT:
+        raise ValueError(
+            f"the data have format {written}, written by nacre {writer}; nacre "
+            f"{core.__version__} reads formats up to {FORMAT}: install a newer version"
+        )
+    if wrong := set(names) ^ state.keys():
+        raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
+    return state
 
 
 def reduced(value: Any) -> tuple[Any, Any]:

@@ -16,9 +16,9 @@ from pydantic import Field, ValidationError, model_validator
 import nacre._core as core
 from nacre._case_tables import Number, Numbers, Table, Text, Words
 from nacre._commands import app
+from nacre._disk import replacing
 from nacre._schema import Body, CaseTable, Material, WrongValue, at
 from nacre.case import CaseError
-from nacre.files import replacing
 from nacre.units import display_units, symbol, written
 
 Values = Annotated[Number | Numbers, Words("a finite number, or a list of them")]
