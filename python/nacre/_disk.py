@@ -26,6 +26,9 @@ STATE = "nacre_solution"
 CHECKSUM = "nacre_checksum"
 """Attribute that holds the SHA-256 of all that `load` reads; files of older versions lack it."""
 
+DIMENSION = b"This is a netCDF dimension but not a netCDF variable"
+"""Beginning of the attribute NAME of what is no variable."""
+
 
 class Variable(NamedTuple):
     """A variable of a file."""
@@ -75,7 +78,9 @@ def read(content: bytes) -> tuple[dict[str, Any], dict[str, Variable]]:
                     np.asarray(item[()]),
                 )
                 for name, item in file.items()
-                if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"
+                if isinstance(item, h5py.Dataset)
+                and item.dtype.kind in "fiu"
+                and not bytes(item.attrs.get("NAME", b"")).startswith(DIMENSION)
             }
     except Exception as error:  # whatever HDF5 says of a damaged file
         raise ValueError("it is no NetCDF file, or a damaged one") from error

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import nacre._core as core
+
+if TYPE_CHECKING:
+    from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
 
@@ -43,6 +46,11 @@ FRICTION = (
 )
 """Attributes of a `FrictionSolution` that are numbers."""
 
+INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
+"""Outputs of an indentation by default."""
+INDENT = (*INDENTED, "outer_radius", "pull_off_load", "pull_off_approach", "pull_off_radius")
+"""Attributes of an `IndentSolution` that are numbers."""
+
 STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
     "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
@@ -70,11 +78,12 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
     for name, output in items:
-        known = isinstance(output, str) and output in (*NUMBERS, *FRICTION, *STRESSES)
+        known = isinstance(output, str) and output in (*NUMBERS, *FRICTION, *INDENT, *STRESSES)
         if not (known or callable(output)):
             raise ValueError(
                 f"outputs must be attributes of Solution that hold numbers ({', '.join(NUMBERS)}), "
-                f"or of FrictionSolution ({', '.join(FRICTION)}), "
+                f"of FrictionSolution ({', '.join(FRICTION)}), "
+                f"or of nacre.indent.IndentSolution ({', '.join(INDENT)}), "
                 f"stresses ({', '.join(STRESSES)}), or functions, got {output!r}"
             )
         if name in ("error", "warnings"):
@@ -83,6 +92,17 @@ def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]
     if not found or len(found) != len(items):
         names = [name for name, _ in items]
         raise ValueError(f"outputs must be at least one, under different names, got {names}")
+    return found
+
+
+def indented(solution: IndentSolution, outputs: Mapping[str, Output]) -> dict[str, Any]:
+    """Return the outputs of an indentation as plain numbers."""
+    found: dict[str, Any] = {}
+    for name, output in outputs.items():
+        if isinstance(output, str) and output not in INDENT:
+            raise ValueError(f"the output {output} is not one of an indentation")
+        value = getattr(solution, output) if isinstance(output, str) else output(solution)
+        found[name] = np.asarray(value, dtype=np.float64).tolist()
     return found
 
 
@@ -129,6 +149,8 @@ def evaluated(
 
 def _number(solution: core.Solution | core.FrictionSolution, name: str) -> Any:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
+    if name in INDENT and name not in NUMBERS:
+        raise ValueError(f"the output {name} needs an indentation, a case with a tip")
     if not isinstance(solution, core.FrictionSolution):
         if name in FRICTION:
             raise ValueError(f"the output {name} needs friction in the case")

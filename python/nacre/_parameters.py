@@ -88,30 +88,30 @@ def numbers(made: Mapping[str, Any]) -> dict[str, float]:
     return found
 
 
-def put(made: dict[str, Any], path: str, value: float) -> None:
-    """Replace the number at a path of the arguments of a solve."""
+def put(made: dict[str, Any], path: str, value: float, asked: str = "start") -> None:
+    """Replace the number at a path of the arguments of a solve; `asked` names what has the path."""
     keys = re.findall(r"\w+", path)
     if not PATH.fullmatch(path) or keys[0] not in made:
-        raise ValueError(f"start must name parameters of build by path, got {path!r}")
+        raise ValueError(f"{asked} must name parameters by path, got {path!r}")
     root = made[keys[0]]
     if keys[0] in ("body", "counterbody") and isinstance(root, core.Elastic):
         root = core.HalfSpace(root)
     data = {keys[0]: plain.encode(root)}
     place: Any = data
     for key in keys[:-1]:
-        place = _inside(place, key, path)
+        place = _inside(place, key, path, asked)
         if isinstance(place, dict) and len(place) == 1 and next(iter(place)) in plain.CALLS:
             place = next(iter(place.values()))
-    if not isinstance(_inside(place, keys[-1], path), int | float):
-        raise ValueError(f"start must name numbers of build, got {path!r}")
+    if not isinstance(_inside(place, keys[-1], path, asked), int | float):
+        raise ValueError(f"{asked} must name numbers, got {path!r}")
     place[int(keys[-1]) if isinstance(place, list) else keys[-1]] = value
     made[keys[0]] = plain.decode(data[keys[0]])
 
 
-def _inside(place: Any, key: str, path: str) -> Any:
+def _inside(place: Any, key: str, path: str, asked: str) -> Any:
     """Return what is at a key of plain data."""
     if isinstance(place, dict) and key in place:
         return place[key]
     if isinstance(place, list) and key.isdecimal() and int(key) < len(place):
         return place[int(key)]
-    raise ValueError(f"start must name parameters of build by path, got {path!r}: no {key}")
+    raise ValueError(f"{asked} must name parameters by path, got {path!r}: no {key}")

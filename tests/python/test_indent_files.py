@@ -1,4 +1,4 @@
-"""Indentations and fits come back from files as they were, and tables and printed forms hold them."""
+"""Indentations and fits come back from files as they were; tables and printed forms hold them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_the_file_says_what_its_numbers_are(tmp_path: Path) -> None:
         assert read.attrs["pull_off_load"] == found.pull_off_load
         np.testing.assert_array_equal(read.approach, found.approach)
     with nacre.display_units("mN-µm-GPa"):
-        assert found.to_xarray().load.attrs["units"] == "mN"
+        assert found.to_xarray()["load"].attrs["units"] == "mN"
     assert solved("plane").to_xarray().radius.dims == ("radius_0", "radius_1")
 
 

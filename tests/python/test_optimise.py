@@ -166,8 +166,8 @@ def test_solves_end_at_their_number() -> None:
     [
         ({"start": {}}, "start must be a mapping of one parameter or more"),
         ({"start": {"shape.radios": 1.0}}, r"got 'shape.radios': no radios"),
-        ({"start": {"shape": 1.0}}, "start must name numbers of build"),
-        ({"start": {"edge": 1.0}}, "start must name parameters of build by path, got 'edge'"),
+        ({"start": {"shape": 1.0}}, "start must name numbers, got"),
+        ({"start": {"edge": 1.0}}, "start must name parameters by path, got 'edge'"),
         ({"start": {"shape.radius": np.nan}}, "must be finite"),
         ({"bounds": {"radius": (0.0, 1.0)}}, r"bounds must be of parameters in start.*radius"),
         ({"bounds": {"shape.radius": (1.0, 2.0)}}, "must be in its bounds"),
