@@ -69,23 +69,27 @@ ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
 
 
-def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
-    """Return outputs by name, checked."""
+def named(
+    outputs: Sequence[Output] | Mapping[str, Output], indents: bool | None = None
+) -> dict[str, Output]:
+    """Return outputs by name, checked: those of an indentation, of a contact, or of both."""
     if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
         raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
     if isinstance(outputs, Mapping):
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
+    told = {
+        False: f"attributes of Solution that hold numbers ({', '.join(NUMBERS)}), or of "
+        f"FrictionSolution ({', '.join(FRICTION)}), stresses ({', '.join(STRESSES)})",
+        True: f"attributes of nacre.indent.IndentSolution that hold numbers ({', '.join(INDENT)})",
+    }
+    known = {False: {*NUMBERS, *FRICTION, *STRESSES}, True: {*INDENT}}
+    kinds = [True, False] if indents is None else [indents]
     for name, output in items:
-        known = isinstance(output, str) and output in (*NUMBERS, *FRICTION, *INDENT, *STRESSES)
-        if not (known or callable(output)):
-            raise ValueError(
-                f"outputs must be attributes of Solution that hold numbers ({', '.join(NUMBERS)}), "
-                f"of FrictionSolution ({', '.join(FRICTION)}), "
-                f"or of nacre.indent.IndentSolution ({', '.join(INDENT)}), "
-                f"stresses ({', '.join(STRESSES)}), or functions, got {output!r}"
-            )
+        if not (any(output in known[kind] for kind in kinds) or callable(output)):
+            said = ", ".join(told[kind] for kind in kinds)
+            raise ValueError(f"outputs must be {said}, or functions, got {output!r}")
         if name in ("error", "warnings"):
             raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
     found = dict(items)

@@ -155,10 +155,9 @@ def sweep(
     if path is not None and path.suffix != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
     coordinates, points = laid_out(parameters)
-    if outputs is None:
-        usual = INDENTED if _indents(case, points) else OUTPUTS
-        outputs = [name for name in usual if name not in parameters]
-    wanted = named(outputs)
+    indents = _indents(case, points) if outputs is None or isinstance(case, Mapping) else None
+    usual = [name for name in (INDENTED if indents else OUTPUTS) if name not in parameters]
+    wanted = named(usual if outputs is None else outputs, indents)
     if taken := set(wanted) & set(parameters):
         raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())

@@ -104,12 +104,19 @@ def test_arguments_of_other_solves_are_refused(name: str) -> None:
 
 
 def test_outputs_of_the_other_kind_are_errors_that_are_recorded() -> None:
+    with pytest.raises(ValueError, match="IndentSolution"):
+        nacre.sweep(CASE, {"load": [1e-3]}, outputs=["peak_pressure"])
     with pytest.warns(nacre.NacreWarning, match="cases failed"):
-        study = nacre.sweep(CASE, {"load": [1e-3]}, outputs=["peak_pressure"])
+        parameters = {"thickness": [1e-6], "radius": [5e-6]}
+        study = nacre.sweep(coated, parameters, outputs=["peak_pressure"])
     assert "not one of an indentation" in str(study.error.values[0])
     grid = nacre.Grid((16, 16), (4e-6, 4e-6))
     case = {"shape": nacre.Sphere(5e-6), "body": BODY, "grid": grid}
+    with pytest.raises(ValueError, match="of Solution"):
+        nacre.sweep(case, {"load": [1e-3]}, outputs=["radius"])
     with pytest.warns(nacre.NacreWarning, match="cases failed"):
-        study = nacre.sweep(case, {"load": [1e-3]}, outputs=["radius"])
+        study = nacre.sweep(
+            lambda load: case | {"load": load}, {"load": [1e-3]}, outputs=["radius"]
+        )
     assert "needs an indentation" in str(study.error.values[0])
     assert np.isnan(study.radius[0])
