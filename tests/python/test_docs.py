@@ -100,7 +100,7 @@ def test_the_commands_of_the_start_run(tmp_path: Path) -> None:
 def test_the_commands_of_the_page_on_indentation_run(tmp_path: Path) -> None:
     found = blocks(DOCS / "howto" / "indentation.md")
     (case,) = (block for block in found if block.caption)
-    (tmp_path / case.caption).write_text(case.text, encoding="utf-8")
+    (tmp_path / str(case.caption)).write_text(case.text, encoding="utf-8")
     for line in "".join(block.text for block in found if block.language == "sh").splitlines():
         program, *arguments = shlex.split(line)
         assert program == "nacre"
