@@ -15,7 +15,7 @@ KEYS: dict[str, tuple[Any, str]] = {
     "radius": (Number, "Radius of the sphere, of the flat punch, or of the end [m]."),
     "slope": (Number, "Slope of the cone to the surface, in place of a half angle."),
     "flat": (Number, "Radius of the flat end [m]."),
-    "factor": (Number, "Factor of the profile factor · r^exponent, in units of length."),
+    "factor": (Number, "Factor of the profile factor · r^exponent; its unit makes this a length."),
     "exponent": (Number, "Exponent of that profile."),
     "radii": (Numbers, "Distances from the axis [m], ascending from 0."),
     "heights": (Numbers, "Heights of the profile there [m], from 0 on."),
@@ -71,7 +71,7 @@ def _table(name: str) -> type[Made]:
             fields[one] = (hint, Field(description=description))
     if sloped:
         fields["half_angle"] = (Number | None, Field(None, description=HALF_ANGLE))
-    summary = " ".join((make.__doc__ or "").split()).replace(" at each depth, 24.5 d**2", "")
+    summary = " ".join((make.__doc__ or "").split())
     title = kind.title().replace("_", "") + family
     base = Sloped if sloped else Made
     made: type[Made] = create_model(title, __base__=base, __doc__=summary, **fields)
