@@ -48,7 +48,9 @@ def solve(
     as_json: Json = False,
 ) -> None:
     """Solve the contact that a case file describes."""
-    described = _read(case, units)
+    described = read_case(case, units)
+    if described.is_indentation:
+        raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
     arguments, asked = described.arguments(), described.stress()
     if initial is not None:
         arguments["initial"] = nacre.load(initial)
@@ -62,7 +64,7 @@ def solve(
         _solve(case, described.friction, arguments, asked, save or [], as_json)
 
 
-def _read(case: Path, units: str | None) -> Case:
+def read_case(case: Path, units: str | None) -> Case:
     """Return the case of a file, in other units if these are given."""
     described = Case.read(case)
     return described if units is None else described.in_units(units)
@@ -95,7 +97,7 @@ def _solve(
     if as_json:
         extremes = {} if stress is None else {"stress": stress.to_dict()}
         history = {"steps": [_tangential(step) for step in steps]} if steps else {}
-        print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
+        print(json.dumps(plain(_numbers(solution) | history | extremes), indent=2))
     else:
         if steps:
             print(f"{_history(steps)}\n\nlast step")
@@ -113,7 +115,7 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Solve the study that a case file describes, or the rest of it after a kill."""
-    described = _read(case, units)
+    described = read_case(case, units)
     study = described.study()
     if store is not None:
         study["store"] = store
@@ -125,7 +127,7 @@ def sweep(
             raise CaseError(f"{case}: sweep: {error}") from error
     failed = int((dataset.error != "").sum())
     if as_json:
-        print(json.dumps(_plain(dataset.to_dict()), indent=2))
+        print(json.dumps(plain(dataset.to_dict()), indent=2))
     else:
         _print_study(dataset)
         where = f"; all in {study['store']}" if "store" in study else ""
@@ -187,12 +189,12 @@ def _numbers(solution: nacre.Solution | nacre.FrictionSolution) -> dict[str, Any
     return state | numbers | {"warnings": solution.report.warnings}
 
 
-def _plain(data: Any) -> Any:
+def plain(data: Any) -> Any:
     """Return data for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(data, dict):
-        return {str(key): _plain(value) for key, value in data.items()}
+        return {str(key): plain(value) for key, value in data.items()}
     if isinstance(data, list | tuple):
-        return [_plain(value) for value in data]
+        return [plain(value) for value in data]
     if isinstance(data, float) and not np.isfinite(data):
         return None
     return data

@@ -11,7 +11,7 @@ import numpy as np
 import nacre._core as core
 from nacre._journal import Record
 from nacre._outputs import AXES, ERROR, Output, errors
-from nacre.units import LINE_UNITS, UNITS, symbol, system
+from nacre.units import INDENT_UNITS, LINE_UNITS, UNITS, symbol, system
 
 if TYPE_CHECKING:
     import xarray
@@ -70,6 +70,8 @@ def assembled(
     dims, shape = coordinates["case"].dims, coordinates["case"].shape
     dataset = coordinates.drop_vars("case")
     units = LINE_UNITS if any(record.get("line") for record in records) else UNITS
+    indents = any(record.get("indents") for record in records)
+    units = INDENT_UNITS if indents else units
     if any(record.get("rolls") for record in records):
         units = units | {"dissipated": units["force"]}  # over the distance rolled
     for name, output in outputs.items():
@@ -92,7 +94,8 @@ def assembled(
         dataset[name] = ((*dims, *extra_dims), data.reshape((*shape, *inner)))
         if isinstance(output, str) and output in units:
             dataset[name].attrs["units"] = symbol(units[output])
-    for name, quantity in errors(outputs, {*outputs, *map(str, dataset.coords)}).items():
+    taken = {*outputs, *map(str, dataset.coords)}
+    for name, quantity in ({} if indents else errors(outputs, taken)).items():
         numbers = [r.get("values", {}).get(name, np.nan) for r in records]
         dataset[name] = (dims, np.array(numbers, dtype=np.float64).reshape(shape))
         words = f"error of {name.removesuffix(ERROR)} due to the size of the cells, estimated"

@@ -254,6 +254,21 @@ def _cells(tag: str, row: Sequence[str]) -> str:
     return f"<tr>{''.join(f'{cell}{html.escape(text)}</{tag}>' for text in row)}</tr>"
 
 
+def aligned(rows: Sequence[Sequence[str]], side: str = ">") -> list[str]:
+    """Return the lines of a table whose columns are as wide as their widest cells."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(f"{cell:{side}{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[str]) -> str:
+    """Return a table with notes below, for a notebook."""
+    cells = _cells("th", head) + "".join(_cells("td", row) for row in rows)
+    return f"<table>{cells}</table>" + "".join(f"<p>{html.escape(note)}</p>" for note in notes)
+
+
 def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes:
     """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches."""
     parts = []

@@ -25,7 +25,7 @@ def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
     """Return the fields with coordinates, units and the whole problem."""
     with extra("files"):
         import xarray
-    from nacre.files import CHECKSUM, STATE
+    from nacre._disk import CHECKSUM, STATE
     from nacre.units import system
 
     normal, report = solution.normal, solution.report
@@ -104,7 +104,8 @@ def _split(solution: core.FrictionSolution) -> tuple[dict[str, Any], dict[str, A
 
 def save(solution: core.FrictionSolution, path: AnyPath) -> Path:
     """Write a file, whole or not at all; its ending chooses the kind."""
-    from nacre.files import PICTURES, replacing, write_dataset
+    from nacre._disk import replacing, write_dataset
+    from nacre.files import PICTURES
 
     path = Path(path)
     kinds = (".nc", ".vtr", ".csv", *PICTURES)

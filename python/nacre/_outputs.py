@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import nacre._core as core
+
+if TYPE_CHECKING:
+    from nacre.indent.solution import IndentSolution
 
 Output = str | Callable[[Any], Any]
 
@@ -43,6 +46,11 @@ FRICTION = (
 )
 """Attributes of a `FrictionSolution` that are numbers."""
 
+INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
+"""Outputs of an indentation by default."""
+INDENT = (*INDENTED, "outer_radius", "pull_off_load", "pull_off_approach", "pull_off_radius")
+"""Attributes of an `IndentSolution` that are numbers."""
+
 STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
     "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
@@ -61,28 +69,44 @@ ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
 
 
-def named(outputs: Sequence[Output] | Mapping[str, Output]) -> dict[str, Output]:
-    """Return outputs by name, checked."""
+def named(
+    outputs: Sequence[Output] | Mapping[str, Output], indents: bool | None = None
+) -> dict[str, Output]:
+    """Return outputs by name, checked: those of an indentation, of a contact, or of both."""
     if isinstance(outputs, str) or not isinstance(outputs, Mapping | Iterable):
         raise TypeError(f"outputs must be a sequence or a mapping, got {outputs!r}")
     if isinstance(outputs, Mapping):
         items = [(str(name), output) for name, output in outputs.items()]
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
+    told = {
+        False: f"attributes of Solution that hold numbers ({', '.join(NUMBERS)}), or of "
+        f"FrictionSolution ({', '.join(FRICTION)}), stresses ({', '.join(STRESSES)})",
+        True: f"attributes of nacre.indent.IndentSolution that hold numbers ({', '.join(INDENT)})",
+    }
+    known = {False: {*NUMBERS, *FRICTION, *STRESSES}, True: {*INDENT}}
+    kinds = [True, False] if indents is None else [indents]
     for name, output in items:
-        known = isinstance(output, str) and output in (*NUMBERS, *FRICTION, *STRESSES)
-        if not (known or callable(output)):
-            raise ValueError(
-                f"outputs must be attributes of Solution that hold numbers ({', '.join(NUMBERS)}), "
-                f"or of FrictionSolution ({', '.join(FRICTION)}), "
-                f"stresses ({', '.join(STRESSES)}), or functions, got {output!r}"
-            )
+        if not (any(output in known[kind] for kind in kinds) or callable(output)):
+            said = ", ".join(told[kind] for kind in kinds)
+            raise ValueError(f"outputs must be {said}, or functions, got {output!r}")
         if name in ("error", "warnings"):
             raise ValueError(f"outputs must have other names than error and warnings, got {name!r}")
     found = dict(items)
     if not found or len(found) != len(items):
         names = [name for name, _ in items]
         raise ValueError(f"outputs must be at least one, under different names, got {names}")
+    return found
+
+
+def indented(solution: IndentSolution, outputs: Mapping[str, Output]) -> dict[str, Any]:
+    """Return the outputs of an indentation as plain numbers."""
+    found: dict[str, Any] = {}
+    for name, output in outputs.items():
+        if isinstance(output, str) and output not in INDENT:
+            raise ValueError(f"the output {output} is not one of an indentation")
+        value = getattr(solution, output) if isinstance(output, str) else output(solution)
+        found[name] = np.asarray(value, dtype=np.float64).tolist()
     return found
 
 
@@ -129,6 +153,8 @@ def evaluated(
 
 def _number(solution: core.Solution | core.FrictionSolution, name: str) -> Any:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
+    if name in INDENT and name not in NUMBERS:
+        raise ValueError(f"the output {name} needs an indentation, a case with a tip")
     if not isinstance(solution, core.FrictionSolution):
         if name in FRICTION:
             raise ValueError(f"the output {name} needs friction in the case")

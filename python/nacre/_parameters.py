@@ -139,7 +139,7 @@ def _slot(place: Any, key: str) -> tuple[Any, Any] | None:
             return (content, 1 + SHIFTS.index(key)) if shift else _slot(content[0], key)
         if kind == "sum" and key == "parts":
             return place, kind
-        if kind in plain.KINDS:
+        if kind in plain.CALLS:
             place = content
     if isinstance(place, dict) and key in place:
         return place, key

@@ -11,9 +11,24 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+from pydantic import TypeAdapter
+
 from nacre._case_tables import Table, Words
 from nacre._friction_tables import Along, Roll, Rolling, Slide, Step
-from nacre._schema import Body, CaseTable, Grid, Layer, Material, Range, Solve, Stress, Sweep
+from nacre._indent_tables import TABLES as MADE
+from nacre._indent_tables import Indent, IndentCase
+from nacre._schema import (
+    Bodies,
+    Body,
+    CaseTable,
+    Grid,
+    Layer,
+    Material,
+    Range,
+    Solve,
+    Stress,
+    Sweep,
+)
 from nacre._shape_tables import PROFILE_TABLES, TABLES
 
 WIDTH = 88
@@ -73,7 +88,8 @@ def nearest(name: str, names: Iterable[str]) -> list[str]:
 
 def sections() -> Iterator[Section]:
     """Yield the tables of the reference, the whole file first."""
-    yield _section("Whole file", CaseTable)
+    yield _section("Whole file of a contact", CaseTable)
+    yield _section("Whole file of an indentation", IndentCase)
     yield _section("`[materials.NAME]`", Material)
     for kind, table in TABLES.items():
         yield _section(f'`[shape]` with `kind = "{kind}"`', table)
@@ -90,6 +106,10 @@ def sections() -> Iterator[Section]:
     yield _section("`[roll]`", Roll)
     yield _section("`[roll.creepage]` and `[roll.force]`", Rolling)
     yield _section("`[stress]`", Stress)
+    for family, made in MADE.items():
+        for kind, one in made.items():
+            yield _section(f'`[{family.lower()}]` with `kind = "{kind}"`', one)
+    yield _section("`[indent]`", Indent)
     yield _section("`[sweep]`", Sweep)
     yield _section('Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', Range)
 
@@ -163,7 +183,13 @@ def markdown() -> str:
 
 def schema() -> dict[str, Any]:
     """Return the JSON schema of case files, for editors."""
-    return {"title": "case file of nacre", **CaseTable.model_json_schema()}
+    both: Any = CaseTable | IndentCase
+    return {"title": "case file of nacre", **TypeAdapter(both).json_schema()}
+
+
+def table_for(data: Any) -> type[Bodies]:
+    """Return the table for a case: one with a tip or a table ``indent`` is an indentation."""
+    return IndentCase if isinstance(data, dict) and {"tip", "indent"} & data.keys() else CaseTable
 
 
 @dataclass(frozen=True)
@@ -205,7 +231,7 @@ def place(data: Any, location: Iterable[int | str]) -> Place:
 
     A location may hold names of alternatives between its keys, which are passed over.
     """
-    here = Place((), CaseTable, (), data)
+    here = Place((), table_for(data), (), data)
     for part in location:
         here = _inside(here, part) or here
     return here

@@ -11,6 +11,7 @@ from typing import (
     TYPE_CHECKING,
     Annotated,
     Any,
+    ClassVar,
     Literal,
     Union,
     get_args,
@@ -238,8 +239,11 @@ class Sweep(Table):
     )
 
 
-class CaseTable(Table):
-    """Keys and tables of a case file."""
+class Bodies(Table):
+    """Keys that all case files have: units, materials and bodies, and a study."""
+
+    solved: ClassVar[tuple[str, ...]] = ()
+    """Tables that describe a solve, whose values a study can change."""
 
     units: Text = Field(
         "SI",
@@ -249,17 +253,9 @@ class CaseTable(Table):
     materials: Annotated[dict[str, Material], Words("a table of materials")] = Field(
         {}, description="Materials by name."
     )
-    shape: AnyShape = Field(description="Shape that is pressed in.")
-    body: Body = Field(description="Body that the shape is pressed into.")
+    body: Body = Field(description="Body that the shape or the tip is pressed into.")
     counterbody: Body | None = Field(
-        None, description="Body that carries the shape; rigid where it is left out."
-    )
-    grid: Grid | None = Field(None, description=SOLVE["grid"])
-    solve: Solve = Field(description="What presses, and how the contact is solved.")
-    slide: Slide | None = Field(None, description="Friction, in one step or in a history.")
-    roll: Roll | None = Field(None, description="Rolling with friction; without slide.")
-    stress: Stress | None = Field(
-        None, description="Stresses below the surface; the table may be empty."
+        None, description="Body of the shape or the tip; rigid where it is left out."
     )
     sweep: Sweep | None = Field(None, description="A study of the case.")
 
@@ -269,14 +265,60 @@ class CaseTable(Table):
         System(units)
         return units
 
+    def bodies(self) -> dict[str, Any]:
+        """Return the bodies by name."""
+        named = (("body", self.body), ("counterbody", self.counterbody))
+        return {name: self._body(name, body) for name, body in named if body is not None}
+
+    def _body(self, name: str, body: Body) -> nacre.HalfSpace:
+        with at(f"{name}.substrate"):
+            rigid = self._is_rigid(body)
+            substrate = nacre.RIGID if rigid else self._material(body.substrate)
+        layers = []
+        for number, layer in enumerate(body.layers):
+            with at(f"{name}.layers[{number}]"):
+                with at("material"):
+                    material = self._material(layer.material)
+                layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
+        ends = None if body.ends is None else (body.ends[0], body.ends[1])
+        with at(name):
+            return nacre.HalfSpace(substrate, layers, ends=ends)
+
+    def _is_rigid(self, body: Body) -> bool:
+        return body.substrate == "rigid" and "rigid" not in self.materials
+
+    def _material(self, named: str | Material) -> nacre.Elastic:
+        if isinstance(named, str):
+            if named not in self.materials:
+                known = ", ".join(self.materials) or "none"
+                raise ValueError(f"must be one of the materials ({known}), got {named!r}")
+            with at(f"materials.{named}"):
+                return self.materials[named].make()
+        return named.make()
+
+
+class CaseTable(Bodies):
+    """Keys and tables of the case file of a contact."""
+
+    solved: ClassVar[tuple[str, ...]] = (
+        *("materials", "shape", "body", "counterbody"),
+        *("grid", "solve", "slide", "roll"),
+    )
+
+    shape: AnyShape = Field(description="Shape that is pressed in.")
+    grid: Grid | None = Field(None, description=SOLVE["grid"])
+    solve: Solve = Field(description="What presses, and how the contact is solved.")
+    slide: Slide | None = Field(None, description="Friction, in one step or in a history.")
+    roll: Roll | None = Field(None, description="Rolling with friction; without slide.")
+    stress: Stress | None = Field(
+        None, description="Stresses below the surface; the table may be empty."
+    )
+
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments of `nacre.solve`; a `ValueError` begins with the key at fault."""
         with at("shape"):
             shape = self.shape.make(folder, System(self.units).metres)
-            found: dict[str, Any] = {"shape": shape}
-        for name, body in (("body", self.body), ("counterbody", self.counterbody)):
-            if body is not None:
-                found[name] = self._body(name, body)
+        found: dict[str, Any] = {"shape": shape, **self.bodies()}
         if self.grid is not None:
             with at("grid"):
                 found["grid"] = self.grid.make()
@@ -311,32 +353,6 @@ class CaseTable(Table):
             name: [getattr(material, name, None) for material in found]
             for name in ("yield_stress", "strength")
         }
-
-    def _body(self, name: str, body: Body) -> nacre.HalfSpace:
-        with at(f"{name}.substrate"):
-            rigid = self._is_rigid(body)
-            substrate = nacre.RIGID if rigid else self._material(body.substrate)
-        layers = []
-        for number, layer in enumerate(body.layers):
-            with at(f"{name}.layers[{number}]"):
-                with at("material"):
-                    material = self._material(layer.material)
-                layers.append(nacre.Layer(material, layer.thickness, layer.interface, layer.name))
-        ends = None if body.ends is None else (body.ends[0], body.ends[1])
-        with at(name):
-            return nacre.HalfSpace(substrate, layers, ends=ends)
-
-    def _is_rigid(self, body: Body) -> bool:
-        return body.substrate == "rigid" and "rigid" not in self.materials
-
-    def _material(self, named: str | Material) -> nacre.Elastic:
-        if isinstance(named, str):
-            if named not in self.materials:
-                known = ", ".join(self.materials) or "none"
-                raise ValueError(f"must be one of the materials ({known}), got {named!r}")
-            with at(f"materials.{named}"):
-                return self.materials[named].make()
-        return named.make()
 
 
 class WrongValue(ValueError):

@@ -1,7 +1,8 @@
-"""Case files: a contact, and a study of it, in TOML.
+"""Case files: a contact or an indentation, and a study of it, in TOML.
 
-There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`;
-materials have names. ``nacre schema`` prints the reference of all tables and keys::
+There is a table for each argument of `nacre.solve`, and one for `Solution.stress_summary`; a file
+with the tables ``tip`` and ``indent`` is an indentation instead, for `nacre.indent.solve`.
+Materials have names. ``nacre schema`` prints the reference of all tables and keys::
 
     units = "SI"  # or "N-mm-MPa" and others, of all numbers below; SI may be left out
 
@@ -47,13 +48,12 @@ from nacre._outputs import named
 with extra("cli"):
     from pydantic import ValidationError
 
-    from nacre._reference import Place, nearest, place
-    from nacre._schema import CaseTable, Range, WrongValue, at
+    from nacre._indent_tables import IndentCase
+    from nacre._reference import Place, nearest, place, table_for
+    from nacre._schema import Bodies, CaseTable, Range, WrongValue, at
 
 SHOWN = 60
 """Largest number of characters of a wrong value that an error shows."""
-SOLVED = ("materials", "shape", "body", "counterbody", "grid", "solve", "slide", "roll")
-"""Tables that describe a solve, whose values a study can change."""
 
 
 class CaseError(ValueError):
@@ -110,26 +110,38 @@ class Case:
         return Case({**self.data, "units": units}, self.name, self.folder)
 
     @property
+    def is_indentation(self) -> bool:
+        """Whether the case is an indentation, with a tip, and no contact on a grid."""
+        return isinstance(self._table, IndentCase)
+
+    @property
     def friction(self) -> str | None:
         """Name of the table of friction, "slide" or "roll"; None without one."""
+        if not isinstance(self._table, CaseTable):
+            return None
         return "slide" if self._table.slide else "roll" if self._table.roll else None
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments that the case describes.
 
-        They are those of `nacre.solve`, or with friction of `nacre.slide` or `nacre.roll`.
+        They are those of `nacre.solve`, or with friction of `nacre.slide` or `nacre.roll`; those of
+        an indentation are of `nacre.indent.solve`.
         """
+        table = self._table
         try:
-            return self._table.arguments(self.folder)
+            if isinstance(table, CaseTable):
+                return table.arguments(self.folder)
+            assert isinstance(table, IndentCase)
+            return table.arguments()
         except WrongValue as error:
             raise CaseError(f"{self.name}: {error}") from error
 
     def stress(self) -> dict[str, Any] | None:
         """Return the arguments of `Solution.stress_summary`, or None without a table ``stress``."""
-        asked = self._table.stress
-        if asked is None:
+        table = self._table
+        if not isinstance(table, CaseTable) or table.stress is None:
             return None
-        found = asked.keywords() | self._table.limits()
+        found = table.stress.keywords() | table.limits()
         if self.friction is not None:
             found = {name: found[name] for name in found if name not in ("friction", "direction")}
         return found
@@ -150,7 +162,9 @@ class Case:
         self.arguments()  # the case as it stands must be one
         for key in sweep.parameters:
             self._place(self.data, key)
-            if not key.startswith(SOLVED) or key.endswith((".yield_stress", ".strength")):
+            if not key.startswith(self._table.solved) or key.endswith(
+                (".yield_stress", ".strength")
+            ):
                 message = f"{self.name}: sweep.parameters: {key!r} changes nothing in a solve"
                 raise CaseError(message)
         found: dict[str, Any] = {
@@ -162,13 +176,13 @@ class Case:
         if sweep.outputs is not None:
             try:
                 with at("sweep"):
-                    named(sweep.outputs)
+                    named(sweep.outputs, self.is_indentation)
             except WrongValue as error:
                 raise CaseError(f"{self.name}: {error}") from error
             found["outputs"] = sweep.outputs
         if sweep.store is not None:
             found["store"] = self.folder / sweep.store
-        if self._table.stress is not None:
+        if isinstance(self._table, CaseTable) and self._table.stress is not None:
             asked = self._table.stress.keywords()
             if self.friction is not None:
                 asked = {"body": asked["body"]}
@@ -188,16 +202,18 @@ class Case:
                 last = _index(table, part)
                 table[last]
         except (LookupError, TypeError) as error:
-            keys = ", ".join(nearest(key, _keys({t: data[t] for t in SOLVED if t in data}))[:3])
+            keys = ", ".join(
+                nearest(key, _keys({t: data[t] for t in self._table.solved if t in data}))[:3]
+            )
             raise CaseError(
                 f"{self.name}: sweep.parameters: {key!r} is not a key of this case; the nearest "
                 f"are {keys}"
             ) from error
         return table, last
 
-    def _checked(self, data: Mapping[str, Any]) -> CaseTable:
+    def _checked(self, data: Mapping[str, Any]) -> Bodies:
         try:
-            return CaseTable.model_validate(data)
+            return table_for(data).model_validate(data)
         except ValidationError as error:
             raise CaseError(f"{self.name}: {_first(error, data)}") from None
 

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import os
-import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._disk import CHECKSUM, STATE, Variable, check_seal, read, replacing, write_dataset
 from nacre._extras import extra
 from nacre._tables import FIELDS, YIELDED, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
@@ -25,15 +23,11 @@ from nacre.values import FORMAT, decode, encode
 if TYPE_CHECKING:
     import xarray
 
+    from nacre.indent._result import Fit
+    from nacre.indent.solution import IndentSolution
+
 AnyPath = str | os.PathLike[str]
 Array = npt.NDArray[np.float64]
-
-
-class Variable(NamedTuple):
-    """A variable of a file."""
-
-    dimensions: tuple[str, ...]
-    values: npt.NDArray[Any]
 
 
 FIGURES = (
@@ -58,10 +52,6 @@ NAMES = {
     "hardness": "largest pressure that the surfaces bear",
     "line_load": "force per length along x",
 }
-STATE = "nacre_solution"
-"""Attribute that holds the rest of the state, as JSON."""
-CHECKSUM = "nacre_checksum"
-"""Attribute that holds the SHA-256 of all that `load` reads; files of older versions lack it."""
 FRICTION = ("traction", "slip", "normal_displacement", "friction")
 """Further variables of contacts with friction."""
 PICTURES = (".png", ".pdf", ".svg")
@@ -152,7 +142,9 @@ def save(
 
 
 def load(path: AnyPath) -> Any:
-    """Solution from a file that its `save` wrote, bit for bit; needs ``nacre-contact[files]``.
+    """Solution or fit from a file that its `save` wrote, to the bit.
+
+    Needs ``nacre-contact[files]``.
 
     Parameters
     ----------
@@ -161,13 +153,13 @@ def load(path: AnyPath) -> Any:
 
     Returns
     -------
-    Solution or FrictionSolution
-        Solution that was saved.
+    Solution, FrictionSolution, nacre.indent.IndentSolution or nacre.indent.Fit
+        Result that was saved.
 
     Raises
     ------
     ValueError
-        If the file holds no solution of nacre's, was changed or damaged after it was saved, or was
+        If the file holds no result of nacre's, was changed or damaged after it was saved, or was
         written by a newer version.
     OSError
         If the file cannot be read.
@@ -189,36 +181,9 @@ def load(path: AnyPath) -> Any:
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     content = path.read_bytes()
     try:
-        return _solution(*_read(content))
+        return _solution(*read(content))
     except ValueError as error:
         raise ValueError(f"{str(path)!r} must be a solution that nacre saved: {error}") from error
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary file that replaces `path` at once in the end; an error leaves no file."""
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        temporary = Path(folder) / path.name
-        yield temporary
-        with temporary.open("rb+") as file:
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-
-
-def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
-    """Write any dataset as NetCDF, to the bit."""
-    with extra("files"):
-        import h5netcdf  # noqa: F401
-
-    encoding = {
-        name: {"_FillValue": None, "zlib": True, "complevel": 4, "shuffle": True}
-        for name, variable in dataset.variables.items()
-        if variable.dtype.kind == "f" and variable.ndim > 0
-    }
-    # HDF5 writes to memory: on a full disk it would crash when the process ends.
-    path.write_bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
 def _split(solution: core.Solution) -> tuple[dict[str, Any], dict[str, Array]]:
@@ -236,30 +201,9 @@ def _checksum(state: str, fields: Mapping[str, Array]) -> str:
     return digest.hexdigest()
 
 
-def _read(content: bytes) -> tuple[Any, dict[str, Variable]]:
-    """Return the attributes of a file from its content, and its variables."""
-    import h5py
-
-    try:
-        # The content is in memory, so that HDF5 keeps no damaged file open.
-        with h5py.File(io.BytesIO(content), "r") as file:
-            attributes = {name: file.attrs.get(name) for name in (STATE, CHECKSUM)}
-            variables = {
-                name: Variable(
-                    tuple(d[0].name.rpartition("/")[2] if len(d) else "" for d in file[name].dims),
-                    np.asarray(file[name][()]),
-                )
-                for name in (*FIELDS, *YIELDED, *FRICTION, "x", "y")
-                if name in file
-            }
-    except Exception as error:  # whatever HDF5 says of a damaged file
-        raise ValueError("it is no NetCDF file, or a damaged one") from error
-    return attributes, variables
-
-
 def _solution(
     attributes: Mapping[str, Any], variables: Mapping[str, Variable]
-) -> core.Solution | core.FrictionSolution:
+) -> core.Solution | core.FrictionSolution | IndentSolution | Fit:
     text = attributes[STATE]
     if not isinstance(text, str):
         raise ValueError(f"the attribute {STATE} must be a text, got {text!r:.60}")
@@ -272,8 +216,15 @@ def _solution(
     if state.get("kind") == "FrictionSolution":
         from nacre._friction_state import restored
 
-        arrays = {name: _as_saved(name, variables) for name in variables if name not in "xy"}
+        names = [name for name in (*FIELDS, *FRICTION) if name in variables]
+        arrays = {name: _as_saved(name, variables) for name in names}
         return restored(state, text, attributes[CHECKSUM], arrays)
+    if state.get("kind") in ("IndentSolution", "Fit"):
+        from nacre.indent._result import Fit
+        from nacre.indent.solution import IndentSolution
+
+        check_seal(state, attributes, variables)
+        return (Fit if state["kind"] == "Fit" else IndentSolution).from_dict(state)
     yielded = [name for name in YIELDED if name in variables]
     fields = {name: _field(name, variables) for name in (*FIELDS, *yielded)}
     written, found = state.get("format", 0), attributes[CHECKSUM]

@@ -19,7 +19,18 @@ from nacre._dataset import assembled, counted, laid_out
 from nacre._extras import extra
 from nacre._identity import identified, key_of
 from nacre._journal import Journal, Record
-from nacre._outputs import OUTPUTS, STRESSES, Output, check_direction, evaluated, named, rolls
+from nacre._outputs import (
+    INDENTED,
+    OUTPUTS,
+    STRESSES,
+    Output,
+    check_direction,
+    evaluated,
+    indented,
+    named,
+    rolls,
+)
+from nacre._parameters import put
 from nacre._progress import shown
 
 if TYPE_CHECKING:
@@ -31,6 +42,11 @@ ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
 SLIDE = frozenset(inspect.signature(core.slide).parameters) - ARGUMENTS
 ROLL = frozenset(inspect.signature(core.roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
+INDENT = frozenset({"control"}).union(
+    inspect.signature(core.Indentation).parameters,
+    inspect.signature(core.Indentation.at).parameters,
+) - {"self"}
+"""Arguments of `nacre.indent.solve`."""
 
 
 def sweep(
@@ -56,11 +72,13 @@ def sweep(
         Function that takes the parameters by name and returns the arguments of `nacre.solve` as a
         dictionary; it runs in this process, the solves in `executor`. Or a mapping of those
         arguments, some of which the parameters replace. Arguments of `nacre.slide` or `nacre.roll`
-        make contacts with friction; of a history, the last step counts.
+        make contacts with friction; of a history, the last step counts. Arguments of
+        `nacre.indent.solve`, with a tip, make indentations.
     parameters : mapping
         Values by name: a sequence, of numbers or of anything else (shapes, bodies); a dictionary of
         labels and values; or an `xarray.DataArray`, whose dimensions are kept: two that share one
-        vary together. All others are combined.
+        vary together. All others are combined. Beside arguments of a mapping, a name may be the
+        path of a number in one, such as ``"body.layers[0].thickness"`` or ``"tip.radius"``.
     outputs : sequence or mapping, optional
         Outputs that are kept of each solution: names of its attributes, and functions of it that
         return a number or an array, by name. By default load, approach, tilt, eccentricity, peak
@@ -70,6 +88,9 @@ def sweep(
         tractions at an interface, ``"interface_shear"`` and ``"interface_tension"``. The last three
         are NaN without layers. With friction, attributes of `FrictionSolution` are outputs, too:
         ``"force"``, ``"torque"``, ``"shift"``, ``"twist"``, ``"creepage"``, ``"dissipated"``.
+        Outputs of an indentation are numbers of `nacre.indent.IndentSolution`, by default load,
+        approach, radius, stiffness and central pressure; ``"pull_off_load"`` is NaN without
+        adhesion.
     stress : mapping, optional
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
         ``direction``, ``residual``.
@@ -133,7 +154,10 @@ def sweep(
     path = None if store is None else Path(store)
     if path is not None and path.suffix != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
-    wanted = named([o for o in OUTPUTS if o not in parameters] if outputs is None else outputs)
+    coordinates, points = laid_out(parameters)
+    indents = _indents(case, points) if outputs is None or isinstance(case, Mapping) else None
+    usual = [name for name in (INDENTED if indents else OUTPUTS) if name not in parameters]
+    wanted = named(usual if outputs is None else outputs, indents)
     if taken := set(wanted) & set(parameters):
         raise ValueError(f"outputs must have other names than parameters, got {sorted(taken)}")
     stresses = any(isinstance(o, str) and o in STRESSES for o in wanted.values())
@@ -142,7 +166,6 @@ def sweep(
         raise TypeError(f"stress must hold arguments of stress_summary, got {sorted(unknown)}")
     if not isinstance(version, str | int | None):
         raise TypeError(f"version must be a text or an integer, got {version!r}")
-    coordinates, points = laid_out(parameters)
     identity = identified(wanted, asked, version)
     again = bool(identity.unknown) and version is None
     if again and path is not None:
@@ -182,7 +205,7 @@ def sweep(
         records = [journal.records[key] for key in keys]
         dataset = assembled(coordinates, records, wanted)
         if path is not None:
-            from nacre.files import replacing, write_dataset
+            from nacre._disk import replacing, write_dataset
 
             with replacing(path) as temporary:
                 write_dataset(dataset, temporary)
@@ -196,18 +219,46 @@ def _describe(
 ) -> tuple[dict[str, Any], str | None]:
     """Return the arguments of a solve, or the reason why the case has none."""
     try:
-        arguments = dict({**case, **point} if isinstance(case, Mapping) else case(**point))
+        arguments = _arguments(case, point)
         check_direction(arguments, **stress)
     except (ValueError, ArithmeticError) as error:
         return {}, _reason(error)
+    if "tip" in arguments:
+        if unknown := set(arguments) - INDENT:
+            raise TypeError(
+                f"case must give arguments of nacre.indent.solve beside a tip, "
+                f"got {sorted(unknown)}"
+            )
+        return arguments, None
     unknown = set(arguments) - ARGUMENTS
     frictionless = unknown and not {"friction", "steps"} & unknown
     if frictionless or (unknown - SLIDE and unknown - ROLL):
         raise TypeError(
-            f"case must give arguments of nacre.solve, nacre.slide or nacre.roll, "
-            f"got {sorted(unknown)}"
+            f"case must give arguments of nacre.solve, nacre.slide, nacre.roll or "
+            f"nacre.indent.solve, got {sorted(unknown)}"
         )
     return {"threads": 1, **arguments}, None
+
+
+def _arguments(case: Case, point: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a solve; names with dots or brackets are paths in a mapping."""
+    if not isinstance(case, Mapping):
+        return dict(case(**point))
+    paths = {name for name in point if "." in name or "[" in name}
+    found = {**case, **{name: value for name, value in point.items() if name not in paths}}
+    for path in paths:
+        put(found, path, point[path], names="parameters", of="the case")
+    return found
+
+
+def _indents(case: Case, points: Sequence[Mapping[str, Any]]) -> bool:
+    """Return whether the cases of a study are indentations, as the first one that is a case."""
+    if isinstance(case, Mapping):
+        return "tip" in case or any("tip" in point for point in points[:1])
+    for point in points:
+        with suppress(ValueError, ArithmeticError):
+            return "tip" in case(**point)
+    return False
 
 
 def _said(point: Mapping[str, Any]) -> dict[str, Any]:
@@ -288,6 +339,10 @@ def _solve(
     if os.getpid() != parent:
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the record has them
     try:
+        if "tip" in arguments:
+            from nacre.indent.solution import solve
+
+            return {"values": indented(solve(**arguments), outputs), "indents": True}
         solution = _solution(arguments)
         normal = solution.normal if isinstance(solution, core.FrictionSolution) else solution
         unresolved: list[str] = []

@@ -45,6 +45,11 @@ LINE_UNITS = UNITS | {
     **{"torque": "N", "dissipated": "N", "tangential_energy": "N"},
 }
 """SI units of the same quantities of a line contact, whose loads and areas are per length."""
+INDENT_UNITS = UNITS | {
+    **{"radius": "m", "outer_radius": "m", "stiffness": "N/m"},
+    **{"pull_off_load": "N", "pull_off_approach": "m", "pull_off_radius": "m"},
+}
+"""SI units of the quantities of an indentation."""
 PARAMETERS = {
     "load": "N",
     "approach": "m",

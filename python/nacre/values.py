@@ -1,7 +1,8 @@
 """Values of nacre as plain data, exactly: for files, and to tell one case from another.
 
 A material, layer, body, grid, profile or shape becomes its constructor call:
-``{"Sphere": {"radius": 0.005}}``. Numbers keep every bit. A result, such as a solution, becomes the
+``{"Sphere": {"radius": 0.005}}``; so do tips and adhesion, ``{"Tip.cone": {"slope": 0.3}}``.
+Numbers keep every bit. A result, such as a solution, becomes the
 dictionary that its `to_dict` returns.
 """
 
@@ -11,7 +12,7 @@ import functools
 import hashlib
 import inspect
 import operator
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,20 @@ FIELDS: dict[type, tuple[str, ...]] = {
     )
 }
 """Arguments of each class's constructor, which are attributes of the same names."""
-KINDS = {kind.__name__: kind for kind in FIELDS}
+MADE: dict[str, Any] = {
+    f"{kind.__name__}.{name}": getattr(kind, name)
+    for kind in (core.Tip, core.Adhesion)
+    for name, member in vars(kind).items()
+    if isinstance(member, staticmethod) and not name.startswith("_")
+}
+"""Static methods that make tips and adhesion, by their names in data."""
+CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
+    **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
+    **{name: (make, tuple(inspect.signature(make).parameters)) for name, make in MADE.items()},
+    "Grid.line": (core.Grid.line, ("cells", "width", "center")),
+    "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
+}
+"""Callables by their names in data, each with its arguments."""
 LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends", "periodic"}
 """Arguments that format 1 had not at first. Where they are None they are left out: older data are
 still read, and older studies found again. Versions that do not know them refuse them by name."""
@@ -107,6 +121,10 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             fields = {name: getattr(value, name) for name in FIELDS[type(value)]}
             kept = {k: of(v) for k, v in fields.items() if not (k in LATER and v in ABSENT)}
             return {type(value).__name__: kept}
+        if isinstance(value, core.Tip | core.Adhesion):
+            make, arguments = reduced(value)
+            name = f"{type(value).__name__}.{make.__name__}"
+            return {name: of(dict(zip(CALLS[name][1], arguments, strict=True)))}
         if isinstance(value, core.Shape):
             make, arguments = reduced(value)
             if make is functools.reduce:
@@ -115,6 +133,26 @@ def encode(value: Any, *, digest: bool = False) -> Any:
         raise TypeError(f"a {type(value).__name__} is not a value that can be kept: {value!r}")
 
     return of(value)
+
+
+def checked_state(data: Mapping[str, Any], kind: str, names: Collection[str]) -> dict[str, Any]:
+    """Return the fields of a result's plain data, which must be of this kind and have these names.
+
+    Raises `ValueError` where they are not, or where a newer version wrote the data.
+    """
+    state = dict(data)
+    written, found = state.pop("format", None), state.pop("kind", None)
+    writer = state.pop("nacre", None)
+    if found != kind:
+        raise ValueError(f"the key 'kind' must be {kind!r}, got {found!r}")
+    if not isinstance(written, int) or written > FORMAT:
+        raise ValueError(
+            f"the data have format {written}, written by nacre {writer}; nacre "
+            f"{core.__version__} reads formats up to {FORMAT}: install a newer version"
+        )
+    if wrong := set(names) ^ state.keys():
+        raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
+    return state
 
 
 def reduced(value: Any) -> tuple[Any, Any]:
@@ -153,12 +191,8 @@ def _decoded(data: Any) -> Any:
                 return shape.shifted(x, y)
             except TypeError as error:
                 raise ValueError(f"{name}: {error}") from error
-        if name == "Grid.line":
-            return _made(name, core.Grid.line, ("cells", "width", "center"), content)
-        if name == "Grid":
-            return _made(name, core.Grid, ("shape", "size", "center", "periodic"), content)
-        if name in KINDS:
-            return _made(name, KINDS[name], FIELDS[KINDS[name]], content)
+        if name in CALLS:
+            return _made(name, *CALLS[name], content)
     return {key: _decoded(item) for key, item in data.items()}
 
 

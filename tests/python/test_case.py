@@ -613,7 +613,7 @@ def test_the_reference_has_every_table_and_key(capsys: pytest.CaptureFixture[str
     assert max(map(len, text.splitlines())) <= 120
     assert nacre_command("schema", "--json") == 0
     found = json.loads(capsys.readouterr().out)
-    assert set(found["properties"]) == set(_schema.CaseTable.model_fields)
+    assert set(found["$defs"]["CaseTable"]["properties"]) == set(_schema.CaseTable.model_fields)
 
 
 def test_a_case_can_be_called_with_other_values() -> None:

@@ -102,12 +102,23 @@ def test_the_commands_of_the_start_run(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} >= {"roller.nc", "roller.png", "rollers.nc"}
 
 
+def test_the_commands_of_the_page_on_indentation_run(tmp_path: Path) -> None:
+    found = blocks(DOCS / "howto" / "indentation.md")
+    (case,) = (block for block in found if block.caption)
+    (tmp_path / str(case.caption)).write_text(case.text, encoding="utf-8")
+    for line in "".join(block.text for block in found if block.language == "sh").splitlines():
+        program, *arguments = shlex.split(line)
+        assert program == "nacre"
+        run(sys.executable, "-m", "nacre.cli", *arguments, folder=tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} >= {"film.nc", "film.csv", "films.nc"}
+
+
 def test_every_public_name_is_in_the_reference() -> None:
     text = "\n".join(page.read_text(encoding="utf-8") for page in (DOCS / "api").glob("*.rst"))
     listed = set(re.findall(r"^\.\. (?:auto|py:)\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
     public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
         f"{module.__name__}.{name}"
-        for module in (nacre.design, nacre.hertz, nacre.plot)
+        for module in (nacre.design, nacre.hertz, nacre.indent, nacre.plot)
         for name in module.__all__
     }
     assert public - listed == set()

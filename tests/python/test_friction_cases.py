@@ -296,7 +296,7 @@ def test_outputs_that_the_case_has_not_are_the_cases_error() -> None:
     with pytest.warns(nacre.NacreWarning, match="failed"):
         study = nacre.sweep(case, {"load": [9.0]}, outputs=["force"], progress=False)
     assert "the output force needs friction in the case" in study.error.item()
-    with pytest.raises(TypeError, match=r"nacre\.slide or nacre\.roll, got \['cells', 'shift'\]"):
+    with pytest.raises(TypeError, match=r"or nacre\.indent\.solve, got \['cells', 'shift'\]"):
         nacre.sweep(case | {"shift": (1, 1), "cells": 3}, {"load": [9.0]}, progress=False)
 
 

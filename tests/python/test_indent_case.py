@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 import nacre
+from nacre import _reference
+from nacre.case import Case, CaseError
 from nacre.cli import main
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "indent.toml"
@@ -64,14 +66,32 @@ def test_tips_of_all_kinds(tip: str, adhesion: str, tmp_path: Path) -> None:
     ("old", "new", "told"),
     [
         ('"sphere"', '"nope"', "tip"),
-        ('"sphere"', '"cone"', "a tip of kind cone has slope, got radius"),
-        ('"sphere"', '"gap"', "kind must be one of sphere"),
-        ('"jkr"', '"maugis"', "strength must be given"),
+        (
+            '"sphere"',
+            '"cone"',
+            "tip.radius: there is no such key; the keys here are kind, slope, half_angle",
+        ),
+        ('"sphere"', '"gap"', "tip.kind: must be one of"),
+        ('"jkr"', '"maugis"', "adhesion.strength: this key is missing"),
         ("work = 0.05", "work = -1.0", "adhesion"),
         ("work = 0.05", "wrk = 0.05", "adhesion"),
         ("load = ", "radius = 1e-6\nload = ", "exactly one"),
         ('"glass"\n', '"gold"\n', "body.substrate"),
         ("[tip]", "[tip", "TOML"),
+        (
+            "radius = 5e-6",
+            "radus = 5e-6",
+            "tip.radus: there is no such key; the keys here are radius",
+        ),
+        ('"jkr"', '"jrk"', "adhesion.kind: must be one of 'jkr'"),
+        ("load = ", "laod = ", "indent.laod: there is no such key; the keys here are load"),
+        (
+            '"sphere"\nradius',
+            '"cone"\nhalf_angle = 1.0\nslope',
+            "exactly one of slope and half_angle",
+        ),
+        ("load = [1e-4, 1e-3]", "load = true", "indent.load: must be a finite number, or a list"),
+        ("load = [1e-4, 1e-3]", "load = -1.0", "indent: "),
     ],
 )
 def test_bad_input_is_one_line(
@@ -83,3 +103,81 @@ def test_bad_input_is_one_line(
     said = capsys.readouterr().err
     assert told in said
     assert said.count("\n") == 1
+
+
+SWEEP = """
+[sweep]
+store = "film.nc"
+outputs = ["approach", "pull_off_load"]
+parameters."body.layers[0].thickness" = [0.5e-6, 1e-6]
+parameters."tip.radius" = [5e-6, 6e-6]
+"""
+
+
+def ended(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    return int(end.value.code or 0)
+
+
+def test_a_study_of_an_indentation_is_run_and_kept(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("xarray")
+    path = tmp_path / "film.toml"
+    example = EXAMPLE.read_text(encoding="utf-8").partition("[sweep]")[0]
+    text = example.replace("[1e-4, 1e-3]", "1e-3")
+    path.write_text(text + SWEEP, encoding="utf-8")
+    assert ended("sweep", str(path)) == 0
+    assert "4 cases, 0 failed" in capsys.readouterr().out
+    assert (tmp_path / "film.nc").is_file()
+    case = Case.read(path)
+    alone = nacre.indent.solve(**case(**{"tip.radius": 6e-6}))
+    study = nacre.sweep(case, **case.study())
+    assert study.approach[1, 1] == alone.approach
+    path.write_text(text + SWEEP.replace("tip.radius", "tip.radus"), encoding="utf-8")
+    assert ended("sweep", str(path)) == 2
+    assert "the nearest are tip.radius" in capsys.readouterr().err
+    path.write_text(text + SWEEP.replace("pull_off_load", "peak_pressure"), encoding="utf-8")
+    assert ended("sweep", str(path)) == 2
+    assert "nacre.indent.IndentSolution" in capsys.readouterr().err
+
+
+def test_each_command_names_the_other_for_a_case_of_the_other_kind(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert ended("solve", str(EXAMPLE)) == 2
+    assert "nacre indent" in capsys.readouterr().err
+    assert ended("indent", str(EXAMPLE.with_name("roller.toml"))) == 2
+    assert "nacre solve" in capsys.readouterr().err
+
+
+def test_a_saved_case_is_loaded(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("xarray")
+    assert (
+        run(str(EXAMPLE), "--save", str(tmp_path / "a.nc"), "--save", str(tmp_path / "a.csv")) == 0
+    )
+    found = nacre.indent.solve(**Case.read(EXAMPLE).arguments())
+    assert nacre.load(tmp_path / "a.nc") == found
+    assert run(str(EXAMPLE), "--save", str(tmp_path / "a.png")) == 2
+    assert "--save must end in" in capsys.readouterr().err
+
+
+def test_the_reference_has_every_tip_and_key() -> None:
+    told = _reference.text()
+    for kind in ("sphere", "area_function", "berkovich"):
+        assert f'[tip] with kind = "{kind}"' in told
+    assert '[adhesion] with kind = "maugis"' in told
+    assert "work: finite number [N/m]; required" in told
+    assert "half_angle" in told
+    assert "approach: finite number, or a list of them [m]" in told
+    schema = _reference.schema()["$defs"]
+    assert {"SphereTip", "JkrAdhesion", "Indent", "IndentCase"} <= schema.keys()
+
+
+def test_a_case_from_python_has_the_arguments_of_solve() -> None:
+    case = Case.read(EXAMPLE)
+    assert case.is_indentation
+    assert case.arguments()["tip"] == nacre.indent.Tip.sphere(5e-6)
+    with pytest.raises(CaseError, match="sweep: this table is missing"):
+        Case({k: v for k, v in case.data.items() if k != "sweep"}).study()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import nacre
-from nacre import _keywords, _schema, _shape_tables, values
+from nacre import _indent_tables, _keywords, _schema, _shape_tables, studies, values
 
 STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((16, 16), (2e-4, 2e-4))
@@ -109,19 +109,34 @@ def shapes() -> dict[str, type[nacre.Shape]]:
     }
 
 
+KINDS = {kind.__name__: kind for kind in values.FIELDS}
+
+
 def test_files_and_case_files_know_every_shape() -> None:
     assert len(shapes()) >= 6
-    assert set(shapes()) <= set(values.KINDS)
+    assert set(shapes()) <= set(KINDS)
     assert {kind.__name__ for kind in _shape_tables.SHAPES.values()} == set(shapes())
     assert set(_shape_tables.SHAPES) | {"random_surface", "sum"} == set(_shape_tables.TABLES)
 
 
-@pytest.mark.parametrize("kind", sorted(values.KINDS))
+@pytest.mark.parametrize("kind", sorted(KINDS))
 def test_arguments_of_a_constructor_are_attributes(kind: str) -> None:
-    for name in values.FIELDS[values.KINDS[kind]]:
-        assert isinstance(inspect.getattr_static(values.KINDS[kind], name), property) or hasattr(
-            values.KINDS[kind], name
+    for name in values.FIELDS[KINDS[kind]]:
+        assert isinstance(inspect.getattr_static(KINDS[kind], name), property) or hasattr(
+            KINDS[kind], name
         )
+
+
+def test_files_and_case_files_know_every_tip_and_adhesion() -> None:
+    for family in (nacre.indent.Tip, nacre.indent.Adhesion):
+        named = {name for name, one in vars(family).items() if isinstance(one, staticmethod)}
+        kinds = named - {"__new__"}
+        assert {f"{family.__name__}.{kind}" for kind in kinds} <= set(values.CALLS)
+        assert set(_indent_tables.TABLES[family.__name__]) == kinds
+
+
+def test_a_study_knows_every_argument_of_an_indentation() -> None:
+    assert set(inspect.signature(nacre.indent.solve).parameters) == studies.INDENT
 
 
 def test_the_public_names_are_those_of_the_stub() -> None:

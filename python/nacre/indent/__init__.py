@@ -24,25 +24,33 @@ from nacre._core import (
     Tip,
     slope_of,
 )
+from nacre.indent import charts
 from nacre.indent.checks import ContactPoint, check, contact_point, suspicious_units
+from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve, read
 from nacre.indent.fit import Fit, fit
+from nacre.indent.solution import IndentSolution, solve
 
 __all__ = [
     "Adhesion",
+    "Classical",
     "ContactPoint",
     "Curve",
     "Fit",
     "IndentCurve",
+    "IndentSolution",
     "IndentState",
     "Indentation",
     "PullOff",
     "StateDerivative",
     "Tip",
+    "charts",
     "check",
+    "classical",
     "contact_point",
     "fit",
     "read",
     "slope_of",
+    "solve",
     "suspicious_units",
 ]

@@ -2,32 +2,29 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._display import aligned, table
+from nacre.indent._system import unit_of
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
-from nacre.units import PARAMETERS, written
-from nacre.values import FORMAT, decode, encode
+from nacre.units import written
+from nacre.values import FORMAT, checked_state, decode, encode
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
-
-UNITS = PARAMETERS | {
-    **{"work": "N/m", "flat": "m", "strength": "Pa"},
-    **{"contact_point": "m", "drift": "m/s", "compliance": "m/N"},
-}
-"""SI units of parameters by the last part of their names."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -127,18 +124,20 @@ class Fit:
 
     def __str__(self) -> str:
         """Return the table."""
-        rows = [["parameter", "estimate", "±", "95 % interval", ""]]
+        head, rows, notes = self._table()
+        return "\n".join([*aligned([head, *rows], "<"), *notes])
+
+    def _repr_html_(self) -> str:
+        return table(*self._table())
+
+    def _table(self) -> tuple[list[str], list[list[str]], list[str]]:
+        rows = []
         for name in self.estimates:
             low, high = (self._written(name, end) for end in self.intervals[name])
             error = self._written(name, self.standard_errors[name], 2)
             verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
             rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = [
-            "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
-            for row in rows
-        ]
-        lines += [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
+        lines = [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
         if self.noise == "relative":
             noise = f"{100 * self.sigma:.3g} % of the force"
         else:
@@ -151,7 +150,7 @@ class Fit:
         )
         if not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
-        return "\n".join(lines)
+        return ["parameter", "estimate", "±", "95 % interval", ""], rows, lines
 
     def _value(self, name: str) -> str:
         return self._written(name, self.estimates[name])
@@ -159,7 +158,36 @@ class Fit:
     def _written(self, name: str, value: float, digits: int = 4) -> str:
         if not math.isfinite(value):
             return f"{value}"
-        return written(value, UNITS.get(name.rpartition(".")[2], ""), digits)
+        return written(value, unit_of(name), digits)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the parameters and the points with units; needs ``nacre-contact[files]``."""
+        from nacre.indent._files import estimates
+
+        return estimates(self)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            File to write: ``.nc`` for NetCDF with all of the fit, which `nacre.load` reads and
+            which needs ``nacre-contact[files]``, or ``.csv`` for the table of parameters.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            If the file has another ending.
+        """
+        from nacre.indent._files import parameter_rows, save
+
+        return save(self, parameter_rows(self), path)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as plain data with names, for JSON."""
@@ -171,7 +199,7 @@ class Fit:
                     {"depth": c.depth, "force": c.force, "time": c.time, "name": c.name}
                     for c in value
                 ]
-            state[field.name] = _plain(value) if field.name in KEPT else encode(value)
+            state[field.name] = encode(value)
         return state
 
     @staticmethod
@@ -183,25 +211,9 @@ class Fit:
         ValueError
             If a key is missing or unknown, or a newer version wrote the data.
         """
-        state = dict(data)
-        version, kind = state.pop("format", None), state.pop("kind", None)
-        writer = state.pop("nacre", None)
-        if kind != "Fit":
-            raise ValueError(f"the key 'kind' must be 'Fit', got {kind!r}")
-        if not isinstance(version, int) or version > FORMAT:
-            raise ValueError(
-                f"the data have format {version}, written by nacre {writer}; nacre "
-                f"{core.__version__} reads formats up to {FORMAT}: install a newer version"
-            )
-        names = {field.name for field in fields(Fit)}
-        if wrong := names ^ state.keys():
-            raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
-        for name in names - {"curves"}:
-            value = state[name]
-            if name in KEPT:
-                state[name] = _restored(value)
-            elif isinstance(value, dict | str) and name in ("body", "counterbody"):
-                state[name] = decode(value)
+        state = checked_state(data, "Fit", {field.name for field in fields(Fit)})
+        for name in ("body", "tip", "counterbody", "adhesion"):
+            state[name] = decode(state[name])
         state["curves"] = [
             Curve(c["depth"], c["force"], time=c["time"], name=c["name"]) for c in state["curves"]
         ]
@@ -212,27 +224,3 @@ class Fit:
         state["intervals"] = {k: (low, high) for k, (low, high) in state["intervals"].items()}
         state["free"] = tuple(state["free"])
         return Fit(**state)
-
-
-KEPT = ("tip", "adhesion")
-"""Fields whose values become the call that makes them."""
-
-
-def _plain(value: Any) -> Any:
-    """Return the call that makes a value as its class, the name of the method, and arguments."""
-    if value is None:
-        return None
-    make, arguments, *_ = value.__reduce__()
-    if make is getattr:  # a pickle of a static method's result may be nested
-        raise TypeError(f"{value!r} cannot be kept")
-    return json.loads(json.dumps([type(value).__name__, make.__name__, encode(list(arguments))]))
-
-
-def _restored(data: Any) -> Any:
-    if data is None:
-        return None
-    kind, name, arguments = data
-    if kind not in ("Tip", "Adhesion") or name.startswith("__"):
-        raise ValueError(f"a tip or an adhesion was expected, got {kind}.{name}")
-    made = getattr(core, kind)
-    return (made if name == kind else getattr(made, name))(*arguments)

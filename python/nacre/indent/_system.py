@@ -9,8 +9,21 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre.units import PARAMETERS
 
 Array = npt.NDArray[np.float64]
+
+
+UNITS = PARAMETERS | {
+    **{"work": "N/m", "flat": "m", "strength": "Pa"},
+    **{"contact_point": "m", "drift": "m/s", "compliance": "m/N"},
+}
+"""SI units of parameters by the last part of their names."""
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of a parameter; "" where it has none."""
+    return UNITS.get(name.rpartition(".")[2], "")
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from nacre import _core as core
+import nacre._core as core
 from nacre.indent.curves import Curve
 
 Array = npt.NDArray[np.float64]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from nacre._disk import replacing
 from nacre._extras import extra
-from nacre.files import replacing
 from nacre.plot.style import COLOURS, WIDTH, new_axes, styled
 from nacre.units import Scale, written
 
