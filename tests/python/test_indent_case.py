@@ -57,7 +57,8 @@ def test_the_example_is_printed_and_written(
 def test_tips_of_all_kinds(tip: str, adhesion: str, tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     text = EXAMPLE.read_text(encoding="utf-8").replace('kind = "sphere"\nradius = 5e-6', tip)
-    text = text.replace('"jkr"', f'"{adhesion}"') + 'control = "approach"\n'
+    text = text.replace('"jkr"', f'"{adhesion}"')
+    text = text.replace("[indent]\n", '[indent]\ncontrol = "approach"\n')
     path.write_text(text, encoding="utf-8")
     assert run(str(path)) == 0
 
