@@ -11,7 +11,6 @@ use super::equation::system::times;
 use super::parts::Parts;
 use super::zone::{Answer, Zone};
 use crate::error::{Error, Result};
-use crate::parallel::dot;
 
 pub use interior::InteriorStress;
 

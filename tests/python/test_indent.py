@@ -131,7 +131,7 @@ def test_derivatives_are_by_path_in_the_shape_of_the_state() -> None:
 
 
 def test_pressures_are_in_proportion_to_moduli_work_and_strength() -> None:
-    # At a given radius: derivatives over logarithms add up to the pressure, and of shapes to nothing.
+    # At a given radius: derivatives over logarithms add up to the pressure, of shapes to nothing.
     layer = nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-6)
     body = nacre.HalfSpace(nacre.Elastic(70e9, 0.22), [layer])
     adhesion = Adhesion.maugis(work=0.05, strength=50e6)
