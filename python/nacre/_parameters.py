@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import nacre._core as core
@@ -30,14 +30,21 @@ class Scale:
     name: str
     log: bool
     width: float
-    low: float | None
-    high: float | None
+    bounds: tuple[float | None, float | None]
+    low: float | None = None
+    high: float | None = None
 
     def x(self, value: float) -> float:
         return math.log(value) / REACH if self.log else value / self.width
 
     def value(self, x: float) -> float:
         return math.exp(REACH * x) if self.log else self.width * x
+
+    def rounded(self, x: float) -> float:
+        """Return a value of fifteen digits, so that a start is itself again, and in the bounds."""
+        value = float(f"{self.value(x):.15g}")
+        ends = [b for b in self.bounds if b is not None and math.isclose(b, value, rel_tol=1e-14)]
+        return ends[0] if ends else value
 
 
 def scales_of(start: Mapping[str, float], bounds: Bounds) -> list[Scale]:
@@ -59,12 +66,12 @@ def scales_of(start: Mapping[str, float], bounds: Bounds) -> list[Scale]:
         width = REACH * (high - low) if low is not None and high is not None else abs(value) * REACH
         if not log and width == 0:
             raise ValueError(f"bounds[{name!r}] must be two numbers where the start is 0")
-        scale = Scale(name, log, width, None, None)
+        scale = Scale(name, log, width, (low, high))
         ends = [None if b is None else scale.x(b) for b in (low, high)]
         if log:
             x, far = scale.x(value), FARTHEST / REACH
             ends = [x + s * far if e is None else e for s, e in zip((-1, 1), ends, strict=True)]
-        scales.append(Scale(name, log, width, *ends))
+        scales.append(replace(scale, low=ends[0], high=ends[1]))
     return scales
 
 

@@ -60,9 +60,8 @@ class Problem:
     plans: dict[int, tuple[core.Contact, str]] = field(default_factory=dict)
 
     def named(self, x: Array) -> dict[str, float]:
-        # Fifteen digits, so that a start and a bound are themselves again.
         pairs = zip(self.scales, x, strict=True)
-        return {scale.name: float(f"{scale.value(float(v)):.15g}") for scale, v in pairs}
+        return {scale.name: scale.rounded(float(v)) for scale, v in pairs}
 
     def arguments(self, x: Array, case: Mapping[str, Any]) -> dict[str, Any]:
         """Return arguments of a solve."""
