@@ -49,7 +49,7 @@ COATINGS = {
 }
 """Load, coating, and half the width of the grid over that of Hertz's contact of the bare roller."""
 BAR = 3.0
-"""Largest deviation from Lundberg's profile [%] that issue 27 allows."""
+"""Largest deviation from Lundberg's profile [%] that counts as equal."""
 
 
 def hertz(load: float) -> nacre.hertz.Line:
