@@ -202,3 +202,37 @@ def test_ctrl_c_stops_it() -> None:
         solution.gradient(many)
     thread.join()
     assert time.perf_counter() - began < 20.0
+
+
+@pytest.mark.parametrize("scale", [1.7, 1e-3])
+def test_gradients_scale_with_all_lengths(scale: float) -> None:
+    # Radius, thickness and cells by a factor, the load by its square: pressures stay, and each
+    # derivative is multiplied by the dimension of the output over that of the parameter.
+    def solved(factor: float) -> nacre.Solution:
+        body = nacre.HalfSpace(STEEL, [nacre.Layer(HARD, thickness=20e-6 * factor)])
+        size = (3.1e-4 * factor, 2.9e-4 * factor)
+        return nacre.solve(
+            nacre.Sphere(5e-3 * factor),
+            body,
+            grid=nacre.Grid(shape=(41, 31), size=size),
+            load=5.0 * factor**2,
+            tolerance=1e-12,
+        )
+
+    lengths = {"shape.radius": 1, "body.layers[0].thickness": 1, "load": 2}
+    moduli = {"body.layers[0].material.young": 0, "body.substrate.poisson": 0}
+    powers = lengths | moduli
+    outputs: dict[Any, int] = {"approach": 1, ("pressure_norm", 8.0): 0}
+    pairs = zip(
+        solved(1.0).gradient(list(outputs), list(powers), tolerance=1e-11),
+        solved(scale).gradient(list(outputs), list(powers), tolerance=1e-11),
+        outputs.items(),
+        strict=True,
+    )
+    for own, scaled, (output, power) in pairs:
+        # A norm over cells is an integral: its area counts.
+        power_of = power if power else 2 / 8
+        assert scaled.value == pytest.approx(own.value * scale**power_of, rel=1e-9), output
+        for path, of in powers.items():
+            due = own[path] * scale ** (power_of - of)
+            assert scaled[path] == pytest.approx(due, rel=1e-8), (output, path)
