@@ -21,7 +21,7 @@ length = 12e-3
 warnings.filterwarnings("ignore", "the contact reaches the end", nacre.NacreWarning)  # as it should
 
 
-def shape(x, drop):
+def shape(x: np.ndarray, drop: np.ndarray) -> nacre.Roller:
     """Return the roller with these drops at places x > 0, and on the other side."""
     place = np.array([0.0, *x, length / 2])
     drop = np.array([0.0, *drop, 1.5 * drop[-1] - 0.5 * drop[-2]])  # goes on to the end
@@ -29,13 +29,19 @@ def shape(x, drop):
     return nacre.Roller(radius=5e-3, length=length, profile=profile, counter_radius=25e-3)
 
 
-def best_drop(grid, load, body, tilts, exponents):
+def best_drop(
+    grid: nacre.Grid,
+    load: float,
+    body: nacre.HalfSpace | nacre.Elastic,
+    tilts: list[float],
+    exponents: list[float],
+) -> tuple[np.ndarray, np.ndarray, list[nacre.Solution]]:
     """Return places, their best drops, and the solutions with them."""
     x = grid.x[grid.x > 0]
     rises = {f"rise{k}": 0.0 for k in range(len(x))}
     largest = 4 * load / (np.pi * length * modulus)
 
-    def build(**rises):
+    def build(**rises: float) -> dict[str, object]:
         made = shape(x, np.cumsum(list(rises.values())))
         return dict(shape=made, body=body, counterbody=steel)
 
@@ -82,7 +88,8 @@ layer = nacre.Layer(nacre.Elastic(young=3.5e9, poisson=0.4), thickness=100e-6)
 coated = nacre.HalfSpace(steel, layers=[layer])
 grid = nacre.Grid((64, 25), (length, 7e-4))
 drops = {}
-for name, body in {"bare": steel, "coated": coated}.items():
+bodies: dict[str, nacre.HalfSpace | nacre.Elastic] = {"bare": steel, "coated": coated}
+for name, body in bodies.items():
     x, drops[name], _ = best_drop(grid, load, body, tilts, [16.0, 64.0])
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.4), layout="constrained")
@@ -96,4 +103,4 @@ for name, drop in drops.items():
     print(f"best for the {name} roller: {peaks[grid.x < 0.485 * length].max():.0f} MPa at 1 mrad")
 left.set(xlabel="x [mm]", ylabel="drop [µm]")
 left.legend()
-right.set(xlabel="x [mm]", ylabel="on the coated roller, 1 mrad [MPa]", ylim=(0, None))
+right.set(xlabel="x [mm]", ylabel="pressure at 1 mrad, coated [MPa]", ylim=(0, None))
