@@ -175,6 +175,7 @@ def test_a_bare_body_has_no_stress_in_a_coating() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")  # fork, Python 3.12
+@pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")  # JAX, which other tests have begun
 @pytest.mark.parametrize("kind", ["one thread", "fork", "forkserver", "spawn", "dask"])
 def test_the_executor_changes_no_bit(
     kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
