@@ -98,7 +98,12 @@ def main() -> int:
     """Run the study; return 1 if a figure is out of its range."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--curves", type=int, default=2000, help="curves of each scenario")
-    parser.add_argument("--first", type=int, default=2000, help="number of the first, its noise")
+    parser.add_argument(
+        "--first",
+        type=int,
+        default=2000,
+        help="number of the first curve; numbers choose the noise",
+    )
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--output", type=Path, default=ROOT / "docs/indent_coverage.csv")
     options = parser.parse_args()

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 import nacre._core as core
-from nacre._differentiable import Array, Differentiable, Outputs
+from nacre._differentiable import SECOND, Array, Differentiable, Outputs
 from nacre._extras import extra
 
 with extra("jax"):
@@ -134,8 +134,9 @@ def solver(
         if gap is not None:
             parts.append(_checked("gap", gap, contact.grid.shape).ravel())
         x = jnp.concatenate([jnp.atleast_1d(part) for part in parts] or [jnp.zeros(0)])
-        function = functions.setdefault(names, _function(contact, names))
-        found = function(x)
+        if names not in functions:
+            functions[names] = _function(contact, names)
+        found = functions[names](x)
         pressure = found[1 : contact.cells + 1].reshape(contact.grid.shape)
         values = dict(zip(contact.outputs, found[contact.cells + 1 :], strict=True))
         return Result(pressure, values, pressure > 0, found[0] > 0)
@@ -185,7 +186,7 @@ def _first() -> Any:
     """Return the identity, which raises where it is differentiated."""
 
     def rule(primals: Any, tangents: Any) -> Any:
-        raise TypeError("a contact has first derivatives only: they cannot be differentiated again")
+        raise TypeError(SECOND)
 
     identity = jax.custom_jvp(lambda x: x)
     identity.defjvp(rule)

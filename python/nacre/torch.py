@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 import nacre._core as core
-from nacre._differentiable import Array, Differentiable, Outputs
+from nacre._differentiable import SECOND, Array, Differentiable, Outputs
 from nacre._extras import extra
 
 with extra("torch"):
@@ -157,9 +157,6 @@ def _looped(function: Any, info: Any, in_dims: Any, *arguments: Any) -> tuple[An
     if isinstance(rows[0], tuple):
         return tuple(torch.stack(column) for column in zip(*rows, strict=True)), (0,) * len(rows[0])
     return torch.stack(rows), 0
-
-
-SECOND = "a contact has first derivatives only: they cannot be differentiated again"
 
 
 class _Solve(torch.autograd.Function):  # type: ignore[misc]
