@@ -7,7 +7,7 @@ from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent / "extensions"))  # drawings
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))  # claims, drawings
 
 project = "nacre"
 author = copyright = "The nacre developers"
@@ -21,6 +21,7 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",
+    "claims",
 ]
 default_role = "py:obj"
 exclude_patterns = ["_build", "extensions", "gallery"]

@@ -2,6 +2,7 @@
 
 mod support {
     pub(crate) mod bodies;
+    pub(crate) mod claims;
     pub(crate) mod foundation;
     pub(crate) mod messages;
     pub(crate) mod random;

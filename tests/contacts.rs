@@ -1,6 +1,7 @@
 //! Contacts: every algorithm, control, domain and body, and what cannot be solved.
 
 mod support {
+    pub(crate) mod claims;
     pub(crate) mod contacts;
     pub(crate) mod foundation;
     pub(crate) mod messages;

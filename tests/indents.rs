@@ -1,5 +1,9 @@
 //! Indentation by axisymmetric tips: contacts, adhesion, derivatives, tables.
 
+mod support {
+    pub(crate) mod claims;
+}
+
 mod indent {
     mod adhesion;
     mod contact;

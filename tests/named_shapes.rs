@@ -1,6 +1,7 @@
 //! Contacts of named shapes against closed forms and published numbers.
 
 mod support {
+    pub(crate) mod claims;
     pub(crate) mod reference;
     pub(crate) mod sphere;
 }

@@ -1,6 +1,7 @@
 //! Stress and displacement below the surface.
 
 mod support {
+    pub(crate) mod claims;
     pub(crate) mod huber;
     pub(crate) mod random;
     pub(crate) mod reference;

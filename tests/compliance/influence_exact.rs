@@ -7,6 +7,7 @@ use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Substrate};
 use serde_json::Value;
 
+use crate::support::claims::claim;
 use crate::support::reference::{cases, list, number};
 
 /// Error over the larger of |C| and the bare substrate's coefficient at that offset; on a rigid
@@ -112,7 +113,8 @@ fn largest_error(file: &str) -> Result<(f64, usize)> {
 #[test]
 fn coefficients_of_random_bodies_equal_hankel_quadrature() -> Result<()> {
     let (worst, compared) = largest_error("influence_random.json")?;
-    assert!(compared > 1000 && worst < EXACT, "{worst:e} of {compared}");
+    assert!(compared > 1000, "{compared}");
+    claim("influence", worst);
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use nacre::response::{Compliance, frequency_response, surface_compliance};
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 use proptest::prelude::*;
 
+use crate::support::claims::claim;
 use crate::support::reference::{cases, list, number};
 use crate::support::seeded::seeded;
 
@@ -69,7 +70,8 @@ fn one_bonded_layer(body: &HalfSpace) -> bool {
 fn one_layer_equals_reference() -> Result<()> {
     for file in ["response_stacks.json", "response_random.json"] {
         let (worst, compared) = difference_from(file, one_bonded_layer)?;
-        assert!(compared > 40 && worst < ONE_LAYER, "{file}: {worst:e}");
+        assert!(compared > 40, "{file}");
+        claim("response", worst);
     }
     Ok(())
 }
@@ -78,7 +80,8 @@ fn one_layer_equals_reference() -> Result<()> {
 fn stacks_equal_reference() -> Result<()> {
     for file in ["response_stacks.json", "response_random.json"] {
         let (worst, compared) = difference_from(file, |body| !one_bonded_layer(body))?;
-        assert!(compared > 30 && worst < STACK, "{file}: {worst:e}");
+        assert!(compared > 30, "{file}");
+        claim("response", worst);
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ use nacre::{
 };
 use ndarray::{Array2, Zip};
 
+use crate::support::claims::claim;
 use crate::support::contacts::{Random, RandomContact};
 use crate::support::random::uniform;
 use crate::support::rings::Rings;
@@ -357,7 +358,7 @@ fn the_dent_of_a_sphere_is_that_of_an_axisymmetric_computation() -> Result<()> {
         let expected = rings.at(&ring_dent, r);
         worst = worst.max((w - expected).abs());
     }
-    assert!(worst < 1e-3 * deepest, "{:e}", worst / deepest);
+    claim("dent", worst / deepest);
     Ok(())
 }
 

@@ -11,6 +11,7 @@ use nacre::{
 };
 use serde_json::Value;
 
+use crate::support::claims::claim;
 use crate::support::random::uniform;
 use crate::support::reference::{cases, list, number};
 
@@ -119,6 +120,7 @@ fn coated_cylinders_equal_the_reference() -> Result<()> {
             let error = (pressure_at(&solutions[1], y) - exact_here) / exact;
             profile = profile.max(error.abs());
         }
+        claim("coated-cylinder-peak", peaks[0]);
         let extrapolated = (4.0 * peaks[1] - peaks[0]) / 3.0;
         println!(
             "{name}: peak {:.1e} {:.1e} -> {extrapolated:.1e}, half-width {width:.1e}, \

@@ -10,6 +10,7 @@ use nacre::{
 };
 use ndarray::Array2;
 
+use crate::support::claims::claim;
 use crate::support::random::uniform;
 
 /// Bare, under thin and thick coats, and a layer on a rigid base; thicknesses in units of `dx`.
@@ -126,7 +127,7 @@ fn full_contact_of_crossed_waves() -> Result<()> {
             });
             Ok(wrong.fold(0.0, f64::max))
         };
-        assert!(error(48, Method::Spectral)? < 1e-12, "{number}");
+        claim("waves", error(48, Method::Spectral)?);
         let [coarse, fine] = [error(32, Method::Exact)?, error(64, Method::Exact)?];
         assert!(
             fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.8,
@@ -290,13 +291,12 @@ fn random_stacks_in_full_contact() -> Result<()> {
             let shape = map(&grid, |x, y| 1e-3 * wave(x, y))?;
             let found = contact.solve(&shape, &Motion::load(1.2 * amplitude * 4.8), &tight())?;
             let (x, y) = (grid.x(), grid.y());
+            let mut worst = 0.0_f64;
             for ((i, j), p) in found.pressure.indexed_iter() {
                 let due = amplitude * (1.2 + wave(x[i], y[j]));
-                assert!(
-                    (p - due).abs() < 1e-12 * amplitude,
-                    "{number} {k} {l}: {p:e} {due:e}"
-                );
+                worst = worst.max((p - due).abs() / amplitude);
             }
+            claim("waves", worst);
             let largest = found.gap().iter().fold(0.0_f64, |m, g| m.max(g.abs()));
             assert!(largest < 1e-12 * 1e-3, "{number}: {largest:e}");
         }

@@ -7,6 +7,7 @@ use nacre::{Elastic, Error, HalfSpace, Layer, Result, Substrate};
 use serde_json::Value;
 
 use super::support::{body, number, reference};
+use crate::support::claims::claim;
 
 fn tip(case: &Value, a: f64) -> Result<Tip> {
     let (radius, n) = (number(&case["tip"]["R"]), number(&case["tip"]["n"]));
@@ -51,28 +52,23 @@ fn two_programs_find_the_same() -> Result<()> {
             }
             for (found, due) in pairs {
                 let error = found / number(due) - 1.0;
-                assert!(error.abs() < 1e-10, "{} a {a}: {error:e}", case["name"]);
+                println!("{} a {a}", case["name"]);
+                claim("indentation", error);
             }
             let mean = point.load / (PI * a * a);
             for (place, due) in row["p_at_r_over_a"].as_object().into_iter().flatten() {
                 let Some(due) = due.as_f64() else { continue };
                 let place: f64 = place.parse().unwrap_or(f64::NAN);
                 let found = point.pressure(&[place * a])?[0];
-                assert!(
-                    (found - due).abs() < 1e-8 * mean.max(due.abs()),
-                    "{} a {a} r {place}: {found} {due}",
-                    case["name"]
-                );
+                println!("{} a {a} r {place}: {found} {due}", case["name"]);
+                claim("indentation-pressure", (found - due) / mean.max(due.abs()));
             }
             for (place, due) in row["u_at_r_over_a"].as_object().into_iter().flatten() {
                 let place: f64 = place.parse().unwrap_or(f64::NAN);
                 let found = point.displacement(&[place * a])?[0];
                 let error = (found - number(due)) / point.approach;
-                assert!(
-                    error.abs() < 1e-9,
-                    "{} a {a} r {place}: {found} {due}",
-                    case["name"]
-                );
+                println!("{} a {a} r {place}: {found} {due}", case["name"]);
+                claim("indentation-surface", error);
             }
         }
     }
@@ -159,13 +155,10 @@ fn bare_bodies_are_sneddons() -> Result<()> {
         ),
     ] {
         let point = Indent::new(&stack, &tip).at_radius(a)?;
-        assert!((point.approach / approach - 1.0).abs() < 1e-12, "{tip:?}");
-        assert!(
-            (point.load / load - 1.0).abs() < 1e-12,
-            "{tip:?}: {} {load}",
-            point.load
-        );
-        assert!((point.stiffness / (2.0 * modulus * a) - 1.0).abs() < 1e-12);
+        println!("{tip:?}");
+        claim("sneddon", point.approach / approach - 1.0);
+        claim("sneddon", point.load / load - 1.0);
+        claim("sneddon", point.stiffness / (2.0 * modulus * a) - 1.0);
     }
     let punch = Indent::new(&stack, &Tip::flat_punch(a)?).at_load(0.4)?;
     assert!((punch.approach / (0.4 / (2.0 * modulus * a)) - 1.0).abs() < 1e-12);
@@ -258,16 +251,9 @@ fn stresses_below_the_surface() -> Result<()> {
             let found = point.stress(0, z, &[0.0])?[0];
             let (cone, pole) = (1.0 - z * (1.0 / z).atan(), 1.0 / (1.0 + z * z));
             let [zz, rr] = [-peak * pole, -peak * (1.3 * cone - 0.5 * pole)];
-            assert!(
-                (found.zz - zz).abs() < 1e-9 * peak,
-                "{z}: {} {zz}",
-                found.zz
-            );
-            assert!(
-                (found.rr - rr).abs() < 1e-9 * peak,
-                "{z}: {} {rr}",
-                found.rr
-            );
+            println!("{z}: {} {zz}, {} {rr}", found.zz, found.rr);
+            claim("indentation-stress", (found.zz - zz) / peak);
+            claim("indentation-stress", (found.rr - rr) / peak);
             assert!((found.tt - rr).abs() < 1e-9 * peak && found.rz.abs() < 1e-12);
             assert!((found.von_mises() - (zz - rr).abs()).abs() < 2e-9 * peak);
         }

@@ -6,6 +6,7 @@ use nacre::indent::{
 use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result};
 
 use super::support::{number, reference};
+use crate::support::claims::claim;
 
 /// Derivatives of ln a and ln δ to 1e-9, of the logarithm of the central pressure to 1e-7, under a given load: eleven coated
 /// spheres, of complex steps and of polynomials.
@@ -42,17 +43,26 @@ fn coated_spheres() -> Result<()> {
             let due = &case["derivatives"][key];
             let change = point.derivative(variable, Held::Load)?;
             let of = [
-                ("ln_a", change.radius / point.radius, 1e-9),
-                ("ln_delta", change.approach / point.approach, 1e-9),
-                ("ln_p0", change.pressure(&[0.0])?[0] / central, 1e-7),
+                (
+                    "ln_a",
+                    change.radius / point.radius,
+                    "indentation-derivatives",
+                ),
+                (
+                    "ln_delta",
+                    change.approach / point.approach,
+                    "indentation-derivatives",
+                ),
+                (
+                    "ln_p0",
+                    change.pressure(&[0.0])?[0] / central,
+                    "indentation-derivative-of-pressure",
+                ),
             ];
-            for (name, found, error) in of {
+            for (name, found, of_claim) in of {
                 let (found, due) = (found * scale, number(&due[name]));
-                assert!(
-                    (found - due).abs() < error,
-                    "{key} {name}: {found} {due} (E1 {})",
-                    get("E1")
-                );
+                println!("{key} {name}: {found} {due} (E1 {})", get("E1"));
+                claim(of_claim, found - due);
             }
         }
     }
@@ -283,12 +293,9 @@ fn cohesive_zones() -> Result<()> {
         let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
         for i in 0..found.len() {
             let due = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
-            assert!(
-                (found[i] * numbers[number] - due).abs() < 2e-8 * (sizes[i].abs() + due.abs()),
-                "{variable:?} {i}: {} {due} of {}",
-                found[i] * numbers[number],
-                sizes[i]
-            );
+            let error = (found[i] * numbers[number] - due) / (sizes[i].abs() + due.abs());
+            println!("{variable:?} {i}: {due} of {}", sizes[i]);
+            claim("cohesive-derivatives", error);
         }
         if variable == Variable::Held {
             continue;

@@ -4,6 +4,7 @@ use nacre::indent::{Form, Indent, Point, Stack, Tip};
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 
 use super::support::{EIGHTH, coated};
+use crate::support::claims::claim;
 
 /// Layers from 1e-3 to 1e3 of the contact radius, moduli from 1e-3 to 1e3 of the substrate's: no failure, P' = S δ' by
 /// differences, and 1.5 times as many nodes change load, approach and stiffness by less than 1e-9.
@@ -93,7 +94,8 @@ fn random_stacks() -> Result<()> {
             }
         };
         let error = indent.error_at(&point)?;
-        assert!(error < 1e-10, "{case}: {error:e} at {a} of {stack:?}");
+        println!("{case}: {error:e} at {a} of {stack:?}");
+        claim("random-stacks", error);
         // Differences of eighth order in 0.02 of ln a leave some 1e-12, and the rounding of 1e-13 over 0.02.
         let near = (-4..=4).map(|k| indent.at_radius(a * (0.02 * f64::from(k)).exp()));
         let near: Vec<Point> = near.collect::<Result<_>>()?;
@@ -107,10 +109,9 @@ fn random_stacks() -> Result<()> {
                 / (0.02 * a)
         };
         let [load, approach] = [slope(|p| p.load), slope(|p| p.approach)];
-        let error = load / (point.stiffness * approach) - 1.0;
-        assert!(error.abs() < 1e-10, "{case}: {error:e}");
-        let error = point.stiffness_slope / slope(|p| p.stiffness) - 1.0;
-        assert!(error.abs() < 1e-10, "{case}: {error:e}");
+        claim("random-stacks", load / (point.stiffness * approach) - 1.0);
+        let slope = slope(|p| p.stiffness);
+        claim("random-stacks", point.stiffness_slope / slope - 1.0);
     }
     assert!(refused <= 2, "{refused} of 200");
     Ok(())

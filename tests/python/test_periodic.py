@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -132,7 +133,9 @@ def test_case_files(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["contact_mechanics", "tamaas", "contact_mechanics_layer"])
-def test_other_programs_find_the_same_pressure(name: str) -> None:
+def test_other_programs_find_the_same_pressure(
+    name: str, claim: Callable[[str, float], None]
+) -> None:
     """ContactMechanics 1.8.3, also with its layer on a rigid base, and Tamaas 2.9.0.
 
     Their discretisation is the spectral method; their pressures stand in tests/data, which
@@ -157,7 +160,7 @@ def test_other_programs_find_the_same_pressure(name: str) -> None:
     found = contact.solve(shape, load=data["mean_pressure"] * side**2, tolerance=1e-12)
     theirs = np.array(data[name])
     assert 0.02 < (theirs > 0).mean() < 0.9
-    assert found.pressure == pytest.approx(theirs, abs=1e-6 * theirs.max())
+    claim("periodic-peers", float(np.abs(found.pressure - theirs).max() / theirs.max()))
 
 
 def test_stresses_repeat_and_bear_the_load() -> None:

@@ -3,6 +3,8 @@
 use approx::assert_relative_eq;
 use nacre::{Contact, Elastic, Grid, Motion, Options, Result, Roller, Setup, Solution};
 
+use crate::support::claims::claim;
+
 /// Relative tolerance of the known values, which have three digits.
 const KNOWN: f64 = 5e-3;
 
@@ -76,8 +78,8 @@ fn centred_roller_has_the_known_pressure_and_ends() -> Result<()> {
         ends[0] * 1e3,
         ends[1] * 1e3,
     );
-    assert_relative_eq!(solution.central_pressure(), 774e6, max_relative = KNOWN);
-    assert_relative_eq!(solution.peak_pressure(), 822e6, max_relative = KNOWN);
+    claim("roller", solution.central_pressure() / 774e6 - 1.0);
+    claim("roller", solution.peak_pressure() / 822e6 - 1.0);
     assert_relative_eq!(x.abs(), 9.8e-3, epsilon = ENDS);
     assert!(y.abs() < solution.grid().spacing()[1]);
     assert_relative_eq!(width, 0.0335e-3, max_relative = KNOWN);
@@ -118,8 +120,8 @@ fn eccentric_force_gives_the_known_peak_tilt_and_ends() -> Result<()> {
         ends[0] * 1e3,
         ends[1] * 1e3,
     );
-    assert_relative_eq!(solution.peak_pressure(), 985e6, max_relative = KNOWN);
-    assert_relative_eq!(solution.tilt[0], 3.40e-5, max_relative = KNOWN);
+    claim("roller", solution.peak_pressure() / 985e6 - 1.0);
+    claim("roller", solution.tilt[0] / 3.40e-5 - 1.0);
     for (end, known) in ends.into_iter().zip([-11.6e-3, 13.5e-3]) {
         assert_relative_eq!(end, known, epsilon = ENDS);
     }

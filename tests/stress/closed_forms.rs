@@ -4,6 +4,7 @@
 
 use std::f64::consts::PI;
 
+use crate::support::claims::claim;
 use crate::support::huber::huber;
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, stress};
 use ndarray::{Array2, Array3};
@@ -118,7 +119,6 @@ const NAMES: [&str; 9] = ["xx", "yy", "zz", "xy", "yz", "xz", "ux", "uy", "uz"];
 /// closed forms or keeps as much.
 #[test]
 fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
-    const QUADRATURE: f64 = 3e-7;
     let grid = Grid::new([16, 12], [16.0, 9.0])?;
     let (x, y) = (grid.x(), grid.y());
     let half = [3.0, 1.5];
@@ -151,11 +151,8 @@ fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
                 for k in 0..9 {
                     let (p, q) = (value(&pressed, k, [d, i, j]), value(&sliding, k, [d, i, j]));
                     for (name, value, exact) in [("p", p, normal[k]), ("q", q - p, lateral[k])] {
-                        assert!(
-                            (value - exact).abs() < QUADRATURE * exact.abs().max(1.0),
-                            "{name} {} at {at:?}, {z}: {value} {exact}",
-                            NAMES[k]
-                        );
+                        println!("{name} {} at {at:?}, {z}: {value} {exact}", NAMES[k]);
+                        claim("rectangle", (value - exact) / exact.abs().max(1.0));
                     }
                 }
             }
@@ -222,16 +219,11 @@ fn hertz_errors(count: usize, depth: f64) -> Result<[f64; 3]> {
 #[test]
 fn hertz_point_contact_converges() -> Result<()> {
     let (coarse, fine) = (hertz_errors(32, 1.0)?, hertz_errors(128, 1.0)?);
+    claim("uniform-cells", fine[0]);
+    claim("uniform-cells-off-edge", fine[1]);
+    claim("uniform-cells-axis", fine[2]);
     assert!(
-        fine[0] < 5e-3 && fine[0] < 0.6 * coarse[0],
-        "{coarse:?} {fine:?}"
-    );
-    assert!(
-        fine[1] < 1e-3 && fine[1] < 0.7 * coarse[1],
-        "{coarse:?} {fine:?}"
-    );
-    assert!(
-        fine[2] < 2e-5 && fine[2] < coarse[2] / 8.0,
+        fine[0] < 0.6 * coarse[0] && fine[1] < 0.7 * coarse[1] && fine[2] < coarse[2] / 8.0,
         "{coarse:?} {fine:?}"
     );
     let (coarse, fine) = (hertz_errors(32, 0.1)?, hertz_errors(128, 0.1)?);
@@ -254,7 +246,6 @@ fn hertz_point_contact_converges() -> Result<()> {
 #[test]
 fn largest_shear_below_hertz_contacts() -> Result<()> {
     // 201 cells: second order, 1e-4; depths are sampled every 1e-3.
-    let (value, place) = (2e-4, 2e-3);
     let depths: Vec<f64> = (0..61).map(|k| 0.45 + 0.001 * f64::from(k)).collect();
     let grid = Grid::new([161, 161], [2.5, 2.5])?;
     let axis = StressOptions {
@@ -266,8 +257,8 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     let Some(peak) = field.peak(&shear) else {
         panic!("no depths")
     };
-    assert!((peak.value - 0.310_02).abs() < value, "{peak:?}");
-    assert!((peak.position[2] - 0.4809).abs() < place, "{peak:?}");
+    claim("largest-shear", peak.value - 0.310_02);
+    claim("largest-shear-depth", peak.position[2] - 0.4809);
 
     let depths: Vec<f64> = (0..61).map(|k| 0.756 + 0.001 * f64::from(k)).collect();
     let grid = Grid::line(201, 2.5)?;
@@ -278,8 +269,8 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     let Some(peak) = field.peak(&shear) else {
         panic!("no depths")
     };
-    assert!((peak.value - 0.300_28).abs() < value, "{peak:?}");
-    assert!((peak.position[2] - 0.7862).abs() < place, "{peak:?}");
+    claim("largest-shear", peak.value - 0.300_28);
+    claim("largest-shear-depth", peak.position[2] - 0.7862);
     Ok(())
 }
 

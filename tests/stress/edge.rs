@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use crate::support::claims::claim;
 use crate::support::huber::huber;
 use nacre::{
     Contact, Elastic, FlatPunch, Grid, HalfSpace, Member, Motion, Options, Paraboloid, Result,
@@ -93,15 +94,14 @@ fn mcewen(y: f64, z: f64) -> [f64; 6] {
 /// 0.46; the bar is 0.6.
 #[test]
 fn hertz_point_contact() -> Result<()> {
-    const BAR: f64 = 1e-3;
     for depth in [1.0, 1.4, 1.6, 2.0, 4.0, 8.0] {
         let [everywhere, _] = sphere_errors(128, depth)?;
-        assert!(everywhere < BAR, "{depth}: {everywhere:.1e}");
+        claim("hertz-stress", everywhere);
     }
     for depth in [0.1, 0.3, 0.6] {
         let [everywhere, far] = sphere_errors(128, depth)?;
-        assert!(far < 0.5 * BAR, "{depth}: {far:.1e}");
-        assert!(everywhere < 2.0 * BAR, "{depth}: {everywhere:.1e}");
+        claim("hertz-stress-shallow", everywhere);
+        claim("hertz-stress-off-edge", far);
     }
     let (coarse, fine) = (sphere_errors(32, 1.0)?, sphere_errors(128, 1.0)?);
     assert!(fine[0] < 0.6 * coarse[0], "{coarse:?} {fine:?}");
@@ -125,6 +125,7 @@ fn hertz_line_contact() -> Result<()> {
     };
     for (depth, everywhere, far) in [(0.1, 6e-4, 2e-4), (1.0, 5e-4, 3e-5), (3.0, 1e-4, 3e-5)] {
         let (coarse, fine) = (errors(32, depth)?, errors(128, depth)?);
+        claim("cylinder-stress", fine[0]);
         assert!(
             fine[0] < everywhere && fine[1] < far,
             "{depth}: {coarse:?} {fine:?}"
@@ -154,7 +155,7 @@ fn surface_of_a_sliding_cylinder() -> Result<()> {
         let exact = -pressure - 2.0 * FRICTION * (y - beyond);
         worst = worst.max((field.yy()[[0, 0, j]] / peak - exact).abs());
     }
-    assert!(worst < 1e-2, "{worst:.1e}");
+    claim("sliding-cylinder", worst);
     Ok(())
 }
 
@@ -176,7 +177,7 @@ fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     let summary = solution.stress_summary(Member::Body, &strengths, &options, &mut progress)?;
     let tension = summary.layers[0].tension;
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;
-    assert!((tension.value / peak / exact - 1.0).abs() < 1e-2);
+    claim("sliding-sphere", tension.value / peak / exact - 1.0);
     assert!((tension.position[0] + 1.0).abs() < 1.5 / 128.0);
     assert!(tension.position[2].abs() < f64::EPSILON);
     Ok(())
@@ -287,10 +288,7 @@ fn smooth_contacts_gain() -> Result<()> {
     let shape = Paraboloid::new(3e3, 1e3)?;
     for depth in [0.0, 0.3, 1.0, 3.0] {
         let [uniform, solved] = against_finer(grid, &shape, 2.5e-3, depth)?;
-        assert!(
-            solved < 0.4 * uniform,
-            "{depth}: {uniform:.1e} {solved:.1e}"
-        );
+        claim("oblong", solved / uniform);
     }
     Ok(())
 }
@@ -338,7 +336,6 @@ fn long_cells_are_evaluated() -> Result<()> {
 /// peak on average.
 #[test]
 fn sharp_and_rough_contacts_do_not_lose() -> Result<()> {
-    const SHARES: f64 = 1e-4;
     let grid = Grid::new([64, 63], [3.0, 2.9])?;
     let shapes: [(&str, Box<dyn Surface>, f64); 4] = [
         ("punch", Box::new(FlatPunch::new(1.0)?), 2.5e-3),
@@ -348,11 +345,9 @@ fn sharp_and_rough_contacts_do_not_lose() -> Result<()> {
     ];
     for (name, shape, load) in shapes {
         for depth in [0.0, 0.3, 1.0, 3.0, 8.0] {
+            println!("{name} {depth}");
             let [uniform, solved] = against_finer(grid, shape.as_ref(), load, depth)?;
-            assert!(
-                solved < uniform + SHARES,
-                "{name} {depth}: {uniform:.2e} {solved:.2e}"
-            );
+            claim("sharp-or-rough", (solved - uniform).max(0.0));
         }
     }
     Ok(())

@@ -7,6 +7,8 @@ use nacre::{
 };
 use ndarray::{Array2, Array3};
 
+use crate::support::claims::claim;
+
 fn layer(young: f64, poisson: f64, thickness: f64) -> Result<Layer> {
     Layer::new(Elastic::new(young, poisson)?, thickness)
 }
@@ -189,12 +191,15 @@ fn surface_tractions_are_those_that_are_given() -> Result<()> {
     let pressure = crate::support::random::uniform([24, 15], 2);
     for (name, body, friction) in every_body()? {
         let field = stress(&body, &grid, &pressure, &[0.0], &options(friction))?;
+        let mut worst = 0.0_f64;
         for ((i, j), p) in pressure.indexed_iter() {
             for (k, factor) in [(2, 1.0), (5, 0.8 * friction), (4, 0.6 * friction)] {
                 let error = field.components[k][[0, i, j]] + factor * p;
-                assert!(error.abs() < ROUNDING, "{name} {}: {error:.1e}", NAMES[k]);
+                worst = worst.max(error.abs());
             }
         }
+        println!("{name}");
+        claim("surface-tractions", worst);
     }
     Ok(())
 }
@@ -270,7 +275,8 @@ fn a_larger_domain_changes_nothing() -> Result<()> {
         let other = stress(&body, &large, &padded, &depths, &options(friction))?;
         let other = picked(&other, [24, 15], [12, 8], [1, 1]);
         for (error, component) in differences(&one, &other).into_iter().zip(NAMES) {
-            assert!(error < ROUNDING, "{name} {component}: {error:.1e}");
+            println!("{name} {component}");
+            claim("doubling", error);
         }
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! Stress and displacement under a uniform square of pressure or traction, on layered bodies:
 //! double Fourier integrals, eleven digits.
 
+use crate::support::claims::claim;
 use crate::support::reference::{cases, list, number};
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Side, Stress, StressOptions, stress};
 use ndarray::Array2;
@@ -80,9 +81,8 @@ fn at(field: &Stress, k: usize, [x, y]: [f64; 2]) -> f64 {
 
 const NAMES: [&str; 9] = ["sxx", "syy", "szz", "sxy", "syz", "sxz", "ux", "uy", "uz"];
 
-/// Largest error over the pressure. The worst is 5e-7, from the interpolation of sixth order over
-/// cells of 1/20, half a side of the square below the surface.
-const TOLERANCE: f64 = 1e-6;
+/// The worst error comes from the interpolation of sixth order over cells of 1/20, half a side of the square below the
+/// surface.
 
 #[test]
 fn all_components_match_the_integrals() -> Result<()> {
@@ -99,13 +99,11 @@ fn all_components_match_the_integrals() -> Result<()> {
             let alone = at(&pressure, k, point);
             let value = sliding.as_ref().map_or(alone, |s| at(s, k, point) - alone);
             let expected = number(&case, name);
-            assert!(
-                (value - expected).abs() < TOLERANCE,
-                "{} at {point:?}, z {}, side {}: {name} is {value}, not {expected}",
-                case["load"],
-                case["z"],
-                case["side"]
+            println!(
+                "{} at {point:?}, z {}: {name} {value}",
+                case["load"], case["z"]
             );
+            claim("patch", value - expected);
         }
     }
     Ok(())

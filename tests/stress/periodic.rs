@@ -9,6 +9,7 @@ use nacre::{
 };
 use ndarray::{Array2, Axis};
 
+use crate::support::claims::claim;
 use crate::support::random::uniform;
 
 fn coated() -> Result<HalfSpace> {
@@ -108,11 +109,8 @@ fn strips_along_the_period_are_line_contacts() -> Result<()> {
                     let a = found.components[component][[k, 3, j]];
                     let b = turned.components[turned_component][[k, j, 3]];
                     // Coefficients err by 1e-7 of that of the loaded cell, and nine cells are loaded.
-                    assert!((a - due).abs() < 1e-6, "{component} {k} {j}: {a} {due}");
-                    assert!(
-                        (b - due).abs() < 1e-6,
-                        "turned {component} {k} {j}: {b} {due}"
-                    );
+                    println!("{component} {k} {j}: {a} {b} {due}");
+                    claim("periodic-stress", (a - due).abs().max((b - due).abs()));
                 }
             }
         }

@@ -1,0 +1,27 @@
+"""Fixtures of all tests."""
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
+
+
+@pytest.fixture(scope="session")
+def claim() -> Callable[[str, float], None]:
+    """Assert that an error is below the bar of its claim in docs/claims.json.
+
+    With NACRE_CLAIMS=FILE the error is appended to the file.
+    """
+    bars = {row["name"]: row["bar"] for row in json.loads(CLAIMS.read_text(encoding="utf-8"))}
+
+    def check(name: str, error: float) -> None:
+        if path := os.environ.get("NACRE_CLAIMS"):
+            with open(path, "a", encoding="utf-8") as file:
+                file.write(f"{name} {abs(error):e}\n")
+        assert abs(error) <= bars[name], f"{name}: {error:.2e}, the bar is {bars[name]:g}"
+
+    return check
