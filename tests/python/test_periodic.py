@@ -146,11 +146,11 @@ def test_maps_that_repeat_on_grids_that_fit() -> None:
     open_ = nacre.solve(ball, BODY, grid=nacre.Grid((80, 80), (2.5, 2.5)), load=1e-2)
     assert open_.report.converged
     piece = nacre.HeightMap(HEIGHTS, 1 / 32)
-    torn = nacre.solve(piece, BODY, grid=nacre.Grid((32, 24), (1.0, 0.75)), load=1e-3)
-    assert torn.report.converged
     along = nacre.HeightMap(HEIGHTS, 1 / 32, periodic=(True, False))
     strip = nacre.Grid((32, 24), (1.0, 0.75), periodic=(True, False))
-    assert nacre.solve(along, BODY, grid=strip, load=1e-3).report.converged
+    for shape, grid in ((piece, nacre.Grid((32, 24), (1.0, 0.75))), (along, strip)):
+        with pytest.warns(nacre.NacreWarning, match="reaches the rim of the measured map along y"):
+            assert nacre.solve(shape, BODY, grid=grid, load=1e-3).report.converged
 
 
 def test_an_approach_up_to_full_contact_has_a_solution() -> None:
