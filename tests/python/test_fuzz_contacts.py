@@ -147,7 +147,7 @@ def test_another_grid_is_refused(grid: nacre.Grid, hardness: float | None) -> No
     if grid.periodic == (False, False):
         with pytest.raises(ValueError, match=match):
             other.slide(BALL, load=10.0, friction=0.1, initial=slid)
-        roll = dict(load=10.0, friction=0.1, direction="+x", cells=1)
+        roll: dict[str, Any] = dict(load=10.0, friction=0.1, direction="+x", cells=1)
         with pytest.raises(ValueError, match=match):
             other.roll(BALL, initial=slid, **roll)
 
