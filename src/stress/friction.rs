@@ -23,10 +23,17 @@ impl Sliding {
     /// a body with a frictionless interface.
     pub(super) fn traction(&self, body: &HalfSpace, options: &StressOptions) -> Result<[f64; 2]> {
         let friction = finite("friction", options.friction)?;
-        if !(0.0..=1e100).contains(&friction) {
+        if friction < 0.0 {
             return Err(Error::Parameter {
                 name: "friction",
-                requirement: "at least 0 (turn the direction) and at most 1e100",
+                requirement: "at least 0 (turn the direction)",
+                value: friction,
+            });
+        }
+        if friction > 1e100 {
+            return Err(Error::Parameter {
+                name: "friction",
+                requirement: "at most 1e100",
                 value: friction,
             });
         }
