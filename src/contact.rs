@@ -29,6 +29,7 @@ pub use cascade::discretisation::Discretisation;
 pub use hardness::Hardness;
 pub use motion::Motion;
 pub use options::{Algorithm, Options, Setup};
+pub(crate) use problem::freedoms::OVERFLOW;
 pub(crate) use problem::patch::{block, bounds};
 pub use solution::Solution;
 pub use solution::carried::Balance;

@@ -254,7 +254,7 @@ impl Convolution {
     /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
     ///
     /// # Errors
-    /// Where `pressure` does not have the shape of the convolution.
+    /// As [`Convolution::apply_into`].
     pub fn apply(&self, pressure: &ArrayRef2<f64>) -> Result<Array2<f64>> {
         let mut displacement = Array2::zeros(self.shape);
         self.apply_into(pressure, &mut displacement, &mut self.workspace())?;
@@ -265,7 +265,7 @@ impl Convolution {
     /// it. No memory is allocated where both arrays are in C order.
     ///
     /// # Errors
-    /// Where an array does not have the shape of the convolution.
+    /// Where an array does not have the shape of the convolution, or a pressure is not finite.
     pub fn apply_into(
         &self,
         pressure: &ArrayRef2<f64>,
@@ -285,6 +285,12 @@ impl Convolution {
                 });
             }
         }
+        if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
+            return Err(Error::NonFinite {
+                name: "pressure",
+                index: index.into(),
+            });
+        }
         let standard = pressure.as_standard_layout();
         let input = standard.as_slice().unwrap_or(&[]);
         if let Some(output) = displacement.as_slice_mut() {
@@ -297,7 +303,12 @@ impl Convolution {
                 .zip(output)
                 .for_each(|(d, o)| *d = o);
         }
-        Ok(())
+        match displacement.iter().all(|d| d.is_finite()) {
+            true => Ok(()),
+            false => Err(Error::Inconsistent(
+                "pressure must be in units in which its products with the coefficients do not overflow",
+            )),
+        }
     }
 
     /// Applies the convolution to slices in C order.

@@ -88,6 +88,16 @@ pub enum Error {
         /// Smallest and largest y of the cells that can touch.
         y_range: [f64; 2],
     },
+    /// A solution to start from that is on another grid.
+    #[error(
+        "initial must be a solution on the grid of this contact, {expected}, was one on {found}"
+    )]
+    OtherGrid {
+        /// The grid of the contact, in words.
+        expected: String,
+        /// The grid of the solution, in words.
+        found: String,
+    },
     /// A grid that needs more memory than is available.
     #[error(
         "a grid of {shape:?} cells needs about {} MiB, and {} MiB are available; take fewer cells",
@@ -159,6 +169,30 @@ pub enum Error {
         /// Gaps at both ends of the period \[m\].
         gaps: [f64; 2],
     },
+    /// A shape that repeats on a grid that does not, or with another period.
+    #[error(
+        "grid must repeat along {axis} as the shape does, with its period {period:e} or a multiple, was {}; a piece of a \
+         periodic height map is one that is not periodic", repeats(*grid)
+    )]
+    Period {
+        /// `x` or `y`.
+        axis: &'static str,
+        /// Period of the shape \[m\].
+        period: f64,
+        /// Period of the grid \[m\]; `None` where it does not repeat.
+        grid: Option<f64>,
+    },
+    /// An approach to which no pressure belongs.
+    #[error(
+        "approach must be below {most:.6e}, the mean gap, on a grid that repeats in both directions, was {approach:e}: the \
+         approach is that of the mean plane, and stays there while the load of a full contact grows; give a load"
+    )]
+    FullContact {
+        /// The approach \[m\].
+        approach: f64,
+        /// The approach of full contact \[m\].
+        most: f64,
+    },
     /// A load above what the surfaces bear at their hardness.
     #[error(
         "load must be below what the hardness bears on the cells that can touch, {bears:.6e}, was {load:.6e}"
@@ -168,6 +202,19 @@ pub enum Error {
         load: f64,
         /// Σ H dA over the cells that can touch \[N\].
         bears: f64,
+    },
+    /// A moment that the surfaces do not bear at their hardness.
+    #[error(
+        "moment, or load times eccentricity, along {axis} must be between {:.6e} and {:.6e}, which the hardness bears, was \
+         {moment:.6e}", range[0], range[1]
+    )]
+    Overturned {
+        /// `x` or `y`.
+        axis: &'static str,
+        /// The moment about the origin \[N m\].
+        moment: f64,
+        /// The least and the largest moment \[N m\].
+        range: [f64; 2],
     },
     /// A tangential force or torque that friction does not bear.
     #[error(
@@ -200,6 +247,14 @@ pub enum Error {
         /// Option that limits the number of iterations.
         limit: &'static str,
     },
+}
+
+/// The period of a grid in words.
+fn repeats(period: Option<f64>) -> String {
+    period.map_or_else(
+        || "a grid that does not repeat there".to_owned(),
+        |period| format!("a grid of period {period:e}"),
+    )
 }
 
 /// The conditions of convergence that were not met.

@@ -33,7 +33,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, Termination};
 use crate::error::Result;
 use crate::surface::Surface;
 
@@ -54,7 +54,9 @@ pub use session::FrictionProgress;
 pub use solution::{FrictionReport, FrictionSolution, TangentialMotion};
 pub use step::{Friction, FrictionOptions, Rolling, RollingDirection, Step};
 
-use session::Session;
+#[cfg(feature = "python")]
+use session::Watching;
+use session::{Last, Session};
 
 impl Contact {
     /// Presses `shape` into the body and moves it tangentially, step after step, from `last` on or from the first touch.
@@ -91,7 +93,8 @@ impl Contact {
     }
 
     /// [`Contact::slide`] that calls `progress` with the number of the step and its report so far. Its break ends the
-    /// history: the last solution is then unfinished, with [`Termination::Stopped`](crate::Termination::Stopped).
+    /// history: the last solution is then unfinished, with [`Termination::Stopped`](crate::Termination::Stopped), and with
+    /// tractions and shift as they were before its step.
     ///
     /// # Errors
     /// As [`Contact::slide`].
@@ -105,17 +108,25 @@ impl Contact {
     ) -> Result<Vec<FrictionSolution>> {
         self.run(|| {
             let session = Session::new(self, shape, *options)?;
-            let mut solutions: Vec<FrictionSolution> = Vec::new();
-            for (number, step) in steps.iter().enumerate() {
-                let mut watch = |report: &FrictionReport| progress(number, report);
-                let solution = session.step(step, solutions.last().or(last), &mut watch)?;
-                let stopped = solution.report.termination == crate::contact::Termination::Stopped;
-                solutions.push(solution);
-                if stopped {
-                    break;
-                }
-            }
-            Ok(solutions)
+            history(steps.len(), last, |number, last| {
+                session.step(&steps[number], last, &mut |report| progress(number, report))
+            })
+        })
+    }
+
+    /// One step of a history after `last`, which is a step of the same history where it is the caller's `own`.
+    #[cfg(feature = "python")]
+    pub(crate) fn slide_step(
+        &self,
+        shape: &dyn Surface,
+        step: &Step,
+        options: &FrictionOptions,
+        last: Option<(&FrictionSolution, bool)>,
+        progress: &mut Watching,
+    ) -> Result<FrictionSolution> {
+        self.run(|| {
+            let last = last.map(|(solution, own)| Last { solution, own });
+            Session::new(self, shape, *options)?.step(step, last, progress)
         })
     }
 
@@ -165,18 +176,46 @@ impl Contact {
     ) -> Result<Vec<FrictionSolution>> {
         self.run(|| {
             let session = Session::new(self, shape, *options)?;
-            let mut solutions: Vec<FrictionSolution> = Vec::new();
-            for (number, rolling) in rolling.iter().enumerate() {
+            history(rolling.len(), last, |number, last| {
                 let mut watch = |report: &FrictionReport| progress(number, report);
-                let solution =
-                    session.roll(rolling, Some(solutions.last().or(last)), &mut watch)?;
-                let stopped = solution.report.termination == crate::contact::Termination::Stopped;
-                solutions.push(solution);
-                if stopped {
-                    break;
-                }
-            }
-            Ok(solutions)
+                session.roll(&rolling[number], Some(last), &mut watch)
+            })
         })
     }
+
+    /// Rolls by one cell after `last`, which is a step of the same history where it is the caller's `own`.
+    #[cfg(feature = "python")]
+    pub(crate) fn roll_step(
+        &self,
+        shape: &dyn Surface,
+        rolling: &Rolling,
+        options: &FrictionOptions,
+        last: Option<(&FrictionSolution, bool)>,
+        progress: &mut Watching,
+    ) -> Result<FrictionSolution> {
+        self.run(|| {
+            let last = last.map(|(solution, own)| Last { solution, own });
+            Session::new(self, shape, *options)?.roll(rolling, Some(last), progress)
+        })
+    }
+}
+
+/// Steps one after the other, from a state that is given on, until one is stopped.
+fn history(
+    steps: usize,
+    given: Option<&FrictionSolution>,
+    mut step: impl FnMut(usize, Option<Last>) -> Result<FrictionSolution>,
+) -> Result<Vec<FrictionSolution>> {
+    let mut solutions: Vec<FrictionSolution> = Vec::new();
+    for number in 0..steps {
+        let last = solutions.last().or(given);
+        let own = number > 0;
+        let solution = step(number, last.map(|solution| Last { solution, own }))?;
+        let stopped = solution.report.termination == Termination::Stopped;
+        solutions.push(solution);
+        if stopped {
+            break;
+        }
+    }
+    Ok(solutions)
 }

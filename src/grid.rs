@@ -125,6 +125,11 @@ impl Grid {
         self.periodic
     }
 
+    /// Periods along x and along y \[m\]; `None` where the grid does not repeat.
+    pub(crate) fn periods(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|axis| self.periodic[axis].then_some(self.size[axis]))
+    }
+
     /// Whether this is a grid for line contact in plane strain.
     pub fn is_line(&self) -> bool {
         self.plane_strain
@@ -142,6 +147,37 @@ impl Grid {
             center: center.map(|c| c + 0.0),
             ..self
         })
+    }
+
+    /// An error unless a solution to start from, if there is one, is on this grid.
+    ///
+    /// # Errors
+    /// [`Error::OtherGrid`].
+    pub(crate) fn check_initial(&self, found: Option<&Self>) -> Result<()> {
+        match found {
+            None => Ok(()),
+            Some(found) if found == self => Ok(()),
+            Some(found) => Err(Error::OtherGrid {
+                expected: self.words(),
+                found: found.words(),
+            }),
+        }
+    }
+
+    fn words(&self) -> String {
+        let ([nx, ny], [lx, ly], [x, y]) = (self.shape, self.size, self.center);
+        let repeats = match self.periodic {
+            [false, false] => "",
+            [true, false] => ", periodic along x",
+            [false, true] => ", periodic along y",
+            [true, true] => ", periodic along x and y",
+        };
+        match self.plane_strain {
+            true => format!("a line of {ny} cells over {ly:e} around {y:e}"),
+            false => {
+                format!("{nx} x {ny} cells over ({lx:e}, {ly:e}) around ({x:e}, {y:e}){repeats}")
+            }
+        }
     }
 
     /// Unit vector along which a contact on this grid rolls: across the strips of a line contact. `None`

@@ -12,6 +12,7 @@ use crate::grid::Grid;
 use crate::parallel::each_row;
 
 mod counterpart;
+mod extent;
 mod height_map;
 mod lifted;
 mod limited;
@@ -21,6 +22,7 @@ mod roller;
 mod slope;
 mod superposition;
 
+pub use extent::Extent;
 pub use height_map::HeightMap;
 pub(crate) use lifted::Lifted;
 pub(crate) use limited::Limited;
@@ -28,54 +30,6 @@ pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, S
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
 pub use roller::Roller;
 pub use superposition::Superposition;
-
-/// The extent of a shape along one axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Extent {
-    /// A shape whose gap increases without limit in both directions.
-    Rising,
-    /// A shape whose gap is constant along the axis, so that the contact has no end.
-    Endless,
-    /// A shape that ends smoothly at these coordinates \[m\], as a sphere; the gap is +∞ beyond.
-    Within([f64; 2]),
-    /// A shape that is cut off at these coordinates \[m\], as a roller by its faces or a height map
-    /// by its rim. The gap is +∞ beyond, and a contact that reaches an end has a sharp edge there.
-    CutOff([f64; 2]),
-}
-
-impl Extent {
-    /// Range of coordinates in which the gap can be finite.
-    pub fn range(&self) -> [f64; 2] {
-        match *self {
-            Self::Rising | Self::Endless => [f64::NEG_INFINITY, f64::INFINITY],
-            Self::Within(range) | Self::CutOff(range) => range,
-        }
-    }
-
-    fn shifted(self, by: f64) -> Self {
-        match self {
-            Self::Within([a, b]) => Self::Within([a + by, b + by]),
-            Self::CutOff([a, b]) => Self::CutOff([a + by, b + by]),
-            other => other,
-        }
-    }
-
-    /// Extent of the sum of two shapes, and of a shape within a range.
-    fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Endless, Self::Endless) => Self::Endless,
-            (Self::Rising | Self::Endless, Self::Rising | Self::Endless) => Self::Rising,
-            (a, b) => {
-                let ([a0, a1], [b0, b1]) = (a.range(), b.range());
-                let range = [a0.max(b0), a1.min(b1)];
-                match (a, b) {
-                    (Self::CutOff(_), _) | (_, Self::CutOff(_)) => Self::CutOff(range),
-                    _ => Self::Within(range),
-                }
-            }
-        }
-    }
-}
 
 /// Array of `value(i, j)` at the cells of a grid.
 fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {

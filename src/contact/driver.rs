@@ -10,7 +10,7 @@ use ndarray::Array2;
 use super::cascade::corners;
 use super::cascade::discretisation::{GridResult, estimate};
 use super::cascade::{Cascade, Coarser};
-use super::hardness::{Elastic, Yielding, check_indentation, check_load};
+use super::hardness::{Elastic, Hardness, Yielding, check_indentation, check_load};
 use super::motion::Motion;
 use super::options::{Algorithm, Options};
 use super::plan::{Plan, bodies};
@@ -99,14 +99,20 @@ impl Plan {
         // The gap on the finest grid; at the same time coarser solutions, since fetching memory may take
         // long and the coarsest grids are too small for several threads.
         let cascades = options.algorithm == Algorithm::Cascade;
+        // An approach that may be too large for a solution is looked at before.
+        let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
+        let bounded = self.datum.floats() && !freedoms.loaded[0] && !yields;
         let mut coarser = |gap: Option<&Array2<f64>>| {
             Coarser::solve(&freedoms, gap, shape, &self.levels, criteria, &mut watch)
         };
         let (finest, ahead) = rows.both(
             || self.finest_gap(given, shape, sampled, &freedoms, &rows),
-            || (cascades && options.initial.is_none()).then(|| coarser(None)),
+            || (cascades && options.initial.is_none() && !bounded).then(|| coarser(None)),
         );
         let (gap, mut fields) = finest?;
+        if bounded {
+            self.datum.check_gap(motion.approach.unwrap_or(0.0), &gap)?;
+        }
         let problem = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,

@@ -66,12 +66,18 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
     Ok(gaps)
 }
 
-/// An error where the gap of `shape` jumps at the seam of a grid that repeats.
+/// An error where `shape` repeats along an axis and `grid` does not as it does, or where its gap jumps at the seam of a
+/// grid that repeats. A line contact goes on along x.
 ///
 /// # Errors
-/// [`Error::Seam`].
+/// [`Error::Period`], [`Error::Seam`].
 pub(super) fn check_seam(shape: &dyn Surface, grid: &Grid) -> Result<()> {
     let (center, size) = (grid.center(), grid.size());
+    for (axis, extent) in shape.extent().iter().enumerate() {
+        if axis == 1 || !grid.is_line() {
+            extent.check_period(axis, grid.periods()[axis])?;
+        }
+    }
     for axis in (0..2).filter(|&axis| grid.is_periodic()[axis]) {
         let ends = [-0.5, 0.5].map(|half| center[axis] + half * size[axis]);
         for across in grid.coordinates(1 - axis) {

@@ -6,6 +6,7 @@ use super::law::State;
 use super::solution::TangentialMotion;
 use super::step::Freedom;
 use super::task::{Solved, Task, ahead, each};
+use crate::contact::Warning;
 use crate::grid::Grid;
 use crate::traction::Tangential;
 
@@ -18,6 +19,71 @@ pub(super) struct Fields {
     pub(super) violation: f64,
     pub(super) excess: f64,
     pub(super) full_slip: bool,
+}
+
+/// Creepage or twist from which on their squares, of which half is left out, are 5 % of them.
+const LARGE: f64 = 0.1;
+
+impl Fields {
+    pub(super) fn are_finite(&self) -> bool {
+        let fields = [&self.traction, &self.displacement, &self.slip];
+        let motion = match self.motion {
+            TangentialMotion::Slide {
+                shift: [x, y],
+                twist,
+            } => [x, y, twist],
+            TangentialMotion::Roll {
+                creepage: [x, y],
+                spin,
+                ..
+            } => [x, y, spin],
+        };
+        let mut values = fields.into_iter().flatten().flatten().chain(&motion);
+        values.all(|value| value.is_finite())
+    }
+
+    /// The warning of creepages or a twist that are not small, where `pressure` is.
+    pub(super) fn warning(
+        &self,
+        task: &Task,
+        grid: &Grid,
+        pressure: &Array2<f64>,
+    ) -> Option<Warning> {
+        let TangentialMotion::Roll { creepage, spin, .. } = self.motion else {
+            let TangentialMotion::Slide { twist, .. } = self.motion else {
+                return None;
+            };
+            return (twist.abs() > LARGE).then_some(Warning::LargeMotion { size: twist.abs() });
+        };
+        let (x, y) = (grid.x(), grid.y());
+        let touching = pressure.indexed_iter().filter(|(_, p)| **p > 0.0);
+        let size = touching.fold(0.0_f64, |most, ((i, j), _)| {
+            let unit = task.unit_motions([x[i], y[j]]);
+            let along = |axis: usize| {
+                creepage[0] * unit[0][axis] + creepage[1] * unit[1][axis] + spin * unit[2][axis]
+            };
+            most.max(along(0).hypot(along(1)))
+        });
+        (size > LARGE).then_some(Warning::LargeMotion { size })
+    }
+
+    /// Brings back the state before the step, where there was one: the history can go on from there.
+    pub(super) fn restore(&mut self, task: &Task) {
+        let (Task::Slide { before, .. }
+        | Task::Roll {
+            before: Some(before),
+            ..
+        }) = task
+        else {
+            return;
+        };
+        self.traction.clone_from(&before.traction);
+        self.displacement.clone_from(&before.displacement);
+        self.slip.iter_mut().for_each(|s| s.fill(0.0));
+        if let TangentialMotion::Slide { shift, twist } = &mut self.motion {
+            (*shift, *twist) = (before.shift, before.twist);
+        }
+    }
 }
 
 impl Task<'_> {

@@ -13,8 +13,8 @@ use ndarray::Array2;
 use super::newton::{Effort, Quality};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Rolling, Step};
-use super::task::{Before, Task, bounds};
-use crate::contact::{Contact, Motion, Options, Solution, Termination};
+use super::task::{Before, Task, bounds, check_bound, check_forces};
+use crate::contact::{Contact, Motion, OVERFLOW, Options, Solution, Termination, Warning};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::surface::{Lifted, Surface};
@@ -24,7 +24,7 @@ use crate::traction::Tangential;
 pub type FrictionProgress<'a> = dyn FnMut(usize, &FrictionReport) -> ControlFlow<()> + Send + 'a;
 
 /// [`FrictionProgress`] of one step.
-type Watching<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
+pub(super) type Watching<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
 
 /// Sweeps between pressure and tractions.
 const MOST_SWEEPS: usize = 60;
@@ -61,17 +61,16 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// One step of a history after `last`; none where `progress` stops it before a pressure is found.
+    /// One step of a history after `last`.
     pub(super) fn step(
         &self,
         step: &Step,
-        last: Option<&FrictionSolution>,
+        last: Option<Last>,
         progress: &mut Watching,
-    ) -> Result<FrictionSolution>
-    where
-        Self: Sized,
-    {
+    ) -> Result<FrictionSolution> {
         let grid = self.contact.grid();
+        let known = last.and_then(|last| last.pressure(self));
+        let last = last.map(|last| last.solution);
         let before = last.map(|last| last.normal.report.motion);
         let motion = match (step.motion, before) {
             (Some(motion), Some(before)) => Some(motion.after(&before)),
@@ -98,9 +97,8 @@ impl<'a> Session<'a> {
             before: &before,
         };
         let forces = freedoms.map(Freedom::force);
-        let again = last.filter(|last| last.normal.report.motion == motion && !self.coupled);
         let start = Start {
-            normal: again.map(|last| &last.normal),
+            normal: known.filter(|known| known.report.motion == motion),
             pressure: last.map(|last| &last.normal.pressure),
             traction: &before.traction,
         };
@@ -111,7 +109,7 @@ impl<'a> Session<'a> {
     pub(super) fn roll(
         &self,
         rolling: &Rolling,
-        last: Option<Option<&FrictionSolution>>,
+        last: Option<Option<Last>>,
         progress: &mut Watching,
     ) -> Result<FrictionSolution> {
         let grid = self.contact.grid();
@@ -120,7 +118,7 @@ impl<'a> Session<'a> {
         let nothing = Before::nothing(grid);
         let before = match last {
             None => None,
-            Some(Some(last)) => Some(state(last, grid)?),
+            Some(Some(last)) => Some(state(last.solution, grid)?),
             Some(None) => Some(nothing.clone()),
         };
         let task = Task::Roll {
@@ -130,11 +128,10 @@ impl<'a> Session<'a> {
         };
         let [along, across] = freedoms.map(Freedom::force);
         let last = last.flatten();
-        let again =
-            last.filter(|last| last.normal.report.motion == rolling.motion && !self.coupled);
+        let known = last.and_then(|last| last.pressure(self));
         let start = Start {
-            normal: again.map(|last| &last.normal),
-            pressure: last.map(|last| &last.normal.pressure),
+            normal: known.filter(|known| known.report.motion == rolling.motion),
+            pressure: last.map(|last| &last.solution.normal.pressure),
             traction: before
                 .as_ref()
                 .map_or(&nothing.traction, |before| &before.traction),
@@ -176,7 +173,7 @@ impl<'a> Session<'a> {
         let mut traction = start.traction.clone();
         let mut pressure: Option<Array2<f64>> = start.pressure.cloned();
         let mut stopped = false;
-        let (normal, solved) = loop {
+        let (mut normal, solved) = loop {
             let normal = match start.normal {
                 Some(known) => known.clone(),
                 None => {
@@ -206,19 +203,13 @@ impl<'a> Session<'a> {
                 0.0
             };
             let bound = bounds(&normal.pressure, friction);
+            check_bound(&bound)?;
             let bears = bound.sum() * grid.cell_area();
             let force = forces[0].hypot(forces[1]);
             if stopped {
                 break (normal, None);
             }
-            for (name, value, bears) in [
-                ("force", force, bears),
-                ("torque", torque.abs(), largest_torque(grid, &bound)),
-            ] {
-                if value > 0.0 && value >= (1.0 - tolerance) * bears {
-                    return Err(Error::FullSlip { name, value, bears });
-                }
-            }
+            check_forces(grid, &bound, forces, torque, tolerance)?;
             if task.leaves_the_grid(&bound) {
                 return Err(Error::Inconsistent(
                     "in rolling, the contact must end a cell or more before the edge of the grid: give a wider grid",
@@ -259,13 +250,14 @@ impl<'a> Session<'a> {
                 traction = solved.tractions(grid.shape());
             }
             let spent = report.convolutions >= self.options.max_convolutions;
-            if settled || stopped || spent || report.sweeps >= MOST_SWEEPS {
+            let failed = !normal.report.converged();
+            if settled || stopped || spent || failed || report.sweeps >= MOST_SWEEPS {
                 break (normal, solved);
             }
             pressure = Some(normal.pressure);
         };
         let bound = bounds(&normal.pressure, friction);
-        let fields = task.fields(
+        let mut fields = task.fields(
             &self.tangential,
             (grid, &bound, &*self.spreading(&normal.pressure)),
             solved.as_ref(),
@@ -273,6 +265,12 @@ impl<'a> Session<'a> {
         report.violation = fields.violation;
         report.excess = fields.excess;
         report.full_slip = fields.full_slip;
+        if !fields.are_finite() {
+            return Err(OVERFLOW);
+        }
+        if stopped {
+            fields.restore(task);
+        }
         // The operator of the whole grid rounds otherwise than that of the window.
         let rounding = 1e-13;
         let good = fields.violation <= tolerance + rounding
@@ -285,6 +283,9 @@ impl<'a> Session<'a> {
             _ => Termination::IterationLimit,
         };
         report.seconds = begun.elapsed().as_secs_f64();
+        let warnings = &mut normal.report.warnings;
+        warnings.retain(|warning| !matches!(warning, Warning::LargeMotion { .. }));
+        warnings.extend(fields.warning(task, grid, &normal.pressure));
         Ok(FrictionSolution {
             normal,
             friction: friction.clone(),
@@ -332,17 +333,24 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Σ μp r dA: the largest torque about the origin.
-fn largest_torque(grid: &Grid, bound: &Array2<f64>) -> f64 {
-    let (x, y) = (grid.x(), grid.y());
-    let each = bound
-        .indexed_iter()
-        .map(|((i, j), bound)| bound * x[i].hypot(y[j]));
-    each.sum::<f64>() * grid.cell_area()
-}
-
 /// Change of the pressure to which tractions are found while it changes.
 const LOOSE: f64 = 0.01;
+
+/// The state that a step goes on from.
+#[derive(Clone, Copy)]
+pub(super) struct Last<'a> {
+    pub(super) solution: &'a FrictionSolution,
+    /// Whether it is a step of the same call, with the same shape and bodies, to the same tolerance.
+    pub(super) own: bool,
+}
+
+impl<'a> Last<'a> {
+    /// The pressure, where it is known for the same motion: that of bodies whose tractions do not act on it.
+    fn pressure(self, session: &Session) -> Option<&'a Solution> {
+        let normal = &self.solution.normal;
+        (self.own && !session.coupled && normal.report.converged()).then_some(normal)
+    }
+}
 
 /// What a step starts from.
 #[derive(Clone, Copy)]
@@ -358,11 +366,7 @@ struct Start<'a> {
 /// # Errors
 /// Where it is on another grid.
 fn state(last: &FrictionSolution, grid: &Grid) -> Result<Before> {
-    if last.grid() != grid {
-        return Err(Error::Inconsistent(
-            "initial must be a solution on the grid of this contact",
-        ));
-    }
+    grid.check_initial(Some(last.grid()))?;
     let (shift, twist) = match last.motion {
         TangentialMotion::Slide { shift, twist } => (shift, twist),
         TangentialMotion::Roll { .. } => ([0.0; 2], 0.0),

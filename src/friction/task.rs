@@ -9,6 +9,7 @@ use super::law::Law;
 use super::newton::{Effort, Outcome, Problem, Watch};
 use super::operator::{Direction, Operator};
 use super::step::{Freedom, Freedoms, Friction, Rolling, RollingDirection};
+use crate::error::{Error, Result};
 use crate::grid::{Grid, Window};
 use crate::traction::{Tangential, TangentialWindow};
 
@@ -310,6 +311,56 @@ pub(super) fn bounds(pressure: &Array2<f64>, friction: &Friction) -> Array2<f64>
         *p *= friction.at([i, j]);
     }
     bound
+}
+
+/// An error where products of tractions would overflow or vanish.
+pub(super) fn check_bound(bound: &Array2<f64>) -> Result<()> {
+    let most = bound.iter().fold(0.0_f64, |most, bound| most.max(*bound));
+    match most <= 0.0 || (1e-150..=1e150).contains(&most) {
+        true => Ok(()),
+        false => Err(Error::Parameter {
+            name: "friction times the largest pressure",
+            requirement: "0, or between 1e-150 and 1e150",
+            value: most,
+        }),
+    }
+}
+
+/// An error where friction does not bear a force or a torque, or where one is so small that its tractions vanish.
+pub(super) fn check_forces(
+    grid: &Grid,
+    bound: &Array2<f64>,
+    [x, y]: [f64; 2],
+    torque: f64,
+    tolerance: f64,
+) -> Result<()> {
+    let bears = bound.sum() * grid.cell_area();
+    for (name, value, bears) in [
+        ("force", x.hypot(y), bears),
+        ("torque", torque.abs(), largest_torque(grid, bound)),
+    ] {
+        if value > 0.0 && value >= (1.0 - tolerance) * bears {
+            return Err(Error::FullSlip { name, value, bears });
+        }
+        if value > 0.0 && value < 1e-100 * bears {
+            let requirement = "0, or at least 1e-100 of what friction bears";
+            return Err(Error::Parameter {
+                name,
+                requirement,
+                value,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Σ μp r dA: the largest torque about the origin.
+fn largest_torque(grid: &Grid, bound: &Array2<f64>) -> f64 {
+    let (x, y) = (grid.x(), grid.y());
+    let each = bound
+        .indexed_iter()
+        .map(|((i, j), bound)| bound * x[i].hypot(y[j]));
+    each.sum::<f64>() * grid.cell_area()
 }
 
 /// The cell ahead, or the last one.

@@ -149,6 +149,12 @@ struct SurfaceKernel {
     error: f64,
 }
 
+/// The error for layers whose response, or its derivative, is lost in rounding.
+const TOO_DIFFERENT: Error = Error::Inconsistent(
+    "layers and substrate must differ less in moduli and thicknesses: rounding of numbers hides the displacement of the \
+     body, or its derivatives, at long waves; take the stiffer of two parts as rigid, or leave out the thin one",
+);
+
 /// Size of the remainder, relative to the response, below which it is rounding.
 const VANISHED: f64 = 1e-15;
 
@@ -194,6 +200,9 @@ impl SurfaceKernel {
         }
         let reached = |log: f64| left(log) <= REACHED * size;
         if !(reached(low - 1.0) && reached(high)) {
+            if body.half_space().is_some() {
+                return Err(TOO_DIFFERENT);
+            }
             return Err(Error::Inconsistent(
                 "normal(α) of the body must reach asymptotes().long for wavelengths above and \
                  asymptotes().short for wavelengths below its lengths()",

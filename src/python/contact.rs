@@ -165,6 +165,7 @@ impl PyContact {
         let keywords = Keywords::new(py, keywords)?;
         let call = Call::new(shape, &keywords)?;
         keywords.finish("keywords of Contact.solve")?;
+        self.contact.grid().check_initial(call.initial.as_ref())?;
         let contact = Arc::clone(&self.contact);
         call.run(py, move |shape, motion, options, progress| {
             contact.solve_watched(shape, motion, options, progress)

@@ -157,6 +157,7 @@ pub(super) fn warning_words(warning: &Warning) -> (&'static str, usize, f64) {
         Warning::LargeContact { axis, ratio } => (axis, ratio),
         Warning::OutsideGrid { depth } => (0, depth),
         Warning::PeakError { error } => (0, error),
+        Warning::LargeMotion { size } => (0, size),
     };
     (warning.kind(), axis, figure)
 }
@@ -179,6 +180,7 @@ pub(super) fn warning(kind: &str, axis: usize, figure: f64) -> PyResult<Warning>
         Warning::LargeContact { axis, ratio },
         Warning::OutsideGrid { depth: figure },
         Warning::PeakError { error: figure },
+        Warning::LargeMotion { size: figure },
     ];
     let found = warnings.iter().find(|warning| warning.kind() == kind);
     found.copied().ok_or_else(|| {

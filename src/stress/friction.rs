@@ -30,6 +30,13 @@ impl Sliding {
                 value: friction,
             });
         }
+        if friction > 1e100 {
+            return Err(Error::Parameter {
+                name: "friction",
+                requirement: "at most 1e100",
+                value: friction,
+            });
+        }
         let given = options.direction.map(check_direction).transpose()?;
         if friction <= 0.0 {
             return Ok([0.0; 2]);

@@ -149,6 +149,12 @@ impl Surface for HeightMap {
         if *grid == self.grid {
             return Ok(sampled(grid, |i, j| self.highest - self.heights[[i, j]]));
         }
+        let (own, periods) = (self.extent(), grid.periods());
+        for axis in 0..2 {
+            if periods[axis].is_some() {
+                own[axis].check_period(axis, periods[axis])?;
+            }
+        }
         for (cell, sample) in grid.spacing().into_iter().zip(self.grid.spacing()) {
             if cell > 2.0 * sample * (1.0 + ROUNDING) {
                 return Err(Error::Parameter {
@@ -166,7 +172,7 @@ impl Surface for HeightMap {
         let (center, size) = (self.grid.center(), self.grid.size());
         let periodic = self.grid.is_periodic();
         [0, 1].map(|k| match periodic[k] {
-            true => Extent::Rising,
+            true => Extent::Repeating(size[k]),
             false => Extent::CutOff([center[k] - 0.5 * size[k], center[k] + 0.5 * size[k]]),
         })
     }

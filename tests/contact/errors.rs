@@ -116,8 +116,7 @@ fn controls() -> Result<()> {
 #[test]
 fn products_that_overflow() -> Result<()> {
     let shape = Paraboloid::new(1.0, 1.0)?;
-    let overflows =
-        "load, lengths and moduli must be in units in which their products do not overflow";
+    let overflows = "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish";
     let apart = Motion {
         eccentricity: [Some(1e-3), None],
         ..Motion::load(1e307)

@@ -122,6 +122,7 @@ def test_it_can_be_applied_in_several_threads_at_once(pressure: npt.NDArray[np.f
         ("Convolution([[1.0]], threads=0)", ValueError, "threads must be .*at least 1, got 0"),
         ("Convolution([['a']])", TypeError, "coefficients must be a real array"),
         ("CONVOLUTION.apply(np.zeros((9, 12)))", ValueError, r"shape \[12, 9\].*\[9, 12\]"),
+        ("CONVOLUTION.apply(np.full((12, 9), np.nan))", ValueError, "pressure is not finite at"),
         ("CONVOLUTION.apply(1j * np.ones((12, 9)))", TypeError, "pressure must be a real array"),
         (
             "Convolution.of_bodies(STEEL, GRID, method='x')",

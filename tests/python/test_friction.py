@@ -253,6 +253,31 @@ def test_rolling_cell_by_cell_tends_to_the_steady_state_and_can_be_resumed() -> 
     assert [s.traction.tobytes() for s in again] == [s.traction.tobytes() for s in rolled[4:6]]
 
 
+@pytest.mark.parametrize(
+    ("keywords", "said"),
+    [
+        ({"creepage": (0.09, None)}, None),
+        ({"creepage": (0.5, None)}, r"reaches 0\.50.* about 25 %"),
+        ({"creepage": (-0.08, 0.08)}, "reaches 0.11"),
+        # The contact has a radius of 6.9e-5, within a cell of 6e-6: its edge creeps by 0.2.
+        ({"creepage": (0.0, None), "spin": 3e3}, r"reaches 0\.(19|2[01])"),
+    ],
+)
+def test_large_creepages_are_warned_of(keywords: dict[str, Any], said: str | None) -> None:
+    roll: dict[str, Any] = {**HELD, "direction": "+x", **keywords}
+    if said is None:
+        assert CONTACT.roll(BALL, **roll).normal.report.warnings == []
+        return
+    with pytest.warns(nacre.NacreWarning, match=said):
+        rolled = CONTACT.roll(BALL, cells=2, **roll)
+    assert [s.normal.report.warning_kinds for s in rolled] == [["large motion"]] * 2
+
+
+def test_large_twists_are_warned_of() -> None:
+    with pytest.warns(nacre.NacreWarning, match=r"twist is not small: it reaches 0\.20"):
+        CONTACT.slide(BALL, **HELD, twist=-0.2)
+
+
 # How a solve ends.
 
 

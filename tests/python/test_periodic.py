@@ -21,6 +21,8 @@ GRID = nacre.Grid((32, 24), (1.0, 0.75), periodic=(True, True))
 X, Y = np.meshgrid(GRID.x, GRID.y, indexing="ij")
 HEIGHTS = 1e-3 * np.cos(2 * np.pi * X) + 5e-4 * np.cos(2 * np.pi * Y / 0.75)
 MAP = nacre.HeightMap(HEIGHTS, 1 / 32, periodic=(True, True))
+MEAN = HEIGHTS.max() - HEIGHTS.mean()
+HALF = nacre.Grid((16, 24), (0.5, 0.75), periodic=(True, True))
 
 
 def test_a_wave_along_the_period_falls_off_as_bessels_function() -> None:
@@ -102,6 +104,27 @@ ERRORS: dict[str, tuple[type[Exception], str]] = {
         "periodic along x and along y",
     ),
     "nacre.slide(MAP, BODY, BODY, load=1e-3, friction=0.1)": (ValueError, "not periodic"),
+    "nacre.solve(MAP, BODY, grid=nacre.Grid((32, 24), (1.0, 0.75)), load=1e-3)": (
+        ValueError,
+        r"repeat along x as the shape does, with its period 1e0 .* was a grid that does not repeat",
+    ),
+    # The height at both ends of half a period is the same.
+    "nacre.solve(MAP, BODY, grid=HALF, load=1e-3)": (
+        ValueError,
+        r"repeat along x as the shape does, with its period 1e0 .* was a grid of period 5e-1",
+    ),
+    "nacre.solve(MAP, BODY, grid=nacre.Grid.line(24, 0.75), load=1e-3)": (
+        ValueError,
+        "repeat along y",
+    ),
+    "nacre.solve(MAP + MAP, BODY, grid=nacre.Grid((32, 24), (1.0, 0.75)), load=1e-3)": (
+        ValueError,
+        "repeat along x",
+    ),
+    "nacre.solve(MAP, BODY, approach=1.01 * MEAN)": (
+        ValueError,
+        r"approach must be below 1\.4\d+e-3, the mean gap.*was 1\.5\d+e-3",
+    ),
 }
 
 
@@ -110,6 +133,38 @@ def test_what_does_not_fit_is_refused(call: str) -> None:
     kind, message = ERRORS[call]
     with pytest.raises(kind, match=message):
         eval(call, globals())
+
+
+def test_maps_that_repeat_on_grids_that_fit() -> None:
+    """A map on two of its periods is the map; below a ball it goes on, however wide the grid is."""
+    one = nacre.solve(MAP, BODY, load=1e-3)
+    wide = nacre.Grid((64, 24), (2.0, 0.75), periodic=(True, True))
+    two = nacre.solve(MAP, BODY, grid=wide, load=2e-3)
+    peak = one.pressure.max()
+    # Both are to 1e-8; samples of the wave lie at the same places of a period.
+    np.testing.assert_allclose(two.pressure[16:48], one.pressure, atol=1e-6 * peak)
+    ball = nacre.Sphere(5.0) + MAP
+    open_ = nacre.solve(ball, BODY, grid=nacre.Grid((80, 80), (2.5, 2.5)), load=1e-2)
+    assert open_.report.converged
+    piece = nacre.HeightMap(HEIGHTS, 1 / 32)
+    along = nacre.HeightMap(HEIGHTS, 1 / 32, periodic=(True, False))
+    strip = nacre.Grid((32, 24), (1.0, 0.75), periodic=(True, False))
+    for shape, grid in ((piece, nacre.Grid((32, 24), (1.0, 0.75))), (along, strip)):
+        with pytest.warns(nacre.NacreWarning, match="reaches the rim of the measured map along y"):
+            assert nacre.solve(shape, BODY, grid=grid, load=1e-3).report.converged
+
+
+def test_an_approach_up_to_full_contact_has_a_solution() -> None:
+    """The mean plane stays, so that the approach of full contact is the mean gap."""
+    full = nacre.solve(MAP, BODY, load=1.0)
+    assert full.contact_area == pytest.approx(0.75)
+    assert full.approach == pytest.approx(MEAN, rel=1e-6)
+    near = nacre.solve(MAP, BODY, approach=0.99 * MEAN)
+    assert near.approach == pytest.approx(0.99 * MEAN)
+    told: list[object] = []
+    with pytest.raises(ValueError, match="approach must be below"):
+        nacre.solve(MAP, BODY, approach=MEAN * (1 + 1e-9), progress=told.append)
+    assert not told
 
 
 def test_case_files(tmp_path: Path) -> None:

@@ -43,7 +43,12 @@ pub(crate) struct Datum {
     width: f64,
     /// Datum from which on the operator is positive definite \[m\]; 0 where that of the grid does.
     least: f64,
+    /// Whether a uniform pressure displaces nothing, as on a grid that repeats in both directions on an elastic base.
+    floats: bool,
 }
+
+/// Mean of coefficients, relative to that of their magnitudes, which is rounding.
+const ROUNDING: f64 = 1e-12;
 
 impl Datum {
     /// Finds the datum for the `coefficients` of `bodies` together on `grid`.
@@ -57,7 +62,12 @@ impl Datum {
         threads: &Arc<Threads>,
     ) -> Result<Self> {
         let Some(open) = open_direction(grid) else {
-            return Ok(Self::default());
+            let magnitude: f64 = coefficients.iter().map(|c| c.abs()).sum();
+            let displaced = coefficients.sum().abs() > ROUNDING * magnitude;
+            return Ok(Self {
+                floats: grid.is_periodic() == [true; 2] && !displaced,
+                ..Self::default()
+            });
         };
         let (width, period) = (grid.size()[open], grid.size()[1 - open]);
         let period = if grid.is_line() { 1.0 } else { period };
@@ -66,7 +76,7 @@ impl Datum {
             compliance: compliance / period,
             distance: width,
             width,
-            least: 0.0,
+            ..Self::default()
         };
         let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
         if homogeneous || near.compliance <= 0.0 {
@@ -112,6 +122,26 @@ impl Datum {
             self.compliance / PI * (self.distance / self.width).ln()
         } else {
             0.0
+        }
+    }
+
+    /// Whether an approach that is prescribed is that of the mean plane of the deformed surface.
+    pub(crate) fn floats(&self) -> bool {
+        self.floats
+    }
+
+    /// An error where an `approach` cannot be prescribed to a shape with these gaps, less the approach.
+    ///
+    /// # Errors
+    /// [`Error::FullContact`] where the mean of the gaps, which no pressure changes, would be 0 or less.
+    pub(crate) fn check_gap(&self, approach: f64, gap: &Array2<f64>) -> Result<()> {
+        let mean = gap.sum() / gap.len() as f64;
+        match self.floats && mean <= 0.0 {
+            true => Err(Error::FullContact {
+                approach,
+                most: approach + mean,
+            }),
+            false => Ok(()),
         }
     }
 

@@ -43,7 +43,7 @@ const PERIODIC: [&str; 2] = [
 
 /// The error for numbers that are too large to be computed with.
 pub(crate) const OVERFLOW: Error = Error::Inconsistent(
-    "load, lengths and moduli must be in units in which their products do not overflow",
+    "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish",
 );
 
 impl Freedoms {
@@ -97,7 +97,8 @@ impl Freedoms {
             target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
         }
         // Products like Σ p u are of second degree in the target.
-        if target.iter().any(|sum| !(sum * sum).is_finite()) {
+        let vanishes = loaded[0] && target[0] < f64::MIN_POSITIVE / f64::EPSILON;
+        if vanishes || target.iter().any(|sum| !(sum * sum).is_finite()) {
             return Err(OVERFLOW);
         }
         let coordinates = [0, 1].map(|k| grid.coordinates(k).to_vec());
@@ -150,6 +151,12 @@ impl Freedoms {
         let tilt = [0, 1].map(|k| self.prescribed[k + 1] + slope[k]);
         let shift = slope[0] * self.origin[0] + slope[1] * self.origin[1];
         (self.prescribed[0] + lambda[0] - shift, tilt)
+    }
+
+    /// The moment Σ p x dA or Σ p y dA about the origin of x and y, from that of a column.
+    pub(crate) fn moment(&self, axis: usize, column: f64) -> f64 {
+        let load = if self.loaded[0] { self.target[0] } else { 0.0 };
+        (self.scale[axis] * column + self.origin[axis] * load) * self.cell_area
     }
 
     /// These degrees of freedom on the cells of a window of the grid.

@@ -63,6 +63,11 @@ pub enum Warning {
         /// Estimated error, relative to the peak.
         error: f64,
     },
+    /// Creepages, with spin, or a twist are not small.
+    LargeMotion {
+        /// Largest creepage in the contact, or twist \[rad\].
+        size: f64,
+    },
 }
 
 /// Half-width over radius at which a circle leaves its parabola by 1 %: (a/R)²/4.
@@ -97,6 +102,7 @@ impl Warning {
             Self::LargeContact { .. } => "large contact",
             Self::OutsideGrid { .. } => "outside grid",
             Self::PeakError { .. } => "peak error",
+            Self::LargeMotion { .. } => "large motion",
         }
     }
 
@@ -185,6 +191,12 @@ impl fmt::Display for Warning {
                  edges and corners of the shape (a sampled profile has a corner at each point: give more \
                  points)",
                 100.0 * error
+            ),
+            Self::LargeMotion { size } => write!(
+                f,
+                "the creepage or twist is not small: it reaches {size:.2}, of which the linear theory of elasticity leaves \
+                 out the square: about {:.0} % of strains and slip",
+                50.0 * size
             ),
         }
     }

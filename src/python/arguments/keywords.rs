@@ -106,7 +106,7 @@ macro_rules! single_docs {
         "\
 initial : Solution or array_like, optional
     Pressure to start from ``(nx, ny)`` [Pa], at least 0: a solution near the one that is
-    sought, such as the previous one of a series. The result does not depend on it, but that the surfaces keep
+    sought, on the same grid, such as the previous one of a series. The result does not depend on it, but that the surfaces keep
     the permanent indentation of a solution: a history of loads goes from one to the next.
 progress : callable, optional
     Function that is called with a `Report` at each iteration; returning False stops, and gives

@@ -155,7 +155,7 @@ impl PyConvolution {
     /// TypeError
     ///     If the pressure is not real.
     /// ValueError
-    ///     If the pressure has another shape.
+    ///     If the pressure has another shape, or is not finite.
     ///
     /// Examples
     /// --------

@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use super::friction::PyFrictionSolution;
 use crate::body::HalfSpace;
 use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
 use crate::grid::Grid;
@@ -97,12 +98,19 @@ pub(in crate::python) fn solve<'py>(
     let call = Call::new(shape, &keywords)?;
     keywords.finish("keywords of solve")?;
     let body = Body::from(body);
-    let grid = grid.map(|grid| grid.0).or(call.dented);
+    let initial = call.initial;
+    let dented = initial.filter(|_| call.options.indentation.is_some());
+    let grid = grid.map(|grid| grid.0).or(dented);
     call.run(py, move |shape, motion, options, progress| match grid {
         Some(grid) => {
+            grid.check_initial(initial.as_ref())?;
             Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
         }
-        None => solve_watched(shape, &body, &setup, motion, options, progress),
+        None => {
+            let solution = solve_watched(shape, &body, &setup, motion, options, progress)?;
+            solution.grid().check_initial(initial.as_ref())?;
+            Ok(solution)
+        }
     })
 }
 
@@ -111,8 +119,8 @@ pub(super) struct Call {
     shape: Shape,
     motion: Motion,
     options: Options,
-    /// Grid of the permanent indentation that the surfaces have already.
-    dented: Option<Grid>,
+    /// Grid of the solution to start from.
+    pub(super) initial: Option<Grid>,
     progress: Option<Py<PyAny>>,
     check: bool,
 }
@@ -126,20 +134,21 @@ impl Call {
             progress,
             check,
         } = keywords::single(keywords)?;
-        let mut dented = None;
-        if let Some(before) = initial
-            .as_ref()
-            .and_then(|one| one.cast::<PySolution>().ok())
-        {
-            let before = before.get().solution();
-            options.indentation.clone_from(&before.indentation);
-            dented = before.indentation.as_ref().map(|_| *before.grid());
+        let mut grid = None;
+        if let Some(before) = initial {
+            if let Ok(before) = before.cast::<PySolution>() {
+                let before = before.get().solution();
+                options.indentation.clone_from(&before.indentation);
+                grid = Some(*before.grid());
+            } else if let Ok(before) = before.cast::<PyFrictionSolution>() {
+                grid = Some(*before.get().inner().grid());
+            }
         }
         Ok(Self {
             shape: self::shape(shape)?.get().0.clone(),
             motion,
             options,
-            dented,
+            initial: grid,
             progress,
             check,
         })

@@ -26,10 +26,12 @@ max_convolutions : int, optional
 coupling : bool, optional
     Whether tractions act on the pressure and pressure on the slip. Between equal bodies neither is so.
 initial : FrictionSolution, optional
-    State to go on from: the last step of an earlier history. By default the surfaces have not touched.
+    State to go on from: the last step of an earlier history, on the same grid. It carries tractions and shift, and no
+    pressure, which is solved afresh. By default the surfaces have not touched.
 progress : callable, optional
     Function that is called with the number of the step and a `FrictionReport` at each convolution; returning
-    False stops, and gives the unfinished solution.
+    False stops, and gives the unfinished solution, with tractions and shift as before the step: with it as
+    `initial`, the same step goes on.
 check : bool, optional
     Whether to raise an error if the tolerance was not met."
     };
@@ -108,7 +110,8 @@ friction : float or array_like
     Coefficient of friction, at least 0: one number, or one for each cell ``(nx, ny)``.
 creepage : tuple of float or None, optional
     Creepages ``(xi, eta)`` of the counterbody over the body, along the direction of rolling e and along
-    z × e: relative velocities over the speed of rolling. None: 0, unless there is a force.
+    z × e: relative velocities over the speed of rolling, which are small in the linear theory: above 0.1 a
+    warning says so. None: 0, unless there is a force.
 force : tuple of float or None, optional
     Forces of the tractions on the body along e and along z × e [N]; the creepage along an axis with a number
     is found.

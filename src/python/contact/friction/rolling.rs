@@ -95,15 +95,12 @@ impl Rolled {
         let steps = (0..cells.unwrap_or(1)).map(|_| {
             let (contact, shape) = (Arc::clone(contact), Arc::clone(&shape));
             let rolling = Arc::clone(&rolling);
-            move |last: Option<&FrictionSolution>, tell: &mut Telling| {
-                let mut tell = |_, report: &FrictionReport| tell(report);
+            move |last: Option<(&FrictionSolution, bool)>, tell: &mut Telling| {
                 if transient {
-                    let rolling = std::slice::from_ref(&*rolling);
-                    contact.roll_transient(&*shape, rolling, &options, last, &mut tell)
-                } else {
-                    let steady = contact.roll_watched(&*shape, &rolling, &options, &mut tell)?;
-                    Ok(vec![steady])
+                    return contact.roll_step(&*shape, &rolling, &options, last, tell);
                 }
+                let mut tell = |_, report: &FrictionReport| tell(report);
+                contact.roll_watched(&*shape, &rolling, &options, &mut tell)
             }
         });
         series(py, steps, last, &found, transient)

@@ -146,10 +146,8 @@ impl Sliding {
         let last = initial.map(|solution| Arc::clone(solution.get().inner()));
         let steps = steps.into_iter().map(|step| {
             let (contact, shape) = (Arc::clone(contact), Arc::clone(&shape));
-            move |last: Option<&FrictionSolution>, tell: &mut Telling| {
-                let mut tell = |_, report: &FrictionReport| tell(report);
-                let steps = std::slice::from_ref(&step);
-                contact.slide_watched(&*shape, steps, &options, last, &mut tell)
+            move |last: Option<(&FrictionSolution, bool)>, tell: &mut Telling| {
+                contact.slide_step(&*shape, &step, &options, last, tell)
             }
         });
         series(py, steps, last, &found, history)
@@ -159,8 +157,8 @@ impl Sliding {
 /// Receiver of reports.
 pub(super) type Telling<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
 
-/// Solves one step after another, each in the background; Ctrl-C and the callback can stop it. An exception carries
-/// the finished solutions.
+/// Solves one step after another, each in the background; Ctrl-C and the callback can stop it. Steps get the solution
+/// before, and whether it is one of these steps. An exception carries the finished solutions.
 pub(super) fn series<'py, S>(
     py: Python<'py>,
     steps: impl Iterator<Item = S>,
@@ -169,7 +167,7 @@ pub(super) fn series<'py, S>(
     history: bool,
 ) -> PyResult<Bound<'py, PyAny>>
 where
-    S: FnOnce(Option<&FrictionSolution>, &mut Telling) -> crate::Result<Vec<FrictionSolution>>
+    S: FnOnce(Option<(&FrictionSolution, bool)>, &mut Telling) -> crate::Result<FrictionSolution>
         + Send
         + 'static,
 {
@@ -185,7 +183,8 @@ where
                 let mut tell = |report: &FrictionReport| {
                     caller.ask(|| (number, PyFrictionReport(report.clone())))
                 };
-                step(before.as_deref(), &mut tell)
+                let before = before.as_deref().map(|before| (before, number > 0));
+                step(before, &mut tell)
             })?;
             let solved = solved.map_err(|error| {
                 let error = PyErr::from(error);
@@ -194,10 +193,7 @@ where
                 }
                 error
             })?;
-            let Some(solution) = solved.into_iter().next() else {
-                break;
-            };
-            let solution = PyFrictionSolution::finished(py, solution, found.check)?;
+            let solution = PyFrictionSolution::finished(py, solved, found.check)?;
             last = Some(Arc::clone(solution.inner()));
             let stopped = solution.is_stopped();
             solutions.append(solution)?;

@@ -60,7 +60,7 @@ impl From<FrictionSolution> for PyFrictionSolution {
 }
 
 impl PyFrictionSolution {
-    pub(super) fn inner(&self) -> &Arc<FrictionSolution> {
+    pub(in crate::python::contact) fn inner(&self) -> &Arc<FrictionSolution> {
         &self.solution
     }
 
