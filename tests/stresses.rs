@@ -11,6 +11,7 @@ mod stress {
     mod coated;
     mod edge;
     mod ends;
+    mod faces;
     mod friction;
     mod invariants;
     mod limits;
