@@ -12,6 +12,7 @@ mod stress {
     mod coated;
     mod edge;
     mod ends;
+    mod faces;
     mod friction;
     mod invariants;
     mod limits;

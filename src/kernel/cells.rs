@@ -24,6 +24,8 @@ pub(crate) struct Source<M, P, const C: usize> {
     pub(crate) offsets: [usize; 2],
     pub(crate) spacing: [f64; 2],
     pub(crate) depth: f64,
+    /// Whether row i is at i + ½ cells along x: its offsets lead to the line between two rows.
+    pub(crate) between: bool,
     /// Whether each component is odd in x and in y.
     pub(crate) odd: [[bool; 2]; C],
     /// Mean over a cell at an offset, times its area.
@@ -49,9 +51,9 @@ where
         let mut means = vec![0.0; C * ny];
         self.points(rows.start, &mut here);
         match rows.start {
-            // The row before the first mirrors the row after it.
+            // The row before the first mirrors the row after it or, between rows, the first.
             0 => {
-                self.points(1, &mut before);
+                self.points(usize::from(!self.between), &mut before);
                 for (row, [odd, _]) in before.chunks_exact_mut(width).zip(self.odd) {
                     if odd {
                         row.iter_mut().for_each(|value| *value = -*value);
@@ -71,6 +73,12 @@ where
         }
     }
 
+    /// Offset of row i along x.
+    fn along_x(&self, i: usize) -> f64 {
+        let half = if self.between { 0.5 } else { 0.0 };
+        (i as f64 + half) * self.spacing[0]
+    }
+
     /// The first offset in row i that is far.
     fn first(&self, i: usize) -> usize {
         let [dx, dy] = self.spacing;
@@ -86,9 +94,9 @@ where
     /// Computes the values at the points of row i that differences need.
     fn points(&self, i: usize, row: &mut Points) {
         let width = self.offsets[1] + 1;
-        let [dx, dy] = self.spacing;
+        let [_, dy] = self.spacing;
         let start = self.first(i + 1).min(self.first(i).saturating_sub(1));
-        let x = i as f64 * dx;
+        let x = self.along_x(i);
         for j in start..width {
             let values = (self.point)(x, j as f64 * dy);
             for k in 0..C {
@@ -105,7 +113,7 @@ where
         let area = dx * dy;
         let start = self.first(i);
         for j in 0..start {
-            let values = (self.mean)(i as f64 * dx, j as f64 * dy);
+            let values = (self.mean)(self.along_x(i), j as f64 * dy);
             for k in 0..C {
                 means[k * ny + j] = values[k];
             }

@@ -138,10 +138,11 @@ impl Stress {
         0.5 * self.tresca()
     }
 
-    /// The largest of `values` (depths, nx, ny) and its position; none if there are no values.
+    /// The largest of `values` (depths, nx, ny) and its position; none if there are no values in the body.
     pub fn peak(&self, values: &Array3<f64>) -> Option<Peak> {
         let found = values
             .indexed_iter()
+            .filter(|(_, value)| !value.is_nan())
             .reduce(|best, next| if next.1 > best.1 { next } else { best });
         found.map(|((k, i, j), &value)| Peak {
             value,

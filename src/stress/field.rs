@@ -9,8 +9,8 @@ use crate::body::HalfSpace;
 use crate::error::{Error, Result, finite};
 
 /// Stress at some depths. Arrays are (depths, nx, ny); on a section nx or ny is 1. Tension is
-/// positive.
-#[derive(Debug, Clone, PartialEq)]
+/// positive. Beyond a free end of the body, values are NaN; equal stresses have NaN at the same places.
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Stress {
     /// Depths z \[m\].
@@ -41,6 +41,17 @@ pub struct Stress {
     pub displacement: Option<[Array3<f64>; 3]>,
 }
 
+impl PartialEq for Stress {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+        (&self.z, &self.x, &self.y) == (&other.z, &other.x, &other.y)
+            && (&self.body, self.side, self.friction) == (&other.body, other.side, other.friction)
+            && self.displacement.is_some() == other.displacement.is_some()
+            && self.uncertainty.is_some() == other.uncertainty.is_some()
+            && self.values().zip(other.values()).all(same)
+    }
+}
+
 /// Estimated error over the largest stress of a depth above which a warning says so. The estimate is some
 /// three times the error (`tests/stress/resolution.rs`).
 const UNRESOLVED: f64 = 0.05;
@@ -58,6 +69,13 @@ impl fmt::Display for Percent {
 }
 
 impl Stress {
+    /// All values, in an order that coordinates and optional fields determine.
+    fn values(&self) -> impl Iterator<Item = &f64> {
+        let displacement = self.displacement.iter().flatten();
+        let fields = self.components.iter().chain(displacement).flatten();
+        fields.chain(self.uncertainty.iter().flatten())
+    }
+
     /// A stress field from coordinates and fields of shape (depths, nx, ny).
     ///
     /// # Errors

@@ -7,7 +7,7 @@ mod points;
 mod repeats;
 mod tractions;
 
-pub(super) use coefficients::components;
+pub(super) use coefficients::{SurfaceLoad, components};
 pub(super) use plan::{Form, HalfSpacePlan, MAGNITUDES, Source};
 pub(super) use plane::PlaneEvaluator;
 pub(super) use points::PointEvaluator;

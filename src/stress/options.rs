@@ -15,17 +15,21 @@ pub enum Side {
     Below,
 }
 
-/// Points of each plane z = const at which fields are returned.
+/// Points of each plane z = const at which fields are returned. Beyond a free end of the body they are NaN.
+///
+/// Lines and points are interpolated between cell centres, and on the outer half of the grid's first and last cells
+/// extrapolated from two of them; on periodic grids the first cell follows the last. Between a free end and the cells
+/// beside it, they are interpolated from the body's side alone: from its last cells, and from the face itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Section {
     /// All cell centres.
     #[default]
     Plane,
-    /// The line x = const, by linear interpolation between cell centres.
+    /// The line x = const, by linear interpolation.
     X(f64),
-    /// The line y = const, by linear interpolation between cell centres.
+    /// The line y = const, by linear interpolation.
     Y(f64),
-    /// The point (x, y), by linear interpolation between cell centres.
+    /// The point (x, y), by linear interpolation.
     Axis([f64; 2]),
 }
 

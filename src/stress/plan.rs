@@ -6,10 +6,11 @@ use ndarray::{Array1, ArrayRef2};
 
 use super::ends::{EndPlanes, EndPoints, EndStress};
 use super::half_space::{
-    HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source, TractionPlanes, TractionPoints,
-    Tractions,
+    HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source, SurfaceLoad, TractionPlanes,
+    TractionPoints, Tractions,
 };
 use super::options::StressProgress;
+use super::section::Span;
 use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::{Grid, Window};
@@ -40,6 +41,8 @@ use crate::response::interior::Place;
 #[derive(Debug)]
 pub struct StressPlan {
     pub(super) whole: HalfSpacePlan,
+    /// The rows of the grid that the body has.
+    span: Span,
     /// Present where the body has free ends, and bears pressure.
     ends: Option<EndStress>,
     /// Present where tractions are known.
@@ -53,10 +56,12 @@ impl Source<'_> {
         threads: Option<usize>,
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
+        self.check_ends()?;
         let Some(whole) = self.plan(threads, progress)? else {
             return Ok(None);
         };
-        let ControlFlow::Continue(ends) = EndStress::plan(&whole, progress)? else {
+        let span = Span::of(self.body, self.grid);
+        let ControlFlow::Continue(ends) = EndStress::plan(&whole, &span, progress)? else {
             return Ok(None);
         };
         let (sign, count) = (self.sliding.sign, &whole.threads);
@@ -64,6 +69,7 @@ impl Source<'_> {
         let tractions = self.tractions.map(planned).transpose()?;
         Ok(Some(StressPlan {
             whole,
+            span,
             ends,
             tractions,
         }))
@@ -78,13 +84,14 @@ impl Source<'_> {
 }
 
 impl StressPlan {
-    /// A plan for `body` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell. It works on
-    /// `threads` threads; none: all of the machine's.
+    /// A plan for `body` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell. Beyond the free ends of the
+    /// body, stresses are NaN. The plan works on `threads` threads; none: all of the machine's.
     ///
     /// [`Solution::stress_plan`](crate::Solution::stress_plan) makes that of a solved contact.
     ///
     /// # Errors
-    /// A pressure of another shape than the grid's, or not finite; no threads; too little memory.
+    /// A pressure of another shape than the grid's, not finite, or beyond a free end; free ends on a line or periodic
+    /// grid; no threads; too little memory.
     pub fn plan(
         body: &HalfSpace,
         grid: &Grid,
@@ -125,6 +132,9 @@ impl StressPlan {
 /// A plan under one friction, on whole planes, with the memory that all planes use.
 #[derive(Debug)]
 pub(super) struct PlaneStress<'a> {
+    plan: &'a StressPlan,
+    friction: [f64; 2],
+    displacement: bool,
     whole: PlaneEvaluator<'a>,
     ends: Option<EndPlanes<'a>>,
     tractions: Option<TractionPlanes<'a>>,
@@ -134,6 +144,9 @@ impl<'a> PlaneStress<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2], displacement: bool) -> Self {
         let (ends, tractions) = (plan.ends.as_ref(), plan.tractions.as_ref());
         Self {
+            plan,
+            friction,
+            displacement,
             whole: PlaneEvaluator::new(&plan.whole, friction, displacement),
             ends: ends.map(|ends| EndPlanes::new(ends, displacement)),
             tractions: tractions.map(|tractions| TractionPlanes::new(tractions, displacement)),
@@ -157,16 +170,38 @@ impl<'a> PlaneStress<'a> {
         if let Some(ends) = &mut self.ends {
             ends.add(place, outputs, progress)?;
         }
-        match &mut self.tractions {
-            Some(tractions) => tractions.add(place, outputs, progress),
-            None => ControlFlow::Continue(()),
+        if let Some(tractions) = &mut self.tractions {
+            tractions.add(place, outputs, progress)?;
         }
+        let span = &self.plan.span;
+        outputs.iter_mut().for_each(|output| span.blank(output));
+        ControlFlow::Continue(())
+    }
+
+    /// The components at `place` on the face of an end that lies between the rows `row` − 1 and `row`, for each of them
+    /// along y. The pressure is uniform over cells there; tractions are known for bodies that go on alone.
+    pub(super) fn on_face(
+        &self,
+        place: &Place,
+        (end, row): (usize, usize),
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Vec<Vec<f64>>> {
+        let (plan, displacement) = (self.plan, self.displacement);
+        let loads = SurfaceLoad::all(self.friction);
+        let at = (place, row);
+        let mut lines = PlaneEvaluator::between(&plan.whole, loads, displacement, at, progress)?;
+        if let Some(ends) = &plan.ends {
+            ends.add_on_face(place, (end, row), displacement, &mut lines, progress)?;
+        }
+        ControlFlow::Continue(lines)
     }
 }
 
 /// A plan under one friction, in some cells.
 #[derive(Debug)]
 pub(super) struct PointStress<'a> {
+    span: &'a Span,
+    cells: Vec<[usize; 2]>,
     whole: PointEvaluator<'a>,
     ends: Option<EndPoints<'a>>,
     tractions: Option<TractionPoints<'a>>,
@@ -184,7 +219,9 @@ impl<'a> PointStress<'a> {
             ends: ends.map(|ends| EndPoints::new(ends, displacement, &cells)),
             tractions: tractions
                 .map(|tractions| TractionPoints::new(tractions, displacement, &cells)),
-            whole: PointEvaluator::new(&plan.whole, friction, displacement, cells),
+            whole: PointEvaluator::new(&plan.whole, friction, displacement, cells.clone()),
+            span: &plan.span,
+            cells,
         }
     }
 
@@ -205,6 +242,11 @@ impl<'a> PointStress<'a> {
         }
         if let Some(tractions) = &self.tractions {
             tractions.add(place, &mut sums, progress)?;
+        }
+        for (sums, [i, _]) in sums.iter_mut().zip(&self.cells) {
+            if !self.span.rows.contains(i) {
+                *sums = [f64::NAN; COMPONENTS];
+            }
         }
         ControlFlow::Continue(sums)
     }

@@ -120,7 +120,7 @@ impl<'a> Request<'a> {
             depths,
             options,
             places: places.collect::<Result<_>>()?,
-            points: Points::new(grid, options.section)?,
+            points: Points::new(body, grid, options.section)?,
             residual: options.residual_by_layer(body)?,
             friction: sliding.traction(body, options)?,
         })
@@ -133,17 +133,27 @@ impl<'a> Request<'a> {
     /// Bytes that the evaluation and its result take.
     fn memory(&self) -> u64 {
         let result = 8 * self.places.len() * self.points.count() * self.components();
-        if self.points.count() == 1 {
+        if self.is_point() {
             return result as u64 + PointStress::memory(self.grid);
         }
         let slides = self.options.friction != 0.0;
         result as u64 + PlaneStress::memory(self.grid, slides, self.options.displacement)
     }
 
+    /// Whether a plane has a single point, which is interpolated from cells.
+    fn is_point(&self) -> bool {
+        self.points.count() == 1 && self.points.face().is_none()
+    }
+
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> Stress {
         let mut fields = zeros(self.components(), self.places.len() * self.points.count());
+        if self.points.are_beyond {
+            fields.iter_mut().for_each(|field| field.fill(f64::NAN));
+            let unknown = Array1::from_elem(self.places.len(), f64::NAN);
+            return self.result(fields, self.places.len(), Some(unknown));
+        }
         let done = self.fill(plan, &mut fields, progress);
-        let window = self.points.window(self.grid.shape());
+        let window = self.points.window();
         let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window);
         self.result(fields, done, uncertainty)
     }
@@ -155,15 +165,14 @@ impl<'a> Request<'a> {
         fields: &mut [Vec<f64>],
         progress: &mut StressProgress,
     ) -> usize {
-        let shape = self.grid.shape();
         let count = self.points.count();
-        if count == 1 {
+        if self.is_point() {
             return self.fill_point(plan, fields, progress);
         }
         // Whole planes are evaluated in place, lines by way of a plane.
         let mut planes = match self.points.are_all_cells() {
             true => Vec::new(),
-            false => zeros(fields.len(), shape[0] * shape[1]),
+            false => zeros(fields.len(), self.points.of_plane()),
         };
         let mut evaluator = PlaneStress::new(plan, self.friction, self.options.displacement);
         for (done, place) in self.places.iter().enumerate() {
@@ -176,20 +185,41 @@ impl<'a> Request<'a> {
             let flow = if planes.is_empty() {
                 evaluator.evaluate(place, &mut here, &mut progress)
             } else {
-                let mut outputs: Vec<_> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-                evaluator.evaluate(place, &mut outputs, &mut progress)
+                self.fill_planes(&mut evaluator, place, &mut planes, &mut progress)
             };
             if flow.is_break() {
                 return done;
             }
             for (plane, here) in planes.iter().zip(&mut here) {
-                self.points.interpolate(plane, shape, here);
+                self.points.interpolate(plane, here);
             }
             self.add_residual(place, &mut here);
         }
         // All is done: a break has nothing left to stop.
         let _ = progress(1.0);
         self.places.len()
+    }
+
+    /// Evaluates what points at `place` are interpolated from: the cells of planes and, behind them, a face.
+    fn fill_planes(
+        &self,
+        evaluator: &mut PlaneStress,
+        place: &Place,
+        planes: &mut [Vec<f64>],
+        progress: &mut StressProgress,
+    ) -> ControlFlow<()> {
+        let [nx, ny] = self.grid.shape();
+        if !self.points.are_on_face() {
+            let outputs = planes.iter_mut().map(|plane| &mut plane[..nx * ny]);
+            evaluator.evaluate(place, &mut outputs.collect::<Vec<_>>(), progress)?;
+        }
+        if let Some((end, row)) = self.points.face() {
+            let lines = evaluator.on_face(place, (end, row), progress)?;
+            for (plane, line) in planes.iter_mut().zip(lines) {
+                plane[(nx + end) * ny..][..ny].copy_from_slice(&line);
+            }
+        }
+        ControlFlow::Continue(())
     }
 
     /// [`Request::fill`] where a plane has a single point, which needs no other cells than those that it

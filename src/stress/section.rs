@@ -9,6 +9,10 @@ use crate::error::{Error, Result, finite};
 use crate::grid::{Grid, Window};
 use crate::response::interior::Place;
 
+mod span;
+
+pub(super) use span::Span;
+
 /// Relative distance within which a depth counts as that of an interface: depths of interfaces are
 /// sums of thicknesses, which round by some 1e-16 each.
 const INTERFACE_TOLERANCE: f64 = 1e-12;
@@ -69,9 +73,15 @@ pub(super) struct Points {
     pub(super) shape: [usize; 2],
     /// Interpolation along x and along y; none along an axis whose cells are all returned.
     interpolation: [Option<Interpolation>; 2],
+    /// Rows and columns of the grid. Behind the rows, planes have one for each of the body's two end faces.
+    cells: [usize; 2],
+    span: Span,
+    /// Whether all points are beyond an end of the body.
+    pub(super) are_beyond: bool,
 }
 
-/// Linear interpolation between the cells `lower` and `upper` of one axis; `weight` is that of `upper`.
+/// Linear interpolation between two cells of one axis; `weight` is that of `upper`. In the outer half of the first and
+/// last cells it goes on beyond their centres.
 #[derive(Debug, Clone, Copy)]
 struct Interpolation {
     lower: usize,
@@ -80,8 +90,8 @@ struct Interpolation {
 }
 
 impl Points {
-    /// Points of `section` on `grid`.
-    pub(super) fn new(grid: &Grid, section: Section) -> Result<Self> {
+    /// Points of `section` of `body` on `grid`.
+    pub(super) fn new(body: &HalfSpace, grid: &Grid, section: Section) -> Result<Self> {
         let at = match section {
             Section::Plane => [None, None],
             Section::X(x) => [Some(x), None],
@@ -93,6 +103,9 @@ impl Points {
             y: grid.y(),
             shape: grid.shape(),
             interpolation: [None; 2],
+            cells: grid.shape(),
+            span: Span::of(body, grid),
+            are_beyond: false,
         };
         for (axis, at) in at.into_iter().enumerate() {
             let Some(at) = at else { continue };
@@ -100,7 +113,14 @@ impl Points {
             if axis == 0 && grid.is_line() {
                 continue;
             }
-            points.interpolation[axis] = Some(interpolation(grid, axis, at)?);
+            let position = position(grid, axis, at)?;
+            points.interpolation[axis] = Some(match axis {
+                0 if body.ends() != [None; 2] => {
+                    points.are_beyond = !points.span.has(position);
+                    points.beside_ends(position)
+                }
+                _ => interpolation(position, grid.shape()[axis], grid.is_periodic()[axis]),
+            });
             points.shape[axis] = 1;
             let centres = if axis == 0 {
                 &mut points.x
@@ -110,6 +130,30 @@ impl Points {
             *centres = Array1::from_elem(1, at);
         }
         Ok(points)
+    }
+
+    /// Interpolation along x at a `position` in a body with ends: between its rows and its faces alone.
+    fn beside_ends(&self, position: f64) -> Interpolation {
+        let Span { rows, faces, .. } = &self.span;
+        let last = rows.end.saturating_sub(1);
+        let [before, behind] = [rows.start as f64 - position, position - last as f64];
+        let face = |end: usize, row: usize, outside: f64| Interpolation {
+            lower: row,
+            upper: self.cells[0] + end,
+            weight: (2.0 * outside).min(1.0),
+        };
+        match faces {
+            [Some(_), _] if before > CENTRE_TOLERANCE => face(0, rows.start, before),
+            [_, Some(_)] if behind > CENTRE_TOLERANCE => face(1, last, behind),
+            _ => {
+                let within = interpolation(position - rows.start as f64, rows.len(), false);
+                Interpolation {
+                    lower: rows.start + within.lower,
+                    upper: rows.start + within.upper,
+                    ..within
+                }
+            }
+        }
     }
 
     /// How many points there are.
@@ -122,11 +166,25 @@ impl Points {
         self.interpolation.iter().all(Option::is_none)
     }
 
+    /// The end on whose face some of the values must be known, and the row behind that face.
+    pub(super) fn face(&self) -> Option<(usize, usize)> {
+        let end = self.interpolation[0]?.upper.checked_sub(self.cells[0])?;
+        Some((end, self.span.faces[end]?))
+    }
+
+    /// Whether the values in cells do not matter.
+    pub(super) fn are_on_face(&self) -> bool {
+        self.face().is_some() && self.interpolation[0].is_some_and(|at| at.weight >= 1.0)
+    }
+
     /// Cells that the points are interpolated from.
-    pub(super) fn window(&self, shape: [usize; 2]) -> Window {
+    pub(super) fn window(&self) -> Window {
         [0, 1].map(|axis| match self.interpolation[axis] {
-            Some(at) => at.lower..at.upper + 1,
-            None => 0..shape[axis],
+            Some(Interpolation { lower, upper, .. }) if upper < self.cells[axis] => {
+                lower.min(upper)..lower.max(upper) + 1
+            }
+            Some(Interpolation { lower, .. }) => lower..lower + 1,
+            None => 0..self.cells[axis],
         })
     }
 
@@ -141,18 +199,29 @@ impl Points {
             let pair = move |(j, wy): &(usize, f64)| ([*i, *j], wx * wy);
             columns.iter().map(pair)
         });
-        pairs.filter(|(_, weight)| *weight > 0.0).collect()
+        pairs.filter(|(_, weight)| *weight != 0.0).collect()
+    }
+
+    /// Number of values of a plane: of the cells, and of the two faces.
+    pub(super) fn of_plane(&self) -> usize {
+        (self.cells[0] + 2) * self.cells[1]
     }
 
     /// Writes the values of `plane`, of (nx, ny) cells, at these points to `values`.
-    pub(super) fn interpolate(&self, plane: &[f64], [nx, ny]: [usize; 2], values: &mut [f64]) {
+    pub(super) fn interpolate(&self, plane: &[f64], values: &mut [f64]) {
+        let [nx, ny] = self.cells;
         let everywhere = |n: usize| (0..n).map(|k| (k, k, 0.0)).collect::<Vec<_>>();
         let nodes = |axis: usize, n: usize| match self.interpolation[axis] {
             Some(at) => vec![(at.lower, at.upper, at.weight)],
             None => everywhere(n),
         };
         let (rows, columns) = (nodes(0, nx), nodes(1, ny));
-        let mix = |a: f64, b: f64, weight: f64| a + weight * (b - a);
+        // Values that do not count may be NaN.
+        let mix = |a: f64, b: f64, weight: f64| match weight {
+            0.0 => a,
+            1.0 => b,
+            _ => a + weight * (b - a),
+        };
         for (out, (i, i2, wx)) in values.chunks_exact_mut(columns.len()).zip(rows) {
             for (value, (j, j2, wy)) in out.iter_mut().zip(&columns) {
                 let row = |i: usize| mix(plane[i * ny + j], plane[i * ny + j2], *wy);
@@ -162,8 +231,8 @@ impl Points {
     }
 }
 
-/// Interpolation along `axis` to the coordinate `at`.
-fn interpolation(grid: &Grid, axis: usize, at: f64) -> Result<Interpolation> {
+/// The coordinate `at` along `axis`, in cells from the centre of the first.
+fn position(grid: &Grid, axis: usize, at: f64) -> Result<f64> {
     let n = grid.shape()[axis];
     let name = ["x", "y"][axis];
     finite(name, at)?;
@@ -177,16 +246,29 @@ fn interpolation(grid: &Grid, axis: usize, at: f64) -> Result<Interpolation> {
     }
     // Rounding must not mix a neighbour into a line through cell centres.
     let nearest = position.round();
-    let position = if (position - nearest).abs() < CENTRE_TOLERANCE {
+    Ok(if (position - nearest).abs() < CENTRE_TOLERANCE {
         nearest
     } else {
         position
-    };
-    let position = position.clamp(0.0, (n - 1) as f64);
-    let lower = position as usize;
-    Ok(Interpolation {
-        lower,
-        upper: (lower + 1).min(n - 1),
-        weight: position - lower as f64,
     })
+}
+
+/// Interpolation between `count` cells, or beyond the outer ones, to a `position`. Where they are periodic, the first
+/// cell follows the last.
+fn interpolation(position: f64, count: usize, periodic: bool) -> Interpolation {
+    let below = position.floor();
+    if periodic {
+        let lower = below.rem_euclid(count as f64) as usize;
+        return Interpolation {
+            lower,
+            upper: (lower + 1) % count,
+            weight: position - below,
+        };
+    }
+    let lower = below.clamp(0.0, count.saturating_sub(2) as f64);
+    Interpolation {
+        lower: lower as usize,
+        upper: (lower as usize + 1).min(count.saturating_sub(1)),
+        weight: position - lower,
+    }
 }

@@ -138,6 +138,7 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
             _ => turned(kernel.far::<TractionDisplacement>(y, x)),
         };
         let source = Source {
+            between: false,
             offsets: [nx, ny],
             spacing,
             depth: 0.0,

@@ -30,7 +30,8 @@ def interface_map(
 ) -> Axes:
     """Draw the traction at an interface from above, with the outline of the contact.
 
-    A map much longer than wide is drawn out of scale, and the picture says so.
+    A map much longer than wide is drawn out of scale, and the picture says so. Beyond a free
+    end of the body nothing is drawn.
 
     Parameters
     ----------
@@ -84,8 +85,9 @@ def interface_map(
         narrow = min(float(np.diff(contact)[0]) for contact in solution.contact_extent)
         window = [np.clip(around(solution, axis, narrow), *ends[axis]) for axis in range(len(ends))]
     (across, up), same = lengths(window)
-    scale = Scale.of(np.abs(values).max(), "Pa")
-    largest = scale.factor * np.abs(values).max() or 1.0
+    highest = float(np.nanmax(np.abs(values)))
+    scale = Scale.of(highest, "Pa")
+    largest = scale.factor * highest or 1.0
     signed = quantity == "normal"
     with styled():
         axes = axes or new_axes(0.7, 0.5)
@@ -103,7 +105,7 @@ def interface_map(
         )
         axes.grid(visible=False)
         colourbar(axes, mesh, f"{quantity} traction [{scale.unit}]")
-        if not signed and np.any(values):
+        if not signed and highest > 0:
             _arrows(axes, field, (across.factor, up.factor), window)
         axes.set(
             xlabel=f"x [{across.unit}]",
@@ -135,7 +137,7 @@ def _arrows(
         field.yz[pick].T,
         color="white",
         pivot="middle",
-        scale=14 * float(np.hypot(field.xz, field.yz).max()),
+        scale=14 * float(np.nanmax(np.hypot(field.xz, field.yz))),
         width=0.004,
     )
 

@@ -49,7 +49,7 @@ def stress_section(
     """Draw a vertical section, with the interfaces.
 
     The cross marks the largest value. A section much longer than deep is drawn out of scale, and
-    the picture says so.
+    the picture says so. Beyond a free end of the body nothing is drawn.
 
     Parameters
     ----------
@@ -103,9 +103,13 @@ def stress_section(
     sides = grid.center[axis] + grid.size[axis] * np.linspace(-0.5, 0.5, len(centres) + 1)
     low, high = np.clip(around(solution, axis, bottom), sides[0], sides[-1])
     (across, down), same = lengths([(low, high), (0.0, bottom)])
-    scale = Scale.of(np.abs(values).max(initial=0.0), "Pa")
+    inside = np.isfinite(values)
+    if not inside.any():
+        raise ValueError(f"at must be in the body, whose ends are {body.ends}, got {at:g}")
+    highest = float(np.abs(values).max(initial=0.0, where=inside))
+    scale = Scale.of(highest, "Pa")
     signed = quantity in ("xx", "yy", "zz", "xy", "yz", "xz", "tension")
-    largest = scale.factor * np.abs(values).max(initial=0.0) or 1.0
+    largest = scale.factor * highest or 1.0
     with styled():
         axes = axes or new_axes(0.75, 0.45)
         mesh = axes.pcolormesh(
@@ -123,7 +127,7 @@ def stress_section(
             if interface < bottom:
                 for colour, width in (("white", 2.0), ("black", 0.9)):
                     axes.axhline(down.factor * interface, color=colour, linewidth=width)
-        row, column = np.unravel_index(np.argmax(values), values.shape)
+        row, column = np.unravel_index(np.nanargmax(values), values.shape)
         peak = (across.factor * centres[column], down.factor * field.z[row])
         for colour, width in (("black", 2.6), ("white", 1.2)):
             axes.plot(*peak, marker="+", markersize=8, markeredgewidth=width, color=colour)
@@ -132,7 +136,7 @@ def stress_section(
         axes.set_ylim(down.factor * bottom, 0.0)
         other = "y" if along == "x" else "x"
         title = f"at {other} = {written(at, 'm', 3)}; the cross marks the largest value, "
-        title += written(float(values.max()), "Pa", 3)
+        title += written(float(np.nanmax(values)), "Pa", 3)
         if same:
             axes.set_aspect("equal")
         else:
@@ -204,6 +208,8 @@ def stress_depth(
     order = np.argsort(z, kind="stable")
     drawn = [np.concatenate([_values(f, q) for f in (above, below)])[order] for q in quantities]
     length = Scale.of(bottom, "m")
+    if not all(np.isfinite(values).all() for values in drawn):
+        raise ValueError(f"at must be in the body, whose ends are {body.ends}, got x = {at[0]:g}")
     scale = Scale.of(max(np.abs(values).max(initial=0.0) for values in drawn), "Pa")
     with styled():
         axes = axes or new_axes(1.0, 0.5)

@@ -30,7 +30,8 @@ const AXES: [&str; 3] = ["z", "x", "y"];
 ///
 /// A field has an axis for depth, x and y unless that one was given as a number: ``(nz, nx, ny)`` for
 /// several depths, ``(nx, ny)`` at one depth, ``(nz, nx)`` on the section ``y = const``. Tension is
-/// positive; at the surface ``zz`` is minus the pressure.
+/// positive; at the surface ``zz`` is minus the pressure. Beyond a free end of the body there is no material: fields are
+/// NaN.
 ///
 /// Examples
 /// --------
@@ -282,7 +283,9 @@ impl PyStress {
             value: field.into(),
         })?;
         let peak = stress.peak(&values).ok_or_else(|| {
-            PyValueError::new_err("the field must hold at least one depth, got none")
+            PyValueError::new_err(
+                "the field must hold at least one depth and point in the body, got none",
+            )
         })?;
         Ok((peak.value, peak.position.into()))
     }

@@ -28,8 +28,8 @@ side : {\"below\", \"above\"}, optional
     Side of an interface, for a depth that lies on one.
 x, y : float, optional
     Place of a vertical section. With one of them, the fields are kept on the line ``x = const`` or
-    ``y = const`` at every depth, by linear interpolation between cell centres; with both, at a
-    point.
+    ``y = const`` at every depth, by linear interpolation between cell centres and free ends; with both, at
+    a point.
 displacement : bool, optional
     Whether displacements are evaluated too."
     };

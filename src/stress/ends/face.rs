@@ -105,7 +105,7 @@ pub(super) struct Face {
     sign: f64,
     /// Depths below the face at which the fields are known.
     depths: Vec<f64>,
-    /// Weights of these depths for each row of the contact's grid.
+    /// Weights of these depths for each row of the contact's grid, then for each of the body's two end faces.
     rows: Vec<RowWeights>,
     /// Number of the contact's columns.
     columns: usize,
@@ -137,7 +137,7 @@ impl Face {
         below: &HalfSpace,
         grid: &Grid,
         near: &NearEnd,
-        sign: f64,
+        (end, known): (f64, [Option<f64>; 2]),
         pressed: &FacePressure,
         threads: &Threads,
         progress: &mut StressProgress,
@@ -146,11 +146,20 @@ impl Face {
         let (rows, spacing) = (pressed.means.nrows(), pressed.spacing);
         let size = [rows as f64 * spacing, columns as f64 * dy];
         let on = Grid::new([rows, columns], size)?.centered_at([0.5 * size[0], 0.0])?;
-        let (depths, near_rows) = node_rows(near.first, dx, nx - near.beyond);
+        let sign = near.sign;
+        let (mut depths, near_rows) = node_rows(near.first, dx, nx - near.beyond);
         let mut weights = vec![RowWeights::default(); nx];
         for (k, row_weights) in near_rows.into_iter().enumerate() {
             let row = near.beyond + k;
             weights[if sign > 0.0 { row } else { nx - 1 - row }] = row_weights;
+        }
+        // On faces, the stress is known for itself.
+        for x in known {
+            weights.push(RowWeights {
+                first: depths.len(),
+                weights: x.iter().map(|_| 1.0).collect(),
+            });
+            depths.extend(x.map(|x| sign * (x - end)));
         }
         let (strip, margin) = (&pressed.strip, pressed.margin);
         // Rows that the interpolation needs beyond a depth.
@@ -291,7 +300,7 @@ pub(super) struct AtDepth<'a> {
 }
 
 impl AtDepth<'_> {
-    /// Adds component `k` to the row `i` of the contact's grid.
+    /// Adds component `k` to the row `i` of the contact's grid or, beyond its last row, on a face.
     pub(super) fn add_row(&self, k: usize, i: usize, output: &mut [f64]) {
         let RowWeights { first, weights } = &self.rows[i];
         for (weight, line) in weights.iter().zip(&self.lines[*first..]) {

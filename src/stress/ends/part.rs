@@ -1,6 +1,6 @@
 //! Half-spaces whose stresses add up to that of a body near its ends.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use super::images::Images;
 use super::strip::Strip;
@@ -8,7 +8,9 @@ use crate::body::HalfSpace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::parallel::Threads;
-use crate::stress::half_space::{HalfSpacePlan, Source};
+use crate::response::interior::Place;
+use crate::stress::half_space::{HalfSpacePlan, PlaneEvaluator, Source, SurfaceLoad};
+use crate::stress::options::StressProgress;
 
 /// A half-space under a pressure on more, or finer, cells than those in which its stress is wanted.
 #[derive(Debug)]
@@ -85,6 +87,29 @@ impl Part {
             let values = output.iter_mut().zip(&row[self.column..]);
             values.for_each(|(output, value)| *output += self.factor * value);
         }
+    }
+
+    /// Adds the components at `place` on the line between the wanted rows `row` − 1 and `row` to `lines`, for each of them
+    /// along y.
+    pub(super) fn add_between(
+        &self,
+        (place, row): (&Place, usize),
+        displacement: bool,
+        lines: &mut [Vec<f64>],
+        progress: &mut StressProgress,
+    ) -> ControlFlow<()> {
+        if !(self.rows.start..=self.rows.end).contains(&row) {
+            return ControlFlow::Continue(());
+        }
+        let there = self.first - self.stride / 2 + (row - self.rows.start) * self.stride;
+        let pressure = SurfaceLoad::all([0.0; 2]);
+        let at = (place, there);
+        let found = PlaneEvaluator::between(&self.plan, pressure, displacement, at, progress)?;
+        for (line, found) in lines.iter_mut().zip(found) {
+            let values = line.iter_mut().zip(&found[self.column..]);
+            values.for_each(|(sum, value)| *sum += self.factor * value);
+        }
+        ControlFlow::Continue(())
     }
 
     /// The plan's cell for a wanted one, and the factor of what it adds there.

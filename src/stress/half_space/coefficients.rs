@@ -19,7 +19,7 @@ use crate::stress::subcell::STRESSES;
 
 /// A load on the surface, in proportion to the pressure.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SurfaceLoad {
+pub(in crate::stress) struct SurfaceLoad {
     /// Load per unit of pressure: 1, or a component of the friction.
     pub(super) factor: f64,
     /// Axis along which the traction acts; none for pressure.
@@ -28,7 +28,7 @@ pub(super) struct SurfaceLoad {
 
 impl SurfaceLoad {
     /// The pressure, and the tractions of `friction` that are not 0.
-    pub(super) fn all(friction: [f64; 2]) -> Vec<Self> {
+    pub(in crate::stress) fn all(friction: [f64; 2]) -> Vec<Self> {
         let loads = [(1.0, None), (friction[0], Some(0)), (friction[1], Some(1))];
         let loads = loads.into_iter().filter(|(factor, _)| *factor != 0.0);
         loads.map(|(factor, axis)| Self { factor, axis }).collect()
@@ -54,6 +54,8 @@ pub(super) struct Coefficients<'a> {
     pub(super) offsets: [usize; 2],
     /// Whether displacements are wanted beside the stresses.
     pub(super) displacement: bool,
+    /// Whether offsets along x are half a cell longer: those between cells and the line between two rows.
+    pub(super) between: bool,
 }
 
 impl Coefficients<'_> {
@@ -139,6 +141,7 @@ impl Coefficients<'_> {
                     offsets: needed,
                     spacing,
                     depth,
+                    between: self.between,
                     odd,
                     mean: |x, y| exchanged(kernel.at::<L>([y, x], [b, a])),
                     point: |x, y| exchanged(kernel.far::<L>(y, x)),
@@ -153,6 +156,7 @@ impl Coefficients<'_> {
                     offsets: needed,
                     spacing,
                     depth,
+                    between: self.between,
                     odd,
                     mean: |x, y| kernel.at::<L>([x, y], half),
                     point: |x, y| kernel.far::<L>(x, y),

@@ -19,6 +19,9 @@ use super::coefficients::{Coefficients, RowSource, SurfaceLoad, components};
 /// write and read less memory in between. Chosen by trial.
 const TOGETHER: usize = 3;
 
+/// Depth in cells that stands for the surface, at edges of cells.
+const SHALLOW: f64 = 1e-9;
+
 // Stresses and displacements come from different pressures: no three components may mix them.
 const _: () = assert!(STRESSES.is_multiple_of(TOGETHER));
 
@@ -35,6 +38,8 @@ pub(in crate::stress) struct PlaneEvaluator<'a> {
     rows: Vec<KernelRows>,
     workspace: Workspace,
     near: NearTable,
+    /// Whether coefficients are those of the line between two rows.
+    between: bool,
 }
 
 impl<'a> PlaneEvaluator<'a> {
@@ -68,7 +73,78 @@ impl<'a> PlaneEvaluator<'a> {
             loads,
             workspace: plan.transform.workspace(),
             near: NearTable::default(),
+            between: false,
         }
+    }
+
+    /// The components at `place` below the line between the rows `row` − 1 and `row`, for each of them along y, under the
+    /// pressure of a `plan` that is uniform over cells. `progress` is told 0.
+    pub(in crate::stress) fn between(
+        plan: &'a HalfSpacePlan,
+        loads: Vec<SurfaceLoad>,
+        displacement: bool,
+        (place, row): (&Place, usize),
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Vec<Vec<f64>>> {
+        let [nx, ny] = plan.grid.shape();
+        let components = components(displacement);
+        // At the surface, the line is on edges of cells, where kernels have the mean of both sides as their limit.
+        let mut below = *place;
+        if place.depth <= 0.0 {
+            below.depth = SHALLOW * plan.grid.spacing()[0];
+            below.below_top = below.depth;
+        }
+        // The loads on either side are convolved for themselves, at the row beside the line: the kernel's offsets then
+        // are whole numbers of cells and half a cell, and its parity along x is a sign.
+        let along_y = |load: &SurfaceLoad| {
+            let odd = load.odd().map(|[_, y]| [false, y])[..components].to_vec();
+            plan.transform.kernel_rows(plan.offsets, odd)
+        };
+        let mut evaluator = Self {
+            rows: loads.iter().map(along_y).collect(),
+            between: true,
+            ..Self::under(plan, loads, displacement)
+        };
+        plan.threads.run(|| evaluator.coefficients(&below));
+        let mut lines = vec![vec![0.0; ny]; components];
+        let mut plane = vec![0.0; nx * ny];
+        for (loaded, beside) in [(0..row, row.wrapping_sub(1)), (row..nx, row)] {
+            if loaded.is_empty() {
+                continue;
+            }
+            let mut pressure = vec![0.0; nx * ny];
+            let cells = loaded.start * ny..loaded.end * ny;
+            pressure[cells.clone()].copy_from_slice(&plan.pressure[cells]);
+            let is_behind = beside == row;
+            let workspace = &mut evaluator.workspace;
+            let transformed = plan.threads.run(|| {
+                plan.transform
+                    .transform(&pressure, workspace, &plan.threads)
+            });
+            for (number, line) in lines.iter_mut().enumerate() {
+                progress(0.0)?;
+                let sets = evaluator.loads.iter().zip(&evaluator.rows);
+                let sets: Vec<_> = sets
+                    .map(|(load, rows)| {
+                        let turns = is_behind && load.odd()[number][0];
+                        (if turns { -load.factor } else { load.factor }, rows)
+                    })
+                    .collect();
+                plan.threads.run(|| {
+                    plan.transform.convolve_parities(
+                        &transformed,
+                        (&plan.quarter, &sets),
+                        number..number + 1,
+                        &mut [&mut plane],
+                        &mut evaluator.workspace,
+                        &plan.threads,
+                    );
+                });
+                let values = line.iter_mut().zip(&plane[beside * ny..]);
+                values.for_each(|(sum, value)| *sum += value);
+            }
+        }
+        ControlFlow::Continue(lines)
     }
 
     /// Bytes that an evaluator takes.
@@ -171,6 +247,7 @@ impl<'a> PlaneEvaluator<'a> {
             place,
             offsets: plan.offsets,
             displacement: self.components > STRESSES,
+            between: self.between,
         };
         let (rows, workspace) = (&mut self.rows, &mut self.workspace);
         coefficients.each(&self.loads, &mut |number, source| {

@@ -89,6 +89,7 @@ impl<'a> PointEvaluator<'a> {
                 place,
                 offsets: self.offsets,
                 displacement: self.displacement,
+                between: false,
             };
             coefficients.each(&self.loads, &mut |number, source| {
                 self.add(self.loads[number], source, &mut sums);

@@ -1,0 +1,136 @@
+"""Stress at the free ends of bodies, and beyond them, where there is no material."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import nacre
+from nacre import plot
+
+mpl.use("Agg")
+
+pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # the ends are sharp
+
+STEEL = nacre.Elastic(210e9, 0.3)
+LAYER = nacre.Layer(nacre.Elastic(400e9, 0.25), 1e-5)
+LOW, HIGH = -1e-4, 5e-5
+"""The body has both ends, the counterbody the lower one."""
+GRID = nacre.Grid((40, 32), (4e-4, 3.2e-4))
+CELL = 1e-5
+
+
+@pytest.fixture(scope="module")
+def solution() -> nacre.Solution:
+    body = nacre.HalfSpace(STEEL, [LAYER], ends=(LOW, HIGH))
+    counterbody = nacre.HalfSpace(STEEL, ends=(LOW - 4 * CELL, None))
+    return nacre.Contact(body, GRID, counterbody).solve(nacre.Sphere(5e-3), load=10.0)
+
+
+@pytest.mark.parametrize("cells", [80, 120])
+def test_the_end_face_of_a_solved_contact_bears_no_traction(cells: int) -> None:
+    # The contact reaches the end: from a cell below the surface on, 3e-3 of the peak pressure.
+    end = 4e-5
+    body = nacre.HalfSpace(STEEL, ends=(None, end))
+    grid = nacre.Grid((cells, cells), (4e-4, 4e-4))
+    solution = nacre.Contact(body, grid).solve(nacre.Sphere(5e-3), load=10.0)
+    depths = np.array([1.0, 2.0, 4.0, 8.0]) * grid.spacing[0]
+    face = solution.stress(depths, x=end)
+    assert face.uncertainty is not None
+    assert np.abs(face.xx).max() < 3e-3 * solution.peak_pressure
+    assert (np.abs(face.xx).max(axis=1) < face.uncertainty).all()
+    assert max(np.abs(face.xy).max(), np.abs(face.xz).max()) < 1e-12 * solution.peak_pressure
+    assert np.abs(face.yy).max() > 0.03 * solution.peak_pressure
+    # At the surface itself, the pressure beside the edge stands for that at it.
+    surface = solution.stress(0.0, x=end)
+    pressure = solution.pressure[solution.x < end][-1]
+    np.testing.assert_allclose(-surface.zz, pressure, rtol=0, atol=0.1 * solution.peak_pressure)
+
+
+@pytest.mark.parametrize(
+    ("member", "low", "high"), [("body", LOW, HIGH), ("counterbody", LOW - 4 * CELL, np.inf)]
+)
+def test_each_body_has_its_own_ends(
+    solution: nacre.Solution, member: Any, low: float, high: float
+) -> None:
+    plane = solution.stress(2e-5, body=member, displacement=True)
+    beyond = (plane.x < low) | (plane.x > high)
+    assert beyond.any()
+    names = "xx yy zz xy yz xz ux uy uz von_mises tresca max_shear".split()
+    for field in [getattr(plane, name) for name in names] + plane.principal:
+        np.testing.assert_array_equal(np.isnan(field).all(axis=1), beyond)
+        np.testing.assert_array_equal(np.isnan(field).any(axis=1), beyond)
+    for name in ("von_mises", "tension", "zz"):
+        value, (x, _, _) = plane.peak(name)
+        assert np.isfinite(value)
+        assert low < x < high
+    line = solution.stress([0.0, 2e-5], body=member, y=1e-6)
+    np.testing.assert_array_equal(np.isnan(line.zz), [beyond, beyond])
+    outside = solution.stress(2e-5, body=member, x=low - 1e-7)
+    assert np.isnan(outside.zz).all()
+    assert outside.uncertainty is not None
+    assert np.isnan(outside.uncertainty).all()
+    assert outside.warnings == []
+    with pytest.raises(ValueError, match="in the body"):
+        outside.peak()
+    assert np.isfinite(solution.stress(2e-5, body=member, x=low, y=0.0).zz)
+    summary = solution.stress_summary(body=member)
+    for layer in summary.layers:
+        for peak in (layer.von_mises, layer.tension, layer.shear):
+            assert np.isfinite(peak[0])
+            assert low < peak[1][0] < high
+
+
+def test_stresses_with_places_beyond_an_end_are_equal_to_their_copies(
+    solution: nacre.Solution,
+) -> None:
+    field = solution.stress([1e-5, 2e-5], displacement=True)
+    assert field == pickle.loads(pickle.dumps(field)) == nacre.Stress.from_dict(field.to_dict())
+    assert field == solution.stress_plan().stress([1e-5, 2e-5], displacement=True)
+    assert field != solution.stress([1e-5, 3e-5], displacement=True)
+    assert field != solution.stress([1e-5, 2e-5], body="counterbody", displacement=True)
+
+
+def test_the_vtk_file_has_nothing_beyond_an_end(solution: nacre.Solution, tmp_path: Path) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    mesh = pyvista.read(solution.save(tmp_path / "a.vtr", depths=[5e-6, 2e-5]))
+    beyond = (GRID.x < LOW) | (GRID.x > HIGH)
+    for name in ("stress_xx", "von_mises", "max_shear", "tension"):
+        values = np.asarray(mesh.point_data[name]).reshape((*GRID.shape, 2), order="F")
+        np.testing.assert_array_equal(np.isnan(values).any(axis=(1, 2)), beyond)
+        np.testing.assert_array_equal(np.isnan(values).all(axis=(1, 2)), beyond)
+
+
+@pytest.mark.parametrize("quantity", ["von_mises", "xx", "tension"])
+def test_pictures_leave_out_what_is_beyond_an_end(
+    solution: nacre.Solution, quantity: str, tmp_path: Path
+) -> None:
+    axes = plot.stress_section(solution, quantity, rows=8)
+    axes.figure.savefig(tmp_path / "a.png")
+    (mesh, *_) = axes.collections
+    drawn = np.ma.getmaskarray(mesh.get_array())
+    np.testing.assert_array_equal(drawn[0], (GRID.x < LOW) | (GRID.x > HIGH))
+    low, high = mesh.get_clim()
+    assert np.isfinite([low, high]).all()
+    assert "nan" not in axes.get_title(loc="left") + axes.get_title()
+
+
+def test_interface_maps_leave_out_what_is_beyond_an_end(solution: nacre.Solution) -> None:
+    for quantity in ("shear", "normal"):
+        axes = plot.interface_map(solution, quantity=quantity)  # type: ignore[arg-type]
+        axes.figure.canvas.draw()
+        assert np.isfinite(axes.collections[0].get_clim()).all()
+
+
+def test_pictures_of_places_beyond_an_end_are_refused(solution: nacre.Solution) -> None:
+    with pytest.raises(ValueError, match=r"^at must be in the body, whose ends are"):
+        plot.stress_section(solution, along="y", at=HIGH + CELL)
+    with pytest.raises(ValueError, match=r"^at must be in the body, whose ends are"):
+        plot.stress_depth(solution, at=(LOW - CELL, 0.0))
+    plot.stress_section(solution, along="y", at=HIGH, rows=4)
+    plot.stress_depth(solution, at=(HIGH, 0.0), points=4)
