@@ -41,5 +41,5 @@ pub use cohesion::Apart;
 pub use curve::Curve;
 pub use equation::stack::{Parameter, Stack};
 pub use indenter::Indent;
-pub use point::{InteriorStress, Point, PullOff};
-pub use tip::{Form, Tip, TipParameter, slope_of};
+pub use point::{InteriorStress, Point, PullOff, Warning};
+pub use tip::{Form, STEEPEST, Tip, TipParameter, slope_of};

@@ -9,6 +9,7 @@ mod indent {
     mod contact;
     mod curves;
     mod derivatives;
+    mod profiles;
     mod ranges;
     pub(crate) mod support;
 }

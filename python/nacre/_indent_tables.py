@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import Field, create_model, model_validator
 
-import nacre._core as core
 from nacre._case_tables import Number, Numbers, Table, Words
 from nacre._schema import Bodies, at
 from nacre.values import CALLS
 
 KEYS: dict[str, tuple[Any, str]] = {
     "radius": (Number, "Radius of the sphere, of the flat punch, or of the end [m]."),
-    "slope": (Number, "Slope of the cone to the surface, in place of a half angle."),
+    "slope": (Number, "Slope of the cone to the surface, at most 5, in place of a half angle."),
     "flat": (Number, "Radius of the flat end [m]."),
     "factor": (Number, "Factor of the profile factor · r^exponent; its unit makes this a length."),
     "exponent": (Number, "Exponent of that profile."),
@@ -40,8 +39,6 @@ class Made(Table):
     def make(self) -> Any:
         """Return the tip or the adhesion."""
         given = self.model_dump(exclude={"kind"}, exclude_none=True)
-        if "half_angle" in given:
-            given["slope"] = core.slope_of(given.pop("half_angle"))
         return CALLS[self.made][0](**given)
 
 

@@ -342,7 +342,9 @@ def _solve(
         if "tip" in arguments:
             from nacre.indent.solution import solve
 
-            return {"values": indented(solve(**arguments), outputs), "indents": True}
+            found = solve(**arguments)
+            told = {"warnings": list(found.warnings), "kinds": ["steep"] * len(found.warnings)}
+            return {"values": indented(found, outputs), "indents": True} | told
         solution = _solution(arguments)
         normal = solution.normal if isinstance(solution, core.FrictionSolution) else solution
         unresolved: list[str] = []

@@ -45,9 +45,17 @@ MADE: dict[str, Any] = {
     if isinstance(member, staticmethod) and not name.startswith("_")
 }
 """Static methods that make tips and adhesion, by their names in data."""
+
+
+def _positional(make: Any) -> tuple[str, ...]:
+    """Return the names of positional arguments; those by keyword alone say the same otherwise."""
+    parameters = inspect.signature(make).parameters.values()
+    return tuple(one.name for one in parameters if one.kind is not one.KEYWORD_ONLY)
+
+
 CALLS: dict[str, tuple[Any, tuple[str, ...]]] = {
     **{kind.__name__: (kind, fields) for kind, fields in FIELDS.items()},
-    **{name: (make, tuple(inspect.signature(make).parameters)) for name, make in MADE.items()},
+    **{name: (make, _positional(make)) for name, make in MADE.items()},
     "Grid.line": (core.Grid.line, ("cells", "width", "center")),
     "Grid": (core.Grid, ("shape", "size", "center", "periodic")),
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::equation::stack::Parameter;
 use super::tip::{Tip, TipParameter};
-use crate::error::{Result, positive};
+use crate::error::{Error, Result, positive};
 
 /// How the surfaces adhere.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -56,13 +56,20 @@ impl Adhesion {
     /// The adhesion itself, if its numbers are above 0.
     ///
     /// # Errors
-    /// A number that is not finite and above 0.
+    /// A number that is not finite and above 0, and a gap work/strength beyond all lengths.
     pub fn checked(self) -> Result<Self> {
         if let Some(work) = self.work() {
             positive("work", work)?;
         }
-        if let Self::Maugis { strength, .. } = self {
+        if let Self::Maugis { work, strength } = self {
             positive("strength", strength)?;
+            if !(1e-100..=1e100).contains(&(work / strength)) {
+                return Err(Error::Parameter {
+                    name: "work/strength",
+                    requirement: "a length between 1e-100 and 1e100",
+                    value: work / strength,
+                });
+            }
         }
         Ok(self)
     }

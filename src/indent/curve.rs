@@ -9,7 +9,7 @@ use super::change::{Held, Variable};
 use super::equation::root::newton;
 use super::equation::stack::Parameter;
 use super::indenter::Indent;
-use super::point::Point;
+use super::point::{Point, Warning};
 use crate::error::{Error, Result, finite};
 
 /// Last Chebyshev coefficients of the logarithms at which a table counts as resolved.
@@ -38,6 +38,8 @@ pub struct Curve {
     pub slope: Vec<f64>,
     /// Derivatives of each load with respect to each parameter, at its approach.
     pub derivatives: Vec<Vec<f64>>,
+    /// What makes its deepest point doubtful; empty as a rule.
+    pub warnings: Vec<Warning>,
 }
 
 /// What is tabulated at a radius: the logarithms of S, P_F, δ_H, and for adhesion within the contact δ_H − δ, each with its
@@ -166,7 +168,11 @@ impl Indent {
         let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
         let least = match is_adhering {
             true => self.pull_off(Control::Approach)?.approach,
-            false => 0.0,
+            // Smaller contacts than those that are computed bear nothing that is seen beside the others.
+            false => match self.tip().range()[0] > 0.0 {
+                true => 0.0,
+                false => self.tip().transform(self.range()[0])[0] * (1.0 + 1e-6),
+            },
         };
         let touches = |approach: f64| match is_adhering {
             true => approach >= least,
@@ -201,12 +207,17 @@ impl Indent {
             radius: Vec::new(),
             slope: Vec::new(),
             derivatives: Vec::new(),
+            warnings: Vec::new(),
         };
         for (load, radius, slope, derivatives) in entries {
             curve.load.push(load);
             curve.radius.push(radius);
             curve.slope.push(slope);
             curve.derivatives.push(derivatives);
+        }
+        let widest = curve.radius.iter().fold(0.0_f64, |most, a| most.max(*a));
+        if widest > 0.0 {
+            curve.warnings = Warning::of(self.tip(), widest, most);
         }
         Ok(curve)
     }

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use spec_math::cephes64::{j0, j1};
 
-use super::equation::basis::{Panel, rule};
+use super::equation::basis::{Break, Panel, rule};
 use super::parts::Parts;
-use super::tip::TipParameter;
+use super::tip::{FEW_KINKS, TipParameter};
 
 /// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
 const PRESSURE: usize = 48;
@@ -108,18 +108,22 @@ impl Density<'_> {
     pub(super) fn pressure(&self, r: f64) -> f64 {
         let parts = self.parts;
         let a = parts.system.radius;
+        // Nearer to the axis a/r is beyond the machine.
+        let r = if r > 0.0 { r.max(1e-200 * a) } else { r };
         let singular = self.edge / ((a - r) * (a + r)).sqrt();
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
         let rule = rule((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
-        let kinks = parts.tip.kinks();
+        let breaks = self.breaks();
         // t = r cosh θ takes the root away.
         let (panels, is_axis) = match r > 0.0 {
             true => {
                 let angle = |t: f64| (t / r).max(1.0).acosh();
-                let kinks: Vec<f64> = kinks.iter().map(|b| angle(*b)).collect();
-                (Panel::between(0.0, &kinks, angle(a)), false)
+                (
+                    Panel::between(0.0, &mapped(&breaks, angle), angle(a)),
+                    false,
+                )
             }
-            false => (Panel::between(0.0, kinks, a), true),
+            false => (Panel::between(0.0, &breaks, a), true),
         };
         let nodes = panels.into_iter().flat_map(|panel| panel.nodes(rule));
         let (angles, weights): (Vec<f64>, Vec<f64>) = nodes.unzip();
@@ -138,6 +142,12 @@ impl Density<'_> {
         singular - sum
     }
 
+    fn breaks(&self) -> Vec<Break> {
+        let parts = self.parts;
+        let breaks = parts.tip.breaks(parts.system.radius, FEW_KINKS);
+        breaks.unwrap_or_default()
+    }
+
     /// ∫₀^a φ(t)/√(r²−t²) dt at r ≥ a; t = r sin θ takes the root away.
     pub(super) fn abel(&self, r: f64) -> f64 {
         self.in_angles(r, |[value, _], _| value)
@@ -150,8 +160,8 @@ impl Density<'_> {
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
         let rule = rule((parts.stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
         let angle = |t: f64| (t / r).min(1.0).asin();
-        let kinks: Vec<f64> = parts.tip.kinks().iter().map(|b| angle(*b)).collect();
-        let panels = Panel::between(0.0, &kinks, angle(a)).into_iter();
+        let breaks = mapped(&self.breaks(), angle);
+        let panels = Panel::between(0.0, &breaks, angle(a)).into_iter();
         let (angles, weights): (Vec<f64>, Vec<f64>) =
             panels.flat_map(|panel| panel.nodes(rule)).unzip();
         let places: Vec<f64> = angles.iter().map(|angle| r * angle.sin()).collect();
@@ -159,6 +169,15 @@ impl Density<'_> {
         let terms = values.iter().zip(angles.iter().zip(&weights));
         terms.map(|(value, (angle, w))| w * f(*value, *angle)).sum()
     }
+}
+
+/// Breaks at the places that `place` makes of theirs.
+fn mapped(breaks: &[Break], place: impl Fn(f64) -> f64) -> Vec<Break> {
+    let moved = |b: &Break| Break {
+        at: place(b.at),
+        ..*b
+    };
+    breaks.iter().map(moved).collect()
 }
 
 /// ∫ g J₀(αr) over waves.

@@ -17,6 +17,15 @@ const SMALLEST: f64 = 1e-9;
 /// Smallest contact radius, in any unit, where nothing has a length; its cube is a number of the machine.
 const TINY: f64 = 1e-60;
 
+/// Largest approach of a flat punch, in its radii, whose pressures are numbers of the machine.
+const DEEPEST: f64 = 1e100;
+
+/// Smallest contact radius beyond a flat end, relative to it.
+const BEYOND: f64 = 1e-12;
+
+/// Difference of a load or approach from the given one above which no radius that is looked at has it; solutions differ by rounding.
+const MISSED: f64 = 1e-6;
+
 /// A tip on a stack.
 #[derive(Debug, Clone)]
 pub struct Indent {
@@ -82,8 +91,8 @@ impl Indent {
         let high = high.min(self.stack.largest_radius());
         // A cone on a bare body has no length of its own.
         let size = self.tip.end_radius().or(self.stack.thickness());
-        let low = low.max(size.map_or(TINY, |size| SMALLEST * size.min(high)));
-        [low * (1.0 + 1e-9), high * (1.0 - 1e-9)]
+        let least = size.map_or(TINY, |size| (SMALLEST * size.min(high)).max(TINY * TINY));
+        [low.max(least) * (1.0 + BEYOND), high * (1.0 - 1e-9)]
     }
 
     /// The parts at the radius `a`.
@@ -197,15 +206,30 @@ impl Indent {
                 "only adhesion within the contact has an unstable branch",
             ));
         }
-        let too_large = Error::Parameter {
+        let unknown = |requirement| Error::Parameter {
             name,
-            requirement: "one that needs no larger radius than 1024 thicknesses of the top layer, and no larger one than the tip",
+            requirement,
             value,
         };
+        let too_large = unknown(
+            "one that needs no larger radius than 1024 thicknesses of the top layer, and no larger one than the tip, and whose \
+             contact has numbers of the machine",
+        );
+        if low >= high {
+            return Err(too_large);
+        }
+        // The caller gave no radius.
+        let state = |a: f64| {
+            self.state(a).map_err(|error| match error {
+                Error::Parameter { name: "radius", .. } => too_large.clone(),
+                _ => error,
+            })
+        };
         // A bracket from a guess on.
+        let smallest = low;
         let guess = self.guess(control, value).clamp(low, high);
         let mut top = guess;
-        while of(&self.state(top)?) < value {
+        while of(&state(top)?) < value {
             if top >= high {
                 return Err(too_large);
             }
@@ -214,7 +238,7 @@ impl Indent {
         }
         let mut last = None;
         let error = |log: f64| {
-            let point = self.state(log.exp())?;
+            let point = state(log.exp().max(smallest))?;
             let [approach, load] = point.along();
             let slope = match control {
                 Control::Load => load,
@@ -225,10 +249,29 @@ impl Indent {
             Ok(found)
         };
         let log = newton(error, [low.ln(), top.ln()], top.ln())?;
-        let point = match last {
+        let mut point = match last {
             Some(point) if (point.radius / log.exp() - 1.0).abs() < 4.0 * f64::EPSILON => point,
-            _ => self.state(log.exp())?,
+            _ => state(log.exp().max(smallest))?,
         };
+        let is_flat = self.tip.range()[0] > 0.0;
+        if let Some(floor) = floor
+            && (of(&point) - value).abs() > MISSED * value.abs().max(floor.abs())
+            && !is_flat
+        {
+            return Err(unknown(
+                "at least that of a contact of 1e-9 of the end radius or of the top layer",
+            ));
+        }
+        if self.adhesion == Adhesion::None && is_flat {
+            // At a given approach the load is stationary at the contact radius, whose rounding is coarse next to a flat end; below
+            // the smallest radius the contact is that of the end.
+            let [stiffness, profile] = point.parts.loads;
+            let approach = match control {
+                Control::Load => (value + profile) / stiffness,
+                Control::Approach => value,
+            };
+            point = Point::new(Arc::clone(&point.parts), self.adhesion, approach);
+        }
         point.check_disc()?;
         Ok(point)
     }
@@ -264,17 +307,19 @@ impl Indent {
             Some(_) => self.adhesion.edge(self.stack.surface_modulus(), a) / parts.edge[0],
             None => 0.0,
         };
-        if approach < least {
-            return Err(Error::Parameter {
-                name: match control {
-                    Control::Load => "load",
-                    Control::Approach => "approach",
-                },
-                requirement: "at least that of pull-off, or nothing touches",
-                value,
-            });
-        }
-        Ok(Point::new(parts, self.adhesion, approach))
+        let refused = match approach {
+            approach if approach < least => "at least that of pull-off, or nothing touches",
+            approach if approach > DEEPEST * a => "one whose approach is at most 1e100 radii",
+            _ => return Ok(Point::new(parts, self.adhesion, approach)),
+        };
+        Err(Error::Parameter {
+            name: match control {
+                Control::Load => "load",
+                Control::Approach => "approach",
+            },
+            requirement: refused,
+            value,
+        })
     }
 
     /// Contact radius \[m\] of the same tip on a bare body of the surface's modulus, to start from.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::equation::stack::Stack;
 use super::equation::system::{System, times};
 use super::tip::Tip;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::parallel::dot;
 
 /// φ₁ of a flat punch at unit approach and φ_F of the profile, with what follows from them.
@@ -28,7 +28,7 @@ impl Parts {
     /// The parts at the contact radius `a` \[m\]; `length` as in [`System::new`].
     ///
     /// # Errors
-    /// As [`System::new`].
+    /// As [`System::new`], and numbers beyond those of the machine.
     pub(super) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
         let system = System::new(stack, tip, a, length)?;
         let f = stack.surface_modulus() / PI;
@@ -52,6 +52,16 @@ impl Parts {
             k += 1;
             values
         });
+        if edge.iter().chain(&loads).any(|value| !value.is_finite())
+            || edge[0] <= 0.0
+            || loads[0] <= 0.0
+        {
+            return Err(Error::Parameter {
+                name: "radius",
+                requirement: "one whose load and stiffness are numbers of the machine",
+                value: a,
+            });
+        }
         Ok(Self {
             stack: stack.clone(),
             tip: tip.clone(),

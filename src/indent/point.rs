@@ -1,6 +1,7 @@
 //! States of an indentation.
 
 mod interior;
+mod warning;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use super::zone::{Answer, Zone};
 use crate::error::{Error, Result};
 
 pub use interior::InteriorStress;
+pub use warning::Warning;
 
 /// One state of an indentation.
 #[derive(Debug, Clone)]

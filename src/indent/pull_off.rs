@@ -239,12 +239,22 @@ impl Indent {
         });
         let start = (force / (1.5 * PI * size)).ln();
         let (mut low, mut high) = (start - 1.0, start + 1.0);
-        while ratio(low)? > 0.0 {
-            low -= 1.0;
-        }
-        while ratio(high)? < 0.0 {
-            high += 1.0;
-        }
-        Ok(bracketed(ratio, [low, high])?.exp())
+        let mut found = || {
+            while ratio(low)? > 0.0 {
+                low -= 1.0;
+            }
+            while ratio(high)? < 0.0 {
+                high += 1.0;
+            }
+            bracketed(ratio, [low, high])
+        };
+        self.clone().with_adhesion(with(1.0))?;
+        // The caller gave no work and no radius.
+        let log = found().map_err(|_| Error::Parameter {
+            name: "force",
+            requirement: "that of a contact within the radii that can be computed",
+            value: force,
+        })?;
+        Ok(log.exp())
     }
 }

@@ -4,11 +4,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::error::{Error, Result, positive};
 
+mod breaks;
 mod form;
 mod sampled;
 mod term;
 
-pub use form::Form;
+pub use form::{Form, STEEPEST};
 use term::Term;
 
 /// An axisymmetric tip.
@@ -35,34 +36,30 @@ pub enum TipParameter {
     Area,
 }
 
-/// Kinks of a profile at which panels of a quadrature end; where there are more, they are as small as their distances.
-const MOST_KINKS: usize = 4;
+/// Kinks of a profile at most at which the panels end whose nodes make its load; those of more are as small as their distances.
+pub(super) const MOST_KINKS: usize = 64;
+
+/// Kinks at most at which the panels of pressures and displacements end.
+pub(super) const FEW_KINKS: usize = 4;
 
 impl Tip {
     /// A tip of this form.
     ///
     /// # Errors
-    /// A number that is not finite and above 0, and samples that make no profile.
+    /// A length that is not between 1e-100 and 1e100, a slope above [`STEEPEST`], an exponent that is not between 0.01 and 100, and samples
+    /// that make no profile.
     pub fn new(form: Form) -> Result<Self> {
-        for (name, value) in form.numbers() {
-            positive(name, value)?;
-        }
+        form.check()?;
         let terms = match &form {
             Form::FlatPunch { .. } => vec![],
             Form::Paraboloid { radius } => vec![Term::paraboloid(1.0 / radius)],
             Form::Sphere { radius } => vec![Term::Sphere { radius: *radius }],
             Form::Cone { slope } => vec![Term::power(*slope, 1.0)],
             Form::Power { factor, exponent } => vec![Term::power(*factor, *exponent)],
-            Form::RoundedCone { slope, radius } => {
-                let (at, curvature) = (slope * radius, 1.0 / radius);
-                vec![
-                    Term::paraboloid(curvature),
-                    Term::Hinge {
-                        at,
-                        curvature: -curvature,
-                    },
-                ]
-            }
+            Form::RoundedCone { slope, radius } => vec![Term::Rounded {
+                at: slope * radius,
+                curvature: 1.0 / radius,
+            }],
             Form::RoundedPunch { flat, radius } => vec![Term::Hinge {
                 at: *flat,
                 curvature: 1.0 / radius,
@@ -79,12 +76,8 @@ impl Tip {
         };
         let mut kinks: Vec<f64> = terms.iter().filter_map(Term::kink).collect();
         kinks.sort_by(f64::total_cmp);
-        if kinks.len() > MOST_KINKS {
+        if kinks.len() > FEW_KINKS {
             kinks.clear();
-        }
-        // A power that is no whole number has its root on the axis.
-        if matches!(form, Form::Power { exponent, .. } if exponent.fract() > 0.0) {
-            kinks.push(0.0);
         }
         Ok(Self { form, terms, kinks })
     }
@@ -108,9 +101,24 @@ impl Tip {
     /// A cone whose flanks have this slope against the surface.
     ///
     /// # Errors
-    /// Unless the slope is finite and above 0.
+    /// Unless the slope is above 0 and at most [`STEEPEST`].
     pub fn cone(slope: f64) -> Result<Self> {
         Self::new(Form::Cone { slope })
+    }
+
+    /// A cone of this half angle between axis and flank \[rad\].
+    ///
+    /// ```
+    /// use nacre::indent::Tip;
+    /// let tip = Tip::cone_of_half_angle(70.3_f64.to_radians())?;
+    /// assert!((tip.gap(1.0) - 0.358).abs() < 1e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`slope_of`], and an angle whose slope is above [`STEEPEST`].
+    pub fn cone_of_half_angle(half_angle: f64) -> Result<Self> {
+        Self::cone(slope_of(half_angle)?)
     }
 
     /// A flat punch of this radius \[m\].
@@ -177,22 +185,26 @@ impl Tip {
         self.terms.iter().map(|term| term.slope(r)).sum()
     }
 
-    /// Whether the slope of the profile nowhere falls, so that the contact is a disc at every load.
-    pub(super) fn is_convex(&self) -> bool {
-        match self.form {
-            // A rounded cone ends its curvature, and its slope stays.
-            Form::RoundedCone { .. } => true,
-            _ => self.terms.iter().all(|term| match term {
-                Term::Hinge { curvature, .. } => *curvature >= 0.0,
-                Term::Power {
-                    factor, exponent, ..
-                } => *factor >= 0.0 && *exponent >= 1.0,
-                _ => true,
-            }),
-        }
+    /// Largest slope of the profile up to `a`: of convex ones that at `a`, of others at most the largest of many. Where the slope has no
+    /// limit on the axis, it is that over a tenth of the contact and more.
+    pub(super) fn steepest(&self, a: f64) -> f64 {
+        let from = if self.is_convex() { 64 } else { 7 };
+        let slopes = (from..=64).map(|k| self.slope(a * f64::from(k) / 64.0));
+        slopes.fold(0.0, f64::max)
     }
 
-    /// Places \[m\] of kinks of the profile, ascending.
+    /// Whether the slope of the profile nowhere falls, so that the contact is a disc at every load.
+    pub(super) fn is_convex(&self) -> bool {
+        self.terms.iter().all(|term| match term {
+            Term::Hinge { curvature, .. } => *curvature >= 0.0,
+            Term::Power {
+                factor, exponent, ..
+            } => *factor >= 0.0 && *exponent >= 1.0,
+            _ => true,
+        })
+    }
+
+    /// Places \[m\] of kinks of the profile, ascending; none where there are many, which are as small as their distances.
     pub(super) fn kinks(&self) -> &[f64] {
         &self.kinks
     }
@@ -224,7 +236,7 @@ impl Tip {
                     rate,
                 }]
             }
-            // The hinge of curvature −1/R lies at b = m R; ∂Hinge/∂b is a step of −curvature.
+            // b = m R; ∂Rounded/∂b is a step of its curvature.
             (Form::RoundedCone { slope, radius }, 0) => vec![Term::Step {
                 at: slope * radius,
                 slope: 1.0,
@@ -232,10 +244,9 @@ impl Tip {
             (Form::RoundedCone { slope, radius }, _) => {
                 let (at, rate) = (slope * radius, -radius.powi(-2));
                 vec![
-                    Term::paraboloid(rate),
-                    Term::Hinge {
+                    Term::Rounded {
                         at,
-                        curvature: -rate,
+                        curvature: rate,
                     },
                     Term::Step {
                         at,
@@ -351,7 +362,7 @@ pub fn slope_of(angle: f64) -> Result<f64> {
         true => Ok(angle.tan().recip()),
         false => Err(Error::Parameter {
             name: "half_angle",
-            requirement: "between 0 and pi/2, in radians",
+            requirement: "between 0 and pi/2, in radians; np.deg2rad makes them of degrees",
             value: angle,
         }),
     }

@@ -77,6 +77,8 @@ class Fit:
     """Adhesion with the estimates."""
     evaluations: int
     """How often the curves were computed."""
+    warnings: tuple[str, ...] = ()
+    """What makes the contacts doubtful, in sentences; each was also issued as a `NacreWarning`."""
 
     @property
     def identifiable(self) -> dict[str, bool]:
@@ -150,6 +152,7 @@ class Fit:
         )
         if not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
+        lines += [f"warning: {warning}" for warning in self.warnings]
         return ["parameter", "estimate", "±", "95 % interval", ""], rows, lines
 
     def _value(self, name: str) -> str:
@@ -211,7 +214,8 @@ class Fit:
         ValueError
             If a key is missing or unknown, or a newer version wrote the data.
         """
-        state = checked_state(data, "Fit", {field.name for field in fields(Fit)})
+        names = {field.name for field in fields(Fit)}
+        state = checked_state({"warnings": [], **data}, "Fit", names)
         for name in ("body", "tip", "counterbody", "adhesion"):
             state[name] = decode(state[name])
         state["curves"] = [
@@ -222,5 +226,6 @@ class Fit:
         for name in ("residuals", "loads", "approaches"):
             state[name] = [np.array(part, dtype=np.float64) for part in state[name]]
         state["intervals"] = {k: (low, high) for k, (low, high) in state["intervals"].items()}
-        state["free"] = tuple(state["free"])
+        for name in ("free", "warnings"):
+            state[name] = tuple(state[name])
         return Fit(**state)

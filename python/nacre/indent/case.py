@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,6 +12,7 @@ import typer
 import nacre.indent.solution as solving
 from nacre._case_commands import CaseFile, Json, Units, plain, read_case
 from nacre._commands import app
+from nacre._core import NacreWarning
 from nacre.case import CaseError
 from nacre.units import display_units
 
@@ -32,7 +34,8 @@ def indent(
         if path.suffix not in (".nc", ".csv"):
             raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
     arguments = described.arguments()
-    with display_units(described.units):
+    with display_units(described.units), warnings.catch_warnings():
+        warnings.simplefilter("ignore", NacreWarning)  # the printed solution has them
         try:
             solution = solving.solve(**arguments)
             found = numbers(solution)

@@ -24,6 +24,17 @@ def coated(ratio: float, thickness: float, poisson: float = 0.3) -> core.HalfSpa
     return core.HalfSpace(core.Elastic(1.0, poisson), [layer])
 
 
+def _numbers(name: str, values: npt.ArrayLike, low: float, high: float) -> Array:
+    """Return numbers, at least one, or an error unless they lie between two others."""
+    try:
+        numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    except OverflowError:
+        numbers = np.array([math.inf])
+    if (wrong := numbers[~((numbers >= low) & (numbers <= high))]).size:
+        raise ValueError(f"{name} must be between {low:g} and {high:g}, got {wrong.flat[0]}")
+    return numbers
+
+
 def bulk_limit(
     ratios: npt.ArrayLike, error: float = 0.01, *, poisson: float = 0.3
 ) -> dict[str, Array]:
@@ -47,7 +58,7 @@ def bulk_limit(
     Raises
     ------
     ValueError
-        If the error or a ratio is not above 0.
+        If the error is not above 0, or a ratio is not between 1e-6 and 1e6.
 
     Examples
     --------
@@ -58,7 +69,7 @@ def bulk_limit(
     if not error > 0:
         raise ValueError(f"error must be above 0, got {error}")
     names = ("hertz", "oliver_pharr", "stiffness")
-    rows = [_limits(float(ratio), error, poisson) for ratio in np.atleast_1d(np.asarray(ratios))]
+    rows = [_limits(ratio, error, poisson) for ratio in _numbers("ratios", ratios, 1e-6, 1e6)]
     return dict(zip(names, np.array(rows).reshape(-1, 3).T, strict=True))
 
 
@@ -108,6 +119,11 @@ def pull_off_over_thickness(
     -------
     ndarray, (n,)
         Forces over πwR; 1.5 on a bare body under load control.
+
+    Raises
+    ------
+    ValueError
+        If a thickness is not between 0.001 and 1e6.
     """
     work, radius = 1e-6, 1.0
     modulus = 1 / (1 - poisson**2)
@@ -117,7 +133,7 @@ def pull_off_over_thickness(
         core.Indentation(coated(ratio, unit * float(h), poisson), tip, adhesion=adhesion)
         .pull_off(control)
         .load
-        for h in np.atleast_1d(np.asarray(thickness))
+        for h in _numbers("thickness", thickness, 1e-3, 1e6)
     ]
     return -np.array(forces) / (math.pi * work * radius)
 

@@ -320,6 +320,9 @@ def _result(
     with np.errstate(invalid="ignore"):
         covariance = best.covariance * np.outer(rates, rates)
     system = model.fitted(x)
+    told = system.curve(approach).warnings
+    for sentence in told:
+        warnings.warn(sentence, core.NacreWarning, stacklevel=3)
     return Fit(
         estimates=model.values(x),
         standard_errors={n: float(s) for n, s in zip(model.names, spread * rates, strict=True)},
@@ -344,6 +347,7 @@ def _result(
         counterbody=system.counterbody,
         adhesion=system.adhesion,
         evaluations=model.evaluations,
+        warnings=tuple(told),
     )
 
 

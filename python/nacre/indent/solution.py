@@ -69,6 +69,8 @@ class IndentSolution:
     """Radius up to which the surfaces attract each other [m]."""
     central_pressure: Any
     """Pressure on the axis [Pa], infinite below a sharp tip."""
+    warnings: tuple[str, ...] = ()
+    """What makes the contacts doubtful, in sentences; each was also issued as a `NacreWarning`."""
 
     @cached_property
     def indentation(self) -> core.Indentation:
@@ -109,7 +111,7 @@ class IndentSolution:
         state |= {name: encode(getattr(self, name)) for name in ARGUMENTS}
         state |= {name: getattr(self, name) for name in ("given", "branch", "control")}
         state |= {name: np.asarray(getattr(self, name)).tolist() for name in NUMBERS}
-        return state | {"pull_off": self._pulled}
+        return state | {"pull_off": self._pulled, "warnings": list(self.warnings)}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -120,8 +122,9 @@ class IndentSolution:
         ValueError
             If a key is missing or unknown, or a newer version wrote the data.
         """
-        names = {*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off"}
-        state = checked_state(data, "IndentSolution", names)
+        names = {*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"}
+        state = checked_state({"warnings": [], **data}, "IndentSolution", names)
+        state["warnings"] = tuple(state["warnings"])
         for name in ARGUMENTS:
             state[name] = decode(state[name])
         for name in NUMBERS:
@@ -208,6 +211,7 @@ class IndentSolution:
         if self.adhesion is not None:
             pulled = (f"{n.rpartition('_')[2]} {said(v, n)}" for n, v in self._pulled.items())
             notes.append(f"pull-off: {', '.join(pulled)}")
+        notes += [f"warning: {warning}" for warning in self.warnings]
         return [name.replace("_", " ") for name in COLUMNS], rows, notes
 
 
@@ -257,6 +261,11 @@ def solve(
     ValueError
         If `Indentation` or `Indentation.at` cannot take an argument.
 
+    Warns
+    -----
+    NacreWarning
+        If the slope of the tip within a contact is above 0.5, beyond the theory of small slopes.
+
     Examples
     --------
     >>> glass, film = nacre.Elastic(70e9, 0.22), nacre.Elastic(3e9, 0.4)
@@ -283,6 +292,7 @@ def solve(
         control=control,
         **numbers,
         central_pressure=state.pressure(0.0),
+        warnings=tuple(state.warnings),
     )
     solution.__dict__.update(indentation=test, state=state)
     return solution

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::super::tip::Tip;
+use super::super::tip::{MOST_KINKS, Tip};
 use super::basis::Basis;
 use super::stack::{Level, Stack};
 use crate::dense::{backward, cholesky, forward};
@@ -41,7 +41,8 @@ impl System {
                 value: a,
             });
         }
-        let basis = Basis::new(a, stack.thickness(), tip.kinks(), stack.finer());
+        let breaks = tip.breaks(a, MOST_KINKS);
+        let basis = Basis::new(a, stack.thickness(), breaks.as_deref(), stack.finer());
         let ones = basis.project(&vec![1.0; basis.places().len()]);
         let level = stack.level(length.max(2.0 * a)).cloned();
         let (mut rows, mut edge) = (Vec::new(), [Vec::new(), Vec::new()]);

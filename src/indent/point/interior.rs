@@ -6,10 +6,17 @@ use super::{Point, distance};
 use crate::error::{Error, Result};
 use crate::indent::equation::basis::{Panel, rule};
 use crate::indent::equation::waves::Waves;
+use crate::indent::tip::FEW_KINKS;
 use crate::response::interior::{Column, Place};
 
 /// Depth, in contact radii, above which the waves that matter are too many.
 const SHALLOWEST: f64 = 1e-2;
+
+/// Depth, in contact radii, below which all stresses are those of a force at a point.
+const DEEPEST: f64 = 1e6;
+
+/// Distance from the axis, in depths and contact radii, beyond which the waves that matter are too many.
+const FARTHEST: f64 = 1e4;
 
 /// Nodes of a panel of the contact.
 const FINE: usize = 32;
@@ -50,14 +57,23 @@ impl Point {
     /// ```
     ///
     /// # Errors
-    /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius, and no such half-space.
+    /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius or above 1e6 of it, a distance above
+    /// 1e4 of both, and no such half-space.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
         r.iter().try_for_each(|r| distance(*r))?;
-        if !(z.is_finite() && z >= SHALLOWEST * self.radius) {
+        if !(SHALLOWEST..=DEEPEST).contains(&(z / self.radius)) {
             return Err(Error::Parameter {
                 name: "z",
-                requirement: "at least 1e-2 of the contact radius, and finite; at the surface, see the pressure",
+                requirement: "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
                 value: z,
+            });
+        }
+        let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
+        if far > FARTHEST * z.max(self.radius) {
+            return Err(Error::Parameter {
+                name: "r",
+                requirement: "at most 1e4 of the depth or of the contact radius",
+                value: far,
             });
         }
         let bodies = self.parts.stack.bodies();
@@ -88,7 +104,6 @@ impl Point {
             }
         };
         // All decays with e^{−αz}: TAIL/thickness = 48/z ends at e^{−48}; J_ν and p̂ oscillate over r and the outer radius.
-        let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
         let layers = body.interfaces().into_iter().reduce(f64::min);
         let thinnest = layers.map_or(z / 3.0, |h| h.min(z / 3.0));
         let waves = Waves::plan(
@@ -130,7 +145,8 @@ impl Point {
             .iter()
             .fold(0.0_f64, |most, alpha| most.max(*alpha));
         let (mut places, mut weights) = (Vec::new(), Vec::new());
-        for panel in Panel::between(0.0, tip.kinks(), a) {
+        let breaks = tip.breaks(a, FEW_KINKS).unwrap_or_default();
+        for panel in Panel::between(0.0, &breaks, a) {
             let count = (shortest * (panel.high - panel.low) / PHASE)
                 .ceil()
                 .max(1.0);

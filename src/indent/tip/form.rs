@@ -1,5 +1,11 @@
 //! Forms of tips and their numbers.
 
+use crate::error::{Error, Result, positive};
+
+/// Steepest slope of a cone, of a half angle of 11°. The theory is that of small slopes, and errs by their square: there is no such tip
+/// above, and the number is a half angle, in degrees or radians.
+pub const STEEPEST: f64 = 5.0;
+
 /// Form of a tip: its profile g(r) is the gap of the undeformed bodies, and g(0) = 0. Lengths in \[m\].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -85,5 +91,29 @@ impl Form {
             Self::Profile { .. } => vec![],
             Self::Area { depth, .. } => vec![("depth", *depth)],
         }
+    }
+
+    /// An error unless the numbers are those of a tip, in any unit.
+    pub(super) fn check(&self) -> Result<()> {
+        for (name, value) in self.numbers() {
+            let (range, requirement) = match name {
+                "slope" => (
+                    0.0..=STEEPEST,
+                    "above 0 and at most 5, a half angle of 11 degrees; half_angle= takes an angle in radians",
+                ),
+                "exponent" => (0.01..=100.0, "between 0.01 and 100"),
+                "factor" => (0.0..=f64::MAX, "finite and above 0"),
+                _ => (1e-100..=1e100, "between 1e-100 and 1e100"),
+            };
+            positive(name, value)?;
+            if !range.contains(&value) {
+                return Err(Error::Parameter {
+                    name,
+                    requirement,
+                    value,
+                });
+            }
+        }
+        Ok(())
     }
 }

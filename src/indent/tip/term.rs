@@ -19,6 +19,8 @@ pub(super) enum Term {
     Step { at: f64, slope: f64 },
     /// The curvature g'' jumps at r = b: F = curvature s [√(s²−b²) − b arccos(b/s)] beyond.
     Hinge { at: f64, curvature: f64 },
+    /// g = c r²/2 up to r = b, and with the slope c b beyond: F = c s², and c s [b²/(s + √(s²−b²)) + b arccos(b/s)] beyond.
+    Rounded { at: f64, curvature: f64 },
     /// The derivative of `Sphere` with respect to its radius.
     SphereRate { radius: f64 },
     /// The derivative of `Power` with respect to its exponent.
@@ -50,7 +52,10 @@ impl Term {
     /// Place of a kink, where F has a root of the distance from it.
     pub(super) fn kink(&self) -> Option<f64> {
         match *self {
-            Self::Step { at, .. } | Self::Hinge { at, .. } | Self::PlaceRate { at, .. } => Some(at),
+            Self::Step { at, .. }
+            | Self::Hinge { at, .. }
+            | Self::Rounded { at, .. }
+            | Self::PlaceRate { at, .. } => Some(at),
             _ => None,
         }
     }
@@ -64,6 +69,10 @@ impl Term {
             Self::Sphere { radius } => r * r / (radius + ((radius - r) * (radius + r)).sqrt()),
             Self::Step { at, slope } => slope * (r - at).max(0.0),
             Self::Hinge { at, curvature } => 0.5 * curvature * (r - at).max(0.0).powi(2),
+            Self::Rounded { at, curvature } => {
+                let inner = r.min(at);
+                curvature * inner * (r - 0.5 * inner)
+            }
             Self::SphereRate { radius } => {
                 // ∂/∂R of R − √(R² − r²).
                 1.0 - radius / ((radius - r) * (radius + r)).sqrt()
@@ -94,6 +103,7 @@ impl Term {
             Self::Sphere { radius } => r / ((radius - r) * (radius + r)).sqrt(),
             Self::Step { at, slope } if r > at => slope,
             Self::Hinge { at, curvature } => curvature * (r - at).max(0.0),
+            Self::Rounded { at, curvature } => curvature * r.min(at),
             _ => 0.0,
         }
     }
@@ -138,6 +148,7 @@ impl Term {
                     bend * log + 2.0 * slope / s - value / (s * s),
                 ]
             }
+            Self::Rounded { at, curvature } if s <= at => power(curvature, 2.0, s),
             Self::Step { at, .. } | Self::Hinge { at, .. } | Self::PlaceRate { at, .. }
                 if s <= at =>
             {
@@ -153,10 +164,20 @@ impl Term {
             }
             Self::Hinge { at, curvature } => {
                 let (root, angle) = beyond(s, at);
+                let rest = rest(root, angle, at);
                 [
-                    curvature * s * (root - at * angle),
-                    curvature * (2.0 * root - at * angle),
+                    curvature * s * rest,
+                    curvature * (root + rest),
                     curvature * (2.0 * s / root - at * at / (s * root)),
+                ]
+            }
+            Self::Rounded { at, curvature } => {
+                let (root, angle) = beyond(s, at);
+                let (sum, square) = (s + root, at * at);
+                [
+                    curvature * s * (square / sum + at * angle),
+                    curvature * (2.0 * square / sum + at * angle),
+                    -curvature * square * square / (s * root * sum * sum),
                 ]
             }
             Self::PlaceRate { at, slope } => {
@@ -175,6 +196,19 @@ impl Term {
 fn beyond(s: f64, b: f64) -> (f64, f64) {
     let root = ((s - b) * (s + b)).sqrt();
     (root, root.atan2(b))
+}
+
+/// √(s² − b²) − b arccos(b/s), b (tan θ − θ) of the angle, without the rounding of a difference where it is small.
+fn rest(root: f64, angle: f64, b: f64) -> f64 {
+    let square = (root / b) * (root / b);
+    if square > 0.01 {
+        return root - b * angle;
+    }
+    // tan θ − θ = x³/3 − x⁵/5 + … of x = tan θ < 0.1; the next term is 1e-16 of the first.
+    let series = (0..8)
+        .rev()
+        .fold(0.0, |sum, k| 1.0 / f64::from(2 * k + 3) - square * sum);
+    root * square * series
 }
 
 /// rate sⁿ and its two derivatives.

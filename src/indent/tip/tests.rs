@@ -2,7 +2,7 @@
 
 use super::{Form, Tip, TipParameter};
 use crate::error::Result;
-use crate::indent::equation::basis::Panel;
+use crate::indent::equation::basis::{Break, Panel};
 use crate::kernel::quadrature::Rule;
 
 /// Forms with their numbers as `numbers` has them.
@@ -43,8 +43,11 @@ fn transforms_are_those_of_the_profiles() -> Result<()> {
     for (k, form) in forms([1.0; 2]).into_iter().enumerate() {
         let tip = Tip::new(form)?;
         for s in [0.3, 0.8, 1.4] {
-            let angle = |b: &f64| (b / s).min(1.0).asin();
-            let kinks: Vec<f64> = tip.kinks().iter().map(angle).collect();
+            let angle = |b: &f64| Break {
+                at: (b / s).min(1.0).asin(),
+                has_root: true,
+            };
+            let kinks: Vec<Break> = tip.kinks().iter().map(angle).collect();
             let mut due = 0.0;
             if k < 8 {
                 for panel in Panel::between(0.0, &kinks, std::f64::consts::FRAC_PI_2) {

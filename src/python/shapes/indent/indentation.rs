@@ -9,10 +9,11 @@ use super::super::super::background::{self, Caller};
 use super::super::super::bodies::{PyHalfSpace, body};
 use super::adhesion::PyAdhesion;
 use super::results::{PyIndentCurve, PyPullOff};
-use super::state::{PyIndentState, chosen, worked};
+use super::state::{PyIndentState, chosen, worked, worst};
 use super::tip::PyTip;
 use crate::Result;
 use crate::indent::{Adhesion, Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
+use crate::python::stress::keywords::issue_warnings;
 use crate::response::Body;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
@@ -227,12 +228,13 @@ impl PyIndentation {
                 "no load, approach or radius was given: the array is empty",
             ));
         }
-        Ok(PyIndentState {
+        let state = PyIndentState {
             points,
             shape,
             held,
             parameters: self.parameters.clone(),
-        })
+        };
+        state.warned(py)
     }
 
     /// Loads at approaches with their derivatives, by interpolation in the contact radius with an error of 1e-9: for fits.
@@ -273,6 +275,8 @@ impl PyIndentation {
         let count = parameters.len();
         let (indent, at) = (self.indent.clone(), approach.clone());
         let curve = one(py, move || indent.curve(&at, &parameters))?;
+        let warnings = worst(curve.warnings);
+        issue_warnings(py, warnings.clone())?;
         let rows: Vec<f64> = curve.derivatives.into_iter().flatten().collect();
         let derivatives = Array2::from_shape_vec((approach.len(), count), rows);
         let derivatives = derivatives.map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -283,6 +287,7 @@ impl PyIndentation {
             radius: line(curve.radius)?,
             slope: line(curve.slope)?,
             derivatives: read_only(py, derivatives)?.unbind(),
+            warnings,
         })
     }
 
@@ -331,7 +336,7 @@ impl PyIndentation {
         let control = self::control(control)?;
         let indent = self.indent.clone();
         let point = one(py, move || indent.snap_in(control))?;
-        Ok(PyIndentState {
+        let state = PyIndentState {
             points: vec![point],
             shape: vec![],
             held: match control {
@@ -339,7 +344,8 @@ impl PyIndentation {
                 Control::Approach => Held::Approach,
             },
             parameters: self.parameters.clone(),
-        })
+        };
+        state.warned(py)
     }
 
     /// Work of adhesion [J/m^2] from the force of pull-off [N], above 0, on this stack: of JKR's adhesion where this indentation has

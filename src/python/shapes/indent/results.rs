@@ -16,6 +16,8 @@ pub(in crate::python) struct PyIndentCurve {
     pub(super) slope: Py<PyArray1<f64>>,
     /// Derivatives of the loads at given approach, (points, parameters), per unit of each parameter.
     pub(super) derivatives: Py<PyArray2<f64>>,
+    /// What makes the deepest point doubtful, a list of sentences, empty as a rule. Each was also issued as a `nacre.NacreWarning`.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Last stable state of a tip that is pulled off; see `Indentation.pull_off`.

@@ -8,7 +8,8 @@ use pyo3::types::PyDict;
 use super::super::super::arguments::{Real, real_array};
 use super::super::super::background::{self, Caller};
 use crate::Result;
-use crate::indent::{Held, InteriorStress, Parameter, Point, Variable};
+use crate::indent::{Held, InteriorStress, Parameter, Point, Variable, Warning};
+use crate::python::stress::keywords::issue_warnings;
 
 /// One number of a state of stress.
 type Component = fn(&InteriorStress) -> f64;
@@ -74,7 +75,24 @@ pub(in crate::python) struct PyIndentState {
     pub(super) parameters: Vec<(String, Parameter)>,
 }
 
+/// Sentences of the worst warning of all points.
+pub(super) fn worst(warnings: impl IntoIterator<Item = Warning>) -> Vec<String> {
+    let slope = |warning: &Warning| match warning {
+        Warning::Steep { slope } => *slope,
+    };
+    let worst = warnings
+        .into_iter()
+        .max_by(|a, b| slope(a).total_cmp(&slope(b)));
+    worst.iter().map(ToString::to_string).collect()
+}
+
 impl PyIndentState {
+    /// The states, whose warnings are issued.
+    pub(super) fn warned(self, py: Python<'_>) -> PyResult<Self> {
+        issue_warnings(py, self.warnings())?;
+        Ok(self)
+    }
+
     fn each<'py>(
         &self,
         py: Python<'py>,
@@ -128,6 +146,13 @@ impl PyIndentState {
     #[getter]
     fn outer_radius<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.each(py, |point| point.outer_radius.unwrap_or(point.radius))
+    }
+
+    /// What makes the contacts doubtful, a list of sentences, empty as a rule: slopes above 0.5. Each was also issued as a
+    /// `nacre.NacreWarning`.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        worst(self.points.iter().flat_map(Point::warnings))
     }
 
     /// Pressure [Pa] at distances r from the axis [m], 0 outside of the contact, infinite below a sharp tip and at a sharp edge. Its

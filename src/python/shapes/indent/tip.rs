@@ -1,5 +1,6 @@
 //! `nacre.indent.Tip` and `nacre.indent.slope_of`.
 
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -51,6 +52,17 @@ pub(in crate::python) fn slope_of(half_angle: Real) -> PyResult<f64> {
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyTip(pub(in crate::python) Tip);
 
+/// The slope of a cone, of which either it or the half angle [rad] is given.
+fn sloped(slope: Option<Real>, half_angle: Option<Real>) -> PyResult<f64> {
+    match (slope, half_angle) {
+        (Some(Real(slope)), None) => Ok(slope),
+        (None, Some(Real(angle))) => Ok(indent::slope_of(angle)?),
+        _ => Err(PyValueError::new_err(
+            "exactly one of slope and half_angle must be given: a slope against the surface, or an angle between axis and flank [rad]",
+        )),
+    }
+}
+
 fn list(values: &[f64]) -> String {
     let numbers: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
     format!("[{}]", numbers.join(", "))
@@ -70,10 +82,11 @@ impl PyTip {
         Ok(Self(Tip::paraboloid(radius.0)?))
     }
 
-    /// Cone whose flanks have this slope against the surface; see `slope_of` for its half angle.
+    /// Cone whose flanks have this slope against the surface, at most 5, or of this half angle between axis and flank [rad].
     #[staticmethod]
-    fn cone(slope: Real) -> PyResult<Self> {
-        Ok(Self(Tip::cone(slope.0)?))
+    #[pyo3(signature = (slope=None, *, half_angle=None))]
+    fn cone(slope: Option<Real>, half_angle: Option<Real>) -> PyResult<Self> {
+        Ok(Self(Tip::cone(sloped(slope, half_angle)?)?))
     }
 
     /// Flat punch of this radius [m], with a sharp edge.
@@ -89,10 +102,19 @@ impl PyTip {
         Ok(Self(Tip::new(Form::Power { factor, exponent })?))
     }
 
-    /// Cone of this slope with a paraboloid of this radius [m] at its end, up to where both have the same slope.
+    /// Cone of this slope, or half angle [rad], with a paraboloid of this radius [m] at its end, up to where both have the same
+    /// slope. The radius must be given.
     #[staticmethod]
-    fn rounded_cone(slope: Real, radius: Real) -> PyResult<Self> {
-        let (slope, radius) = (slope.0, radius.0);
+    #[pyo3(signature = (slope=None, radius=None, *, half_angle=None))]
+    fn rounded_cone(
+        slope: Option<Real>,
+        radius: Option<Real>,
+        half_angle: Option<Real>,
+    ) -> PyResult<Self> {
+        let slope = sloped(slope, half_angle)?;
+        let radius = radius
+            .ok_or_else(|| PyTypeError::new_err("radius must be given"))?
+            .0;
         Ok(Self(Tip::new(Form::RoundedCone { slope, radius })?))
     }
 
@@ -103,10 +125,11 @@ impl PyTip {
         Ok(Self(Tip::new(Form::RoundedPunch { flat, radius })?))
     }
 
-    /// Cone of this slope that is cut off at the radius `flat` [m].
+    /// Cone of this slope, or half angle [rad], that is cut off at the radius `flat` [m].
     #[staticmethod]
-    fn flat_cone(flat: Real, slope: Real) -> PyResult<Self> {
-        let (flat, slope) = (flat.0, slope.0);
+    #[pyo3(signature = (flat, slope=None, *, half_angle=None))]
+    fn flat_cone(flat: Real, slope: Option<Real>, half_angle: Option<Real>) -> PyResult<Self> {
+        let (flat, slope) = (flat.0, sloped(slope, half_angle)?);
         Ok(Self(Tip::new(Form::FlatCone { flat, slope })?))
     }
 
@@ -177,8 +200,14 @@ impl PyTip {
         self.0.end_radius()
     }
 
-    /// Profile g [m] at distances r from the axis [m], in their shape; infinite beyond a sphere or a flat punch.
+    /// Profile g [m] at distances r from the axis [m], which must be numbers, in their shape; infinite beyond a sphere or a flat punch.
     fn gap<'py>(&self, r: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let values = real_array("r", r)?;
+        if let Some(r) = values.iter().find(|r| self.0.gap(r.abs()).is_nan()) {
+            return Err(PyValueError::new_err(format!(
+                "r must be distances at which the profile is known, got {r}"
+            )));
+        }
         mapped("r", r, |r| self.0.gap(r.abs()))
     }
 
