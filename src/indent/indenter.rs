@@ -17,6 +17,15 @@ const SMALLEST: f64 = 1e-9;
 /// Smallest contact radius, in any unit, where nothing has a length; its cube is a number of the machine.
 const TINY: f64 = 1e-60;
 
+/// Contact radius, in thicknesses of the top layer, below which load and approach grow with it.
+const SMALL: f64 = 1e-2;
+
+/// Step of the logarithm of the radius in the search for another contact.
+const STEP: f64 = 0.1;
+
+/// Excess of load or approach, in what is given, beyond which they do not come back.
+const PASSED: f64 = 3.0;
+
 /// A tip on a stack.
 #[derive(Debug, Clone)]
 pub struct Indent {
@@ -197,17 +206,42 @@ impl Indent {
                 "only adhesion within the contact has an unstable branch",
             ));
         }
-        let too_large = Error::Parameter {
-            name,
-            requirement: "one that needs no larger radius than 1024 thicknesses of the top layer, and no larger one than the tip",
-            value,
+        let last = low;
+        let found = self.nearest(control, value, [low, high]);
+        let found = match found {
+            Ok(Some(point)) => point.check_disc().map(|()| point),
+            Ok(None) => Err(Error::Parameter {
+                name,
+                requirement: "one that needs no larger radius than 1024 thicknesses of the top layer, and no larger one than the tip",
+                value,
+            }),
+            Err(error) => Err(error),
+        };
+        match found {
+            Err(error @ Error::Inconsistent(_)) => {
+                self.other(&of, value, [last, high])?.ok_or(error)
+            }
+            found => found,
+        }
+    }
+
+    /// A contact at a `value` of what is given, on radii from `low` to `high`; none where they are too small.
+    fn nearest(
+        &self,
+        control: Control,
+        value: f64,
+        [mut low, high]: [f64; 2],
+    ) -> Result<Option<Point>> {
+        let of = |point: &Point| match control {
+            Control::Load => point.load,
+            Control::Approach => point.approach,
         };
         // A bracket from a guess on.
         let guess = self.guess(control, value).clamp(low, high);
         let mut top = guess;
         while of(&self.state(top)?) < value {
             if top >= high {
-                return Err(too_large);
+                return Ok(None);
             }
             low = top;
             top = (1.5 * top).min(high);
@@ -225,12 +259,41 @@ impl Indent {
             Ok(found)
         };
         let log = newton(error, [low.ln(), top.ln()], top.ln())?;
-        let point = match last {
+        Ok(Some(match last {
             Some(point) if (point.radius / log.exp() - 1.0).abs() < 4.0 * f64::EPSILON => point,
             _ => self.state(log.exp())?,
-        };
-        point.check_disc()?;
-        Ok(point)
+        }))
+    }
+
+    /// The contact at a `value` that is a disc, where load and approach are no monotone functions of its radius: the smallest one,
+    /// and the only one without adhesion, whose solution is unique.
+    fn other(
+        &self,
+        of: &impl Fn(&Point) -> f64,
+        value: f64,
+        [low, high]: [f64; 2],
+    ) -> Result<Option<Point>> {
+        let error = |log: f64| Ok(of(&self.state(log.exp())?) - value);
+        // Small contacts are those on a bare body, and wide ones those on the base: both monotone.
+        let smallest = self.stack.thickness().map_or(low, |h| SMALL * h);
+        let [low, high] = [low.max(smallest).min(high), high].map(f64::ln);
+        let (mut log, mut last) = (low, error(low)?);
+        let size = value.abs().max((last + value).abs());
+        while log < high {
+            let next = (log + STEP).min(high);
+            let found = error(next)?;
+            if (found > 0.0) != (last > 0.0) {
+                let point = self.state(bracketed(error, [log, next])?.exp())?;
+                if point.check_disc().is_ok() {
+                    return Ok(Some(point));
+                }
+            }
+            if found > PASSED * size {
+                break;
+            }
+            (log, last) = (next, found);
+        }
+        Ok(None)
     }
 
     /// The contact of smaller radius at a `value`.
@@ -245,7 +308,9 @@ impl Indent {
         while start > low.max(1e-6 * high) {
             start = (0.5 * start).max(low);
             if error(start.ln())? > 0.0 {
-                return self.state(bracketed(error, [start.ln(), high.ln()])?.exp());
+                let point = self.state(bracketed(error, [start.ln(), high.ln()])?.exp())?;
+                point.check_disc()?;
+                return Ok(point);
             }
         }
         Err(Error::Inconsistent(
@@ -274,7 +339,9 @@ impl Indent {
                 value,
             });
         }
-        Ok(Point::new(parts, self.adhesion, approach))
+        let point = Point::new(parts, self.adhesion, approach);
+        point.check_disc()?;
+        Ok(point)
     }
 
     /// Contact radius \[m\] of the same tip on a bare body of the surface's modulus, to start from.
