@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use spec_math::cephes64::{j0, j1};
 
 use super::equation::basis::{Break, Panel, rule};
+use super::equation::waves::Waves;
 use super::parts::Parts;
 use super::tip::{FEW_KINKS, TipParameter};
 
@@ -47,15 +48,9 @@ impl Density<'_> {
                 found[1] -= parts.f() * rates[k][1];
             }
             if let Some(waves) = waves {
-                waves.circular(*t, &mut cos, &mut sin);
-                let terms = self.g.iter().zip(&waves.alpha).zip(cos.iter().zip(&sin));
-                let (mut even, mut odd) = (0.0, 0.0);
-                for ((g, alpha), (cos, sin)) in terms {
-                    even += g * cos;
-                    odd += g * alpha * sin;
-                }
-                found[0] -= 2.0 / PI * even;
-                found[1] += 2.0 / PI * odd;
+                let layers = oscillating(waves, &self.g, *t, [&mut cos, &mut sin]);
+                found[0] += layers[0];
+                found[1] += layers[1];
             }
             found
         };
@@ -106,6 +101,12 @@ impl Density<'_> {
     /// p(r) = φ(a)/√(a²−r²) − ∫_r^a φ'(t)/√(t²−r²) dt      p(0) = φ(a)/a − ∫₀^a φ'(t)/t dt
     /// ```
     pub(super) fn pressure(&self, r: f64) -> f64 {
+        let slopes = |places: &[f64]| self.at(places).iter().map(|[_, slope]| *slope).collect();
+        self.pressure_of(r, slopes)
+    }
+
+    /// [`Density::pressure`] of the slopes φ' that a function gives at places.
+    pub(super) fn pressure_of(&self, r: f64, slopes: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
         let parts = self.parts;
         let a = parts.system.radius;
         // Nearer to the axis a/r is beyond the machine.
@@ -131,10 +132,10 @@ impl Density<'_> {
             true => angles,
             false => angles.iter().map(|angle| r * angle.cosh()).collect(),
         };
-        let slopes = self.at(&places);
+        let slopes = slopes(&places);
         let terms = slopes.iter().zip(&weights).zip(&places);
         let sum: f64 = terms
-            .map(|(([_, slope], w), t)| match is_axis {
+            .map(|((slope, w), t)| match is_axis {
                 true => w * slope / t,
                 false => w * slope,
             })
@@ -178,6 +179,23 @@ fn mapped(breaks: &[Break], place: impl Fn(f64) -> f64) -> Vec<Break> {
         ..*b
     };
     breaks.iter().map(moved).collect()
+}
+
+/// −2/π Σ g cos αt and its slope at a place `t`; the last argument is memory for the waves.
+pub(super) fn oscillating(
+    waves: &Waves,
+    g: &[f64],
+    t: f64,
+    [cos, sin]: [&mut [f64]; 2],
+) -> [f64; 2] {
+    waves.circular(t, cos, sin);
+    let terms = g.iter().zip(&waves.alpha).zip(cos.iter().zip(sin.iter()));
+    let (mut even, mut odd) = (0.0, 0.0);
+    for ((g, alpha), (cos, sin)) in terms {
+        even += g * cos;
+        odd += g * alpha * sin;
+    }
+    [-2.0 / PI * even, 2.0 / PI * odd]
 }
 
 /// ∫ g J₀(αr) over waves.

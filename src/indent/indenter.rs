@@ -26,6 +26,15 @@ const BEYOND: f64 = 1e-12;
 /// Difference of a load or approach from the given one above which no radius that is looked at has it; solutions differ by rounding.
 const MISSED: f64 = 1e-6;
 
+/// Contact radius, in thicknesses of the top layer, below which load and approach grow with it.
+const SMALL: f64 = 1e-2;
+
+/// Step of the logarithm of the radius in the search for another contact.
+const STEP: f64 = 0.1;
+
+/// Excess of load or approach, in what is given, beyond which they do not come back.
+const PASSED: f64 = 3.0;
+
 /// A tip on a stack.
 #[derive(Debug, Clone)]
 pub struct Indent {
@@ -206,39 +215,55 @@ impl Indent {
                 "only adhesion within the contact has an unstable branch",
             ));
         }
-        let unknown = |requirement| Error::Parameter {
+        let too_large = Error::Parameter {
             name,
-            requirement,
+            requirement: "one that needs no larger radius than 1024 thicknesses of the top layer, and no larger one than the tip, and \
+                          whose contact has numbers of the machine",
             value,
         };
-        let too_large = unknown(
-            "one that needs no larger radius than 1024 thicknesses of the top layer, and no larger one than the tip, and whose \
-             contact has numbers of the machine",
-        );
-        if low >= high {
-            return Err(too_large);
-        }
-        // The caller gave no radius.
-        let state = |a: f64| {
-            self.state(a).map_err(|error| match error {
-                Error::Parameter { name: "radius", .. } => too_large.clone(),
-                _ => error,
-            })
+        let range = [low, high];
+        let found = match self.nearest(control, value, floor, range) {
+            Ok(Some(point)) => point.check_disc().map(|()| point),
+            // The caller gave no radius.
+            Ok(None) | Err(Error::Parameter { name: "radius", .. }) => Err(too_large),
+            Err(error) => Err(error),
         };
+        match found {
+            Err(error @ Error::Inconsistent(_)) => self.other(&of, value, range)?.ok_or(error),
+            found => found,
+        }
+    }
+
+    /// A contact at a `value` of what is given, which is above `floor`, on radii from `low` to `high`; none where they are too
+    /// small.
+    fn nearest(
+        &self,
+        control: Control,
+        value: f64,
+        floor: Option<f64>,
+        [mut low, high]: [f64; 2],
+    ) -> Result<Option<Point>> {
+        let of = |point: &Point| match control {
+            Control::Load => point.load,
+            Control::Approach => point.approach,
+        };
+        if low >= high {
+            return Ok(None);
+        }
         // A bracket from a guess on.
         let smallest = low;
         let guess = self.guess(control, value).clamp(low, high);
         let mut top = guess;
-        while of(&state(top)?) < value {
+        while of(&self.state(top)?) < value {
             if top >= high {
-                return Err(too_large);
+                return Ok(None);
             }
             low = top;
             top = (1.5 * top).min(high);
         }
         let mut last = None;
         let error = |log: f64| {
-            let point = state(log.exp().max(smallest))?;
+            let point = self.state(log.exp().max(smallest))?;
             let [approach, load] = point.along();
             let slope = match control {
                 Control::Load => load,
@@ -249,18 +274,23 @@ impl Indent {
             Ok(found)
         };
         let log = newton(error, [low.ln(), top.ln()], top.ln())?;
-        let mut point = match last {
+        let point = match last {
             Some(point) if (point.radius / log.exp() - 1.0).abs() < 4.0 * f64::EPSILON => point,
-            _ => state(log.exp().max(smallest))?,
+            _ => self.state(log.exp().max(smallest))?,
         };
         let is_flat = self.tip.range()[0] > 0.0;
         if let Some(floor) = floor
             && (of(&point) - value).abs() > MISSED * value.abs().max(floor.abs())
             && !is_flat
         {
-            return Err(unknown(
-                "at least that of a contact of 1e-9 of the end radius or of the top layer",
-            ));
+            return Err(Error::Parameter {
+                name: match control {
+                    Control::Load => "load",
+                    Control::Approach => "approach",
+                },
+                requirement: "at least that of a contact of 1e-9 of the end radius or of the top layer",
+                value,
+            });
         }
         if self.adhesion == Adhesion::None && is_flat {
             // At a given approach the load is stationary at the contact radius, whose rounding is coarse next to a flat end; below
@@ -270,10 +300,44 @@ impl Indent {
                 Control::Load => (value + profile) / stiffness,
                 Control::Approach => value,
             };
-            point = Point::new(Arc::clone(&point.parts), self.adhesion, approach);
+            return Ok(Some(Point::new(
+                Arc::clone(&point.parts),
+                self.adhesion,
+                approach,
+            )));
         }
-        point.check_disc()?;
-        Ok(point)
+        Ok(Some(point))
+    }
+
+    /// The contact at a `value` that is a disc, where load and approach are no monotone functions of its radius: the smallest one,
+    /// and the only one without adhesion, whose solution is unique.
+    fn other(
+        &self,
+        of: &impl Fn(&Point) -> f64,
+        value: f64,
+        [low, high]: [f64; 2],
+    ) -> Result<Option<Point>> {
+        let error = |log: f64| Ok(of(&self.state(log.exp())?) - value);
+        // Small contacts are those on a bare body, and wide ones those on the base: both monotone.
+        let smallest = self.stack.thickness().map_or(low, |h| SMALL * h);
+        let [low, high] = [low.max(smallest).min(high), high].map(f64::ln);
+        let (mut log, mut last) = (low, error(low)?);
+        let size = value.abs().max((last + value).abs());
+        while log < high {
+            let next = (log + STEP).min(high);
+            let found = error(next)?;
+            if (found > 0.0) != (last > 0.0) {
+                let point = self.state(bracketed(error, [log, next])?.exp())?;
+                if point.check_disc().is_ok() {
+                    return Ok(Some(point));
+                }
+            }
+            if found > PASSED * size {
+                break;
+            }
+            (log, last) = (next, found);
+        }
+        Ok(None)
     }
 
     /// The contact of smaller radius at a `value`.
@@ -288,7 +352,9 @@ impl Indent {
         while start > low.max(1e-6 * high) {
             start = (0.5 * start).max(low);
             if error(start.ln())? > 0.0 {
-                return self.state(bracketed(error, [start.ln(), high.ln()])?.exp());
+                let point = self.state(bracketed(error, [start.ln(), high.ln()])?.exp())?;
+                point.check_disc()?;
+                return Ok(point);
             }
         }
         Err(Error::Inconsistent(
@@ -307,17 +373,21 @@ impl Indent {
             Some(_) => self.adhesion.edge(self.stack.surface_modulus(), a) / parts.edge[0],
             None => 0.0,
         };
-        let refused = match approach {
+        let requirement = match approach {
             approach if approach < least => "at least that of pull-off, or nothing touches",
             approach if approach > DEEPEST * a => "one whose approach is at most 1e100 radii",
-            _ => return Ok(Point::new(parts, self.adhesion, approach)),
+            _ => {
+                let point = Point::new(parts, self.adhesion, approach);
+                point.check_disc()?;
+                return Ok(point);
+            }
         };
         Err(Error::Parameter {
             name: match control {
                 Control::Load => "load",
                 Control::Approach => "approach",
             },
-            requirement: refused,
+            requirement,
             value,
         })
     }

@@ -3,11 +3,11 @@
 mod interior;
 mod warning;
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
 use super::density::{Density, bessel_sum};
+use super::equation::stack::Level;
 use super::equation::system::times;
 use super::parts::Parts;
 use super::zone::{Answer, Zone};
@@ -158,7 +158,7 @@ impl Point {
         let density = self.density();
         let short = self.parts.stack.short();
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
-        let waves = self.wider_waves(far);
+        let waves = self.wider(far);
         let at = |r: &f64| -> f64 {
             if *r <= self.radius {
                 return self.approach - self.parts.tip.gap(*r);
@@ -166,7 +166,7 @@ impl Point {
             let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(*r));
             let layers = waves
                 .as_ref()
-                .map_or(0.0, |[g, alpha]| bessel_sum(g, alpha, *r));
+                .map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
             short * (density.abel(*r) + zone + layers)
         };
         Ok(r.iter().map(at).collect())
@@ -187,8 +187,8 @@ impl Point {
             .collect())
     }
 
-    /// Weights times M p̂, and wavenumbers, of waves that resolve J₀(αr) up to `far`; none of bare bodies.
-    fn wider_waves(&self, far: f64) -> Option<[Vec<f64>; 2]> {
+    /// Weights times M p̂ at the waves of a level that resolves J₀(αr) up to `far`; none of bare bodies.
+    pub(super) fn wider(&self, far: f64) -> Option<(Vec<f64>, &Arc<Level>)> {
         let own = self.parts.system.level.as_ref()?;
         // The level of a cohesive zone may already be wider.
         let level = self.parts.stack.level(self.radius + far)?;
@@ -197,13 +197,12 @@ impl Point {
         } else {
             own
         };
-        let (alpha, excess) = (level.waves.alpha.clone(), &level.excess);
         let hat = match Arc::ptr_eq(level, own) {
             true => self.hat(),
             false => {
                 let rows = self.parts.system.basis.transforms(&level.waves);
                 let values = self.values();
-                let mut hat = vec![0.0; alpha.len()];
+                let mut hat = vec![0.0; level.waves.len()];
                 for (row, value) in rows.iter().zip(&values) {
                     hat.iter_mut()
                         .zip(row)
@@ -216,7 +215,7 @@ impl Point {
                 hat
             }
         };
-        Some([times(excess, &hat), alpha])
+        Some((times(&level.excess, &hat), level))
     }
 
     /// Step of the density at the edge: φ there, but for a cohesive zone, into which φ goes on.
@@ -225,47 +224,6 @@ impl Point {
             Some(_) => 0.0,
             None => self.exact_edge(),
         }
-    }
-
-    /// An error where the pressure is negative within the contact or the surfaces overlap outside of it, so that the
-    /// contact is no disc.
-    pub(super) fn check_disc(&self) -> Result<()> {
-        if self.adhesion != Adhesion::None || self.parts.tip.fixed_radius().is_some() {
-            return Ok(());
-        }
-        const NO_DISC: Error = Error::Inconsistent(
-            "the contact of this tip is no disc at this load: its pressure would be negative or the surfaces would overlap; \
-             use nacre.solve",
-        );
-        // φ that falls towards the edge has a positive pressure.
-        let places = [0.1, 0.5, 0.999].map(|part| part * self.radius);
-        let falls = self
-            .density()
-            .at(&places)
-            .iter()
-            .all(|[_, slope]| *slope <= 0.0);
-        if !falls || !self.parts.tip.is_convex() {
-            let inside = (1..10).map(|k| 0.1 * f64::from(k) * self.radius);
-            let inside: Vec<f64> = inside.collect();
-            let size = self.load / (PI * self.radius * self.radius);
-            let pressure = self.pressure(&inside)?;
-            if pressure.iter().any(|p| *p < -1e-9 * size) {
-                return Err(NO_DISC);
-            }
-        }
-        if !self.parts.tip.is_convex() {
-            let outside: Vec<f64> = (1..20)
-                .map(|k| self.radius * (1.0 + 0.05 * f64::from(k)))
-                .collect();
-            if self
-                .gap(&outside)?
-                .iter()
-                .any(|gap| *gap < -1e-9 * self.approach)
-            {
-                return Err(NO_DISC);
-            }
-        }
-        Ok(())
     }
 }
 

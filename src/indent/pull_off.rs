@@ -10,11 +10,15 @@ use super::point::{Point, PullOff};
 use crate::error::{Error, Result, positive};
 
 /// Radii in each factor of e at which the end of an adhering contact is looked for.
-const SCAN: usize = 4;
+const SCAN: i32 = 4;
 
 /// Powers of e below the radius of no load in which it is looked for: a bare cone lets go at 1/4 of it, a bare sphere at
 /// 1/1.65 of it under a load.
-const DEPTH: usize = 8;
+const DEPTH: i32 = 8;
+
+/// Depth F(a) of a bare body, in the depth √(2πaw/E*) that adhesion takes away, up to which it may be pulled: an rⁿ of n ≥ 1/2
+/// bears no load at 1 + 1/n.
+const ADHERING: f64 = 3.0;
 
 impl Indent {
     /// The state in which the tip is pulled off: of the smallest load or approach, the deepest minimum where there are more.
@@ -126,8 +130,18 @@ impl Indent {
             top = (2.0 * top).min(high);
             state = self.state_from(top, &mut start);
         }
-        let places: Vec<f64> = (0..=SCAN * DEPTH)
-            .map(|k| top.ln() + 0.7 - k as f64 / SCAN as f64)
+        // A stiff layer lets the load pass 0 again, not beyond where a body of the softest response has done so.
+        let softest = self.stack.softest_modulus();
+        let work = self.adhesion.work().unwrap_or(0.0);
+        let pulls =
+            |a: f64| self.tip.transform(a)[0] < ADHERING * (2.0 * PI * a * work / softest).sqrt();
+        let mut above = 0;
+        let place = |k: i32| top.ln() + 0.7 - f64::from(k) / f64::from(SCAN);
+        while place(-above).exp() < high && pulls(place(-above).exp()) {
+            above += 1;
+        }
+        let places: Vec<f64> = (-above..=SCAN * DEPTH)
+            .map(place)
             .filter(|log| log.exp() > low && log.exp() < high)
             .collect();
         let values: Vec<f64> = places
@@ -138,21 +152,37 @@ impl Indent {
             })
             .collect();
         let inner = 1..values.len().saturating_sub(1);
-        let least = inner
+        let mut minima: Vec<usize> = inner
             .filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1])
-            .min_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let least = least.ok_or(Error::Inconsistent(
+            .collect();
+        minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+        let mut found = Err(Error::Inconsistent(
             "the load and the approach have no minimum within the radii that can be computed",
-        ))?;
-        let bracket = [places[least + 1], places[least - 1]];
+        ));
+        // A minimum at which the contact is no disc is no state.
+        for k in minima {
+            let bracket = [places[k + 1], places[k - 1]];
+            found = self.minimum(control, bracket, &mut start);
+            if found.is_ok() {
+                break;
+            }
+        }
+        found
+    }
+
+    /// The contact of least load or approach between two logarithms of the radius.
+    fn minimum(&self, control: Control, bracket: [f64; 2], start: &mut f64) -> Result<Point> {
         let log = match self.adhesion {
             Adhesion::Maugis { .. } => {
                 // A central difference, whose error moves a minimum by 1e-6 of its width and its value by the square.
                 let h = 1e-4;
                 let slope = |log: f64| {
-                    let low = self.state_from((log - h).exp(), &mut start)?;
-                    let high = self.state_from((log + h).exp(), &mut start)?;
-                    Ok(of(&high) - of(&low))
+                    let low = self.state_from((log - h).exp(), start)?;
+                    let high = self.state_from((log + h).exp(), start)?;
+                    Ok(match control {
+                        Control::Load => high.load - low.load,
+                        Control::Approach => high.approach - low.approach,
+                    })
                 };
                 bracketed(slope, bracket)?
             }
@@ -167,7 +197,9 @@ impl Indent {
                 bracketed(slope, bracket)?
             }
         };
-        self.state(log.exp())
+        let point = self.state(log.exp())?;
+        point.check_disc()?;
+        Ok(point)
     }
 
     /// The state into which the tip jumps as it comes near, under no load or at the approach at which the surfaces begin to attract

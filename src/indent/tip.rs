@@ -209,6 +209,16 @@ impl Tip {
         &self.kinks
     }
 
+    /// Places \[m\] of the kinks of a sampled profile, ascending, which are too many for panels of a quadrature.
+    pub(super) fn knots(&self) -> impl Iterator<Item = f64> {
+        let terms = if self.kinks.is_empty() {
+            &self.terms[..]
+        } else {
+            &[]
+        };
+        terms.iter().filter_map(Term::kink)
+    }
+
     /// Whether the pressure has no limit on the axis: a cone's.
     pub(super) fn is_sharp(&self) -> bool {
         self.transform(0.0)[1] > 0.0

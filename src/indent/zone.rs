@@ -6,7 +6,9 @@
 //!
 //! is the density of a uniform stress −σ₀ on r < c, without the part of the contact.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use spec_math::cephes64::{j0, j1};
 
 use super::equation::basis::rule;
 use super::equation::system::times;
@@ -84,6 +86,11 @@ impl Zone {
         Answer { values, hat, edge }
     }
 
+    /// σ₀
+    pub(super) fn strength(&self) -> f64 {
+        self.strength
+    }
+
     /// √(c² − a²)
     fn reach(&self) -> f64 {
         ((self.outer - self.inner) * (self.outer + self.inner)).sqrt()
@@ -122,21 +129,44 @@ impl Zone {
         self.transform_rate(WHOLE, waves)
     }
 
-    /// Change of ψ̂(α) at all waves; t = c cos η.
-    pub(super) fn transform_rate(&self, [stress, outer]: Rate, waves: &Waves) -> Vec<f64> {
+    /// Change of ψ̂(α) at all waves; t = c cos η. Over a wide zone it is that of the whole disc, of π/2 c σ₀ J₁(αc)/α, without that
+    /// of the contact, over which there are fewer oscillations.
+    pub(super) fn transform_rate(&self, rate: Rate, waves: &Waves) -> Vec<f64> {
+        let [stress, outer] = rate;
+        let angle = self.reach().atan2(self.inner);
+        if self.inner > 0.5 * self.outer {
+            return self.transform_over(rate, waves, [0.0, angle]);
+        }
+        let within = self.transform_over(rate, waves, [angle, FRAC_PI_2]);
+        let c = self.outer;
+        let disc = |alpha: &f64| {
+            // d/dc of c J₁(αc)/α is c J₀(αc).
+            -self.strength * c * (stress * j1(alpha * c) / alpha + outer * j0(alpha * c))
+        };
+        let pairs = waves.alpha.iter().zip(within);
+        pairs.map(|(alpha, within)| disc(alpha) - within).collect()
+    }
+
+    /// Its part over the angles η from `low` to `high`.
+    fn transform_over(
+        &self,
+        [stress, outer]: Rate,
+        waves: &Waves,
+        [low, high]: [f64; 2],
+    ) -> Vec<f64> {
         let shortest = waves
             .alpha
             .iter()
             .fold(0.0_f64, |most, alpha| most.max(*alpha));
-        let phase = shortest * (self.outer - self.inner);
+        let phase = shortest * self.outer * (low.cos() - high.cos());
         let panels = (phase / PHASE).ceil().max(1.0);
         // The phase is up to twice as dense as on average.
         let count = NODES + (0.5 * phase * (2.0 / panels).min(1.0)).ceil() as usize;
-        let half = 0.5 * self.reach().atan2(self.inner) / panels;
+        let half = 0.5 * (high - low) / panels;
         let mut sums = vec![0.0; waves.len()];
         let (mut cos, mut sin) = (sums.clone(), sums.clone());
         for panel in 0..panels as usize {
-            let middle = (2 * panel + 1) as f64 * half;
+            let middle = low + (2 * panel + 1) as f64 * half;
             for (angle, w) in rule(count).nodes(middle, half) {
                 waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
                 let rate = stress * (self.outer * angle.sin()).powi(2) + outer * self.outer;

@@ -150,6 +150,21 @@ impl Stack {
         self.0.thickness.map_or(f64::INFINITY, |h| MOST_RATIO * h)
     }
 
+    /// Contact modulus \[Pa\] of a half-space whose response is the largest one of these bodies at any wavenumber.
+    pub(in crate::indent) fn softest_modulus(&self) -> f64 {
+        let excess = self.level(0.0).map_or(0.0, |level| {
+            let pairs = level.excess.iter().zip(&level.waves.weight);
+            pairs.fold(0.0_f64, |most, (excess, w)| most.max(excess / w))
+        });
+        self.surface_modulus() / (1.0 + excess)
+    }
+
+    /// Longest oscillation \[m\] that a level resolves; none bounds it without layers.
+    pub(in crate::indent) fn longest(&self) -> f64 {
+        let most = FIRST_LENGTH * 2.0_f64.powi(LEVELS as i32 - 1);
+        self.0.thickness.map_or(f64::INFINITY, |h| most * h)
+    }
+
     pub(in crate::indent) fn finer(&self) -> f64 {
         self.0.finer
     }
