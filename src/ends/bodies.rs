@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use ndarray::Array2;
 
 use super::cells::{Nodes, coefficients};
+use super::waves::Along;
 use super::{layers, plate};
 use crate::body::{HalfSpace, Substrate};
 use crate::convolution::{Addition, RowWeights};
@@ -185,10 +186,20 @@ impl Ends {
     }
 
     /// What the ends add to the influence coefficients of all bodies together on `grid`; ends within a cell are
-    /// moved to its edge.
-    pub(crate) fn additions(&self, grid: &Grid, threads: &Threads) -> Result<Vec<Addition>> {
-        let [nx, ny] = grid.shape();
-        let [dx, dy] = grid.spacing();
+    /// moved to its edge. `finest` is the grid of a contact that this one belongs to.
+    ///
+    /// Where the grid repeats, an end adds nothing to the displacement at twice the distance of the farthest cell, or at
+    /// the width of the grid if that is more.
+    pub(crate) fn additions(
+        &self,
+        grid: &Grid,
+        finest: &Grid,
+        threads: &Threads,
+    ) -> Result<Vec<Addition>> {
+        let nx = grid.shape()[0];
+        let dx = grid.spacing()[0];
+        let length = Along::of(grid).length;
+        let [low, high] = [0.0, finest.size()[0]].map(|part| start(finest) + part);
         let mut groups: BTreeMap<(Side, u64), Vec<&End>> = BTreeMap::new();
         for end in &self.ends {
             groups
@@ -197,7 +208,7 @@ impl Ends {
                 .push(end);
         }
         // Rollers end alike on both sides.
-        let mut known: Vec<(Nodes, Vec<&Ending>, Array2<f64>)> = Vec::new();
+        let mut known: Vec<(Nodes, f64, Vec<&Ending>, Array2<f64>)> = Vec::new();
         let mut additions = Vec::new();
         for ends in groups.values() {
             let &End { side, x, .. } = ends[0];
@@ -223,25 +234,28 @@ impl Ends {
             let nearest = if inside { 0.5 * dx } else { nearest };
             let nodes = Nodes::new(nearest, dx, nx - beyond);
             let endings: Vec<&Ending> = ends.iter().map(|end| &end.ending).collect();
-            let found = known.iter().find(|(n, e, _)| *n == nodes && *e == endings);
+            let datum = (high - low).max(2.0 * (x - low).abs().max((high - x).abs()));
+            let found = known
+                .iter()
+                .find(|(n, d, e, _)| *n == nodes && *d == datum && *e == endings);
             let coefficients = match found {
                 Some((.., coefficients)) => coefficients.clone(),
-                None => threads.run(|| total(&endings, &nodes, ny, dy))?,
+                None => threads.run(|| total(&endings, &nodes, (grid, datum), threads))?,
             };
             let mut weights = vec![RowWeights::default(); nx];
             for (row, node) in rows[beyond..].iter().zip(&nodes.rows) {
                 weights[*row] = node.clone();
             }
-            additions.push(Addition::new(weights, ny, &coefficients));
-            known.push((nodes, endings, coefficients));
+            additions.push(Addition::new(weights, length, &coefficients));
+            known.push((nodes, datum, endings, coefficients));
         }
         for Plate { ends, ending } in &self.plates {
-            let length = ends[1] - ends[0];
+            let plate = ends[1] - ends[0];
             let from_start = (0..nx).map(|row| start(grid) + (row as f64 + 0.5) * dx - ends[0]);
             let coefficients =
-                plate::coefficients((&ending.body, ending.material), length, [dx, dy], ny);
-            let rows = plate::rows(from_start, dx, length);
-            additions.push(Addition::new(rows, ny, &coefficients));
+                plate::coefficients((&ending.body, ending.material), plate, grid, finest.size());
+            let rows = plate::rows(from_start, dx, plate);
+            additions.push(Addition::new(rows, length, &coefficients));
         }
         Ok(additions)
     }
@@ -268,9 +282,14 @@ pub(crate) fn check_carried(counterbody: Option<&Body>, shape: &dyn Surface) -> 
     Ok(())
 }
 
-/// Coefficients of bodies that end at the same place, for `ny` cells of width `dy`.
-fn total(endings: &[&Ending], nodes: &Nodes, ny: usize, dy: f64) -> Result<Array2<f64>> {
-    let of = |ending: &Ending| coefficients((&ending.body, ending.material), nodes, ny, dy);
+/// Coefficients of bodies that end at the same place on a grid, with a datum.
+fn total(
+    endings: &[&Ending],
+    nodes: &Nodes,
+    on: (&Grid, f64),
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let of = |ending: &Ending| coefficients((&ending.body, ending.material), nodes, on, threads);
     let mut sum = of(endings[0])?;
     for ending in &endings[1..] {
         sum += &of(ending)?;
