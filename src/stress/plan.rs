@@ -53,6 +53,12 @@ impl Source<'_> {
         threads: Option<usize>,
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
+        if self.body.ends() != [None; 2] && self.grid.is_periodic() != [false; 2] {
+            return Err(Error::Inconsistent(
+                "the stress of a body with free ends needs a grid that is not periodic: leave out its ends, or give a \
+                 grid of several periods that is not periodic",
+            ));
+        }
         let Some(whole) = self.plan(threads, progress)? else {
             return Ok(None);
         };
