@@ -19,7 +19,7 @@ mod addition;
 mod periodic;
 mod stages;
 
-pub(crate) use addition::{Addition, RowWeights, distances, pair};
+pub(crate) use addition::{Addition, RowWeights, length, pair};
 
 /// The convolution of a pressure with influence coefficients, planned once and applied many times.
 ///

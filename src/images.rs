@@ -68,9 +68,18 @@ impl Images {
             nodes,
         };
         let kept = images.kept();
-        images.interpolations =
-            [0, 1].map(|k| interpolation(&images.nodes[k], spacing[k], kept[k]));
+        images.interpolations = [0, 1].map(|k| {
+            let offsets: Vec<f64> = (0..kept[k]).map(|i| i as f64 * spacing[k]).collect();
+            interpolation(&images.nodes[k], &offsets, spacing[k])
+        });
         images
+    }
+
+    /// The images of these cells where their sums are needed at other `offsets` along x, which is open, up to the length
+    /// of the grid.
+    pub(crate) fn at_offsets(mut self, offsets: &[f64]) -> Self {
+        self.interpolations[0] = interpolation(&self.nodes[0], offsets, self.spacing[0]);
+        self
     }
 
     /// Numbers of offsets that are computed: half a period, or all. The others mirror them.
@@ -236,8 +245,8 @@ fn chebyshev(span: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Matrix (count, nodes) from values at the nodes to those at whole `spacing`s from 0 on, in barycentric form.
-fn interpolation(nodes: &[f64], spacing: f64, count: usize) -> Array2<f64> {
+/// Matrix (offsets, nodes) from values at the nodes to those at `offsets`, in barycentric form.
+fn interpolation(nodes: &[f64], offsets: &[f64], spacing: f64) -> Array2<f64> {
     let weight = |k: usize| {
         let angle = PI * (k as f64 + 0.5) / NODES as f64;
         if k.is_multiple_of(2) {
@@ -246,9 +255,8 @@ fn interpolation(nodes: &[f64], spacing: f64, count: usize) -> Array2<f64> {
             -angle.sin()
         }
     };
-    let mut matrix = Array2::zeros((count, nodes.len()));
-    for (i, mut row) in matrix.axis_iter_mut(Axis(0)).enumerate() {
-        let x = i as f64 * spacing;
+    let mut matrix = Array2::zeros((offsets.len(), nodes.len()));
+    for (x, mut row) in offsets.iter().zip(matrix.axis_iter_mut(Axis(0))) {
         if let Some(k) = nodes
             .iter()
             .position(|node| (node - x).abs() < 1e-14 * spacing)

@@ -10,6 +10,7 @@
 
 use ndarray::{Array2, Zip};
 
+use crate::body::HalfSpace;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::parallel::Threads;
@@ -50,6 +51,17 @@ pub fn influence_coefficients(
 ) -> Result<Array2<f64>> {
     check_memory(grid.shape(), memory(grid))?;
     coefficients_on(&*body.into(), grid, method, &Threads::new(None)?)
+}
+
+/// Coefficients on a `grid` that repeats along y alone, at any `offsets` along x of at least a cell, with the datum at a
+/// distance: (offsets, ny/2 + 1).
+pub(crate) fn coefficients_apart(
+    body: &HalfSpace,
+    grid: &Grid,
+    (offsets, datum): (&[f64], f64),
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    periodic::apart(&*Body::from(body), grid, (offsets, datum), threads)
 }
 
 /// [`influence_coefficients`] on given threads, memory having been checked.

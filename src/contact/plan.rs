@@ -11,7 +11,7 @@ use super::cascade::unresolved::Unresolved;
 use super::options::Setup;
 use super::problem::INDEFINITE;
 use super::problem::scale::LocalDisplacement;
-use crate::convolution::Convolution;
+use crate::convolution::{Addition, Convolution};
 use crate::ends::Ends;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -52,16 +52,16 @@ impl Plan {
             ));
         }
         let threads = Arc::new(Threads::new(setup.threads)?);
-        let (finest, datum) = operator(&body, &setup, &grid, &threads)?;
-        let additions = ends.additions(&grid, &threads)?;
+        let additions = ends.additions(&grid, &grid, &threads)?;
+        let (finest, datum) = operator(&body, &setup, &grid, &additions, &threads)?;
         let convolution =
             Convolution::plan_repeated(&finest, grid.is_periodic(), Arc::clone(&threads))?
                 .plus(additions);
-        let levels = Levels::plan(grid, finest, &convolution, |grid| {
-            let coefficients = total_coefficients(&body, &setup, grid, &threads)?;
-            let local = LocalDisplacement::new(&bodies(&body, &setup), grid);
-            let additions = ends.additions(grid, &threads)?;
-            Ok((datum.moved(coefficients, grid), additions, local))
+        let levels = Levels::plan(grid, finest, &convolution, |coarse| {
+            let coefficients = total_coefficients(&body, &setup, coarse, &threads)?;
+            let local = LocalDisplacement::new(&bodies(&body, &setup), coarse);
+            let additions = ends.additions(coarse, &grid, &threads)?;
+            Ok((datum.moved(coefficients, coarse), additions, local))
         })?;
         let local = LocalDisplacement::new(&bodies(&body, &setup), &grid);
         let unresolved = Unresolved::new(&bodies(&body, &setup), &grid);
@@ -139,7 +139,8 @@ pub(super) fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
         .collect()
 }
 
-/// Coefficients of body and counterbody together with which a contact on `grid` is solved, and their datum.
+/// Coefficients of body and counterbody together with which a contact on `grid` is solved beside the `additions` of
+/// free ends, and their datum.
 ///
 /// # Errors
 /// [`INDEFINITE`] where the coefficients show that they are not positive definite.
@@ -147,10 +148,16 @@ pub(super) fn operator(
     body: &Body,
     setup: &Setup,
     grid: &Grid,
+    additions: &[Addition],
     threads: &Arc<Threads>,
 ) -> Result<(Array2<f64>, Datum)> {
     let coefficients = total_coefficients(body, setup, grid, threads)?;
-    let datum = Datum::find(&bodies(body, setup), grid, &coefficients, threads)?;
+    let datum = Datum::find(
+        &bodies(body, setup),
+        grid,
+        (&coefficients, additions),
+        threads,
+    )?;
     let coefficients = datum.moved(coefficients, grid);
     // No coefficient of a positive definite operator is larger than that of the loaded cell.
     let own = coefficients[[0, 0]];

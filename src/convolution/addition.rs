@@ -29,10 +29,10 @@ pub(crate) struct RowWeights {
     pub(crate) weights: Vec<f64>,
 }
 
-/// Number of distances along y, 0 to n − 1, at which [`Addition::new`] takes A for rows of `ny` cells: those
-/// between cells, and those that the transform needs.
-pub(crate) fn distances(ny: usize) -> usize {
-    fast_length(2 * ny - 1) / 2 + 1
+/// Length of the transform along y of [`Addition::new`] for rows of `ny` cells, which is the period where the grid
+/// `repeats`. A is taken at the distances 0 to half of it, in cells.
+pub(crate) fn length(ny: usize, repeats: bool) -> usize {
+    if repeats { ny } else { fast_length(2 * ny - 1) }
 }
 
 /// Index of the pair of nodes (a, b) in the triangle of all pairs.
@@ -73,10 +73,9 @@ pub(super) struct Memory {
 }
 
 impl Addition {
-    /// The operator for these `rows`, each of `ny` cells, with the `coefficients` A: pairs of nodes as [`pair`]
-    /// counts them, [`distances`].
-    pub(crate) fn new(rows: Vec<RowWeights>, ny: usize, coefficients: &Array2<f64>) -> Self {
-        let length = fast_length(2 * ny - 1);
+    /// The operator for these `rows` with the `coefficients` A: pairs of nodes as [`pair`] counts them, distances up
+    /// to half the [`length`].
+    pub(crate) fn new(rows: Vec<RowWeights>, length: usize, coefficients: &Array2<f64>) -> Self {
         let mut planner = RealFftPlanner::new();
         let (forward, inverse) = (
             planner.plan_fft_forward(length),
@@ -125,6 +124,7 @@ impl Addition {
     /// Entry of the operator for cells of two rows at a `distance` along y.
     pub(crate) fn entry(&self, rows: [usize; 2], distance: usize) -> f64 {
         let coefficients = self.coefficients.get_or_init(|| self.inverted());
+        let distance = distance.min(self.length - distance);
         let [here, there] = rows.map(|row| self.row(row));
         let mut sum = 0.0;
         for (k, a) in here.weights.iter().enumerate() {
@@ -249,7 +249,7 @@ impl Addition {
 mod tests {
     use ndarray::Array2;
 
-    use super::{Addition, RowWeights, distances, pair};
+    use super::{Addition, RowWeights, length, pair};
     use crate::convolution::Convolution;
     use crate::error::Result;
 
@@ -278,16 +278,20 @@ mod tests {
     /// to rounding: some 1e-15 of sums of 100.
     #[test]
     fn applications_are_sums() -> Result<()> {
-        for [nx, ny] in [[5, 7], [6, 8], [4, 1]] {
-            let mut coefficients = Array2::zeros((pair(NODES - 1, NODES - 1) + 1, distances(ny)));
+        let cases =
+            [[5, 7], [6, 8], [4, 1]].map(|shape| [false, true].map(|repeats| (shape, repeats)));
+        for ([nx, ny], repeats) in cases.into_iter().flatten() {
+            let length = length(ny, repeats);
+            let distances = length / 2 + 1;
+            let mut coefficients = Array2::zeros((pair(NODES - 1, NODES - 1) + 1, distances));
             for a in 0..NODES {
                 for b in 0..=a {
-                    for l in 0..distances(ny) {
+                    for l in 0..distances {
                         coefficients[[pair(a, b), l]] = coefficient(a, b, l);
                     }
                 }
             }
-            let addition = Addition::new(rows(nx), ny, &coefficients);
+            let addition = Addition::new(rows(nx), length, &coefficients);
             for (first, height, width) in [(0, nx, ny), (1, nx - 2, ny.div_ceil(2))] {
                 let plain = Convolution::plan(&Array2::zeros((height, width)), Some(2))?;
                 let convolution = plain.plus(vec![addition.on_rows(first..first + height)]);
@@ -306,7 +310,8 @@ mod tests {
                     for ((k, l), p) in p.indexed_iter() {
                         for a in 0..NODES {
                             for b in 0..NODES {
-                                let c = coefficient(a, b, j.abs_diff(l));
+                                let apart = j.abs_diff(l);
+                                let c = coefficient(a, b, apart.min(length - apart));
                                 expected += weight(i, a) * c * weight(k, b) * p;
                             }
                         }

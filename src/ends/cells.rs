@@ -4,19 +4,23 @@
 //! in closed form at the centre of a, and of the mean over a of what keeps the face free. The means make the
 //! second symmetric and positive; the first is symmetric as it is.
 
+use std::f64::consts::{EULER_GAMMA, PI};
+
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
 
 use super::mesh::Modes;
 use super::reduction::Reduction;
-use super::waves::{Waves, Width};
+use super::waves::Along;
 use super::{VANISHED, layers};
 use crate::body::HalfSpace;
-use crate::convolution::{RowWeights, distances, pair};
+use crate::convolution::{RowWeights, pair};
 use crate::error::Result;
-use crate::influence::CellInfluence;
+use crate::grid::Grid;
+use crate::influence::{CellInfluence, coefficients_apart};
 use crate::kernel::quadrature::Rule;
 use crate::material::Elastic;
+use crate::parallel::Threads;
 
 /// Cells next to the end that are nodes themselves. Farther off, coefficients are polynomials of the place on
 /// panels that end at twice the distance from which they start.
@@ -58,7 +62,7 @@ impl Nodes {
             }
             let last = rows.len() + doubled as usize - 1;
             let (low, high) = (at(rows.len()), at(last));
-            let angle = |q: usize| std::f64::consts::PI * (q as f64 + 0.5) / PANEL_NODES as f64;
+            let angle = |q: usize| PI * (q as f64 + 0.5) / PANEL_NODES as f64;
             distances.extend(
                 (0..PANEL_NODES).map(|q| 0.5 * (low + high) - 0.5 * (high - low) * angle(q).cos()),
             );
@@ -112,7 +116,7 @@ pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, 
 /// Weights of the Chebyshev nodes −cos((q + ½)π/n) at t.
 fn chebyshev(t: f64) -> [f64; PANEL_NODES] {
     let nodes: [[f64; 2]; PANEL_NODES] = std::array::from_fn(|q| {
-        let angle = std::f64::consts::PI * (q as f64 + 0.5) / PANEL_NODES as f64;
+        let angle = PI * (q as f64 + 0.5) / PANEL_NODES as f64;
         let sign = if q % 2 == 0 { 1.0 } else { -1.0 };
         [-angle.cos(), sign * angle.sin()]
     });
@@ -124,17 +128,26 @@ fn chebyshev(t: f64) -> [f64; PANEL_NODES] {
     terms.map(|term| term / sum)
 }
 
-/// Coefficients \[m/Pa\] that a free end adds for a `body` on a substrate of `material`: pairs of nodes, distances along y for
-/// `ny` cells of width `dy`. On the threads of the caller.
+/// Coefficient of the logarithm in what keeps the face free, −c ln k as k → 0. The whole body is displaced as much more than
+/// a half-space as the edge of a quarter space of ν = ½ is.
+pub(super) fn logarithm() -> f64 {
+    2.0 * PI * PI / (PI * PI - 4.0) - 2.0
+}
+
+/// Longest wave that stands for a pressure that is uniform along y, over the distance from the end. The displacement
+/// differs by a term that is linear in k, which twice the wave takes away, and by 1e-7.
+const UNIFORM: f64 = 1e-4;
+
+/// Coefficients \[m/Pa\] that a free end adds for a `body` on a substrate of `material` on cells of a `grid`: pairs of
+/// nodes, distances along y. Where the grid repeats, with the `datum` at this distance. On the threads of the caller.
 pub(super) fn coefficients(
     (body, material): (&HalfSpace, Elastic),
     nodes: &Nodes,
-    ny: usize,
-    dy: f64,
+    (grid, datum): (&Grid, f64),
+    threads: &Threads,
 ) -> Result<Array2<f64>> {
-    let (dx, count) = (nodes.spacing, nodes.distances.len());
-    let along_y: Vec<f64> = (0..distances(ny)).map(|l| l as f64 * dy).collect();
-    let farthest = along_y.last().copied().unwrap_or(0.0) + dy;
+    let ([dx, dy], count) = (grid.spacing(), nodes.distances.len());
+    let along = Along::of(grid);
     // Means over cells leave amplitudes that fall as k⁻²; the rest is 1e-7 of the integral.
     let fallen = 150.0 / (dx * dx * dy).cbrt();
     let first = nodes.distances[0] - 0.5 * dx;
@@ -143,7 +156,9 @@ pub(super) fn coefficients(
     } else {
         fallen
     };
-    let waves = Waves::new(&along_y, Width::LoadAndMean(0.5 * dy), farthest, highest);
+    let uniform = UNIFORM / nodes.distances[count - 1];
+    let zeroth = [(uniform, 2.0), (2.0 * uniform, -1.0)];
+    let waves = along.waves(along.farthest(), highest, &zeroth);
     let reduction = Reduction::of(material.poisson());
 
     let pairs = pair(count - 1, count - 1) + 1;
@@ -164,21 +179,29 @@ pub(super) fn coefficients(
             }
         });
     let short = 2.0 / material.plane_strain_modulus();
-    let factor = short * dx * dy / std::f64::consts::PI.powi(2);
-    let weights = Array2::from_shape_fn((along_y.len(), waves.wavenumbers.len()), |(l, k)| {
-        factor * waves.weights[k][l]
-    });
+    let factor = short * dx * dy / PI.powi(2);
+    let weights = Array2::from_shape_fn(
+        (along.distances.len(), waves.wavenumbers.len()),
+        |(l, k)| factor * waves.weights[k][l],
+    );
     let mut coefficients = amplitudes.t().dot(&weights.t());
 
-    let reach = 2.0 * nodes.distances[count - 1] + farthest;
-    let mirror = CellInfluence::plan(body, [dx, dy], reach)?;
     let apart = (0..count).flat_map(|a| (0..=a).map(move |b| [a, b]));
     let apart = apart.map(|[a, b]| nodes.distances[a] + nodes.distances[b]);
     let apart: Vec<f64> = apart.collect();
+    if along.repeats {
+        // The wave ½ uniform stands for the limit; with the datum, 2 exp(−γ)/datum does.
+        let limit = (0.25 * uniform * datum).ln() + EULER_GAMMA;
+        coefficients += factor * PI / grid.size()[1] * logarithm() * limit;
+        coefficients += &coefficients_apart(body, grid, (&apart, datum), threads)?;
+        return Ok(coefficients);
+    }
+    let reach = 2.0 * nodes.distances[count - 1] + along.farthest();
+    let mirror = CellInfluence::plan(body, [dx, dy], reach)?;
     (coefficients.axis_iter_mut(Axis(0)).into_par_iter())
         .zip(apart)
         .for_each(|(row, apart)| {
-            for (c, &y) in row.into_iter().zip(&along_y) {
+            for (c, &y) in row.into_iter().zip(&along.distances) {
                 *c += mirror.at([apart, y]);
             }
         });

@@ -7,7 +7,19 @@
 //! w is the transform of a load, or of a load and a mean, over the width 2a. f is given at Gauss points of panels
 //! that double, so that its polynomial on each is integrated exactly, by spherical Bessel functions, however
 //! fast cos ky and w oscillate: Filon's method, with Legendre's polynomials.
+//!
+//! On a grid that repeats with the period Y, the sum over all images y + mY is one over the waves of the period,
+//!
+//! ```text
+//! Σ_m F(y + mY) = π/Y Σ_n f(k_n) w(k_n) cos k_n y        k_n = 2π|n|/Y
+//! ```
+//!
+//! in which the same polynomials stand for f where many waves are in a panel.
 
+use std::f64::consts::PI;
+
+use crate::convolution;
+use crate::grid::Grid;
 use crate::kernel::quadrature::Rule;
 
 /// Points of a panel.
@@ -20,6 +32,50 @@ const LOW_RATIO: f64 = 30.0;
 
 /// Half-width times wavenumber below which a load's transform is smooth on a panel.
 const NARROW: f64 = 1.0;
+
+/// Waves of a period that are taken one by one, before the panels.
+const SINGLE: usize = 16;
+
+/// Distances along y at which coefficients of a grid are needed.
+#[derive(Debug)]
+pub(super) struct Along {
+    pub(super) distances: Vec<f64>,
+    /// Width of a cell.
+    pub(super) spacing: f64,
+    /// Number of cells of the transform, which is that of the period where the grid repeats.
+    pub(super) length: usize,
+    pub(super) repeats: bool,
+}
+
+impl Along {
+    pub(super) fn of(grid: &Grid) -> Self {
+        let (spacing, repeats) = (grid.spacing()[1], grid.is_periodic()[1]);
+        let length = convolution::length(grid.shape()[1], repeats);
+        Self {
+            distances: (0..=length / 2).map(|l| l as f64 * spacing).collect(),
+            spacing,
+            length,
+            repeats,
+        }
+    }
+
+    /// Largest distance, to the far edge of the cell.
+    pub(super) fn farthest(&self) -> f64 {
+        (self.length / 2 + 1) as f64 * self.spacing
+    }
+
+    /// Waves for means over cells of loads on cells, and amplitudes that vanish above `highest`: up to distances of
+    /// `reach`, or where the grid repeats those of the period, of which the shares of `zeroth` wavenumbers stand for
+    /// the first.
+    pub(super) fn waves(&self, reach: f64, highest: f64, zeroth: &[(f64, f64)]) -> Waves {
+        let width = Width::LoadAndMean(0.5 * self.spacing);
+        if self.repeats {
+            Waves::repeated(self.length, self.spacing, width, highest, zeroth)
+        } else {
+            Waves::new(&self.distances, width, reach, highest)
+        }
+    }
+}
 
 /// A transform w.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +121,62 @@ impl Waves {
         while start < highest {
             waves.add_octave(&rule, start, distances, width);
             start *= 2.0;
+        }
+        waves
+    }
+
+    /// Waves of a period of so many `cells` of width `spacing`, for distances of whole cells up to half of it.
+    fn repeated(
+        cells: usize,
+        spacing: f64,
+        width: Width,
+        highest: f64,
+        zeroth: &[(f64, f64)],
+    ) -> Self {
+        let (step, distances) = (2.0 * PI / (cells as f64 * spacing), cells / 2 + 1);
+        let cosines: Vec<f64> = (0..cells)
+            .map(|l| (2.0 * PI * l as f64 / cells as f64).cos())
+            .collect();
+        let column = |n: usize, factor: f64| {
+            let places = (0..distances).map(|l| n % cells * l % cells);
+            places.map(|at| factor * cosines[at]).collect::<Vec<f64>>()
+        };
+        let mut waves = Self {
+            wavenumbers: zeroth.iter().map(|(k, _)| *k).collect(),
+            weights: (zeroth
+                .iter()
+                .map(|(_, share)| column(0, 0.5 * share * step)))
+            .collect(),
+        };
+        for n in 1..SINGLE {
+            let k = n as f64 * step;
+            waves.wavenumbers.push(k);
+            waves.weights.push(column(n, step * width.transform(k)));
+        }
+        let rule = Rule::gauss_legendre(POINTS);
+        let points: Vec<(f64, f64)> = rule.nodes(0.0, 1.0).collect();
+        let polynomials: Vec<[f64; POINTS]> =
+            points.iter().map(|(t, w)| legendre(*t, *w)).collect();
+        let mut start = SINGLE;
+        while (start as f64) * step < highest {
+            let (middle, half) = (1.5 * start as f64 - 0.5, 0.5 * start as f64);
+            let mut weights = vec![vec![0.0; distances]; POINTS];
+            for n in start..2 * start {
+                let at = legendre((n as f64 - middle) / half, 1.0);
+                let transform = step * width.transform(n as f64 * step);
+                let cosines = column(n, transform);
+                for (polynomial, weights) in polynomials.iter().zip(&mut weights) {
+                    // Lagrange's polynomial of the point, ½ Σ (2n + 1) w P_n(t) P_n
+                    let terms = polynomial.iter().zip(at).enumerate();
+                    let factor: f64 = terms.map(|(m, (p, at))| p * at / (4 * m + 2) as f64).sum();
+                    let sums = weights.iter_mut().zip(&cosines);
+                    sums.for_each(|(sum, cosine)| *sum += factor * cosine);
+                }
+            }
+            let wavenumbers = points.iter().map(|(t, _)| (middle + half * t) * step);
+            waves.wavenumbers.extend(wavenumbers);
+            waves.weights.extend(weights);
+            start *= 2;
         }
         waves
     }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use ndarray::{Array2, Zip};
+use ndarray::{Array2, Axis, Zip};
 
 use super::exact::{CellInfluence, WHOLE_CELLS};
 use super::line;
@@ -24,25 +24,25 @@ const RINGS: f64 = 16.0;
 /// Distance of the offsets from the corners of a block, in its shorter sides, at least.
 const NEAREST: f64 = 1e-3;
 
-/// Coefficients (nx, ny) \[m/Pa\] without the local compliance; C\[n − i\] = C\[i\] along periodic directions.
-pub(super) fn coefficients(
+/// Sums over the images of a cell at `offsets` along x and the offsets of the cells along y that are computed, up to
+/// constants.
+fn sums(
     body: &dyn Response,
-    grid: &Grid,
+    images: &Images,
+    spacing: [f64; 2],
+    offsets: &[f64],
     threads: &Threads,
 ) -> Result<Array2<f64>> {
-    let (spacing, size) = (grid.spacing(), grid.size());
-    let images = Images::plan(grid, RINGS);
     let cell = CellInfluence::plan_on(body, spacing, WHOLE_CELLS, images.reach(), threads)?;
     let (sides, reach) = (images.block_sides(), images.block_reach());
     let block = CellInfluence::plan_on(body, sides, NEAREST, reach, threads)?;
-    let kept = images.kept();
-    let mut sums = Array2::zeros((kept[0], kept[1]));
+    let mut sums = Array2::zeros((offsets.len(), images.kept()[1]));
     threads.run(|| {
         let far = images.far(|at| [cell.at_distance(at)], |at| [block.at_distance(at)]);
         Zip::indexed(&mut sums)
             .and(&far[0])
             .par_for_each(|(i, j), sum, far| {
-                let at = [i as f64 * spacing[0], j as f64 * spacing[1]];
+                let at = [offsets[i], j as f64 * spacing[1]];
                 *sum = *far;
                 for k in images.near(0) {
                     for l in images.near(1) {
@@ -51,6 +51,41 @@ pub(super) fn coefficients(
                 }
             });
     });
+    Ok(sums)
+}
+
+/// Coefficients \[m/Pa\] on a `grid` that repeats along y alone, at any `offsets` along x of at least a cell, with the
+/// datum at a distance: (offsets, ny/2 + 1).
+pub(super) fn apart(
+    body: &dyn Response,
+    grid: &Grid,
+    (offsets, datum): (&[f64], f64),
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let (spacing, [_, ny]) = (grid.spacing(), grid.shape());
+    let farthest = offsets.iter().fold(0.0_f64, |most, x| most.max(*x));
+    let rows = (farthest / spacing[0]).ceil() as usize + 1;
+    let longer = Grid::new([rows, ny], [rows as f64 * spacing[0], grid.size()[1]])?;
+    let images = Images::plan(&longer.periodic(grid.is_periodic())?, RINGS).at_offsets(offsets);
+    let mut sums = sums(body, &images, spacing, offsets, threads)?;
+    let uniform = line::apart(body, (spacing[0], datum), offsets, threads)?;
+    for (mut line, uniform) in sums.axis_iter_mut(Axis(0)).zip(uniform) {
+        let total: f64 = (0..ny).map(|l| line[l.min(ny - l)]).sum();
+        line += (uniform - total) / ny as f64;
+    }
+    Ok(sums)
+}
+
+/// Coefficients (nx, ny) \[m/Pa\] without the local compliance; C\[n − i\] = C\[i\] along periodic directions.
+pub(super) fn coefficients(
+    body: &dyn Response,
+    grid: &Grid,
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let (spacing, size) = (grid.spacing(), grid.size());
+    let images = Images::plan(grid, RINGS);
+    let rows = (0..images.kept()[0]).map(|i| i as f64 * spacing[0]);
+    let sums = sums(body, &images, spacing, &rows.collect::<Vec<_>>(), threads)?;
     let mut whole = images.whole(&sums, [false; 2]);
     let mean = if grid.is_periodic() == [true; 2] {
         vec![uniform(body)]

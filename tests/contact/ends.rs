@@ -1,5 +1,6 @@
 //! Contacts of bodies with free ends.
 
+mod periodic;
 mod refused;
 mod rollers;
 

@@ -16,7 +16,7 @@ use ndarray::Array2;
 
 use crate::contact::problem::INDEFINITE;
 use crate::contact::solver::linear_cg;
-use crate::convolution::Convolution;
+use crate::convolution::{Addition, Convolution};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::parallel::Threads;
@@ -51,14 +51,14 @@ pub(crate) struct Datum {
 const ROUNDING: f64 = 1e-12;
 
 impl Datum {
-    /// Finds the datum for the `coefficients` of `bodies` together on `grid`.
+    /// Finds the datum for the `coefficients` of `bodies` together on `grid`, and what their free ends add.
     ///
     /// # Errors
     /// [`INDEFINITE`] where the operator is not positive definite with any datum.
     pub(crate) fn find(
         bodies: &[&Body],
         grid: &Grid,
-        coefficients: &Array2<f64>,
+        (coefficients, additions): (&Array2<f64>, &[Addition]),
         threads: &Arc<Threads>,
     ) -> Result<Self> {
         let Some(open) = open_direction(grid) else {
@@ -87,7 +87,8 @@ impl Datum {
                 distance: width * FARTHER.powi(trial),
                 ..near
             };
-            let total = total_pressure(&datum.moved(coefficients.clone(), grid), grid, threads)?;
+            let moved = datum.moved(coefficients.clone(), grid);
+            let total = total_pressure((&moved, additions), grid, threads)?;
             let Some(total) = total.filter(|&total| total > 0.0) else {
                 continue;
             };
@@ -174,12 +175,13 @@ fn open_direction(grid: &Grid) -> Option<usize> {
 /// Sum of the pressure that displaces all cells by 1 \[1/m\], 1ᵀK⁻¹1. It is above 0 where K, which is
 /// positive definite for pressures of sum 0, is so for all; `None` where the system shows that it is not.
 fn total_pressure(
-    coefficients: &Array2<f64>,
+    (coefficients, additions): (&Array2<f64>, &[Addition]),
     grid: &Grid,
     threads: &Arc<Threads>,
 ) -> Result<Option<f64>> {
     let repeats = grid.is_periodic();
     let convolution = Convolution::plan_repeated(coefficients, repeats, Arc::clone(threads))?;
+    let convolution = convolution.plus(additions.to_vec());
     let [_, inverse] = convolution.preconditioner(coefficients, repeats);
     let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
     let pressure = linear_cg::solve(

@@ -68,9 +68,9 @@ impl Tangent {
             Method::Exact => grid.of_offsets(shape),
             _ => *grid,
         };
-        let (coefficients, datum) = operator(&report.body, &setup, &near, &threads)?;
+        let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, grid, &threads)?;
+        let (coefficients, datum) = operator(&report.body, &setup, &near, &additions, &threads)?;
         let corner = block(&coefficients, &full_window(shape)).to_owned();
-        let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, &threads)?;
         let within = additions.iter().map(|addition| addition.on_rows(x.clone()));
         let repeats = repeating(grid, &window);
         let convolution = Convolution::plan_repeated(&corner, repeats, threads)?;
@@ -141,7 +141,7 @@ impl Tangent {
         if !is_near && self.far.get().is_none() {
             let (body, setup, grid) = &self.source;
             let threads = Arc::new(Threads::new(None)?);
-            let (coefficients, _) = operator(body, setup, grid, &threads)?;
+            let (coefficients, _) = operator(body, setup, grid, &self.additions, &threads)?;
             self.far.get_or_init(|| coefficients);
         }
         Ok(())

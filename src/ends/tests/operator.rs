@@ -22,7 +22,7 @@ fn convolution(bodies: &[&Body], grid: &Grid) -> Result<Convolution> {
     for body in bodies {
         coefficients += &influence_coefficients(*body, grid, Method::Exact)?;
     }
-    let additions = Ends::of(bodies).additions(grid, &threads)?;
+    let additions = Ends::of(bodies).additions(grid, grid, &threads)?;
     Ok(Convolution::plan(&coefficients, Some(1))?.plus(additions))
 }
 
@@ -133,7 +133,7 @@ fn cells_converge() -> Result<()> {
         let grid = Grid::new([3 * n, 3 * n], [3.0, 3.0])?.centered_at([1.5, 0.0])?;
         let threads = std::sync::Arc::new(Threads::new(Some(1))?);
         let coefficients = influence_coefficients(&body, &grid, Method::Exact)?;
-        let additions = Ends::of(&[&body]).additions(&grid, &threads)?;
+        let additions = Ends::of(&[&body]).additions(&grid, &grid, &threads)?;
         let convolution = Convolution::plan(&coefficients, Some(1))?.plus(additions);
         let (x, y) = (grid.x(), grid.y());
         let loaded = |i: usize, j: usize| f64::from(u8::from(x[i] < 2.0 && y[j].abs() < 1.0));

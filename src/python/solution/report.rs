@@ -243,8 +243,9 @@ impl PyReport {
     /// How free ends of the bodies are counted; None where there are none.
     ///
     /// ``plates`` says whether a body has two ends, and is taken as a plate. ``error`` is the largest error of
-    /// the displacement, relative to it, that was measured for such bodies; None for layers whose moduli
-    /// differ by a factor of more than 10.
+    /// the displacement, relative to it, that was measured for such bodies, for bare plates that of the pressure
+    /// too, down to lengths of half the contact's half-width; None for layers whose moduli differ by a factor of
+    /// more than 10.
     #[getter]
     fn free_ends<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(FreeEnds { plates, error }) = self.0.free_ends() else {

@@ -16,8 +16,8 @@ use super::{BOTH, HALF_LENGTH, LOAD, ROLLER, Straight, WHOLE, plan, straight, un
 use crate::support::reference::{cases, list, number};
 
 /// For ν = 0 a pressure that is independent of x leaves the ends of both bodies free, so that the pressure is uniform
-/// along x. Superposed quarter spaces leave 1.5 % for the roller of 20 half-widths; the plate's table leaves 5e-5 of the
-/// displacement for each coefficient, some of which makes pressures of a few times as much.
+/// along x. Superposed quarter spaces leave 1.5 % for the roller of 20 half-widths; the plate's table leaves 2e-5 of the
+/// displacement for each coefficient, some of which makes pressures of many times as much.
 #[test]
 fn flush_bodies_without_lateral_strain_have_uniform_pressure() -> Result<()> {
     for (half_length, rows) in [(HALF_LENGTH, 160), (2.0, 32)] {
@@ -44,7 +44,7 @@ fn flush_bodies_without_lateral_strain_have_uniform_pressure() -> Result<()> {
         let warnings = &solution.report.warnings;
         assert!(warnings.is_empty(), "{warnings:?}");
         let counted = solution.report.free_ends().expect("both bodies end");
-        assert!(counted.plates && counted.error == Some(2e-4));
+        assert!(counted.plates && counted.error == Some(1e-3));
     }
     Ok(())
 }

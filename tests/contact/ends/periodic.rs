@@ -1,0 +1,226 @@
+//! Free ends on grids that repeat along y.
+
+use std::f64::consts::PI;
+
+use nacre::{
+    Contact, Elastic, Grid, HalfSpace, HeightMap, Layer, Motion, Result, Setup, Solution,
+    ends::QuarterSpace,
+};
+use ndarray::{Array2, concatenate};
+
+use super::{differ, plan, tight, unit};
+use crate::support::random::uniform;
+use crate::support::reference::{cases, number};
+
+/// Error of the displacement that is stated for one end.
+const STATED: f64 = 1e-5;
+
+/// A grid that repeats along y, from x = 0 on.
+fn repeated(shape: [usize; 2], size: [f64; 2]) -> Result<Grid> {
+    let grid = Grid::new(shape, size)?.centered_at([0.5 * size[0], 0.0])?;
+    grid.periodic([false, true])
+}
+
+/// Amplitudes of u G/(1−ν) for k = 1 at places that are edges or centres of cells of 0.02, under the pressure cos y over
+/// x < `end`, of a body that ends at x = 0. The cells along y change them by less than 4e-6.
+fn amplitudes(poisson: f64, end: f64, places: &[f64]) -> Result<Vec<f64>> {
+    const DX: f64 = 0.02;
+    let grid = repeated([800, 768], [800.0 * DX, 2.0 * PI])?;
+    let contact = Contact::plan(unit(poisson, [Some(0.0), None])?, grid, Setup::default())?;
+    let (x, y) = (grid.x(), grid.y());
+    let load = |(i, j): (usize, usize)| if x[i] < end { y[j].cos() } else { 0.0 };
+    let u = contact
+        .convolution()
+        .apply(&Array2::from_shape_fn((x.len(), y.len()), load))?;
+    let amplitude = |row: usize| {
+        let terms = u.row(row).into_iter().zip(&y).map(|(u, y)| u * y.cos());
+        // G/(1−ν) = 1/2
+        terms.sum::<f64>() / y.len() as f64
+    };
+    let at = |place: &f64| {
+        let cells = place / DX;
+        let row = cells.floor() as usize;
+        let between = |first: usize, weights: [f64; 4]| {
+            let terms = weights.into_iter().enumerate();
+            terms.map(|(k, w)| w * amplitude(first + k)).sum::<f64>() / 16.0
+        };
+        match () {
+            () if (cells - cells.round()).abs() > 0.1 => amplitude(row),
+            () if row == 0 => between(0, [35.0, -35.0, 21.0, -5.0]),
+            () => between(cells.round() as usize - 2, [-1.0, 9.0, 9.0, -1.0]),
+        }
+    };
+    Ok(places.iter().map(at).collect())
+}
+
+/// A wave of the period on all of the body, and on a strip beside the end, against solutions of others to 1e-8: the
+/// displacement errs by less than is stated.
+#[test]
+fn waves_of_the_period_are_exact() -> Result<()> {
+    for (file, end, place, value) in [
+        ("quarter_space_wave.json", f64::INFINITY, "kx", "u_quarter"),
+        ("quarter_space_strip.json", 1.0, "x", "hetenyi"),
+    ] {
+        let rows = cases(file);
+        let mut ratios: Vec<f64> = rows.iter().map(|row| number(row, "nu")).collect();
+        ratios.dedup();
+        for poisson in ratios {
+            let rows = rows.iter().filter(|row| number(row, "nu") == poisson);
+            let [places, due] = [place, value].map(|key| {
+                let values = rows.clone().map(|row| number(row, key));
+                values.collect::<Vec<f64>>()
+            });
+            let largest = due.iter().fold(0.0_f64, |most, u| most.max(*u));
+            let found = amplitudes(poisson, end, &places)?;
+            for ((x, due), found) in places.iter().zip(&due).zip(found) {
+                let error = (found - due) / largest;
+                assert!(error.abs() < STATED, "{file} {poisson} {x}: {error:e}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Bodies with ends in the grid, at its edge, and far outside; bare and coated.
+fn bodies() -> Result<Vec<HalfSpace>> {
+    let coat = Layer::new(Elastic::new(5.0, 0.2)?, 0.3)?;
+    let coated = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    Ok(vec![
+        unit(0.3, [Some(0.0), None])?,
+        unit(0.0, [None, Some(3.0)])?,
+        unit(0.5, [Some(-7.3), Some(3.5)])?,
+        unit(0.25, [Some(0.5), Some(4.0)])?,
+        unit(0.3, [Some(-300.0), None])?,
+        coated.clone().with_ends([Some(0.5), None])?,
+        coated.with_ends([Some(0.0), Some(4.0)])?,
+    ])
+}
+
+/// Twice a period is the same: the displacement to 1e-8, where panels of waves and sums over images err, and pressure,
+/// approach and stiffness of contacts. Periods are shorter and longer than the grid is wide, of odd and even numbers of
+/// cells.
+#[test]
+fn twice_a_period_is_the_same() -> Result<()> {
+    for (cells, period) in [(6, 0.4), (9, 3.0), (40, 20.0)] {
+        let grids = [1, 2].map(|times| repeated([8, times * cells], [4.0, times as f64 * period]));
+        let [once, twice] = grids;
+        let (once, twice) = (once?, twice?);
+        for (number, body) in bodies()?.iter().enumerate() {
+            let name = format!("{period}, body {number}");
+            let other = unit(0.2, [None; 2])?;
+            let contacts = [once, twice].map(|grid| plan([body, &other], grid));
+            let [first, second] = contacts;
+            let (first, second) = (first?, second?);
+            let p = uniform(once.shape(), 3);
+            let double = |field: &Array2<f64>| {
+                concatenate(ndarray::Axis(1), &[field.view(), field.view()]).expect("same rows")
+            };
+            let one = first.convolution().apply(&p)?;
+            let two = second.convolution().apply(&double(&p))?;
+            let largest = one.fold(0.0_f64, |most, u| most.max(u.abs()));
+            let worst = differ(&double(&one), &two) / largest;
+            assert!(worst < 1e-8, "{name}: {worst:e}");
+
+            let heights = uniform(once.shape(), 5) * (1e-3 * period);
+            let solved = |contact: &Contact, grid: &Grid, heights: Array2<f64>, motion: &Motion| {
+                let shape = HeightMap::new(heights, grid.spacing())?
+                    .centered_at(grid.center())?
+                    .periodic([false, true])?;
+                contact
+                    .solve(&shape, motion, &tight())?
+                    .require_converged(1e-11)
+            };
+            let motion = Motion {
+                eccentricity: [Some(2.2), None],
+                ..Motion::load(2e-4 * period)
+            };
+            let twofold = Motion {
+                load: motion.load.map(|load| 2.0 * load),
+                ..motion
+            };
+            let a = solved(&first, &once, heights.clone(), &motion)?;
+            let b = solved(&second, &twice, double(&heights), &twofold)?;
+            let same = |a: &Solution, b: &Solution, columns: usize, name: &str| {
+                let found = b.pressure.slice(ndarray::s![.., ..columns]).to_owned();
+                let worst = differ(&a.pressure, &found) / a.peak_pressure();
+                assert!(worst < 1e-6, "{name}: {worst:e}");
+                assert!((b.approach / a.approach - 1.0).abs() < 1e-6, "{name}");
+            };
+            same(&a, &b, cells, &name);
+            let [k, l] = [a.stiffness()?, b.stiffness()?].map(|k| k[0][0]);
+            assert!((l / (2.0 * k) - 1.0).abs() < 1e-5, "{name} {k} {l}");
+            // Under its approach, the contact is the same.
+            let motion = Motion {
+                tilt: [Some(a.tilt[0]), None],
+                ..Motion::approach(a.approach)
+            };
+            let c = solved(&first, &once, heights, &motion)?;
+            same(&a, &c, cells, &format!("{name}, approach"));
+        }
+    }
+    Ok(())
+}
+
+/// A pressure that is uniform along y displaces the body as one on a rectangle that is 4000 times as long as wide, up to
+/// a shift: the rectangle's ends change differences of the displacement by 1e-7.
+#[test]
+fn a_uniform_pressure_is_that_of_plane_strain() -> Result<()> {
+    let grid = repeated([40, 6], [4.0, 0.7])?;
+    let x = grid.x();
+    for poisson in [0.0, 0.3, 0.5] {
+        let material = unit(poisson, [None; 2])?.surface_material();
+        let body = HalfSpace::from(material).with_ends([Some(0.0), None])?;
+        let contact = Contact::plan(body, grid, Setup::default())?;
+        let loaded = |i: usize| x[i] > 0.5 && x[i] < 2.0;
+        let p = Array2::from_shape_fn((40, 6), |(i, _)| f64::from(u8::from(loaded(i))));
+        let u = contact.convolution().apply(&p)?;
+        let long = QuarterSpace::new(material, 0.5, [1.5, 3000.0])?;
+        let far = long.displacement([x[39], 0.0])?;
+        for i in [0, 1, 3, 10, 17, 25] {
+            let due = long.displacement([x[i], 0.0])? - far;
+            let error = (u[[i, 2]] - u[[39, 2]]) / due - 1.0;
+            // The mean over a cell instead of the middle, (0.1/distance)²/24 of the part beside the image.
+            let bar = STATED + if i < 2 { 2e-4 } else { 2e-5 };
+            assert!(error.abs() < bar, "{poisson} {i}: {error:e}");
+        }
+    }
+    Ok(())
+}
+
+/// For ν = 0, a pressure that does not depend on x leaves the faces of a plate free: two flush bodies have the pressure of
+/// bodies that repeat along x as well.
+#[test]
+fn flush_plates_without_contraction_have_the_pressure_of_a_repeated_cylinder() -> Result<()> {
+    for (length, period) in [(0.5, 2.0), (2.0, 2.0), (2.0, 20.0), (20.0, 2.0)] {
+        let wave = |shape: [usize; 2], repeats: [bool; 2], ends: [Option<f64>; 2]| {
+            let grid = Grid::new(shape, [length, period])?.periodic(repeats)?;
+            let y = grid.y();
+            let heights = Array2::from_shape_fn((shape[0], shape[1]), |(_, j)| {
+                1e-3 * period * (2.0 * PI * y[j] / period).cos()
+            });
+            let shape = HeightMap::new(heights, grid.spacing())?.periodic(repeats)?;
+            let body = unit(0.0, ends)?;
+            // The wave touches over half of it.
+            let load = 5e-4 * period * length;
+            let contact = plan([&body, &body], grid)?;
+            contact
+                .solve(&shape, &Motion::load(load), &tight())?
+                .require_converged(1e-11)
+        };
+        let ends = [Some(-0.5 * length), Some(0.5 * length)];
+        let plate = wave([12, 40], [false, true], ends)?;
+        let whole = wave([2, 40], [true; 2], [None; 2])?;
+        assert!(plate.pressure[[6, 0]] > 0.0 && plate.pressure[[6, 20]] <= 0.0);
+        let mut worst = 0.0_f64;
+        for row in plate.pressure.rows() {
+            worst = (&row - &whole.pressure.row(0)).fold(worst, |worst, d| worst.max(d.abs()));
+        }
+        let error = worst / whole.peak_pressure();
+        let stated = plate.report.free_ends().and_then(|form| form.error);
+        assert!(
+            error < stated.expect("a plate's"),
+            "{length} {period}: {error:e}"
+        );
+    }
+    Ok(())
+}
