@@ -29,7 +29,9 @@ MISSING = frozenset(
     "|-|--|---|*|***|?|#n/a|bad|invalid|masked|missing|n/a|na|nan|no data|none|null|void".split("|")
 )
 """Words, in small letters, that stand for a point that was not measured."""
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|[+-]?inf(inity)?|[+-]?nan", re.IGNORECASE)
+NUMBER = re.compile(
+    r"[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?|[+-]?inf(inity)?|[+-]?nan", re.IGNORECASE
+)
 LEAST_MEASURED = 0.5
 """Least share of points that must be measured; below it most of the surface would be a guess."""
 
@@ -48,8 +50,8 @@ class Heights(NamedTuple):
 def npy(path: Path) -> Heights:
     """Return the matrix of a file of NumPy's."""
     try:
-        with path.open("rb") as file:
-            heights = np.lib.format.read_array(file, allow_pickle=False)
+        # The map of a file is no larger than the file; to read would first make room.
+        heights = np.lib.format.open_memmap(path, mode="r")
     except OSError:
         raise
     except Exception as error:  # a damaged head is read as Python
@@ -88,6 +90,7 @@ def xyz(path: Path) -> Heights:
     if not np.isfinite(points[:, :2]).all():
         raise ValueError(f"{str(path)!r} must have finite x and y at every point")
     places, steps = [], []
+    most = len(points) / LEAST_MEASURED
     for axis in (0, 1):
         values = np.unique(points[:, axis])
         # Coordinates that differ only by rounding are the same.
@@ -99,10 +102,15 @@ def xyz(path: Path) -> Heights:
         place = (points[:, axis] - values[0]) / step
         if not np.abs(place - place.round()).max() <= 0.05:
             raise ValueError(f"{str(path)!r} must have its points on a regular grid")
+        if place.max() > most:
+            raise ValueError(
+                f"{str(path)!r} must fill its grid of {place.max():.4g} places along "
+                f"{'xy'[axis]}, got {len(points)} points"
+            )
         places.append(place.round().astype(int))
         steps.append(float(np.ptp(values)) / int(places[-1].max()))
     cells = [int(place.max()) + 1 for place in places]
-    if cells[0] * cells[1] * LEAST_MEASURED > len(points):
+    if cells[0] * cells[1] > most:
         raise ValueError(
             f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}"
         )
@@ -146,7 +154,7 @@ def _table(path: Path, lines: Sequence[tuple[int, str]]) -> Array:
     Lines at the beginning that hold no number are headings, and are left out.
     """
     mark = _separator([text for _, text in lines])
-    rows: list[list[float]] = []
+    rows: list[Array] = []
     first = 0
     commas, points = False, False
     for number, text in lines:
@@ -160,7 +168,7 @@ def _table(path: Path, lines: Sequence[tuple[int, str]]) -> Array:
                     f"{str(path)!r} must have decimal commas or decimal points, line {number} "
                     f"brings both"
                 )
-        rows.append(row)
+        rows.append(np.array(row))
         if len(rows) == 1:
             first = number
         if len(row) != len(rows[0]):
@@ -190,7 +198,7 @@ def _row(path: Path, number: int, text: str, mark: str | None, heading: bool) ->
     for field in fields:
         value = _number(field)
         if value is None:
-            raise ValueError(f"{str(path)!r} must hold numbers, line {number} has {field!r}")
+            raise ValueError(f"{str(path)!r} must hold numbers, line {number} has {field[:60]!r}")
         row.append(value)
     return row
 

@@ -36,6 +36,7 @@ Materials have names. ``nacre schema`` prints the reference of all tables and ke
 from __future__ import annotations
 
 import copy
+import math
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -50,10 +51,12 @@ with extra("cli"):
 
     from nacre._indent_tables import IndentCase
     from nacre._reference import Place, nearest, place, table_for
-    from nacre._schema import Bodies, CaseTable, Range, WrongValue, at
+    from nacre._schema import MOST_VALUES, Bodies, CaseTable, Range, WrongValue, at
 
 SHOWN = 60
 """Largest number of characters of a wrong value that an error shows."""
+LARGEST = 10_000_000
+"""Largest size of a case file in bytes, which takes a few seconds to read."""
 
 
 class CaseError(ValueError):
@@ -89,7 +92,13 @@ class Case:
         """Return the case of a file; an unusable one is a `CaseError`."""
         path = Path(path)
         try:
+            if path.exists() and not path.is_file():
+                raise CaseError(f"{path}: must be a file")
+            if path.stat().st_size > LARGEST:
+                raise CaseError(f"{path}: must have at most {LARGEST} bytes")
             data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        except CaseError:
+            raise
         except UnicodeDecodeError as error:
             raise CaseError(f"{path}: not a TOML file: its letters must be UTF-8") from error
         except ValueError as error:
@@ -154,8 +163,11 @@ class Case:
             table[last] = value
         return Case(data, self.name, self.folder).arguments()
 
-    def study(self) -> dict[str, Any]:
-        """Return the arguments of `nacre.sweep` besides the case."""
+    def study(self, store: Path | None = None) -> dict[str, Any]:
+        """Return the arguments of `nacre.sweep` besides the case, with another store if given.
+
+        The store of the case must lie in the folder of the case.
+        """
         sweep = self._table.sweep
         if sweep is None:
             raise CaseError(f"{self.name}: sweep: this table is missing")
@@ -180,14 +192,32 @@ class Case:
             except WrongValue as error:
                 raise CaseError(f"{self.name}: {error}") from error
             found["outputs"] = sweep.outputs
-        if sweep.store is not None:
-            found["store"] = self.folder / sweep.store
+        count = math.prod(map(len, found["parameters"].values()))
+        if count > MOST_VALUES:
+            raise CaseError(
+                f"{self.name}: sweep.parameters: must make at most {MOST_VALUES} cases, got {count}"
+            )
+        if store is None and sweep.store is not None:
+            store = self._inside(sweep.store)
+        if store is not None:
+            found["store"] = store
         if isinstance(self._table, CaseTable) and self._table.stress is not None:
             asked = self._table.stress.keywords()
             if self.friction is not None:
                 asked = {"body": asked["body"]}
             found["stress"] = asked
         return found
+
+    def _inside(self, store: str) -> Path:
+        """Return the path of a store, which must be in the folder of the case, as its journal."""
+        path = self.folder / store
+        for one in (path, path.with_suffix(".journal")) if path.name else [path]:
+            if not one.resolve().is_relative_to(self.folder.resolve()):
+                raise CaseError(
+                    f"{self.name}: sweep.store: must be in the folder of the case, got "
+                    f"{_shown(store)}; nacre sweep --store takes a file anywhere"
+                )
+        return path
 
     def _place(self, data: Any, key: str) -> tuple[Any, Any]:
         """Return the table or list that holds a key, and the last part of the key.

@@ -11,6 +11,7 @@ import typer
 import nacre.indent.solution as solving
 from nacre._case_commands import CaseFile, Json, Units, plain, read_case
 from nacre._commands import app
+from nacre._progress import alive
 from nacre.case import CaseError
 from nacre.units import display_units
 
@@ -34,8 +35,9 @@ def indent(
     arguments = described.arguments()
     with display_units(described.units):
         try:
-            solution = solving.solve(**arguments)
-            found = numbers(solution)
+            with alive():
+                solution = solving.solve(**arguments)
+                found = numbers(solution)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: indent: {error}") from error
         for path in save or []:
