@@ -58,7 +58,7 @@ bench: ## time the Rust benchmarks, print the change since the last run, append 
 
 fuzz: $(WHEEL) $(DEV) ## random contacts and calls, ten thousand in all: CASES=1000 of each of ten kinds
 	NACRE_FUZZ=$(CASES) cargo test --test contacts fuzz
-	NACRE_FUZZ=$(CASES) $(BIN)/pytest tests/python/test_fuzz.py
+	NACRE_FUZZ=$(CASES) $(BIN)/pytest tests/python/test_fuzz*.py
 
 # The other solvers are installed into a separate environment under target/peers.
 peers: $(WHEEL) ## compare nacre with other solvers: docs/peers.md; OPTIONS=--quick takes four minutes

@@ -75,7 +75,7 @@ def csv(path: Path) -> Heights:
         numbers = [_number(field.replace(",", ".")) for field in fields if field]
         if len(numbers) not in (1, 2) or not all(n is not None and 0 < n < np.inf for n in numbers):
             raise ValueError(
-                f"{str(path)!r} must have one or two numbers above 0 as spacing, got {text!r}"
+                f"{str(path)!r} must have one or two numbers above 0 as spacing, got {text[:60]!r}"
             )
         spacing = numbers[0] or 0.0, numbers[-1] or 0.0
     return Heights(_table(path, lines), spacing, _unit(path, said))
@@ -90,7 +90,6 @@ def xyz(path: Path) -> Heights:
     if not np.isfinite(points[:, :2]).all():
         raise ValueError(f"{str(path)!r} must have finite x and y at every point")
     places, steps = [], []
-    most = len(points) / LEAST_MEASURED
     for axis in (0, 1):
         values = np.unique(points[:, axis])
         # Coordinates that differ only by rounding are the same.
@@ -102,15 +101,10 @@ def xyz(path: Path) -> Heights:
         place = (points[:, axis] - values[0]) / step
         if not np.abs(place - place.round()).max() <= 0.05:
             raise ValueError(f"{str(path)!r} must have its points on a regular grid")
-        if place.max() > most:
-            raise ValueError(
-                f"{str(path)!r} must fill its grid of {place.max():.4g} places along "
-                f"{'xy'[axis]}, got {len(points)} points"
-            )
         places.append(place.round().astype(int))
         steps.append(float(np.ptp(values)) / int(places[-1].max()))
     cells = [int(place.max()) + 1 for place in places]
-    if cells[0] * cells[1] > most:
+    if cells[0] * cells[1] * LEAST_MEASURED > len(points):
         raise ValueError(
             f"{str(path)!r} must fill its grid of {cells[0]} x {cells[1]} points, got {len(points)}"
         )
@@ -143,7 +137,7 @@ def _unit(path: Path, said: dict[str, str]) -> str | None:
     unit = said.get("unit", "").replace("μ", "µ") or None
     if unit is not None and unit not in METRES:
         raise ValueError(
-            f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit!r}"
+            f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit[:60]!r}"
         )
     return unit
 

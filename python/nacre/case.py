@@ -210,13 +210,16 @@ class Case:
 
     def _inside(self, store: str) -> Path:
         """Return the path of a store, which must be in the folder of the case, as its journal."""
-        path = self.folder / store
-        for one in (path, path.with_suffix(".journal")) if path.name else [path]:
-            if not one.resolve().is_relative_to(self.folder.resolve()):
-                raise CaseError(
-                    f"{self.name}: sweep.store: must be in the folder of the case, got "
-                    f"{_shown(store)}; nacre sweep --store takes a file anywhere"
-                )
+        path, folder = self.folder / store, self.folder.resolve()
+        try:
+            ends = [one.resolve() for one in (path, path.with_suffix(".journal"))]
+        except (OSError, RuntimeError, ValueError) as error:  # a name that no file can have
+            raise CaseError(f"{self.name}: sweep.store: {error}") from error
+        if not all(end.is_relative_to(folder) for end in ends):
+            raise CaseError(
+                f"{self.name}: sweep.store: must be in the folder of the case, got "
+                f"{_shown(store)}; nacre sweep --store takes a file anywhere"
+            )
         return path
 
     def _place(self, data: Any, key: str) -> tuple[Any, Any]:

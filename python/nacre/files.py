@@ -140,7 +140,10 @@ def save(
 def load(path: AnyPath) -> Any:
     """Solution or fit from a file that its `save` wrote, to the bit.
 
-    Needs ``nacre-contact[files]``.
+    Needs ``nacre-contact[files]``. A file ends in a checksum of all before, which other readers of
+    NetCDF ignore. It is compared before anything else is read, since HDF5 may hang on a damaged
+    file. A file that another program changed or saved again has none, and is refused. The checksum
+    finds damage; it is no signature.
 
     Parameters
     ----------
@@ -155,8 +158,8 @@ def load(path: AnyPath) -> Any:
     Raises
     ------
     ValueError
-        If the file holds no result of nacre's, was changed or damaged after it was saved, or was
-        written by a newer version.
+        If the file holds no result of nacre's, was changed, damaged or saved again by another
+        program, or was written by a newer version.
     OSError
         If the file cannot be read.
 

@@ -252,6 +252,7 @@ class Fit:
                 for parts in (self.residuals, self.loads, self.approaches)
             )
             and self.noise in ("relative", "absolute")
+            and max(abs(self.dof), abs(self.evaluations)) < 1 << 53
             and isinstance(self.is_sigma_known, bool)
             and isinstance(self.is_profiled, bool)
             and System.holds(self.body, self.tip, self.counterbody, self.adhesion)
