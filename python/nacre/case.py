@@ -55,6 +55,8 @@ with extra("cli"):
 
 SHOWN = 60
 """Largest number of characters of a wrong value that an error shows."""
+LONGEST = 1000
+"""Largest number of characters of an error, whose keys may be long."""
 LARGEST = 10_000_000
 """Largest size of a case file in bytes, which takes a few seconds to read."""
 
@@ -177,7 +179,7 @@ class Case:
             if not key.startswith(self._table.solved) or key.endswith(
                 (".yield_stress", ".strength")
             ):
-                message = f"{self.name}: sweep.parameters: {key!r} changes nothing in a solve"
+                message = f"{self.name}: sweep.parameters: {_shown(key)} changes nothing in a solve"
                 raise CaseError(message)
         found: dict[str, Any] = {
             "parameters": {
@@ -239,7 +241,7 @@ class Case:
                 nearest(key, _keys({t: data[t] for t in self._table.solved if t in data}))[:3]
             )
             raise CaseError(
-                f"{self.name}: sweep.parameters: {key!r} is not a key of this case; the nearest "
+                f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the nearest "
                 f"are {keys}"
             ) from error
         return table, last
@@ -248,7 +250,7 @@ class Case:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:
-            raise CaseError(f"{self.name}: {_first(error, data)}") from None
+            raise CaseError(f"{self.name}: {_first(error, data)[:LONGEST]}") from None
 
 
 def _index(table: Any, part: str) -> int | str:

@@ -71,7 +71,9 @@ def fitted() -> Fit:
 
 RESULTS: dict[str, Callable[[], Any]] = {
     "solution": lambda: nacre.solve(BALL, BODY, grid=GRID, load=10.0),
-    "yielded": lambda: nacre.solve(BALL, STEEL, grid=GRID, load=10.0, hardness=1e9),
+    "yielded": lambda: nacre.solve(
+        BALL, STEEL, grid=nacre.Grid((20, 20), (2e-4, 2e-4)), load=10.0, hardness=1e9
+    ),
     "friction": lambda: nacre.slide(
         BALL,
         STEEL,

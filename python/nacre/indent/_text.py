@@ -272,13 +272,13 @@ def _decimal(path: Path, table: Table) -> str:
             commas = commas or text
     if points and commas:
         raise ValueError(
-            f"{str(path)!r} must have decimal points or decimal commas, has both {points!r} and "
-            f"{commas!r}"
+            f"{str(path)!r} must have decimal points or decimal commas, has both {points[:60]!r} "
+            f"and {commas[:60]!r}"
         )
     if doubtful and not points and not commas:
         raise ValueError(
             f"decimal must be given: in {str(path)!r} each comma may be a decimal comma or group "
-            f"thousands, as in {doubtful!r}; decimal=',' or decimal='.'"
+            f"thousands, as in {doubtful[:60]!r}; decimal=',' or decimal='.'"
         )
     return "," if commas else "."
 
