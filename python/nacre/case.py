@@ -64,6 +64,9 @@ LARGEST = 10_000_000
 class CaseError(ValueError):
     """A case file that cannot be used; the message names the key and what was expected."""
 
+    def __init__(self, message: str) -> None:
+        super().__init__(message if len(message) <= LONGEST else f"{message[:LONGEST]}...")
+
 
 class Case:
     """A case file, read and checked.
@@ -241,8 +244,8 @@ class Case:
                 nearest(key, _keys({t: data[t] for t in self._table.solved if t in data}))[:3]
             )
             raise CaseError(
-                f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the nearest "
-                f"are {keys}"
+                f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the "
+                f"nearest are {keys}"
             ) from error
         return table, last
 
@@ -250,7 +253,7 @@ class Case:
         try:
             return table_for(data).model_validate(data)
         except ValidationError as error:
-            raise CaseError(f"{self.name}: {_first(error, data)[:LONGEST]}") from None
+            raise CaseError(f"{self.name}: {_first(error, data)}") from None
 
 
 def _index(table: Any, part: str) -> int | str:
