@@ -15,6 +15,7 @@ from nacre import _reference
 from nacre._commands import app
 from nacre._friction_display import shown
 from nacre._outputs import ERROR, FRICTION, check_direction
+from nacre._progress import alive
 from nacre.case import Case, CaseError
 from nacre.files import FIGURES, PICTURES
 from nacre.units import system, written
@@ -53,7 +54,10 @@ def solve(
         raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
     arguments, asked = described.arguments(), described.stress()
     if initial is not None:
-        arguments["initial"] = nacre.load(initial)
+        try:
+            arguments["initial"] = nacre.load(initial)
+        except (OSError, ValueError) as error:
+            raise typer.BadParameter(str(error), param_hint="'--initial'") from error
     for path in save or []:
         _check_ending(path)
     try:
@@ -82,7 +86,8 @@ def _solve(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
         try:
-            solved = getattr(nacre, friction or "solve")(**arguments)
+            with alive():
+                solved = getattr(nacre, friction or "solve")(**arguments)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: {friction or 'solve'}: {error}") from error
         # Of a history, the last step is printed and saved.
@@ -116,9 +121,7 @@ def sweep(
 ) -> None:
     """Solve the study that a case file describes, or the rest of it after a kill."""
     described = read_case(case, units)
-    study = described.study()
-    if store is not None:
-        study["store"] = store
+    study = described.study(store)
     with nacre.display_units(described.units), warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always", nacre.NacreWarning)
         try:

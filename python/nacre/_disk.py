@@ -1,40 +1,35 @@
-"""Files, whole or not at all: any dataset as NetCDF, states with a checksum, and their content."""
+"""Files, whole or not at all: any dataset as NetCDF, and the content of those that nacre wrote.
+
+HDF5 may hang or crash on a damaged file, beyond any signal. So a file ends in a seal, which HDF5
+ignores: a mark of its kind and the SHA-256 of all before. Only a file with a right seal is opened,
+and of it only arrays that are stored plainly, which take no more room in memory than in the file.
+A checksum is no signature: it finds damage, not malice.
+"""
 
 from __future__ import annotations
 
 import hashlib
-import io
-import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from nacre._extras import extra
-from nacre.values import FORMAT
 
 if TYPE_CHECKING:
     import xarray
 
 STATE = "nacre_solution"
 """Attribute that holds the rest of the state, as JSON."""
-CHECKSUM = "nacre_checksum"
-"""Attribute that holds the SHA-256 of all that `load` reads; files of older versions lack it."""
-
-DIMENSION = b"This is a netCDF dimension but not a netCDF variable"
-"""Beginning of the attribute NAME of what is no variable."""
-
-
-class Variable(NamedTuple):
-    """A variable of a file."""
-
-    dimensions: tuple[str, ...]
-    values: npt.NDArray[Any]
+RESULT, STUDY = b"\nnacre result\n\0\0", b"\nnacre study\n\0\0\0"
+"""Marks of a result that `nacre.load` reads, and of a study."""
+MARK, SEAL = 16, 48
+"""Bytes of a mark, and of a mark and a digest: the last ones of a file."""
 
 
 @contextmanager
@@ -50,65 +45,79 @@ def replacing(path: Path) -> Iterator[Path]:
         os.replace(temporary, path)
 
 
-def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
-    """Write any dataset as NetCDF, to the bit."""
+def write_dataset(dataset: xarray.Dataset, path: Path, mark: bytes = RESULT) -> None:
+    """Write any dataset as NetCDF, to the bit, with a seal."""
     with extra("files"):
         import h5netcdf  # noqa: F401
 
-    encoding = {
-        name: {"_FillValue": None, "zlib": True, "complevel": 4, "shuffle": True}
-        for name, variable in dataset.variables.items()
-        if variable.dtype.kind == "f" and variable.ndim > 0
-    }
+    encoding = {name: {"_FillValue": None} for name in dataset.variables}
     # HDF5 writes to memory: on a full disk it would crash when the process ends.
-    path.write_bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
+    content = dataset.to_netcdf(engine="h5netcdf", encoding=encoding)
+    with path.open("wb") as file:
+        file.write(content)
+        file.write(mark + hashlib.sha256(content).digest())
 
 
-def read(content: bytes) -> tuple[dict[str, Any], dict[str, Variable]]:
-    """Return the attributes of a file from its content, and its variables that hold numbers."""
+def is_study(path: Path) -> bool:
+    """Return whether a file ends as a study does; its content is not read."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return _seal(file)[:MARK] == STUDY
+
+
+def read(path: Path, names: Collection[str]) -> tuple[str, dict[str, npt.NDArray[Any]]]:
+    """Return the state of a result as text, and those of its variables that have these names."""
     import h5py
 
-    try:
-        # The content is in memory, so that HDF5 keeps no damaged file open.
-        with h5py.File(io.BytesIO(content), "r") as file:
-            attributes = {name: file.attrs.get(name) for name in (STATE, CHECKSUM)}
-            variables = {
-                name: Variable(
-                    tuple(d[0].name.rpartition("/")[2] if len(d) else "" for d in item.dims),
-                    np.asarray(item[()]),
-                )
-                for name, item in file.items()
-                if isinstance(item, h5py.Dataset)
-                and item.dtype.kind in "fiu"
-                and not bytes(item.attrs.get("NAME", b"")).startswith(DIMENSION)
-            }
-    except Exception as error:  # whatever HDF5 says of a damaged file
-        raise ValueError("it is no NetCDF file, or a damaged one") from error
-    return attributes, variables
+    with path.open("rb") as file:
+        seal = _seal(file)
+        size = file.tell()
+        if seal[:MARK] == STUDY:
+            raise ValueError("it is a study, which xarray.load_dataset reads")
+        if seal[:MARK] != RESULT:
+            raise ValueError(
+                "its end is not that of a file of nacre: it is another file, or it was cut, "
+                "changed, or saved again by another program"
+            )
+        if _digest(file, size - SEAL) != seal[MARK:]:
+            raise ValueError("its content is not what was saved: it was changed or damaged")
+        file.seek(0)
+        try:
+            with h5py.File(file, "r") as content:
+                state = content.attrs[STATE]
+                found = {}
+                for name in names:
+                    if name not in content:
+                        continue
+                    if content.get(name, getclass=True, getlink=True) is not h5py.HardLink:
+                        raise ValueError(f"{name} is a link")
+                    found[name] = content[name]
+                for name, item in found.items():
+                    stored = not (item.chunks or item.external or item.is_virtual)
+                    if item.dtype.kind != "f" or not stored:
+                        raise ValueError(f"{name} must be real numbers that are stored plainly")
+                if sum(item.nbytes for item in found.values()) > size:
+                    raise ValueError("its arrays are larger than the file")
+                arrays = {name: np.asarray(item[()]) for name, item in found.items()}
+        except Exception as error:  # whatever HDF5 says of a file that it cannot read
+            raise ValueError(f"it is no result that nacre wrote: {error}") from error
+    if not isinstance(state, str):
+        raise ValueError(f"the attribute {STATE} must be a text, got {state!r:.60}")
+    return state, arrays
 
 
-def seal(dataset: xarray.Dataset, state: Mapping[str, Any]) -> None:
-    """Put a whole state into a dataset that shows its numbers, with a checksum of both."""
-    dataset.attrs[STATE] = json.dumps(state)
-    shown = {str(name): variable.values for name, variable in dataset.variables.items()}
-    dataset.attrs[CHECKSUM] = _checksum(dataset.attrs[STATE], shown)
+def _seal(file: IO[bytes]) -> bytes:
+    """Return the last bytes of a file, and leave it at its end."""
+    file.seek(max(0, file.seek(0, os.SEEK_END) - SEAL))
+    return file.read()
 
 
-def check_seal(
-    state: Mapping[str, Any], attributes: Mapping[str, Any], variables: Mapping[str, Variable]
-) -> None:
-    """Raise a `ValueError` if the content of a file is not what `seal` put there."""
-    written = state.get("format")
-    if isinstance(written, int) and written > FORMAT:
-        return  # `from_dict` says so
-    shown = {name: variable.values for name, variable in variables.items()}
-    if attributes[CHECKSUM] != _checksum(attributes[STATE], shown):
-        raise ValueError("its content is not what was saved: it was changed or damaged")
-
-
-def _checksum(state: str, shown: Mapping[str, npt.NDArray[Any]]) -> str:
-    digest = hashlib.sha256(state.encode())
-    for name in sorted(name for name, values in shown.items() if values.dtype.kind == "f"):
-        digest.update(name.encode())
-        digest.update(np.ascontiguousarray(shown[name], dtype="<f8").tobytes())
-    return digest.hexdigest()
+def _digest(file: IO[bytes], size: int) -> bytes:
+    """Return the SHA-256 of the beginning of a file, read in pieces."""
+    digest = hashlib.sha256()
+    file.seek(0)
+    while size > 0 and (piece := file.read(min(size, 1 << 20))):
+        digest.update(piece)
+        size -= len(piece)
+    return digest.digest()

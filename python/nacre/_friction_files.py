@@ -12,7 +12,7 @@ import numpy as np
 import nacre._core as core
 from nacre._extras import extra
 from nacre._friction_display import numbers
-from nacre._friction_state import NORMAL, VECTORS, Array, checksum, named
+from nacre._friction_state import NORMAL, VECTORS
 from nacre.units import symbol
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
     """Return the fields with coordinates, units and the whole problem."""
     with extra("files"):
         import xarray
-    from nacre._disk import CHECKSUM, STATE
+    from nacre._disk import STATE
     from nacre.units import system
 
     normal, report = solution.normal, solution.report
@@ -65,7 +65,7 @@ def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
         dataset[name].attrs = {"units": unit, "long_name": words}
     for name in plane:
         dataset[name].attrs = {"units": symbol("m"), "long_name": f"{name} of the cell centre"}
-    state, arrays = _split(solution)
+    state = _state(solution)
     motion = ("shift", "twist") if not rolls else ("creepage", "spin", "direction")
     dataset.attrs = {
         "title": "contact of coated bodies with friction",
@@ -86,20 +86,15 @@ def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
     }
     if not isinstance(solution.friction, np.ndarray):
         dataset.attrs["friction"] = solution.friction
-    dataset.attrs[CHECKSUM] = checksum(dataset.attrs[STATE], arrays)
     return dataset
 
 
-def _split(solution: core.FrictionSolution) -> tuple[dict[str, Any], dict[str, Array]]:
-    """Return the named state without its arrays, and these by the names of a Dataset."""
+def _state(solution: core.FrictionSolution) -> dict[str, Any]:
+    """Return the named state without what the Dataset holds as arrays."""
     state = solution.to_dict()
-    arrays = {name: np.asarray(state.pop(name)) for name in VECTORS}
-    if isinstance(solution.friction, np.ndarray):
-        arrays["friction"] = np.asarray(state.pop("friction"))
-    normal = dict(state["normal"])
-    for name in NORMAL:
-        arrays[named(name)] = np.asarray(normal.pop(name))
-    return state | {"normal": normal}, arrays
+    arrays = {*VECTORS} | ({"friction"} if isinstance(solution.friction, np.ndarray) else set())
+    normal = {name: value for name, value in state["normal"].items() if name not in NORMAL}
+    return {name: value for name, value in state.items() if name not in arrays} | {"normal": normal}
 
 
 def save(solution: core.FrictionSolution, path: AnyPath) -> Path:

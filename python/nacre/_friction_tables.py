@@ -62,6 +62,13 @@ class Step(Table):
     torque: Number | None = Field(None, description=SLIDE["torque"])
 
 
+MOST_STEPS = 10_000
+"""Largest number of steps: each takes a tenth of a second at least."""
+Steps = Annotated[
+    list[Step], Field(max_length=MOST_STEPS), Words(f"a list of tables, at most {MOST_STEPS}")
+]
+
+
 class Slide(Table):
     """Friction: one tangential step, or a history of steps; load and tilts stand in `[solve]`."""
 
@@ -70,7 +77,7 @@ class Slide(Table):
     force: AnyAlong | None = Field(None, description=SLIDE["force"])
     twist: Number | None = Field(None, description=SLIDE["twist"])
     torque: Number | None = Field(None, description=SLIDE["torque"])
-    steps: Annotated[list[Step], Words("a list of tables")] | None = Field(
+    steps: Steps | None = Field(
         None, description="Steps of a history; a line [[slide.steps]] begins each, too."
     )
     coupling: bool = Field(True, description=SLIDE["coupling"])

@@ -29,7 +29,9 @@ MISSING = frozenset(
     "|-|--|---|*|***|?|#n/a|bad|invalid|masked|missing|n/a|na|nan|no data|none|null|void".split("|")
 )
 """Words, in small letters, that stand for a point that was not measured."""
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|[+-]?inf(inity)?|[+-]?nan", re.IGNORECASE)
+NUMBER = re.compile(
+    r"[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?|[+-]?inf(inity)?|[+-]?nan", re.IGNORECASE
+)
 LEAST_MEASURED = 0.5
 """Least share of points that must be measured; below it most of the surface would be a guess."""
 
@@ -48,8 +50,8 @@ class Heights(NamedTuple):
 def npy(path: Path) -> Heights:
     """Return the matrix of a file of NumPy's."""
     try:
-        with path.open("rb") as file:
-            heights = np.lib.format.read_array(file, allow_pickle=False)
+        # The map of a file is no larger than the file; to read would first make room.
+        heights = np.lib.format.open_memmap(path, mode="r")
     except OSError:
         raise
     except Exception as error:  # a damaged head is read as Python
@@ -73,7 +75,7 @@ def csv(path: Path) -> Heights:
         numbers = [_number(field.replace(",", ".")) for field in fields if field]
         if len(numbers) not in (1, 2) or not all(n is not None and 0 < n < np.inf for n in numbers):
             raise ValueError(
-                f"{str(path)!r} must have one or two numbers above 0 as spacing, got {text!r}"
+                f"{str(path)!r} must have one or two numbers above 0 as spacing, got {text[:60]!r}"
             )
         spacing = numbers[0] or 0.0, numbers[-1] or 0.0
     return Heights(_table(path, lines), spacing, _unit(path, said))
@@ -135,7 +137,7 @@ def _unit(path: Path, said: dict[str, str]) -> str | None:
     unit = said.get("unit", "").replace("μ", "µ") or None
     if unit is not None and unit not in METRES:
         raise ValueError(
-            f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit!r}"
+            f"{str(path)!r} must have one of the units {', '.join(METRES)}, got {unit[:60]!r}"
         )
     return unit
 
@@ -146,7 +148,7 @@ def _table(path: Path, lines: Sequence[tuple[int, str]]) -> Array:
     Lines at the beginning that hold no number are headings, and are left out.
     """
     mark = _separator([text for _, text in lines])
-    rows: list[list[float]] = []
+    rows: list[Array] = []
     first = 0
     commas, points = False, False
     for number, text in lines:
@@ -160,7 +162,7 @@ def _table(path: Path, lines: Sequence[tuple[int, str]]) -> Array:
                     f"{str(path)!r} must have decimal commas or decimal points, line {number} "
                     f"brings both"
                 )
-        rows.append(row)
+        rows.append(np.array(row))
         if len(rows) == 1:
             first = number
         if len(row) != len(rows[0]):
@@ -190,7 +192,7 @@ def _row(path: Path, number: int, text: str, mark: str | None, heading: bool) ->
     for field in fields:
         value = _number(field)
         if value is None:
-            raise ValueError(f"{str(path)!r} must hold numbers, line {number} has {field!r}")
+            raise ValueError(f"{str(path)!r} must hold numbers, line {number} has {field[:60]!r}")
         row.append(value)
     return row
 

@@ -97,7 +97,12 @@ else:
         for tables in TABLES.values()
     )
 
-Values = Annotated[Number | Numbers, Words("a finite number, or a list of them")]
+MOST_CONTACTS = 10_000
+"""Largest number of contacts: each takes a millisecond at least."""
+Values = Annotated[
+    Number | Annotated[Numbers, Field(max_length=MOST_CONTACTS)],
+    Words(f"a finite number, or a list of at most {MOST_CONTACTS} of them"),
+]
 
 
 class Indent(Table):

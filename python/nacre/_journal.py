@@ -1,7 +1,7 @@
 """Finished cases of a study, one line of JSON each, on the disk before the next one begins.
 
 A line names the format and the version that wrote it; a line without them is of format 0. Its last
-entry is a checksum of the others, which lines of older versions lack.
+entry is a checksum of the others, which lines of format 0 lack.
 """
 
 from __future__ import annotations
@@ -15,10 +15,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
 
+import numpy as np
+
 from nacre._core import __version__
 from nacre.values import FORMAT
 
 Record = dict[str, Any]
+
+BEGINNINGS = b'{"format": ', b'{"key": '
+"""How lines of format 1 and of format 0 begin."""
 
 
 class Journal:
@@ -36,6 +41,8 @@ class Journal:
 
     def __enter__(self) -> Self:
         if self.path is not None:
+            if self.path.exists() and not self.path.is_file():
+                raise ValueError(f"{str(self.path)!r} is no journal of a study: it is not a file")
             self._file = self.path.open("a+b", buffering=0)
             try:
                 _lock(self._file)
@@ -76,26 +83,36 @@ class Journal:
 
     def _read(self, file: IO[bytes]) -> None:
         file.seek(0)
-        lines = file.read().splitlines(keepends=True)
         whole = 0
-        for number, line in enumerate(lines):
-            try:
-                record, written, version = _record(line)
-            except (ValueError, RecursionError) as error:
-                if number + 1 < len(lines) or not line.startswith(b"{"):
-                    message = f"{str(self.path)!r} is no journal of a study: line {number + 1}"
+        with open(file.fileno(), "rb", closefd=False) as lines:
+            for number, line in enumerate(lines, start=1):
+                try:
+                    record, written, version = _record(line)
+                except (ArithmeticError, ValueError, RecursionError) as error:
+                    if _is_cut(line, error):
+                        break
+                    message = f"{str(self.path)!r} is no journal of a study: line {number}"
                     raise ValueError(f"{message}: {error}") from error
-                break
-            if written > FORMAT:
-                raise ValueError(
-                    f"{str(self.path)!r} has format {written}, written by nacre {version}; nacre "
-                    f"{__version__} reads formats up to {FORMAT}: install a newer version"
-                )
-            if not line.endswith(b"\n"):
-                break  # its end may be missing
-            self.records[record["key"]] = record
-            whole += len(line)
+                if written > FORMAT:
+                    raise ValueError(
+                        f"{str(self.path)!r} has format {written}, written by nacre {version}; "
+                        f"nacre {__version__} reads formats up to {FORMAT}: install a newer version"
+                    )
+                if not line.endswith(b"\n"):
+                    break  # its end may be missing
+                self.records[record["key"]] = record
+                whole += len(line)
         file.truncate(whole)
+
+
+def _is_cut(line: bytes, error: Exception) -> bool:
+    """Return whether a line that is no record is the beginning of one, cut short by a kill."""
+    # What is whole as JSON, or begins in another way, belongs to somebody else.
+    return (
+        isinstance(error, json.JSONDecodeError | UnicodeDecodeError)
+        and not line.endswith(b"\n")
+        and any(line[: len(begin)] == begin[: len(line)] for begin in BEGINNINGS)
+    )
 
 
 def _text(entries: Record) -> str:
@@ -118,18 +135,21 @@ def _record(line: bytes) -> tuple[Record, int, Any]:
     if written > FORMAT:
         return record, written, version
     checksum = record.pop("checksum", None)
-    if checksum is not None and checksum != _checksum(_text(record)):
+    if (written or checksum is not None) and checksum != _checksum(_text(record)):
         raise ValueError("it was changed after nacre wrote it")
     record.pop("format", None)
     record.pop("nacre", None)
-    texts, values = record.get("warnings", []), record.get("values", {})
+    texts, values, kinds = (
+        record.get(name, empty) for name, empty in (("warnings", []), ("values", {}), ("kinds", []))
+    )
     if not (
         isinstance(record.get("key"), str)
         and isinstance(values, dict)
         and all(_is_numbers(value) for value in values.values())
         and isinstance(record.get("error", ""), str)
         and isinstance(texts, list)
-        and all(isinstance(text, str) for text in texts)
+        and isinstance(kinds, list)
+        and all(isinstance(text, str) for text in texts + kinds)
         and ("values" in record or "error" in record)
     ):
         raise ValueError("it must hold a key, and values or an error")
@@ -137,10 +157,9 @@ def _record(line: bytes) -> tuple[Record, int, Any]:
 
 
 def _is_numbers(value: Any) -> bool:
-    """Return whether a value is a number, or a list of such values."""
-    if isinstance(value, list):
-        return all(_is_numbers(item) for item in value)
-    return isinstance(value, int | float)
+    """Return whether a value is a number, or an array of numbers as lists."""
+    array = np.asarray(value)  # lists that are no array raise a `ValueError`
+    return array.dtype.kind in "iufb"
 
 
 def _lock(file: IO[bytes]) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from importlib.util import find_spec
+from threading import Event, Thread
 
 from nacre._extras import extra
 
@@ -49,6 +50,23 @@ def shown(wanted: bool | None, total: int, found: int) -> Iterator[Callable[[], 
     with Progress(*parts, console=console) as bar:
         task = bar.add_task(f"solving{_found(found, total)}", total=total, completed=found)
         yield lambda: bar.advance(task)
+
+
+@contextmanager
+def alive() -> Iterator[None]:
+    """Write a line on standard error each minute, to show that a long solve goes on."""
+    ended, start = Event(), time.monotonic()
+
+    def write() -> None:
+        while not ended.wait(EVERY):
+            seconds = _time(time.monotonic() - start)
+            print(f"nacre: solving, {seconds} so far", file=sys.stderr, flush=True)
+
+    Thread(target=write, daemon=True).start()
+    try:
+        yield
+    finally:
+        ended.set()
 
 
 def _found(found: int, total: int) -> str:

@@ -76,13 +76,21 @@ Ends = Annotated[
 ]
 
 
+MOST_LAYERS = 1000
+"""Largest number of layers: the time of a contact grows with it."""
+
+
 class Body(Table):
     """A half-space: a substrate, and layers from the surface down; it may end along x."""
 
     substrate: AnyMaterial = Field(
         description='Material below the layers; "rigid" is a rigid base.'
     )
-    layers: Annotated[list[Layer], Words("a list of tables")] = Field(
+    layers: Annotated[
+        list[Layer],
+        Field(max_length=MOST_LAYERS),
+        Words(f"a list of tables, at most {MOST_LAYERS}"),
+    ] = Field(
         [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
     )
     ends: Ends | None = Field(
@@ -188,7 +196,7 @@ class Stress(Table):
 
 
 MOST_VALUES = 100_000
-"""Largest number of values of one parameter, so that a slip of the pen does not fill the memory."""
+"""Largest number of cases of a study, so that a slip of the pen does not fill the memory."""
 
 
 class Range(Table):
@@ -235,7 +243,7 @@ class Sweep(Table):
         f"{', '.join(OUTPUTS)}.",
     )
     store: Text | None = Field(
-        None, description="File for the study, .nc, relative to the folder of the case."
+        None, description="File for the study, .nc, in the folder of the case or below."
     )
 
 

@@ -36,6 +36,7 @@ Materials have names. ``nacre schema`` prints the reference of all tables and ke
 from __future__ import annotations
 
 import copy
+import math
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -50,14 +51,21 @@ with extra("cli"):
 
     from nacre._indent_tables import IndentCase
     from nacre._reference import Place, nearest, place, table_for
-    from nacre._schema import Bodies, CaseTable, Range, WrongValue, at
+    from nacre._schema import MOST_VALUES, Bodies, CaseTable, Range, WrongValue, at
 
 SHOWN = 60
 """Largest number of characters of a wrong value that an error shows."""
+LONGEST = 1000
+"""Largest number of characters of an error, whose keys may be long."""
+LARGEST = 10_000_000
+"""Largest size of a case file in bytes, which takes a few seconds to read."""
 
 
 class CaseError(ValueError):
     """A case file that cannot be used; the message names the key and what was expected."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message if len(message) <= LONGEST else f"{message[:LONGEST]}...")
 
 
 class Case:
@@ -89,7 +97,13 @@ class Case:
         """Return the case of a file; an unusable one is a `CaseError`."""
         path = Path(path)
         try:
+            if path.exists() and not path.is_file():
+                raise CaseError(f"{path}: must be a file")
+            if path.stat().st_size > LARGEST:
+                raise CaseError(f"{path}: must have at most {LARGEST} bytes")
             data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        except CaseError:
+            raise
         except UnicodeDecodeError as error:
             raise CaseError(f"{path}: not a TOML file: its letters must be UTF-8") from error
         except ValueError as error:
@@ -154,8 +168,11 @@ class Case:
             table[last] = value
         return Case(data, self.name, self.folder).arguments()
 
-    def study(self) -> dict[str, Any]:
-        """Return the arguments of `nacre.sweep` besides the case."""
+    def study(self, store: Path | None = None) -> dict[str, Any]:
+        """Return the arguments of `nacre.sweep` besides the case, with another store if given.
+
+        The store of the case must lie in the folder of the case.
+        """
         sweep = self._table.sweep
         if sweep is None:
             raise CaseError(f"{self.name}: sweep: this table is missing")
@@ -165,7 +182,7 @@ class Case:
             if not key.startswith(self._table.solved) or key.endswith(
                 (".yield_stress", ".strength")
             ):
-                message = f"{self.name}: sweep.parameters: {key!r} changes nothing in a solve"
+                message = f"{self.name}: sweep.parameters: {_shown(key)} changes nothing in a solve"
                 raise CaseError(message)
         found: dict[str, Any] = {
             "parameters": {
@@ -180,14 +197,35 @@ class Case:
             except WrongValue as error:
                 raise CaseError(f"{self.name}: {error}") from error
             found["outputs"] = sweep.outputs
-        if sweep.store is not None:
-            found["store"] = self.folder / sweep.store
+        count = math.prod(map(len, found["parameters"].values()))
+        if count > MOST_VALUES:
+            raise CaseError(
+                f"{self.name}: sweep.parameters: must make at most {MOST_VALUES} cases, got {count}"
+            )
+        if store is None and sweep.store is not None:
+            store = self._inside(sweep.store)
+        if store is not None:
+            found["store"] = store
         if isinstance(self._table, CaseTable) and self._table.stress is not None:
             asked = self._table.stress.keywords()
             if self.friction is not None:
                 asked = {"body": asked["body"]}
             found["stress"] = asked
         return found
+
+    def _inside(self, store: str) -> Path:
+        """Return the path of a store, which must be in the folder of the case, as its journal."""
+        path, folder = self.folder / store, self.folder.resolve()
+        try:
+            ends = [one.resolve() for one in (path, path.with_suffix(".journal"))]
+        except (OSError, RuntimeError, ValueError) as error:  # a name that no file can have
+            raise CaseError(f"{self.name}: sweep.store: {error}") from error
+        if not all(end.is_relative_to(folder) for end in ends):
+            raise CaseError(
+                f"{self.name}: sweep.store: must be in the folder of the case, got "
+                f"{_shown(store)}; nacre sweep --store takes a file anywhere"
+            )
+        return path
 
     def _place(self, data: Any, key: str) -> tuple[Any, Any]:
         """Return the table or list that holds a key, and the last part of the key.
@@ -206,8 +244,8 @@ class Case:
                 nearest(key, _keys({t: data[t] for t in self._table.solved if t in data}))[:3]
             )
             raise CaseError(
-                f"{self.name}: sweep.parameters: {key!r} is not a key of this case; the nearest "
-                f"are {keys}"
+                f"{self.name}: sweep.parameters: {_shown(key)} is not a key of this case; the "
+                f"nearest are {keys}"
             ) from error
         return table, last
 

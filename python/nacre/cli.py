@@ -36,7 +36,6 @@ def _run(arguments: Sequence[str] | None) -> int:
         import nacre._case_commands
         import nacre.indent.case  # both add commands to app
         from nacre._commands import app
-        from nacre.case import CaseError
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)
 
@@ -46,7 +45,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         return int(app(arguments, prog_name="nacre", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _fail(error.format_message(), 2)
-    except (CaseError, ModuleNotFoundError) as error:
+    except (ValueError, ModuleNotFoundError) as error:
         return _fail(str(error), 2)
     except nacre.ConvergenceError as error:
         return _fail("; ".join([*getattr(error, "__notes__", ()), str(error)]), 1)

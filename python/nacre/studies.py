@@ -95,12 +95,14 @@ def sweep(
         Arguments of `Solution.stress_summary` for the outputs of stresses: ``body``, ``friction``,
         ``direction``, ``residual``.
     store : path, optional
-        File, ``.nc``, for the finished Dataset. Finished cases are kept beside it at once, in a
-        ``.journal``. A case is solved again if an output function has changed, or a global, a
-        default, a closure, a bound object, a function or a class that it uses. Where these cannot
-        be compared with an earlier run (open files, locks, code made from text), a
-        `nacre.NacreWarning` says so, and all cases are solved again unless there is a `version`.
-        Content of files, the time and random numbers are never compared.
+        File, ``.nc``, for the finished Dataset: a new one, or a study that is continued and
+        replaced. Finished cases are kept beside it at once, in a ``.journal``. A case is solved
+        again if an output function has changed, or a global, a default, a closure, a bound object,
+        a function or a class that it uses. Where these cannot be compared with an earlier run (open
+        files, locks, code made from text), a `nacre.NacreWarning` says so, and all cases are solved
+        again unless there is a `version`. Never compared are what a function looks up by a name
+        made at run time, such as ``getattr(module, name)``, ``os.environ``, the content of files,
+        the time and random numbers: change `version` when these change.
     version : str or int, optional
         Version of the output functions; cases are solved again if it is another. With a version,
         what cannot be compared counts as unchanged.
@@ -130,7 +132,8 @@ def sweep(
     Raises
     ------
     ValueError
-        If parameters or outputs cannot be used, or the store has another ending.
+        If parameters or outputs cannot be used, or the store has another ending, or is a file but
+        no study.
     TypeError
         If the case does not describe a solve, or an argument is of the wrong kind.
 
@@ -154,6 +157,7 @@ def sweep(
     path = None if store is None else Path(store)
     if path is not None and path.suffix != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
+    _check_store(path)
     coordinates, points = laid_out(parameters)
     indents = _indents(case, points) if outputs is None or isinstance(case, Mapping) else None
     usual = [name for name in (INDENTED if indents else OUTPUTS) if name not in parameters]
@@ -205,13 +209,24 @@ def sweep(
         records = [journal.records[key] for key in keys]
         dataset = assembled(coordinates, records, wanted)
         if path is not None:
-            from nacre._disk import replacing, write_dataset
+            from nacre._disk import STUDY, replacing, write_dataset
 
+            _check_store(path)  # hours later
             with replacing(path) as temporary:
-                write_dataset(dataset, temporary)
+                write_dataset(dataset, temporary, STUDY)
     for line in counted(records):
         warnings.warn(line, core.NacreWarning, stacklevel=2)
     return dataset
+
+
+def _check_store(path: Path | None) -> None:
+    """Raise a `ValueError` if something that is no study has the name of the store."""
+    from nacre._disk import is_study
+
+    if path is not None and path.exists() and not is_study(path):
+        raise ValueError(
+            f"store must be a new file or a study, got {str(path)!r}, which is neither"
+        )
 
 
 def _describe(

@@ -12,7 +12,8 @@ import functools
 import hashlib
 import inspect
 import operator
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -161,6 +162,16 @@ def checked_state(data: Mapping[str, Any], kind: str, names: Collection[str]) ->
     if wrong := set(names) ^ state.keys():
         raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
     return state
+
+
+@contextmanager
+def refusing(kind: str) -> Iterator[None]:
+    """Make a `ValueError` of the errors that data raise which do not describe a value of a kind."""
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError) as error:
+        said = f"{type(error).__name__}: {error}"
+        raise ValueError(f"the data do not describe a {kind}: {said}") from error
 
 
 def reduced(value: Any) -> tuple[Any, Any]:

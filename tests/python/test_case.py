@@ -8,6 +8,7 @@ import operator
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -389,6 +390,43 @@ def test_an_error_in_a_study_is_found_before_it_begins(
     assert err.count("\n") == 1
     assert message in err
     assert [file.name for file in tmp_path.iterdir()] == ["case.toml"]
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        (
+            'body.layers = [LAYER]\n[shape]\nkind = "sphere"\nradius = 1\n[solve]\nload = 1\n',
+            r"body\.layers: must be a list of tables, at most 1000, got",
+        ),
+        (
+            'body.layers = []\n[shape]\nkind = "sphere"\nradius = 1\n[solve]\nload = 1\n'
+            "[slide]\nfriction = 0.1\nsteps = [STEP]\n",
+            r"slide\.steps: must be a list of tables, at most 10000, got",
+        ),
+        (
+            'body.layers = []\n[tip]\nkind = "sphere"\nradius = 1\n[indent]\nload = [LOAD]\n',
+            r"indent\.load: must be a finite number, or a list of at most 10000 of them, got",
+        ),
+    ],
+    ids=["layers", "steps", "loads"],
+)
+def test_what_would_take_hours_by_a_slip_of_the_pen_is_refused(table: str, message: str) -> None:
+    head = "body.substrate = { young = 210e9, poisson = 0.3 }\n"
+    material = "{ material = { young = 1e9, poisson = 0.3 }, thickness = 1e-6 }, "
+    text = table.replace("LAYER", material * 1001).replace("STEP", "{ load = 1 }, " * 10_001)
+    data = tomllib.loads(head + text.replace("LOAD", "1.0, " * 10_001))
+    with pytest.raises(CaseError, match=message) as error:
+        Case(data)
+    assert len(str(error.value)) < 300
+
+
+def test_a_study_has_no_more_cases_than_the_memory_bears() -> None:
+    values = {"first": 1.0, "last": 2.0, "count": 400}
+    data = tomllib.loads(TEXT)
+    data["sweep"]["parameters"] = {"solve.load": values, "shape.radius": values}
+    with pytest.raises(CaseError, match="must make at most 100000 cases, got 160000"):
+        Case(data).study()
 
 
 def test_without_a_study_or_a_file_there_is_an_error(

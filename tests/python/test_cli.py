@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -141,3 +143,167 @@ def test_interrupt_is_exit_code_130_without_traceback(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert b"Traceback" not in err
     assert list(tmp_path.iterdir()) == []
+
+
+SPHERE = """
+[shape]
+kind = "sphere"
+radius = 5e-3
+
+[body]
+substrate = { young = 210e9, poisson = 0.3 }
+
+[solve]
+load = 10
+
+[sweep]
+parameters."solve.load" = [1, 2]
+"""
+
+
+@pytest.fixture
+def hostile(tmp_path: Path) -> Path:
+    """Return a folder of files that are no input of any command."""
+    (tmp_path / "case.toml").write_text(SPHERE)
+    (tmp_path / "empty").write_bytes(b"")
+    (tmp_path / "text").write_text("no")
+    (tmp_path / "binary").write_bytes(bytes(range(256)) * 8)
+    (tmp_path / "nested").write_text("x = " + "[" * 100_000)
+    (tmp_path / "digits").write_text("x = " + "1" * 1_000_000)
+    (tmp_path / "folder").mkdir()
+    with (tmp_path / "huge").open("wb") as file:
+        file.truncate(1 << 34)  # 16 GB, none of them on the disk
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "fifo")
+        (tmp_path / "endless").symlink_to("/dev/zero")
+    else:
+        (tmp_path / "fifo").mkdir()
+        (tmp_path / "endless").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        *(["solve", "FILE"], ["sweep", "FILE"], ["indent", "FILE"]),
+        *(["solve", "case.toml", "--initial", "FILE"], ["sweep", "case.toml", "--store", "FILE"]),
+        ["solve", "map.toml"],
+    ],
+    ids=" ".join,
+)
+def test_a_hostile_file_is_one_line_and_exit_code_2(
+    arguments: list[str],
+    hostile: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(hostile)
+    names = "missing empty text binary nested digits folder fifo endless huge".split()
+    for name in names:
+        file = name
+        if arguments[0] == "sweep" and "--store" in arguments:
+            if name in ("missing", "endless"):
+                continue
+            file = f"{name}.nc"
+            Path(name).rename(file)
+        if "map.toml" in arguments:
+            if name in ("missing", "huge"):  # a matrix in a file of 16 GB is read
+                continue
+            file = f"{name}.csv"
+            Path(name).rename(file)
+            shape = f'kind = "height_map"\npath = "{file}"\nspacing = 1e-6'
+            text = SPHERE.replace('kind = "sphere"\nradius = 5e-3', shape)
+            Path("map.toml").write_text(text)
+        start = time.process_time()
+        assert main(*(argument.replace("FILE", file) for argument in arguments)) == 2, name
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.startswith("nacre: ")
+        assert err.count("\n") == 1
+        assert len(err) < 1000
+        assert time.process_time() - start < 5, name  # digits of a megabyte are read once
+
+
+LONG = {
+    "loads": '[tip]\nkind = "sphere"\nradius = 5e-6\n[adhesion]\nkind = "maugis"\nwork = 0.05\n'
+    "strength = 1e7\n[indent]\nload = [" + "1e-3, " * 10_000 + "]\n",
+    "radius": '[tip]\nkind = "paraboloid"\nradius = 1e23\n[adhesion]\nkind = "jkr"\nwork = 0.05\n'
+    "[indent]\nload = 1e-3\n",
+    "steps": '[shape]\nkind = "sphere"\nradius = 5e-3\n[solve]\nload = 10\n[slide]\n'
+    "friction = 0.2\n[[slide.steps]]\nforce = { x = 0.1 }\n[[slide.steps]]\nforce = { x = -0.1 }\n",
+}
+FILM = """
+[body]
+substrate = { young = 210e9, poisson = 0.3 }
+layers = [{ material = { young = 1e9, poisson = 0.4 }, thickness = 1e-6 }]
+"""
+WAITING = """
+import signal, sys, time
+import numpy.linalg
+import nacre.cli, nacre._progress
+nacre._progress.EVERY = 0.2
+asked = []
+def stop(*_):
+    asked.append(time.perf_counter())
+    raise KeyboardInterrupt
+signal.signal(signal.SIGINT, stop)
+try:
+    nacre.cli.main(sys.argv[1:])
+except SystemExit as ended:
+    print(ended.code, time.perf_counter() - asked[0] if asked else -1)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
+@pytest.mark.parametrize("name", LONG)
+def test_a_long_solve_of_a_case_shows_that_it_goes_on_and_ends_at_ctrl_c(
+    name: str, tmp_path: Path
+) -> None:
+    text = LONG[name]
+    if name == "steps":
+        head, step = text.split("[[slide.steps]]", 1)
+        text = head + ("[[slide.steps]]" + step) * 2000
+    (tmp_path / "case.toml").write_text(FILM + text)
+    verb = "solve" if name == "steps" else "indent"
+    command = [sys.executable, "-c", WAITING, verb, str(tmp_path / "case.toml")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        try:
+            assert process.stderr.readline().startswith(b"nacre: solving, 0:00:0")
+            sent = time.perf_counter()
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert out.startswith(b"130 "), (out, err)
+    assert b"Traceback" not in err
+    # A check is due each 0.2 s; the process has its libraries to unload, on a machine that may
+    # have other work.
+    assert time.perf_counter() - sent < 5
+
+
+def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "cases"
+    folder.mkdir()
+    case = folder / "case.toml"
+    outside = tmp_path / "x.nc"
+    names = ["../x.nc", str(outside), "a/../../x.nc", "\\u0000.nc"]
+    if sys.platform != "win32":
+        (folder / "link").symlink_to(tmp_path)
+        (folder / "to.journal").symlink_to(tmp_path / "x.journal")
+        names += ["link/x.nc", "to.nc"]
+    for name in names:
+        text = SPHERE.replace("[sweep]", f'[sweep]\nstore = "{name}"')
+        case.write_text(text)
+        code, _, err = run("sweep", str(case))
+        assert code == 2, name
+        assert "sweep.store: " in err
+        assert err.count("\n") == 1
+        assert sorted(tmp_path.iterdir()) == [folder]
+    assert main("sweep", str(case), "--store", str(outside)) == 0  # the command line may
+    assert outside.exists()
+    case.write_text(SPHERE.replace("[sweep]", '[sweep]\nstore = "below/x.nc"'))
+    (folder / "below").mkdir()
+    assert main("sweep", str(case)) == 0
+    assert (folder / "below" / "x.nc").exists()

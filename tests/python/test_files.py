@@ -17,6 +17,7 @@ import xarray
 
 import nacre
 from nacre import values
+from nacre._disk import STUDY, write_dataset
 
 STEEL = nacre.Elastic(210e9, 0.3)
 DLC = nacre.Elastic(420e9, 0.25)
@@ -343,7 +344,7 @@ def test_a_full_disk_is_an_error_and_the_process_goes_on(tmp_path: Path) -> None
 
 
 def rewritten(path: Path, **changes: Any) -> Path:
-    """Write the dataset of a file to another one, with variables or attributes changed."""
+    """Write the dataset of a file to another one as nacre does, with something changed."""
     dataset = xarray.load_dataset(path, engine="h5netcdf")
     for name, value in changes.items():
         if name in dataset.variables:
@@ -352,35 +353,24 @@ def rewritten(path: Path, **changes: Any) -> Path:
             del dataset.attrs[name]
         else:
             dataset.attrs[name] = value
-    dataset.to_netcdf(path.with_name("changed.nc"), engine="h5netcdf")
+    write_dataset(dataset, path.with_name("changed.nc"))
     return path.with_name("changed.nc")
 
 
-def test_dimensions_have_names_and_no_order(
+def test_files_are_read_as_nacre_wrote_them_alone(
     solved: dict[str, nacre.Solution], tmp_path: Path
 ) -> None:
-    solution = solved["both coated, tilted"]
-    path = solution.save(tmp_path / "a.nc")
+    path = solved["both coated, tilted"].save(tmp_path / "a.nc")
     dataset = xarray.load_dataset(path, engine="h5netcdf")
-    dataset.transpose("y", "x").to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
-    assert nacre.load(tmp_path / "b.nc") == solution
-    dataset.rename(x="length").to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
-    with pytest.raises(ValueError, match=r"c\.nc.*pressure must have the dimensions x, y, got len"):
+    dataset.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+    with pytest.raises(ValueError, match=r"b\.nc.*saved again by another program"):
+        nacre.load(tmp_path / "b.nc")
+    write_dataset(dataset.drop_vars("gap"), tmp_path / "c.nc")
+    with pytest.raises(ValueError, match=r'c\.nc.*the key "gap" is missing'):
         nacre.load(tmp_path / "c.nc")
-    reversed_x = rewritten(path, nacre_checksum=None)
-    xarray.load_dataset(reversed_x, engine="h5netcdf").isel(x=slice(None, None, -1)).to_netcdf(
-        tmp_path / "d.nc", engine="h5netcdf"
-    )
-    with pytest.raises(ValueError, match=r"d\.nc.*x must be the centres of the cells, in order"):
+    write_dataset(dataset, tmp_path / "d.nc", STUDY)
+    with pytest.raises(ValueError, match=r"d\.nc.*it is a study"):
         nacre.load(tmp_path / "d.nc")
-
-
-def test_a_file_without_a_checksum_is_loaded_to_the_bit(
-    solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    for solution in solved.values():
-        path = rewritten(solution.save(tmp_path / "a.nc"), nacre_checksum=None)
-        assert nacre.load(path) == solution
 
 
 def damaged(name: str, value: object) -> dict[str, Any]:
@@ -393,9 +383,8 @@ CHANGED: dict[str, dict[str, Any]] = {
     "pressure must be at least 0, got -1": {"pressure": -1.0},
     "displacement is not finite at": {"displacement": np.inf},
     r"gap must be a number or \+inf, got -inf": {"gap": -np.inf},
-    "x must be the centres of the cells": {"x": 0.0},
     "nacre_solution must be a text, got .*3": {"nacre_solution": 3},
-    "nacre_solution must be a text, got None": {"nacre_solution": None},
+    "it is no result that nacre wrote: .*attribute": {"nacre_solution": None},
     "nacre_solution must hold named fields, got 'null'": {"nacre_solution": "null"},
     r"nacre_solution must hold named fields, got '\[\]'": {"nacre_solution": "[]"},
     "nacre_solution must hold JSON": {"nacre_solution": "[" * 100_000 + "]" * 100_000},
@@ -435,33 +424,7 @@ def test_a_damaged_file_is_refused_by_its_name(
             state[key] = state[key] | value if isinstance(value, dict) else value
         changes["nacre_solution"] = json.dumps(state)
     with pytest.raises(ValueError, match=f"changed.nc' must be a solution .*{message}"):
-        nacre.load(rewritten(path, **changes, nacre_checksum=None))
-    if changes != {"nacre_solution": None} and set(changes) != {"x"}:
-        with pytest.raises(ValueError, match=r"changed\.nc"):
-            nacre.load(rewritten(path, **changes))
-
-
-def test_a_flipped_bit_is_refused_or_changes_nothing(
-    solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved["infinite gaps"]
-    whole = solution.save(tmp_path / "a.nc").read_bytes()
-    refused = same = 0
-    places = range(0, len(whole), 47)
-    for place in places:
-        flipped = bytearray(whole)
-        flipped[place] ^= 1 << place % 8
-        (tmp_path / "b.nc").write_bytes(flipped)
-        try:
-            loaded = nacre.load(tmp_path / "b.nc")
-        except ValueError as error:
-            refused += "b.nc" in str(error)
-        else:
-            same += loaded == solution
-    assert refused + same == len(places)
-    # Most of the file is fields and attributes; the rest is room that HDF5 reserves, and key
-    # figures for other programs.
-    assert refused > 0.4 * len(places)
+        nacre.load(rewritten(path, **changes))
 
 
 def test_what_is_no_solution_is_refused(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ import xarray
 
 import nacre
 from nacre import values
+from nacre._disk import write_dataset
 
 STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.25)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-5)])
@@ -187,29 +188,23 @@ def stored(tmp_path: Path) -> xarray.Dataset:
 @pytest.mark.parametrize("name", ["traction", "slip", "friction", "gap", "normal_displacement"])
 def test_a_changed_file_is_refused(name: str, stored: xarray.Dataset, tmp_path: Path) -> None:
     path = tmp_path / "b.nc"
-    stored.drop_vars(name).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(ValueError, match=rf"b\.nc.*the variable {name} is missing"):
+    write_dataset(stored.drop_vars(name), path)
+    key = name.removeprefix("normal_")
+    with pytest.raises(ValueError, match=rf'b\.nc.*the key "{key}" is missing'):
         nacre.load(path)
     stored.assign({name: 2 * stored[name]}).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(ValueError, match=r"b\.nc.*not what was saved: it was changed or damaged"):
+    with pytest.raises(ValueError, match=r"b\.nc.*changed, or saved again by another program"):
         nacre.load(path)
-    stored.assign({name: stored[name].isel(x=0)}).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(ValueError, match=rf"b\.nc.*{name} must hold real numbers over"):
+    write_dataset(stored.assign({name: stored[name].isel(x=0)}), path)
+    with pytest.raises(ValueError, match=rf"b\.nc.*{key}"):
         nacre.load(path)
-
-
-def test_the_order_of_dimensions_in_a_file_does_not_matter(
-    stored: xarray.Dataset, tmp_path: Path
-) -> None:
-    stored.transpose("y", "component", "x").to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
-    same(nacre.load(tmp_path / "b.nc"), SOLVED["cells, coupled"])
 
 
 @pytest.mark.parametrize("length", [0, 100, 5000])
 def test_half_a_file_is_refused(length: int, tmp_path: Path) -> None:
     path = SOLVED["slid"].save(tmp_path / "a.nc")
     path.write_bytes(path.read_bytes()[:length])
-    with pytest.raises(ValueError, match=r"a\.nc.*no NetCDF file, or a damaged one"):
+    with pytest.raises(ValueError, match=r"a\.nc.*not that of a file of nacre: .*cut"):
         nacre.load(path)
 
 
@@ -218,7 +213,7 @@ def test_a_newer_file_is_refused_by_the_version_that_wrote_it(
 ) -> None:
     state = json.loads(stored.attrs["nacre_solution"]) | {"format": 2, "nacre": "7.3.1"}
     stored.attrs["nacre_solution"] = json.dumps(state)
-    stored.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+    write_dataset(stored, tmp_path / "b.nc")
     with pytest.raises(ValueError, match=r"b\.nc.* has format 2, written by nacre 7\.3\.1"):
         nacre.load(tmp_path / "b.nc")
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import doctest
 import pickle
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -799,3 +801,22 @@ def test_examples_of_the_module_that_reads_text_are_true() -> None:
     assert doctest.testmod(_text).failed == 0
     assert checks.SURE > 0
     assert curves.LEAST_POINTS == 3
+
+
+@pytest.mark.parametrize("row", ["4,", ",4", "4, ", '4,""', "x,4", "4,x"])
+def test_a_missing_value_is_named_by_its_line(row: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text(f"Depth [nm],Force [nN]\n1,1\n2,2\n3,3\n{row}\n5,5\n", encoding="utf-8")
+    with pytest.raises(ValueError, match="must hold numbers in each row, line 5 has"):
+        nacre.indent.read(path)
+
+
+@pytest.mark.parametrize("long", ["(", "_", '"', " ", "1", "a ", "1 ", "1,", '"a', "[nm] "])
+def test_long_lines_take_no_more_than_their_time(long: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    for line in (long * 100_000, f'"{long * 100_000}",b', f"Depth [nm], {long * 3000}b"):
+        path.write_text(f"{line}\n1,1\n2,2\n3,3\n4,4\n", encoding="utf-8")
+        start = time.process_time()
+        with contextlib.suppress(ValueError):
+            nacre.indent.read(path, depth=0, force=1, units={"depth": "nm", "force": "mN"})
+        assert time.process_time() - start < 2

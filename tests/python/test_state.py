@@ -13,6 +13,7 @@ import xarray
 
 import nacre
 from nacre import values
+from nacre._disk import write_dataset
 from nacre._journal import Journal
 
 STEEL = nacre.Elastic(210e9, 0.3)
@@ -202,7 +203,7 @@ def test_a_newer_file_is_refused_by_the_version_that_wrote_it(tmp_path: Path) ->
     dataset = xarray.load_dataset(path, engine="h5netcdf")
     state = json.loads(dataset.attrs["nacre_solution"]) | {"format": 2, "nacre": "7.3.1"}
     dataset.attrs["nacre_solution"] = json.dumps(state)
-    dataset.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+    write_dataset(dataset, tmp_path / "b.nc")
     with pytest.raises(ValueError, match=r"b\.nc.* has format 2, written by nacre 7\.3\.1"):
         nacre.load(tmp_path / "b.nc")
 

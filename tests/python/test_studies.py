@@ -603,6 +603,46 @@ def test_a_line_cut_short_is_dropped_and_a_damaged_one_is_refused(
     assert journal.read_bytes() == b"A text that is no journal"
 
 
+def test_only_a_study_is_continued_or_replaced(tmp_path: Path) -> None:
+    one = {"thickness": [1e-5], "young": [1e11]}
+    store, journal = tmp_path / "study.nc", tmp_path / "study.journal"
+    saved = nacre.solve(nacre.Sphere(5e-3), nacre.Elastic(210e9, 0.3), load=1.0).save(store)
+    for content in (saved.read_bytes(), b"", b"a text"):
+        store.write_bytes(content)
+        with pytest.raises(ValueError, match="store must be a new file or a study, got"):
+            nacre.sweep(ball, one, store=store)
+        assert store.read_bytes() == content
+        assert not journal.exists()
+    store.unlink()
+    study = nacre.sweep(ball, one, store=store)
+    study.to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    with pytest.raises(ValueError, match="store must be"):
+        nacre.sweep(ball, one, store=tmp_path / "other.nc")
+    with pytest.raises(ValueError, match="it is a study"):
+        nacre.load(store)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        *(b"{", b"{}", b'{"a": 1}', b'{"key": "a"}', b'{"key": "a", "values": 3}\n', b"[]", b"\n"),
+        b'{"name": "cut sho',
+        *(b'{"key": "a", "values": {"load": %s}}' % v for v in (b"[[1], 2]", b'"1"', b"[null]")),
+        b'{"key": "a", "error": "", "kinds": 3}\n',
+    ],
+)
+def test_a_foreign_file_is_no_journal_and_stays_as_it_is(content: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "study.journal"
+    path.write_bytes(content)
+    if content == b"{":  # a record may have been cut there
+        with Journal(path) as journal:
+            assert journal.records == {}
+        return
+    with pytest.raises(ValueError, match="is no journal of a study: line 1"), Journal(path):
+        pass
+    assert path.read_bytes() == content
+
+
 def test_a_journal_with_a_flipped_bit_is_refused_or_solved_again(tmp_path: Path) -> None:
     journal = tmp_path / "study.journal"
     records = [

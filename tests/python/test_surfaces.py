@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -271,3 +273,43 @@ def test_what_cannot_be_understood_is_refused(
 def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"none\.csv"):
         nacre.HeightMap.read(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize("text", ["{}a", "1.{}a", "{} {}", "1,5 {}x", "1 2e{}x", "# spacing: {}x"])
+@pytest.mark.parametrize("ending", [".csv", ".xyz"])
+def test_a_long_run_of_digits_takes_linear_time(text: str, ending: str, tmp_path: Path) -> None:
+    path = tmp_path / f"a{ending}"
+    path.write_text(text.replace("{}", "1" * 200_000) + "\n", encoding="utf-8")
+    start = time.process_time()
+    with pytest.raises(ValueError, match="a\\.") as error:
+        nacre.HeightMap.read(path, spacing=1e-6)
+    assert time.process_time() - start < 1  # quadratic time would be minutes
+    assert len(str(error.value)) < 500
+
+
+@pytest.mark.parametrize(
+    ("descr", "shape"),
+    [("<f8", (40_000, 40_000)), ("<i1", (10**9, 10**9)), ("(1000,1000)f8", (9, 9))],
+)
+def test_an_array_that_its_file_does_not_hold_is_refused(
+    descr: str, shape: tuple[int, int], tmp_path: Path
+) -> None:
+    with (tmp_path / "a.npy").open("wb") as file:
+        head = {"descr": descr, "fortran_order": False, "shape": shape}
+        np.lib.format.write_array_header_1_0(file, head)
+        file.write(bytes(1000))
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match="must hold an array of NumPy's"):
+            nacre.HeightMap.read(tmp_path / "a.npy", spacing=1e-6)
+        assert tracemalloc.get_traced_memory()[1] < 10_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_points_far_apart_make_no_large_grid(tmp_path: Path) -> None:
+    path = tmp_path / "a.xyz"
+    for far in ("1e5", "1e9", "1e300"):
+        path.write_text("".join(f"{x} {y} {x}\n" for x in (0, 1, 2, 3, far) for y in (0, 1)))
+        with pytest.raises(ValueError, match="must"):
+            nacre.HeightMap.read(path, unit="nm")

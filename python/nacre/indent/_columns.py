@@ -130,7 +130,7 @@ def _chosen(
     if given is None and quantity == "time":
         given = "s"
     if given is None:
-        heading = repr(column.heading) if column.heading else f"column {index}"
+        heading = repr(column.heading[:60]) if column.heading else f"column {index}"
         raise ValueError(
             f"units must be given: {where} names no unit of {UNIT_NAMES[DIMENSIONS[quantity]]} for "
             f"{heading}, such as units={{'depth': 'nm', 'force': 'mN'}}"
@@ -202,14 +202,14 @@ def _asked(where: str, table: Table, quantity: str, asked: str | int) -> int:
 def _listed(where: str, table: Table, quantity: str) -> str:
     """Return a sentence that lists the columns, and how to choose one."""
     if not any(column.heading for column in table.columns):
-        first = ", ".join(table.rows[0])
+        first = ", ".join(table.rows[0])[:200]
         above = f" below the line {table.above[:60]!r}" if table.above else ""
         return (
             f"the {table.width} columns of {where} have no names; their first row is {first} "
             f"(line {table.lines[0]}{above}). Give depth=, force= and, for a time, time= as "
             f"numbers from 0, and units={{'depth': 'nm', 'force': 'mN'}}"
         )
-    names = ", ".join(f"{i} {column.heading!r}" for i, column in enumerate(table.columns))
+    names = ", ".join(f"{i} {c.heading[:60]!r}" for i, c in enumerate(table.columns))[:1000]
     return f"{where} has the columns {names}; give {quantity}= a name or a number"
 
 
@@ -221,7 +221,7 @@ def _values(where: str, table: Table, quantity: str, chosen: Chosen) -> Array:
         if value is None or not np.isfinite(value):
             raise ValueError(
                 f"{quantity} must be finite: line {line} of {where} has "
-                f"{table.rows[row][chosen.place]!r}"
+                f"{table.rows[row][chosen.place][:60]!r}"
             )
         values[row] = value
     return chosen.size * values

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import nacre._core as core
-from nacre._disk import replacing, seal, write_dataset
+from nacre._disk import STATE, replacing, write_dataset
 from nacre._extras import extra
 from nacre.indent._system import unit_of
 from nacre.units import INDENT_UNITS, symbol, system
@@ -52,7 +52,7 @@ def indentation(solution: IndentSolution) -> xarray.Dataset:
     dataset.attrs |= {name: getattr(solution, name) for name in ("given", "branch", "control")}
     if solution.adhesion is not None:
         dataset.attrs |= {name: getattr(solution, name) for name in PULLED}
-    seal(dataset, solution.to_dict())
+    dataset.attrs[STATE] = json.dumps(solution.to_dict())
     return dataset
 
 
@@ -90,7 +90,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
     dataset.attrs = _attributes("fit of indentation curves", fit)
     dataset.attrs |= {name: getattr(fit, name) for name in ("chi2", "dof", "sigma", "noise")}
     dataset.attrs["reasons"] = "\n".join(f"{name}: {text}" for name, text in fit.reasons.items())
-    seal(dataset, fit.to_dict())
+    dataset.attrs[STATE] = json.dumps(fit.to_dict())
     return dataset
 
 

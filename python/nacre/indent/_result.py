@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -14,11 +15,11 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._display import aligned, table
-from nacre.indent._system import unit_of
+from nacre.indent._system import System, unit_of
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
 from nacre.units import written
-from nacre.values import FORMAT, checked_state, decode, encode
+from nacre.values import FORMAT, checked_state, decode, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
@@ -212,20 +213,53 @@ class Fit:
         Raises
         ------
         ValueError
-            If a key is missing or unknown, or a newer version wrote the data.
+            If a key is missing or unknown, a value does not fit, or a newer version wrote the data.
         """
-        names = {field.name for field in fields(Fit)}
-        state = checked_state({"warnings": [], **data}, "Fit", names)
-        for name in ("body", "tip", "counterbody", "adhesion"):
-            state[name] = decode(state[name])
-        state["curves"] = [
-            Curve(c["depth"], c["force"], time=c["time"], name=c["name"]) for c in state["curves"]
-        ]
-        for name in ("covariance", "correlation"):
-            state[name] = np.array(state[name], dtype=np.float64)
-        for name in ("residuals", "loads", "approaches"):
-            state[name] = [np.array(part, dtype=np.float64) for part in state[name]]
-        state["intervals"] = {k: (low, high) for k, (low, high) in state["intervals"].items()}
-        for name in ("free", "warnings"):
-            state[name] = tuple(state[name])
-        return Fit(**state)
+        state = checked_state(
+            {"warnings": [], **data}, "Fit", {field.name for field in fields(Fit)}
+        )
+        with refusing("Fit"):
+            for name in ("body", "tip", "counterbody", "adhesion"):
+                state[name] = decode(state[name])
+            for name in ("estimates", "standard_errors"):
+                state[name] = {key: float(value) for key, value in state[name].items()}
+            for name in ("chi2", "sigma", "condition"):
+                state[name] = float(state[name])
+            for name in ("dof", "evaluations"):
+                state[name] = operator.index(state[name])
+            state["curves"] = [
+                Curve(c["depth"], c["force"], time=c["time"], name=c["name"])
+                for c in state["curves"]
+            ]
+            for name in ("covariance", "correlation"):
+                state[name] = np.array(state[name], dtype=np.float64)
+            for name in ("residuals", "loads", "approaches"):
+                state[name] = [np.array(part, dtype=np.float64) for part in state[name]]
+            state["intervals"] = {
+                key: (float(low), float(high)) for key, (low, high) in state["intervals"].items()
+            }
+            for name in ("free", "warnings"):
+                state[name] = tuple(state[name])
+            found = Fit(**state)
+            if not found._fits_together():
+                raise TypeError("its parts do not fit together")
+        return found
+
+    def _fits_together(self) -> bool:
+        """Return whether the parts have the same parameters and points, and the right kinds."""
+        names, points = self.estimates.keys(), [curve.depth.shape for curve in self.curves]
+        return (
+            names == self.standard_errors.keys() == self.intervals.keys()
+            and names >= {*self.free, *self.reasons}
+            and all(isinstance(text, str) for text in (*self.reasons.values(), *self.warnings))
+            and self.covariance.shape == self.correlation.shape == (len(names), len(names))
+            and all(
+                [part.shape for part in parts] == points
+                for parts in (self.residuals, self.loads, self.approaches)
+            )
+            and self.noise in ("relative", "absolute")
+            and max(abs(self.dof), abs(self.evaluations)) < 1 << 53
+            and isinstance(self.is_sigma_known, bool)
+            and isinstance(self.is_profiled, bool)
+            and System.holds(self.body, self.tip, self.counterbody, self.adhesion)
+        )

@@ -51,6 +51,16 @@ class System:
             counterbody = core.HalfSpace(counterbody)
         return cls(body, tip, counterbody, adhesion)
 
+    @staticmethod
+    def holds(body: object, tip: object, counterbody: object, adhesion: object) -> bool:
+        """Return whether these values are of the kinds that a system has."""
+        return (
+            isinstance(body, core.HalfSpace)
+            and isinstance(tip, core.Tip)
+            and isinstance(counterbody, core.HalfSpace | None)
+            and isinstance(adhesion, core.Adhesion | None)
+        )
+
     def values(self) -> dict[str, float]:
         """Return the value of each parameter that may be free, by its path."""
         found: dict[str, float] = {}

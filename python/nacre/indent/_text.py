@@ -10,6 +10,7 @@ import codecs
 import csv
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -26,6 +27,10 @@ SAMPLE = 1000
 HEAD = 6
 """Lines above a table in which the names of its columns are looked for: names, units, a rule, and
 what instruments write between, such as the number of points."""
+
+LONGEST_LINE, LONGEST_HEADING = 4000, 200
+"""Most characters of a line with headings, and of a heading with a unit: the time that they take
+grows with a power of their length."""
 
 
 def _grammar(decimal: str, thousands: str) -> re.Pattern[str]:
@@ -175,8 +180,9 @@ def _fields(line: str, delimiter: str) -> list[str]:
     if delimiter == " ":
         return [text.strip("\"'") for text in line.split()]
     if '"' in line:
-        texts = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-        return [text.strip() for text in texts]
+        with suppress(csv.Error):  # of a field that is longer than numbers and names are
+            texts = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+            return [text.strip() for text in texts]
     return [text.strip(" \t\xa0'") for text in line.split(delimiter)]
 
 
@@ -236,10 +242,11 @@ def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Ta
                 above.append(line)
             continue
         if run is not None and len(run.rows) >= LEAST_ROWS and len(fields) == run.width:
-            wrong = [text for text in fields if not _is_number(text) and text]
-            if len(wrong) < sum(map(bool, fields)):
+            wrong = [text for text in fields if not _is_number(text)]
+            if sum(map(bool, wrong)) < sum(map(bool, fields)):
+                shown = max(wrong, key=bool)  # a text rather than a field that is empty
                 raise ValueError(
-                    f"{str(path)!r} must hold numbers in each row, line {number} has {wrong[0]!r}"
+                    f"{str(path)!r} must hold numbers in each row, line {number} has {shown[:60]!r}"
                 )
         run = None
         if line.startswith(("#", "%")):
@@ -265,13 +272,13 @@ def _decimal(path: Path, table: Table) -> str:
             commas = commas or text
     if points and commas:
         raise ValueError(
-            f"{str(path)!r} must have decimal points or decimal commas, has both {points!r} and "
-            f"{commas!r}"
+            f"{str(path)!r} must have decimal points or decimal commas, has both {points[:60]!r} "
+            f"and {commas[:60]!r}"
         )
     if doubtful and not points and not commas:
         raise ValueError(
             f"decimal must be given: in {str(path)!r} each comma may be a decimal comma or group "
-            f"thousands, as in {doubtful!r}; decimal=',' or decimal='.'"
+            f"thousands, as in {doubtful[:60]!r}; decimal=',' or decimal='.'"
         )
     return "," if commas else "."
 
@@ -289,7 +296,11 @@ def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]
             Column(f"{name} ({unit})" if unit else name, name, unit, other)
             for name, unit, other in zip(names, units, also, strict=True)
         ]
-    said = [line for line in above[: 2 * HEAD] if re.search(r"[^\W_]", line)][:HEAD]
+    said = [
+        line
+        for line in above[: 2 * HEAD]
+        if len(line) <= LONGEST_LINE and re.search(r"[^\W_]", line)
+    ][:HEAD]
     for line, after in zip(said, ["", *said], strict=False):
         headings = _headings(line, delimiter, table.width)
         if headings is None or _are_units(headings):
@@ -339,7 +350,7 @@ def _are_units(texts: Sequence[str]) -> bool:
 
 
 def _column(heading: str) -> Column:
-    for pattern in UNIT_LAST:
+    for pattern in UNIT_LAST if len(heading) <= LONGEST_HEADING else ():
         match = pattern.fullmatch(heading)
         if match and unit_of(match[2]):
             return Column(heading, match[1].strip(" _,"), match[2])

@@ -13,6 +13,7 @@ import nacre.indent.solution as solving
 from nacre._case_commands import CaseFile, Json, Units, plain, read_case
 from nacre._commands import app
 from nacre._core import NacreWarning
+from nacre._progress import alive
 from nacre.case import CaseError
 from nacre.units import display_units
 
@@ -37,8 +38,9 @@ def indent(
     with display_units(described.units), warnings.catch_warnings():
         warnings.simplefilter("ignore", NacreWarning)  # the printed solution has them
         try:
-            solution = solving.solve(**arguments)
-            found = numbers(solution)
+            with alive():
+                solution = solving.solve(**arguments)
+                found = numbers(solution)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: indent: {error}") from error
         for path in save or []:

@@ -8,15 +8,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
 from nacre._display import aligned, table
+from nacre.indent._system import System
 from nacre.units import INDENT_UNITS, written
-from nacre.values import FORMAT, checked_state, decode, encode
+from nacre.values import FORMAT, checked_state, decode, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
@@ -120,19 +121,29 @@ class IndentSolution:
         Raises
         ------
         ValueError
-            If a key is missing or unknown, or a newer version wrote the data.
+            If a key is missing or unknown, a value does not fit, or a newer version wrote the data.
         """
         names = {*ARGUMENTS, "given", "branch", "control", *NUMBERS, "pull_off", "warnings"}
         state = checked_state({"warnings": [], **data}, "IndentSolution", names)
-        state["warnings"] = tuple(state["warnings"])
-        for name in ARGUMENTS:
-            state[name] = decode(state[name])
-        for name in NUMBERS:
-            values = np.array(state[name], dtype=np.float64)
-            state[name] = values if values.ndim else float(values)
-        pulled = state.pop("pull_off")
-        made = cls(**state)
-        made.__dict__["_pulled"] = {name: float(pulled[name]) for name in PULLED}
+        with refusing("IndentSolution"):
+            for name in ARGUMENTS:
+                state[name] = decode(state[name])
+            for name in NUMBERS:
+                values = np.array(state[name], dtype=np.float64)
+                state[name] = values if values.ndim else float(values)
+            state["warnings"] = tuple(state["warnings"])
+            pulled = state.pop("pull_off")
+            made = cls(**state)
+            made.__dict__["_pulled"] = {name: float(pulled[name]) for name in PULLED}
+            if not (
+                System.holds(made.body, made.tip, made.counterbody, made.adhesion)
+                and len({np.shape(getattr(made, name)) for name in NUMBERS}) == 1
+                and made.given in get_args(Given)
+                and made.branch in ("stable", "unstable")
+                and made.control in get_args(Control)
+                and all(isinstance(text, str) for text in made.warnings)
+            ):
+                raise TypeError("its parts do not fit together")
         return made
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -1,6 +1,7 @@
 """Writes the files of format 0 beside this script, with the last nacre that wrote them.
 
-Run with a build of nacre before `to_dict`: python make_fixtures.py
+Run with a build of nacre before `to_dict`: python make_fixtures.py. Then store ball.nc and line.nc
+again with the seal that files have today: write_dataset(xarray.load_dataset(path), path).
 """
 
 import pickle

@@ -1,0 +1,344 @@
+"""Damaged and hostile files: an error or the same values, soon, in little memory.
+
+A few mutations of each kind of file that are the same in every run; ``make fuzz`` tries many
+others. They run in processes of their own, which can be ended: HDF5 may hang beyond any signal.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import subprocess
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+import nacre
+from nacre._disk import STATE, write_dataset
+from nacre._journal import Journal
+from nacre.case import Case
+from nacre.indent import Adhesion, Curve, Fit, Indentation, IndentSolution, Tip, fit
+
+ASKED = os.environ.get("NACRE_FUZZ")
+COUNT = int(ASKED) if ASKED else 25
+SECONDS = 2.0
+"""Most time of the processor for one file of some kilobytes."""
+MEMORY = 100_000_000
+"""Most bytes beyond those of the file."""
+
+STEEL, FILM = nacre.Elastic(210e9, 0.3), nacre.Elastic(3e9, 0.4)
+BODY = nacre.HalfSpace(STEEL, [nacre.Layer(FILM, 1e-6)])
+GRID = nacre.Grid((16, 12), (3e-4, 2e-4))
+BALL = nacre.Sphere(5e-3)
+CASE = """
+[materials]
+steel = { young = 210e9, poisson = 0.3 }
+
+[shape]
+kind = "sphere"
+radius = 5e-3
+
+[body]
+substrate = "steel"
+layers = [{ material = { young = 3e9, poisson = 0.4 }, thickness = 1e-6 }]
+
+[solve]
+load = 10
+
+[sweep]
+store = "study.nc"
+parameters."solve.load" = { first = 1, last = 100, count = 3, scale = "log" }
+"""
+
+
+def fitted() -> Fit:
+    depth = np.linspace(10e-9, 300e-9, 12)
+    load = Indentation(BODY, Tip.sphere(5e-6)).curve(approach=depth).load
+    noise = 1 + 0.01 * np.random.default_rng(3).standard_normal(12)
+    path = "body.layers[0].material.young"
+    return fit(Curve(depth, load * noise), BODY, Tip.sphere(5e-6), [path], profile=False)
+
+
+RESULTS: dict[str, Callable[[], Any]] = {
+    "solution": lambda: nacre.solve(BALL, BODY, grid=GRID, load=10.0),
+    "yielded": lambda: nacre.solve(
+        BALL, STEEL, grid=nacre.Grid((20, 20), (2e-4, 2e-4)), load=10.0, hardness=1e9
+    ),
+    "friction": lambda: nacre.slide(
+        BALL,
+        STEEL,
+        STEEL,
+        grid=GRID,
+        load=10.0,
+        friction=np.full(GRID.shape, 0.2),
+        force=(1.0, 0.0),
+    ),
+    "indentation": lambda: nacre.indent.solve(
+        BODY, Tip.sphere(5e-6), STEEL, adhesion=Adhesion.jkr(0.05), load=[1e-4, 1e-3]
+    ),
+    "fit": fitted,
+}
+
+
+class Kind(NamedTuple):
+    """A kind of file."""
+
+    name: str
+    """Name of a file."""
+    write: Callable[[Path], object]
+    read: Callable[[Path], Any]
+    exact: bool = False
+    """Whether damage is found, so that what is read is what was written."""
+
+
+def plain(found: Any) -> str:
+    """Return a text that tells every number of a result."""
+    state = found.to_dict()
+    return str(
+        {name: np.asarray(v).tolist() if name != "normal" else v for name, v in state.items()}
+    )
+
+
+def records(path: Path) -> dict[str, Any]:
+    with Journal(path) as journal:
+        kept = ("key", "values", "warnings")
+        return {k: {n: r[n] for n in kept} for k, r in journal.records.items()}
+
+
+def swept(path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)
+        case = {"shape": BALL, "body": STEEL, "grid": GRID}
+        nacre.sweep(case, {"load": [1.0, 2.0, 4.0]}, store=path.with_suffix(".nc"), progress=False)
+
+
+def heights(path: Path) -> nacre.HeightMap:
+    given: dict[str, Any] = {"unit": "nm"} if path.suffix == ".xyz" else {"spacing": 1e-6}
+    return nacre.HeightMap.read(path, **given)
+
+
+def described(path: Path) -> object:
+    case = Case.read(path)
+    return case.arguments(), case.study()
+
+
+def saved(make: Callable[[], Any], path: Path) -> None:
+    make().save(path)
+
+
+ROUGH = np.random.default_rng(1).normal(size=(8, 6)) * 1e-8
+POINTS = "".join(f"{i} {j} {z * 1e9:.3f}\n" for (i, j), z in np.ndenumerate(ROUGH))
+TABLE = "# unit: nm\n# spacing: 1, 2\n" + "".join(
+    "; ".join(f"{z * 1e9:.4f}".replace(".", ",") for z in row) + "\n" for row in ROUGH
+)
+CURVE = 'Test,"A 1"\n"Depth (nm)","Load, mN",Time_s\n' + "".join(
+    f"{k},{k**1.5:.3f},{k / 10}\n" for k in range(40)
+)
+
+KINDS = {
+    **{
+        name: Kind("a.nc", partial(saved, make), nacre.load, exact=True)
+        for name, make in RESULTS.items()
+    },
+    "study": Kind("a.nc", swept, nacre.load, exact=True),
+    "journal": Kind("a.journal", swept, records),
+    "npy": Kind("a.npy", lambda path: np.save(path, ROUGH), heights),
+    "csv": Kind("a.csv", lambda path: path.write_text(TABLE), heights),
+    "xyz": Kind("a.xyz", lambda path: path.write_text(POINTS), heights),
+    "curve": Kind("a.txt", lambda path: path.write_text(CURVE), nacre.indent.read),
+    "case": Kind("a.toml", lambda path: path.write_text(CASE), described),
+}
+
+
+def mutated(whole: bytes, how: random.Random) -> bytes:
+    """Return a file with flipped bits, cut, or with a part that is left out, repeated or long."""
+    content = bytearray(whole)
+    place = how.randrange(len(whole))
+    other = how.randrange(place, min(len(whole), place + 200))
+    kind = how.randrange(6)
+    if kind <= 1:
+        for _ in range(how.choice((1, 1, 1, 8))):
+            content[how.randrange(len(whole))] ^= 1 << how.randrange(8)
+    elif kind == 2:
+        del content[place:]
+    elif kind == 3:
+        del content[place : other + 1]
+    elif kind == 4:
+        content[place:place] = content[place : other + 1] * how.choice((1, 100))
+    else:
+        piece = how.choice(
+            (b"1", b"9", b" ", b"_", b"(", b"[", b'"', b",", b"\0", b"\n", b"1e", b"a ")
+        )
+        content[place:place] = piece * how.choice((1, 500, 50_000))
+    return bytes(content)
+
+
+def main(name: str, count: int, seed: int, folder: Path) -> None:
+    """Read mutations of a file, and print how many were refused, and the largest costs."""
+    import resource
+
+    warnings.simplefilter("ignore")
+    kind = KINDS[name]
+    path = folder / kind.name
+    kind.write(path)
+    whole = path.read_bytes()
+    right: Any = None if name == "study" else kind.read(path)
+    how = random.Random(seed)
+    refused, longest, slowest = 0, 0, 0.0
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for number in range(count):
+        content = mutated(whole, how)
+        path.write_bytes(content)
+        print(number, file=sys.stderr, flush=True)
+        start = time.process_time()
+        try:
+            found = kind.read(path)
+        except (ValueError, OSError) as error:
+            refused += 1
+            longest = max(longest, len(str(error)))
+        else:
+            if kind.exact:
+                assert plain(found) == plain(right)
+            if name == "journal":
+                assert all(right[key] == record for key, record in found.items())
+        slowest = max(slowest, time.process_time() - start)
+    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    memory = (after - before) * (1 if sys.platform == "darwin" else 1024)
+    print(
+        json.dumps({"refused": refused, "slowest": slowest, "memory": memory, "longest": longest})
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no measure of the memory")
+@pytest.mark.parametrize("name", KINDS)
+def test_a_damaged_file_is_refused_or_read_soon(name: str, tmp_path: Path) -> None:
+    seed = random.randrange(1 << 30) if ASKED else 1
+    command = [sys.executable, __file__, name, str(COUNT), str(seed), str(tmp_path)]
+    limit = 60 + SECONDS * COUNT
+    done = subprocess.run(command, capture_output=True, text=True, timeout=limit, check=False)
+    assert done.returncode == 0, (seed, done.stderr[-3000:])
+    found = json.loads(done.stdout)
+    assert found["slowest"] < SECONDS, (seed, found)
+    assert found["memory"] < MEMORY, (seed, found)
+    assert found["longest"] < 5000, (seed, found)  # characters of an error
+    if KINDS[name].exact:
+        assert found["refused"] >= 0.99 * COUNT, (seed, found)  # all but changes to nothing
+
+
+# Files with a right seal.
+
+
+def sealed(path: Path, content: Path) -> Path:
+    """Write a file of HDF5 with a right seal, as malice would."""
+
+    class Content:
+        def to_netcdf(self, **_: object) -> bytes:
+            return content.read_bytes()
+
+        variables: tuple[str, ...] = ()
+
+    write_dataset(Content(), path)  # type: ignore[arg-type]
+    return path
+
+
+def bombs() -> dict[str, Callable[[h5py.File, Path], object]]:
+    large = 1 << 28  # 2 GB of real numbers
+    sources = h5py.VirtualLayout((4, 4), "f8")
+    return {
+        "packed": lambda file, _: file.create_dataset(
+            "pressure", (large,), "f8", chunks=(1 << 24,), compression=9
+        ),
+        "never written": lambda file, _: file.create_dataset("pressure", (large,), "f8"),
+        "other numbers": lambda file, _: file.create_dataset("pressure", (4, 4), "i4"),
+        "outside": lambda file, folder: file.create_dataset(
+            "pressure", (4, 4), "f8", external=[(str(folder / "secret"), 0, 128)]
+        ),
+        "link": lambda file, _: file.__setitem__("pressure", h5py.SoftLink("/gap")),
+        "link outside": lambda file, folder: file.__setitem__(
+            "pressure", h5py.ExternalLink(str(folder / "a.nc"), "/gap")
+        ),
+        "virtual": lambda file, _: file.create_virtual_dataset("pressure", sources),
+        "group": lambda file, _: file.create_group("pressure"),
+    }
+
+
+@pytest.mark.parametrize("name", bombs())
+def test_arrays_are_read_from_the_file_alone_and_as_large_as_it(name: str, tmp_path: Path) -> None:
+    path = RESULTS["solution"]().save(tmp_path / "a.nc")
+    (tmp_path / "secret").write_bytes(bytes(128))
+    inner = tmp_path / "inner.nc"
+    inner.write_bytes(path.read_bytes())
+    with h5py.File(inner, "r+") as file:
+        del file["pressure"]
+        bombs()[name](file, tmp_path)
+    start = time.process_time()
+    with pytest.raises(ValueError, match="must be a solution that nacre saved: it is no result"):
+        nacre.load(sealed(tmp_path / "b.nc", inner))
+    assert time.process_time() - start < SECONDS
+
+
+WRONG: list[Any] = [
+    *(None, True, 0, -1, 1.5, 10**400, float("nan"), float("inf"), "", "x", "1.5", "rigid"),
+    *([], [1], ["a"], [[1.0], [1.0, 2.0]], {}, {"x": 1}, {"kind": []}, {"Elastic": {"young": 1}}),
+]
+
+
+def places(data: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Return the paths of all values, of long lists the first ones."""
+    items = list(data.items()) if isinstance(data, dict) else list(enumerate(data))[:2]
+    found = []
+    for key, value in items:
+        found.append((*path, key))
+        if isinstance(value, dict | list):
+            found += places(value, (*path, key))
+    return found
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_state_with_a_right_seal_is_a_result_or_a_value_error(name: str, tmp_path: Path) -> None:
+    path = RESULTS[name]().save(tmp_path / "a.nc")
+    dataset = xarray.load_dataset(path, engine="h5netcdf")
+    state = json.loads(dataset.attrs[STATE])
+    kinds: dict[str, Any] = {"indentation": IndentSolution, "fit": Fit}
+    kind = kinds.get(name)
+    changes = [(place, value) for place in places(state) for value in (*WRONG, ...)]
+    random.Random(5).shuffle(changes)
+    refused = 0
+    for number, (place, value) in enumerate(changes if kind else changes[: 4 * COUNT]):
+        wrong: Any = json.loads(dataset.attrs[STATE])
+        table = wrong
+        for key in place[:-1]:
+            table = table[key]
+        if value is ...:
+            del table[place[-1]]
+        else:
+            table[place[-1]] = value
+        try:
+            if kind is not None and number >= COUNT:
+                found: Any = kind.from_dict(json.loads(json.dumps(wrong)))
+            else:
+                write_dataset(dataset.assign_attrs({STATE: json.dumps(wrong)}), tmp_path / "b.nc")
+                found = nacre.load(tmp_path / "b.nc")
+        except ValueError:
+            refused += 1
+            continue
+        assert str(found)
+        assert repr(found)
+        assert found.to_dict()
+        if number < COUNT:
+            found.save(tmp_path / "c.nc")
+    assert refused > 0.5 * min(len(changes), number)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), Path(sys.argv[4]))
