@@ -16,7 +16,7 @@ const SCAN: f64 = 4.0;
 /// some 1, one of a thickness h on a rigid base at some √(h/a).
 const SHALLOWEST: f64 = 3e-3;
 
-/// The same for the softest response, up to which it is looked for: an rⁿ of n ≥ 1/2 bears no load at 1 + 1/n.
+/// That depth for the softest response, up to which it is looked for: an rⁿ of n ≥ 1/2 bears no load at 1 + 1/n.
 const DEEPEST: f64 = 3.0;
 
 /// Rise from the least load or approach, relative to it, after which no other one is looked for on a stack that is softest at its

@@ -69,12 +69,17 @@ maugis = st.builds(Adhesion.maugis, works, powers(-2.0, 0.5))
 adhesions = st.one_of(st.builds(Adhesion.jkr, works), maugis)
 
 
+def assert_clear(refusal: Exception) -> None:
+    """Look at the message of a refusal."""
+    assert len(str(refusal)) > 10
+
+
 def at(test: Indentation, **given: float) -> IndentState | None:
     """Return a state that is in order, or None where nacre refuses with a reason."""
     try:
         state = test.at(**given)
     except REFUSALS as refusal:
-        assert len(str(refusal)) > 10
+        assert_clear(refusal)
         return None
     assert_disc(test, state)
     return state
@@ -99,10 +104,12 @@ def assert_disc(test: Indentation, state: IndentState) -> None:
         return
     outside = a + a * np.geomspace(1e-4, 20.0, 2000)
     profile = test.tip.gap(outside)
-    outside = outside[np.isfinite(profile) & (outside < (60.0 if test.tip.kind == "profile" else np.inf))]
+    outside = outside[
+        np.isfinite(profile) & (outside < (60.0 if test.tip.kind == "profile" else np.inf))
+    ]
     gap = state.gap(outside)
     opening = adhesion.work / adhesion.strength if kind == "maugis" else 0.0
-    # Rounding: 1e-9 of the size of the approach and the opening, where the certificate looks; the surface has errors of 1e-9.
+    # The certificate takes 1e-9 of this for rounding, and the surface has errors of 1e-9.
     size = 1e-8 * (abs(state.approach) + test.tip.gap(outer) + opening)
     assert gap.min() > -size
     if kind == "maugis":
@@ -123,7 +130,7 @@ def test_states_without_singular_edges_are_discs(body, tip, adhesion, radius):
     for given_ in ({"load": state.load}, {"approach": state.approach}):
         again = at(test, **given_)
         assert again is not None
-        # Where load and approach hardly change with the radius, it is as uncertain as their rounding is magnified.
+        # Where the load hardly changes with the radius, its rounding is magnified.
         assert abs(again.radius / radius - 1) < 1e-6
 
 
@@ -144,7 +151,7 @@ def test_adhering_states_are_discs(body, tip, adhesion, radius):
         try:
             last = test.pull_off(control)
         except REFUSALS as refusal:
-            assert len(str(refusal)) > 10
+            assert_clear(refusal)
             continue
         assert_disc(test, test.at(radius=last.radius))
         stable = at(test, radius=1.1 * last.radius)
@@ -163,7 +170,7 @@ def test_curves_have_discs_alone(body, tip, radius):
     try:
         curve = test.curve(approach=depths)
     except REFUSALS as refusal:
-        assert len(str(refusal)) > 10
+        assert_clear(refusal)
         return
     for depth, load in zip(depths, curve.load, strict=True):
         single = at(test, approach=depth)
