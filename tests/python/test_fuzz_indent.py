@@ -1,4 +1,4 @@
-"""Random indentations: every state that is returned is a disc by an independent look, every refusal a clear error."""
+"""Random indentations: every returned state is a disc, every refusal a clear error."""
 
 from __future__ import annotations
 
