@@ -18,7 +18,6 @@
 //! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, and their linear system |
 //! | `parts`, `point`, `density` | the two solutions of one radius; states, pressure, displacement |
 //! | `adhesion`, `zone`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
-//! | `disc` | whether a contact is a disc |
 //! | `change` | derivatives |
 //! | `curve` | whole curves by interpolation |
 //! | `indenter`, `pull_off` | states by radius, load and approach; pull-off and jump into contact |
@@ -28,7 +27,6 @@ mod change;
 mod cohesion;
 mod curve;
 mod density;
-mod disc;
 mod equation;
 mod indenter;
 mod parts;

@@ -41,14 +41,13 @@ pub(super) fn contact(
     start: &mut f64,
 ) -> Result<Point> {
     let opening = work / strength;
-    let mut length = 4.0 * a;
-    let mut parts = Arc::new(Parts::new(stack, tip, a, length)?);
+    let mut parts = Arc::new(Parts::new(stack, tip, a, 4.0 * a)?);
     // ln (c − a): the gap at c grows with it.
     let mut excess = |log: f64| -> Result<(f64, Point)> {
         let outer = a + log.exp();
-        if 2.0 * outer > length && stack.thickness().is_some() {
-            length = 4.0 * outer;
-            parts = Arc::new(Parts::new(stack, tip, a, length)?);
+        let level = parts.system.level.as_ref();
+        if level.is_some_and(|level| 2.0 * outer > level.length) {
+            parts = Arc::new(Parts::new(stack, tip, a, 2.0 * outer)?);
         }
         let zone = Zone::around(&parts, outer, strength);
         let approach = parts.hertzian() + (zone.density() - zone.answer.edge) / parts.edge[0];

@@ -270,9 +270,11 @@ impl Indent {
         for (pair, has_root) in ends.windows(2).zip(roots) {
             let row = |log: f64| self.row(log.exp(), parameters);
             let logs = if is_adhering { 4 } else { 3 };
-            match Table::new([pair[0], pair[1]], has_root, logs, row)? {
-                Some(table) => tables.push(table),
-                None => return Ok(None),
+            match Table::new([pair[0], pair[1]], has_root, logs, row) {
+                Ok(Some(table)) => tables.push(table),
+                // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
+                Ok(None) | Err(Error::Inconsistent(_)) => return Ok(None),
+                Err(error) => return Err(error),
             }
         }
         Ok(Some(tables))
@@ -282,7 +284,11 @@ impl Indent {
     /// to each parameter.
     fn row(&self, a: f64, parameters: &[Parameter]) -> Result<Row> {
         let bare = Self::new(self.stack(), self.tip());
-        let point = bare.at_radius(a)?;
+        let point = bare.state(a)?;
+        let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
+        if !is_adhering {
+            point.check_disc()?;
+        }
         let profile = point.stiffness * point.approach - point.load;
         let [widening, _] = point.along();
         let own = |parameter: &Parameter| -> Result<[f64; 3]> {
@@ -311,11 +317,12 @@ impl Indent {
             logs.push([value.ln(), slope]);
             row.extend(rates.iter().map(|rates| rates[k]));
         }
-        if let Adhesion::Jkr { .. } = self.adhesion() {
+        if is_adhering {
             let parts = Arc::clone(&point.parts);
             let edge = self.adhesion().edge(self.stack().surface_modulus(), a);
             let apart = -edge / parts.edge[0];
             let adhering = Point::new(parts, self.adhesion(), point.approach - apart);
+            adhering.check_disc()?;
             let [along, _] = adhering.along();
             logs.push([apart.ln(), (widening - along) * a / apart]);
             for (parameter, rates) in parameters.iter().zip(&rates) {

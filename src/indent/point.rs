@@ -1,5 +1,6 @@
 //! States of an indentation.
 
+mod disc;
 mod interior;
 mod warning;
 

@@ -10,15 +10,18 @@ use super::point::{Point, PullOff};
 use crate::error::{Error, Result, positive};
 
 /// Radii in each factor of e at which the end of an adhering contact is looked for.
-const SCAN: i32 = 4;
+const SCAN: f64 = 4.0;
 
-/// Powers of e below the radius of no load in which it is looked for: a bare cone lets go at 1/4 of it, a bare sphere at
-/// 1/1.65 of it under a load.
-const DEPTH: i32 = 8;
+/// Depth F(a) of a bare body, in the depth √(2πaw/E*) that adhesion takes away, from which on it is looked for: a bare body lets go at
+/// some 1, one of a thickness h on a rigid base at some √(h/a).
+const SHALLOWEST: f64 = 3e-3;
 
-/// Depth F(a) of a bare body, in the depth √(2πaw/E*) that adhesion takes away, up to which it may be pulled: an rⁿ of n ≥ 1/2
-/// bears no load at 1 + 1/n.
-const ADHERING: f64 = 3.0;
+/// That depth for the softest response, up to which it is looked for: an rⁿ of n ≥ 1/2 bears no load at 1 + 1/n.
+const DEEPEST: f64 = 3.0;
+
+/// Rise from the least load or approach, relative to it, after which no other one is looked for on a stack that is softest at its
+/// surface.
+const RISEN: f64 = 0.2;
 
 impl Indent {
     /// The state in which the tip is pulled off: of the smallest load or approach, the deepest minimum where there are more.
@@ -122,35 +125,31 @@ impl Indent {
             Control::Load => point.load,
             Control::Approach => point.approach,
         };
-        // Up to a radius under pressure.
-        let mut top = low;
-        let mut start = top.ln() - 3.0;
-        let mut state = self.state_from(top, &mut start);
-        while state.as_ref().map_or(true, |point| of(point) <= 0.0) && top < high {
-            top = (2.0 * top).min(high);
-            state = self.state_from(top, &mut start);
-        }
-        // A stiff layer lets the load pass 0 again, not beyond where a body of the softest response has done so.
-        let softest = self.stack.softest_modulus();
+        // Depth F(a) of a bare body, in the depth that adhesion takes away from it.
         let work = self.adhesion.work().unwrap_or(0.0);
-        let pulls =
-            |a: f64| self.tip.transform(a)[0] < ADHERING * (2.0 * PI * a * work / softest).sqrt();
-        let mut above = 0;
-        let place = |k: i32| top.ln() + 0.7 - f64::from(k) / f64::from(SCAN);
-        while place(-above).exp() < high && pulls(place(-above).exp()) {
-            above += 1;
+        let depth = |a: f64, modulus: f64| {
+            self.tip.transform(a)[0] / (2.0 * PI * a * work / modulus).sqrt()
+        };
+        let [surface, softest] = [self.stack.surface_modulus(), self.stack.softest_modulus()];
+        let mut log = low.ln();
+        while depth(log.exp(), surface) < SHALLOWEST && log.exp() < high {
+            log += 1.0 / SCAN;
         }
-        let places: Vec<f64> = (-above..=SCAN * DEPTH)
-            .map(place)
-            .filter(|log| log.exp() > low && log.exp() < high)
-            .collect();
-        let values: Vec<f64> = places
-            .iter()
-            .map(|log| {
-                let state = self.state_from(log.exp(), &mut start);
-                state.map_or(f64::INFINITY, |point| of(&point))
-            })
-            .collect();
+        let (mut places, mut values) = (Vec::new(), Vec::new());
+        let (mut start, mut least) = (log - 3.0, f64::INFINITY);
+        while log.exp() < high {
+            let state = self.state_from(log.exp(), &mut start);
+            let value = state.map_or(f64::INFINITY, |point| of(&point));
+            places.push(log);
+            values.push(value);
+            least = least.min(value);
+            // Where nothing is softer than the surface, the load only rises from there.
+            let is_over = softest >= surface && value.is_finite() && value > (1.0 - RISEN) * least;
+            if is_over || value > 0.0 && depth(log.exp(), softest) > DEEPEST {
+                break;
+            }
+            log += 1.0 / SCAN;
+        }
         let inner = 1..values.len().saturating_sub(1);
         let mut minima: Vec<usize> = inner
             .filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1])

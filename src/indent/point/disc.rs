@@ -12,11 +12,11 @@
 
 use std::f64::consts::PI;
 
-use super::adhesion::Adhesion;
-use super::density::{Density, oscillating};
-use super::equation::waves::Waves;
-use super::point::Point;
+use super::Point;
 use crate::error::{Error, Result};
+use crate::indent::adhesion::Adhesion;
+use crate::indent::density::{Density, oscillating};
+use crate::indent::equation::waves::Waves;
 
 /// Nodes of a panel. What oscillates is analytic up to two thicknesses from the real axis, so that eight nodes on a panel of one
 /// thickness leave (4 + √17)⁻⁸ = 5e-8 of it.
@@ -130,7 +130,7 @@ fn least(places: &[f64], mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
 impl Point {
     /// An error where the contact is no disc: a pressure below 0, of a cohesive zone below −σ₀, within a contact that bears no more,
     /// or surfaces that overlap outside, of which those beyond a zone are apart by more than w/σ₀, and those in it by less.
-    pub(super) fn check_disc(&self) -> Result<()> {
+    pub(in crate::indent) fn check_disc(&self) -> Result<()> {
         let tip = &self.parts.tip;
         // The pressure of a bare body below a convex tip falls outwards.
         if self.parts.system.level.is_none() && tip.is_convex() && self.zone.is_none() {
