@@ -66,7 +66,7 @@ def solved(
     heights: np.ndarray,
     **motion: float | tuple[float | None, float | None],
 ) -> nacre.Solution:
-    """Return the contact of two bodies and a map of heights, whose certificate is that of the whole operator."""
+    """Return the contact of two bodies and a map of heights, by the whole operator."""
     shape = nacre.HeightMap(heights, grid.spacing, center=grid.center, periodic=grid.periodic)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)
@@ -129,7 +129,8 @@ def test_mirrored_and_exchanged_bodies_have_the_same_contact(
 def test_short_flush_bodies_have_the_pressure_of_a_line(
     length: float, wide: float, rows: int, repeats: bool
 ) -> None:
-    # For nu = 0 the pressure of a line leaves the faces free, however short the bodies are against the half-width b = 1.
+    # For nu = 0 the pressure of a line leaves the faces free, however short the bodies are
+    # against the half-width of 1.
     body = nacre.HalfSpace(nacre.Elastic(1e6, 0.0), ends=(-0.5 * length, 0.5 * length))
     cells, width = 4 * int(8 * wide), 4.0 * wide
     assume(cells >= 32)
