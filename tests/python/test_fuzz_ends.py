@@ -30,19 +30,17 @@ def powers(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 @st.composite
-def bodies(draw: st.DrawFn, edges: np.ndarray) -> nacre.HalfSpace:
-    """Return a body that ends at edges of cells, outside the grid, or nowhere."""
+def bodies(draw: st.DrawFn, edges: np.ndarray, within: int) -> nacre.HalfSpace:
+    """Return a body that ends up to so many cells within the grid, outside, or nowhere."""
     material = nacre.Elastic(draw(powers(-0.5, 0.5)), draw(st.floats(0.0, 0.5)))
-    coat = nacre.Layer(nacre.Elastic(draw(powers(-0.5, 0.5)), 0.3), draw(powers(-1.0, 1.0)))
+    coat = nacre.Layer(nacre.Elastic(draw(powers(-0.5, 0.5)), 0.3), draw(powers(-1.5, -0.5)))
+    # Coats are a model that holds where they are thin against the body.
     width = edges[-1] - edges[0]
-    half = len(edges) // 2
-    inside = st.integers(0, half - 2).map(lambda k: k - 1)
+    inside = st.integers(0, within)
     beyond = powers(-1.0, 2.0).map(lambda far: far * width)
 
     def end(side: int) -> st.SearchStrategy[float | None]:
-        at = inside.map(lambda k: edges[0] if k < 0 else edges[k + 1])
-        if side:
-            at = inside.map(lambda k: edges[-1] if k < 0 else edges[-2 - k])
+        at = inside.map(lambda k: edges[-1 - k] if side else edges[k])
         outside = beyond.map(lambda far: edges[-side] + (far if side else -far))
         return st.one_of(st.none(), at, outside)
 
@@ -57,7 +55,8 @@ def contacts(draw: st.DrawFn) -> tuple[nacre.Grid, nacre.HalfSpace, nacre.HalfSp
     width = draw(powers(-0.7, 0.7))
     grid = nacre.Grid(shape, (1.0, width), center=(draw(st.floats(-1.0, 1.0)), 0.0))
     edges = grid.center[0] - 0.5 + np.arange(shape[0] + 1) / shape[0]
-    return grid, draw(bodies(edges)), draw(bodies(edges))
+    # What the counterbody carries must not reach beyond its ends.
+    return grid, draw(bodies(edges, shape[0] // 2 - 1)), draw(bodies(edges, 0))
 
 
 def solved(
@@ -66,7 +65,7 @@ def solved(
     heights: np.ndarray,
     **motion: float | tuple[float | None, float | None],
 ) -> nacre.Solution:
-    """Return the contact of two bodies and a map of heights, whose certificate is that of the whole operator."""
+    """Return the contact of two bodies and a map of heights, by the whole operator."""
     shape = nacre.HeightMap(heights, grid.spacing, center=grid.center, periodic=grid.periodic)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", nacre.NacreWarning)
@@ -93,7 +92,14 @@ def test_a_period_is_half_of_two(
     load = 2e-4 * width
     first = solved((pair[0], pair[1]), one, heights, load=load)
     motion = {"load": 2 * load} if by_load else {"approach": first.approach}
-    second = solved((pair[0], pair[1]), two, np.tile(heights, (1, 2)), **motion)
+    second = None
+    try:
+        second = solved((pair[0], pair[1]), two, np.tile(heights, (1, 2)), **motion)
+    except ValueError as refusal:
+        said = str(refusal)
+    if second is None:
+        assert "approach cannot be prescribed" in said  # below a stiff coat
+        return
     scale = first.peak_pressure
     # Tolerance of the solutions, and the condition of the softest coats.
     np.testing.assert_allclose(
@@ -104,7 +110,7 @@ def test_a_period_is_half_of_two(
 
 @fuzz
 @given(contacts(), st.integers(0, 99), st.booleans())
-def test_mirrored_and_exchanged_bodies_have_the_same_contact(
+def test_mirrored_bodies_have_the_same_contact(
     contact: tuple[nacre.Grid, nacre.HalfSpace, nacre.HalfSpace], seed: int, repeats: bool
 ) -> None:
     grid, *pair = contact
@@ -118,7 +124,7 @@ def test_mirrored_and_exchanged_bodies_have_the_same_contact(
 
     x, y = grid.center
     turned = nacre.Grid(grid.shape, grid.size, center=(-x, y), periodic=(False, repeats))
-    second = solved((mirrored(pair[1]), mirrored(pair[0])), turned, heights[::-1], load=first.load)
+    second = solved((mirrored(pair[0]), mirrored(pair[1])), turned, heights[::-1], load=first.load)
     scale = first.peak_pressure
     np.testing.assert_allclose(second.pressure[::-1], first.pressure, rtol=0, atol=1e-5 * scale)
     assert abs(second.approach / first.approach - 1) < 1e-6
@@ -129,7 +135,8 @@ def test_mirrored_and_exchanged_bodies_have_the_same_contact(
 def test_short_flush_bodies_have_the_pressure_of_a_line(
     length: float, wide: float, rows: int, repeats: bool
 ) -> None:
-    # For nu = 0 the pressure of a line leaves the faces free, however short the bodies are against the half-width b = 1.
+    # For nu = 0 the pressure of a line leaves the faces free, however short the bodies are
+    # against the half-width of 1.
     body = nacre.HalfSpace(nacre.Elastic(1e6, 0.0), ends=(-0.5 * length, 0.5 * length))
     cells, width = 4 * int(8 * wide), 4.0 * wide
     assume(cells >= 32)

@@ -140,13 +140,13 @@ fn twice_a_period_is_the_same() -> Result<()> {
             };
             let a = solved(&first, &once, heights.clone(), &motion)?;
             let b = solved(&second, &twice, double(&heights), &twofold)?;
-            let same = |a: &Solution, b: &Solution, columns: usize, name: &str| {
-                let found = b.pressure.slice(ndarray::s![.., ..columns]).to_owned();
+            let same = |a: &Solution, b: &Solution, name: &str| {
+                let found = Array2::from_shape_fn(a.pressure.dim(), |at| b.pressure[at]);
                 let worst = differ(&a.pressure, &found) / a.peak_pressure();
                 assert!(worst < 1e-6, "{name}: {worst:e}");
                 assert!((b.approach / a.approach - 1.0).abs() < 1e-6, "{name}");
             };
-            same(&a, &b, cells, &name);
+            same(&a, &b, &name);
             let [k, l] = [a.stiffness()?, b.stiffness()?].map(|k| k[0][0]);
             assert!((l / (2.0 * k) - 1.0).abs() < 1e-5, "{name} {k} {l}");
             // Under its approach, the contact is the same.
@@ -155,7 +155,7 @@ fn twice_a_period_is_the_same() -> Result<()> {
                 ..Motion::approach(a.approach)
             };
             let c = solved(&first, &once, heights, &motion)?;
-            same(&a, &c, cells, &format!("{name}, approach"));
+            same(&a, &c, &format!("{name}, approach"));
         }
     }
     Ok(())
