@@ -47,10 +47,10 @@ pub(super) struct EndStress {
 
 /// Error of the stress from one cell below the surface on, over the peak pressure, and at most. In between it falls
 /// as z⁻². Measured on the face as its normal traction, for ν = 0, 0.3 and 0.5 and cells of an eighth to a
-/// thirty-second of the contact's half-length: 0.08, 4e-3, 1e-3 and 9e-4 at 0, ¼, ½ and one cell where a smooth pressure
-/// vanishes at the end; 0.02, 7e-3 and 2e-3 at ¼, ½ and one cell where it reaches it, bounded or as x^−0.226, and 2.4e-3
+/// thirty-second of the contact's half-length: 0.18 on the edge; 4e-3, 1e-3 and 9e-4 at ¼, ½ and one cell where a smooth
+/// pressure vanishes at the end; 0.02, 7e-3 and 2e-3 at ¼, ½ and one cell where it reaches it, bounded or as x^−0.226, and 2.4e-3
 /// farther down (`tests/stress/ends.rs`).
-const ERRORS: [f64; 2] = [3e-3, 0.1];
+const ERRORS: [f64; 2] = [3e-3, 0.2];
 
 /// Length over which the pressures beside the load are followed, in widths of the contact or in distances of it from
 /// the end, if that is more: they fall with the square of the distance at least.

@@ -46,10 +46,11 @@ def test_the_end_face_of_a_solved_contact_bears_no_traction(cells: int) -> None:
     assert (np.abs(face.xx).max(axis=1) < face.uncertainty).all()
     assert max(np.abs(face.xy).max(), np.abs(face.xz).max()) < 1e-12 * solution.peak_pressure
     assert np.abs(face.yy).max() > 0.03 * solution.peak_pressure
-    # At the surface itself, the pressure beside the edge stands for that at it.
+    # On the edge itself, cells do not resolve what keeps the face free.
     surface = solution.stress(0.0, x=end)
+    assert surface.uncertainty is not None
     pressure = solution.pressure[solution.x < end][-1]
-    np.testing.assert_allclose(-surface.zz, pressure, rtol=0, atol=0.1 * solution.peak_pressure)
+    assert np.abs(surface.zz + pressure).max() < surface.uncertainty
 
 
 @pytest.mark.parametrize(
@@ -81,7 +82,7 @@ def test_each_body_has_its_own_ends(
     assert np.isfinite(solution.stress(2e-5, body=member, x=low, y=0.0).zz)
     summary = solution.stress_summary(body=member)
     for layer in summary.layers:
-        for peak in (layer.von_mises, layer.tension, layer.shear):
+        for peak in (layer.von_mises, layer.tension, layer.max_shear):
             assert np.isfinite(peak[0])
             assert low < peak[1][0] < high
 

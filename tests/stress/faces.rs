@@ -2,10 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use nacre::{
-    Elastic, Grid, HalfSpace, Layer, Result, Section, Stress, StressOptions, StressPlan,
-    stress::Strengths,
-};
+use nacre::stress::Strengths;
+use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, Stress, StressOptions, StressPlan};
 use ndarray::{Array2, Array3, Axis};
 
 /// A smooth pressure of height 1 over lengths of 3, about `centre` along x and 0 along y.
@@ -67,7 +65,7 @@ fn sections_at_an_end_are_free_of_traction() -> Result<()> {
             );
             assert!(largest(face.xy(), k) < ROUNDING && largest(face.xz(), k) < ROUNDING);
         }
-        assert!(largest(face.yy(), 2) > 0.1);
+        assert!(largest(face.zz(), 5) > 0.02);
     }
     Ok(())
 }
@@ -143,9 +141,9 @@ fn plate() -> Result<StressPlan> {
     let body = body.with_ends([Some(0.0), Some(2.0)])?;
     let grid = Grid::new([20, 16], [5.0, 4.0])?.centered_at([1.5, 0.0])?;
     let mut pressure = smooth(&grid, 1.0);
-    for (i, mut row) in pressure.rows_mut().into_iter().enumerate() {
+    for ((i, _), p) in pressure.indexed_iter_mut() {
         if !(4..12).contains(&i) {
-            row.fill(0.0);
+            *p = 0.0;
         }
     }
     StressPlan::plan(&body, &grid, &pressure, None)
