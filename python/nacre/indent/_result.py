@@ -14,6 +14,8 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._display import aligned, table
+from nacre.indent._model import NUISANCES
+from nacre.indent._residuals import ROUNDING
 from nacre.indent._system import unit_of
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
+
+GIVEN = 4
+"""Most numbers on which a table says that an estimate depends."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,8 +48,17 @@ class Fit:
     """Intervals of 95 %: by profile likelihood of free parameters, linear of nuisances."""
     reasons: dict[str, str]
     """Why a parameter is not identifiable, for those that are not."""
+    warnings: list[str]
+    """How the residuals show that the model does not describe the data, and what to free; errors
+    and intervals are then wider, and linear."""
+    sensitivity: dict[str, dict[str, float]]
+    """Change of each free parameter over that of each number that the fit holds, the other free
+    parameters following. Numbers change by their logarithms, but Poisson's ratios by themselves,
+    and contact point, drift and compliance by what shifts the deepest point by the range of depth.
+    """
     residuals: list[Array]
-    """Residuals of each curve: ln(F/P) for relative noise, F − P [N] for absolute."""
+    """Residuals of each curve: F − P [N] for absolute noise, else ln(F/P), or for mixed noise the
+    difference of arsinh(F/c), which is ln(F/P) far above the floor c."""
     loads: list[Array]
     """Loads P of the model at the points of each curve [N]."""
     approaches: list[Array]
@@ -54,11 +68,15 @@ class Fit:
     dof: int
     """Degrees of freedom."""
     sigma: float
-    """Standard deviation of the noise, given or estimated: a share of the force, or a force [N]."""
+    """Standard deviation of the noise, given or estimated: a force [N] for absolute noise, else a
+    share of √(F² + c²)."""
     is_sigma_known: bool
     """Whether the noise was given."""
-    noise: Literal["relative", "absolute"]
-    """Kind of noise."""
+    noise: Literal["relative", "absolute", "mixed"]
+    """Kind of noise, given or the likeliest."""
+    floor: float
+    """Force c over the largest one of a curve below which noise ceases to fall with the force: 0
+    for relative noise, infinite for absolute."""
     condition: float
     """Condition number of the Jacobian with columns of unit length: a symptom only."""
     is_profiled: bool
@@ -138,19 +156,42 @@ class Fit:
             verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
             rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
         lines = [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
-        if self.noise == "relative":
-            noise = f"{100 * self.sigma:.3g} % of the force"
-        else:
+        if self.noise == "absolute":
             noise = written(self.sigma, "N", 3)
+        else:
+            noise = f"{100 * self.sigma:.3g} % of the force"
+        if self.noise == "mixed":
+            noise += f", of at least {100 * self.floor:.2g} % of the largest"
         points = sum(map(len, self.curves))
         lines.append(
             f"noise {noise} ({'given' if self.is_sigma_known else 'estimated'}), "
             f"χ² {self.chi2 if self.is_sigma_known else self.dof:.4g} at {self.dof} degrees of "
             f"freedom, {points} points, condition {self.condition:.3g}"
         )
-        if not self.is_profiled:
+        lines += [f"warning: {text}" for text in self.warnings]
+        lines += self._given()
+        if self.sigma < ROUNDING * (1 if self.noise != "absolute" else self.curves[0].force.max()):
+            lines.append("residuals are rounding: the intervals say nothing of a measurement")
+        if self.warnings:
+            lines.append("intervals are linear, and widened by what the residuals show")
+        elif not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
         return ["parameter", "estimate", "±", "95 % interval", ""], rows, lines
+
+    def _given(self) -> list[str]:
+        """Return lines on numbers of which 1 % matters beside the intervals, most first."""
+        lines = []
+        for name, rates in self.sensitivity.items():
+            low, high = self.intervals[name]
+            half = (high - low) / 2 / (1 if name.endswith(".poisson") else self.estimates[name])
+            most = sorted(rates, key=lambda held: -abs(rates[held]))
+            told = [f"{rates[held]:+.2g} % for {_step(held)}" for held in most]
+            told = told[: sum(0.01 * abs(rate) > 0.5 * half for rate in rates.values())]
+            if told:
+                lines.append(
+                    f"{name} holds for what is given: it changes by {', '.join(told[:GIVEN])}"
+                )
+        return lines
 
     def _value(self, name: str) -> str:
         return self._written(name, self.estimates[name])
@@ -224,3 +265,12 @@ class Fit:
         state["intervals"] = {k: (low, high) for k, (low, high) in state["intervals"].items()}
         state["free"] = tuple(state["free"])
         return Fit(**state)
+
+
+def _step(held: str) -> str:
+    """Return in words what a hundredth of the unit of a sensitivity is."""
+    if held.endswith(".poisson"):
+        return f"0.01 of {held}"
+    if held.rpartition(".")[2] in NUISANCES:
+        return f"{held} of 1 % of the depth"
+    return f"1 % of {held}"
