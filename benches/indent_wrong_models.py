@@ -1,10 +1,10 @@
 """What fits say of models that are wrong: docs/indent_wrong_models.csv.
 
 Curves are made with one set of numbers and fitted with another, by the free modulus of a film, or
-of a bare body: 60 points from 10 to 200 nm, a load that grows at a constant rate for 30 s, a sphere
-of 5 µm, 3 GPa on 70 GPa. Per scenario: the share of curves whose true modulus lies outside of the
-95 % interval, with and without a warning; the share that is warned of, and how often the warning
-names what is wrong. Without structure in the residuals no test can warn: under noise of 1 % of the
+of a bare body: 60 points from 10 to 200 nm, a load that grows at a constant rate for 30 s, a tip of
+5 µm, 3 GPa on 70 GPa. Per scenario: the share of curves whose true modulus lies outside of the 95 %
+interval, with and without a warning; the share that is warned of, and how often the warning names
+what is wrong. Without structure in the residuals no test can warn: under noise of 1 % of the
 largest force at each point a wrong radius looks like another modulus, on a bare body always.
 
     .venv/bin/python benches/indent_wrong_models.py --curves 300
@@ -47,7 +47,7 @@ CAUSES = {
     "thickness": "body.layers[0].thickness",
     "radius": "tip.radius",
     "poisson": "body.layers[0].material.poisson",
-    "correlation": "none of them",
+    "correlation": "noise is correlated",
 }
 """Words by which a warning names what is wrong."""
 NOISES = {
@@ -58,8 +58,8 @@ NOISES = {
 }
 """Standard deviations over the force, and over the largest force."""
 FIRST = next(iter(NOISES))
-"""Noise with which the residuals show each wrong number of a film: there are five times as many
-curves with it."""
+"""Noise with which the residuals show each wrong number of a film: there are ten times as many
+curves of it."""
 BARE = ("right model", "contact point 2 nm", "radius + 20 %", "Poisson's ratio - 0.1")
 """Scenarios without a film."""
 BLOCK = 20
@@ -87,12 +87,12 @@ def block(task: Task) -> tuple[tuple[str, str, str], Counter[str]]:
         return nacre.HalfSpace(nacre.Elastic(70e9, 0.22), [layer])
 
     depth = np.linspace(10e-9, 200e-9, POINTS)
-    load = Indentation(body(YOUNG, FILM), Tip.sphere(FILM["radius"])).curve(approach=depth).load
+    load = Indentation(body(YOUNG, FILM), Tip.paraboloid(FILM["radius"])).curve(approach=depth).load
     time = 30 * load / load[-1]
     measured = depth + wrong.get("zero", 0.0)
     measured = measured + wrong.get("drift", 0.0) * time + wrong.get("compliance", 0.0) * load
     given = FILM | {key: value for key, value in wrong.items() if key in FILM}
-    guess, tip = body(0.7 * YOUNG, given), Tip.sphere(given["radius"])
+    guess, tip = body(0.7 * YOUNG, given), Tip.paraboloid(given["radius"])
     relative, absolute = NOISES[noise]
     counts: Counter[str] = Counter()
     for number in range(first, first + count):
@@ -124,7 +124,7 @@ def main() -> int:
         "--curves",
         type=int,
         default=300,
-        help="curves of a scenario, a fifth of them with other noise",
+        help="curves of a scenario, a tenth of them with other noise or without a film",
     )
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--output", type=Path, default=ROOT / "docs/indent_wrong_models.csv")
@@ -139,7 +139,7 @@ def main() -> int:
     tasks = [
         (*case, first, min(BLOCK, count - first))
         for case in cases
-        for count in [options.curves if case[2] == FIRST else options.curves // 5]
+        for count in [options.curves if case[::2] == ("film", FIRST) else options.curves // 10]
         for first in range(0, count, BLOCK)
     ]
     totals: dict[tuple[str, str, str], Counter[str]] = {case: Counter() for case in cases}

@@ -128,6 +128,8 @@ class Model:
                     f"force must be positive at each point for noise='relative', got {wrong} "
                     f"points that are not; use noise='absolute', or Curve.between"
                 )
+        self.pull = self.force
+        """Force by which a compliance moves each point."""
         self.top = np.concatenate([np.full(len(c), c.force.max()) for c in self.curves])
         """Largest force of the curve of each point."""
         self.floor = {"relative": 0.0, "absolute": math.inf, "mixed": floor}[noise]
@@ -184,7 +186,7 @@ class Model:
         if unknown.kind == "drift":
             assert curve.time is not None
             return np.asarray(curve.time - curve.time[0])
-        return curve.force if unknown.kind == "compliance" else 1.0
+        return self.pull[self.parts[unknown.curve]] if unknown.kind == "compliance" else 1.0
 
     def loads(self, x: Array) -> tuple[Array, Array]:
         """Return the load of each point, and its derivatives with respect to x."""
@@ -253,8 +255,12 @@ class Model:
             jacobian = np.concatenate([jacobian, rows])
         return residuals, jacobian
 
-    def wider(self, free: Sequence[str], nuisance: Sequence[str]) -> Model:
-        """Return the model with more that is free, and with these nuisances."""
+    def wider(self, free: Sequence[str], nuisance: Sequence[str], x: Array) -> Model:
+        """Return the model with more that is free, and with these nuisances.
+
+        A compliance is pulled by the loads at x: the noise of the force would be in its column, and
+        correlate with the residuals.
+        """
         model = Model(
             self.curves,
             self.system,
@@ -266,7 +272,7 @@ class Model:
             prior=self._given,
             bounds={},
         )
-        model.trust = self.trust
+        model.trust, model.pull = self.trust, self.loads(x)[0]
         return model
 
     def trusting(self, trust: float) -> None:

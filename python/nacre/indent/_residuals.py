@@ -44,6 +44,9 @@ PLAUSIBLE = {"": math.log(2.0), "poisson": 0.2} | dict.fromkeys(NUISANCES, 1.0)
 a nuisance over what shifts the deepest point by the range of depth."""
 NAMED = 4
 """Most remedies that a message names."""
+OTHERWISE = "noise is correlated, or the model is another in kind"
+CLOSE = 1.4
+"""Sum of squares that a remedy leaves over that of the best one, up to which it is named too."""
 
 
 def likeliest(model: Model, x: Array) -> tuple[Noise, float]:
@@ -94,7 +97,7 @@ class Held:
         is_timed = all(c.time is not None and np.ptp(c.time) > 0 for c in model.curves)
         kinds = [kind for kind in NUISANCES if kind != "drift" or is_timed]
         try:
-            wider = model.wider(free, kinds)
+            wider = model.wider(free, kinds, x)
             place = np.zeros(len(wider.names))
             place[[wider.names.index(name) for name in model.names]] = x
             _, jacobian = wider.at(place)
@@ -169,9 +172,9 @@ def examined(model: Model, best: Estimate) -> Examined:
         shift = moves[:, first] * change[first]
         after = rest - own[:, first] * share[first] / lengths[first]
         if durbin_watson(after[:count], basis[:count], model.parts)[2] < LEVEL:
-            text += "; none of these alone makes the residuals noise"
+            text += f"; none of these alone makes the rest noise: {OTHERWISE}"
     else:
-        text += "; the noise is correlated, or the model is another in kind"
+        text += f"; {OTHERWISE}"
     # Points that are correlated by r count as (1 − r)/(1 + r): G. V. Bayley and J. M. Hammersley,
     # Suppl. J. R. Stat. Soc. 8 (1946) 184-197, doi:10.2307/2983560.
     fewer = max(due / ratio * 2 - 1, 1.0) * (max(1.0, chi2 / dof) if model.is_known else 1.0)
@@ -222,7 +225,7 @@ def _remedies(names: Sequence[str], chances: Array, change: Array, left: Array) 
         for k in np.argsort(left).tolist()
         if chances[k] < LEVEL and change[k] < PLAUSIBLE.get(kinds[k], PLAUSIBLE[""])
     ]
-    close = [k for k in found if left[k] < 2 * left[found[0]]]
+    close = [k for k in found if left[k] < CLOSE * left[found[0]]]
     return sorted(close, key=lambda k: kinds[k] not in NUISANCES)[:NAMED]
 
 
