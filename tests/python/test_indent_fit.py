@@ -149,6 +149,7 @@ def noisy(seed: int, share: float = 0.01) -> np.ndarray:
     return loads() * np.exp(share * np.random.default_rng(seed).standard_normal(DEPTH.size))
 
 
+@pytest.mark.filterwarnings("ignore:the model does not describe")
 @pytest.mark.parametrize(("depth", "force"), [(1, 1e3), (1, 1e-3), (1, 1e6), (1e3, 1), (1e-3, 1)])
 def test_a_wrong_unit_is_named(depth: float, force: float) -> None:
     data = DEPTH * depth, noisy(6) * force
@@ -163,6 +164,7 @@ def test_points_out_of_order_are_named() -> None:
     assert found.is_identifiable  # the order does not matter without drift
 
 
+@pytest.mark.filterwarnings("ignore:the model does not describe")
 def test_unloading_is_named() -> None:
     depth = np.concatenate([DEPTH, DEPTH[::-1]])
     force = np.concatenate([noisy(6), 0.8 * noisy(7)[::-1]])
