@@ -21,6 +21,7 @@ import multiprocessing
 import os
 import re
 import sys
+import warnings
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -69,8 +70,12 @@ def block(task: tuple[int, int, int]) -> tuple[int, Counter[str]]:
         noise = np.random.default_rng([seed, number]).standard_normal(depth.size)
         force = clean * np.exp(case["sigma"] * noise)
         free = [PATHS[name] for name in case["free"]]
-        found = fit((depth, force), body, tip, free)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", nacre.NacreWarning)
+            found = fit((depth, force), body, tip, free)
         counts["curves"] += 1
+        counts[f"reason noise {found.noise}"] += 1
+        counts["reason of all: a warning"] += bool(found.warnings)
         counts["alarms"] += not found.is_identifiable
         counts["evaluations"] += found.evaluations
         quantile = float(stdtrit(found.dof))

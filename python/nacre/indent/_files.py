@@ -77,7 +77,7 @@ def estimates(fit: Fit) -> xarray.Dataset:
         "force": ("N", "force as measured", [curve.force for curve in fit.curves]),
         "load": ("N", "load of the model", fit.loads),
         "approach": ("m", "depth without nuisances", fit.approaches),
-        "residual": ("1" if fit.noise == "relative" else "N", "residual", fit.residuals),
+        "residual": ("N" if fit.noise == "absolute" else "1", "residual", fit.residuals),
     }
     columns |= {name: ("point", np.concatenate(parts)) for name, (_, _, parts) in points.items()}
     numbers = np.repeat(np.arange(len(fit.curves)), [len(curve) for curve in fit.curves])
@@ -88,7 +88,10 @@ def estimates(fit: Fit) -> xarray.Dataset:
     dataset["low"].attrs["long_name"] = "lower end of the interval of 95 %"
     dataset["high"].attrs["long_name"] = "upper end of the interval of 95 %"
     dataset.attrs = _attributes("fit of indentation curves", fit)
-    dataset.attrs |= {name: getattr(fit, name) for name in ("chi2", "dof", "sigma", "noise")}
+    dataset.attrs |= {
+        name: getattr(fit, name) for name in ("chi2", "dof", "sigma", "noise", "floor")
+    }
+    dataset.attrs["warnings"] = "\n".join(fit.warnings)
     dataset.attrs["reasons"] = "\n".join(f"{name}: {text}" for name, text in fit.reasons.items())
     dataset.attrs[STATE] = json.dumps(fit.to_dict())
     return dataset

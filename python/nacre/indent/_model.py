@@ -15,7 +15,7 @@ from nacre.indent._system import System
 from nacre.indent.curves import Curve
 
 Array = npt.NDArray[np.float64]
-Noise = Literal["relative", "absolute"]
+Noise = Literal["relative", "absolute", "mixed"]
 
 NUISANCES = ("contact_point", "drift", "compliance")
 """Nuisances of a curve: depth of its zero [m], drift [m/s], compliance of the machine [m/N]."""
@@ -77,11 +77,27 @@ class Unknown:
         return self.place(self.low), self.place(self.high)
 
 
+def uniform(force: Array, floor: Array) -> tuple[Array, Array]:
+    """Return forces on a scale on which noise of √(F² + c²) is uniform, and the scale's rate.
+
+    With the floor c it is arsinh F/c; ln F where that is 0, and F where it is infinite.
+    B. P. Durbin et al., Bioinformatics 18 (2002) S105-S110,
+    doi:10.1093/bioinformatics/18.suppl_1.S105.
+    """
+    if floor[0] == 0:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.log(force), 1 / force
+    if math.isinf(floor[0]):
+        return force, np.ones_like(force)
+    return np.arcsinh(force / floor), 1 / np.hypot(force, floor)
+
+
 class Model:
     """Weighted residuals of curves and their Jacobian.
 
-    The true depth is d − d0 − v t − C F. Residuals are ln F − ln P over the relative noise, or
-    F − P over the absolute noise; a prior adds one residual.
+    The true depth is d − d0 − v t − C F. Residuals are ln P − ln F over the relative noise, P − F
+    over the absolute noise, or arsinh P/c − arsinh F/c over the share where noise is of both kinds;
+    a prior adds one residual.
     """
 
     def __init__(
@@ -92,6 +108,7 @@ class Model:
         nuisance: Sequence[str],
         *,
         noise: Noise,
+        floor: float = 0.0,
         sigma: float | None,
         prior: Mapping[str, tuple[float, float]],
         bounds: Mapping[str, tuple[float, float]],
@@ -111,17 +128,22 @@ class Model:
                     f"force must be positive at each point for noise='relative', got {wrong} "
                     f"points that are not; use noise='absolute', or Curve.between"
                 )
-            self.log = np.log(self.force)
-        self.weight = np.ones_like(self.depth)
-        if noise == "absolute":
-            for part in self.parts:
-                self.weight[part] = 1 / self.force[part].max()
+        self.pull = self.force
+        """Force by which a compliance moves each point."""
+        self.top = np.concatenate([np.full(len(c), c.force.max()) for c in self.curves])
+        """Largest force of the curve of each point."""
+        self.floor = {"relative": 0.0, "absolute": math.inf, "mixed": floor}[noise]
+        """Force over the largest one below which the noise ceases to fall."""
+        self.scaled, _ = uniform(self.force, self.floor * self.top)
+        self.weight = 1 / self.top if noise == "absolute" else np.ones_like(self.depth)
+        self.sigma = sigma
         self.is_known = sigma is not None
         if sigma is not None:
             self.weight = np.full_like(self.depth, 1 / sigma)
         self.prior = [(self.names.index(name), *pair) for name, pair in prior.items()]
         self.trust = 1.0
         """Standard deviation of the residuals, by which those of the prior are multiplied."""
+        self._given = prior
         self.low, self.high = (
             np.array([unknown.bounds[side] for unknown in self.unknowns]) for side in (0, 1)
         )
@@ -164,7 +186,7 @@ class Model:
         if unknown.kind == "drift":
             assert curve.time is not None
             return np.asarray(curve.time - curve.time[0])
-        return curve.force if unknown.kind == "compliance" else 1.0
+        return self.pull[self.parts[unknown.curve]] if unknown.kind == "compliance" else 1.0
 
     def loads(self, x: Array) -> tuple[Array, Array]:
         """Return the load of each point, and its derivatives with respect to x."""
@@ -218,13 +240,10 @@ class Model:
         except (ValueError, RuntimeError, OverflowError):
             shape = self.depth.size + len(self.prior), len(self.unknowns)
             return np.full(shape[0], np.nan), np.full(shape, np.nan)
-        if self.noise == "relative":
-            with np.errstate(divide="ignore", invalid="ignore"):
-                residuals = (np.log(load) - self.log) * self.weight
-                jacobian = columns * (self.weight / load)[:, None]
-        else:
-            residuals = (load - self.force) * self.weight
-            jacobian = columns * self.weight[:, None]
+        scaled, rate = uniform(load, self.floor * self.top)
+        residuals = (scaled - self.scaled) * self.weight
+        with np.errstate(invalid="ignore"):
+            jacobian = columns * (self.weight * rate)[:, None]
         if self.prior:
             rates = self.rates(x)
             rows = np.zeros((len(self.prior), len(self.unknowns)))
@@ -235,6 +254,26 @@ class Model:
             residuals = np.concatenate([residuals, more])
             jacobian = np.concatenate([jacobian, rows])
         return residuals, jacobian
+
+    def wider(self, free: Sequence[str], nuisance: Sequence[str], x: Array) -> Model:
+        """Return the model with more that is free, and with these nuisances.
+
+        A compliance is pulled by the loads at x: the noise of the force would be in its column, and
+        correlate with the residuals.
+        """
+        model = Model(
+            self.curves,
+            self.system,
+            [*self.free, *free],
+            nuisance,
+            noise=self.noise,
+            floor=self.floor,
+            sigma=self.sigma,
+            prior=self._given,
+            bounds={},
+        )
+        model.trust, model.pull = self.trust, self.loads(x)[0]
+        return model
 
     def trusting(self, trust: float) -> None:
         """Set the standard deviation of the residuals against which priors are weighed."""

@@ -27,6 +27,10 @@ REACH = 1.6
 more is to be learnt, and points on ever thinner layers cost seconds."""
 STEPS = 12
 """Most steps to an end; three or four suffice where the problem is nearly linear."""
+DOUBLINGS = 60
+"""Most doublings of a distance until it brackets an end: a factor of 1e18."""
+LEAST = 1e-9
+"""Least standard deviation of noise that is estimated, over the force: the accuracy of curves."""
 BISECTIONS = 8
 """Bisections after which an end is known to 1 % of the interval."""
 LONGEST = 1.0
@@ -66,7 +70,7 @@ def estimated(model: Model, x: Array) -> Estimate:
 
     residuals, jacobian = model.at(x)
     chi2, dof = float(residuals @ residuals), model.dof
-    variance = 1.0 if model.is_known else chi2 / dof
+    variance = 1.0 if model.is_known else max(chi2 / dof, LEAST**2)
     quantile = 1.959963984540054 if model.is_known else float(stdtrit(dof, 0.975))
     lengths = np.linalg.norm(jacobian, axis=0)
     with np.errstate(divide="ignore"):
@@ -183,13 +187,15 @@ def _bracketed(model: Model, best: Estimate, k: int, side: float, level: float) 
     """
     x = best.x.copy()
     near, far = 0.0, best.quantile * float(best.spread[k])
-    while True:
+    for _ in range(DOUBLINGS):
         x[k] = best.x[k] + side * far
         if far > REACH or not model.low[k] < x[k] < model.high[k]:
             return side * math.inf
         if _least(model, x, k) > level:
             break
-        near, far = far, 1.5 * far
+        near, far = far, 2 * far
+    else:
+        return side * math.inf
     for _ in range(BISECTIONS):
         x[k] = best.x[k] + side * 0.5 * (near + far)
         if _least(model, x, k) > level:

@@ -15,6 +15,8 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._display import aligned, table
+from nacre.indent._model import NUISANCES
+from nacre.indent._residuals import ROUNDING
 from nacre.indent._system import System, unit_of
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
@@ -26,6 +28,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = npt.NDArray[np.float64]
+
+UNFIT = "the model does not fit the data"
+"""Reason why no parameter is identifiable where the residuals are no noise."""
+
+GIVEN = 4
+"""Most numbers on which a table says that an estimate depends."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,8 +52,14 @@ class Fit:
     """Intervals of 95 %: by profile likelihood of free parameters, linear of nuisances."""
     reasons: dict[str, str]
     """Why a parameter is not identifiable, for those that are not."""
+    sensitivity: dict[str, dict[str, float]]
+    """Change of each free parameter over that of each number that the fit holds, the other free
+    parameters following. Numbers change by their logarithms, but Poisson's ratios by themselves,
+    and contact point, drift and compliance by what shifts the deepest point by the range of depth.
+    """
     residuals: list[Array]
-    """Residuals of each curve: ln(F/P) for relative noise, F − P [N] for absolute."""
+    """Residuals of each curve: F − P [N] for absolute noise, else ln(F/P), or for mixed noise the
+    difference of arsinh(F/c), which is ln(F/P) far above the floor c."""
     loads: list[Array]
     """Loads P of the model at the points of each curve [N]."""
     approaches: list[Array]
@@ -55,11 +69,15 @@ class Fit:
     dof: int
     """Degrees of freedom."""
     sigma: float
-    """Standard deviation of the noise, given or estimated: a share of the force, or a force [N]."""
+    """Standard deviation of the noise, given or estimated: a force [N] for absolute noise, else a
+    share of √(F² + c²)."""
     is_sigma_known: bool
     """Whether the noise was given."""
-    noise: Literal["relative", "absolute"]
-    """Kind of noise."""
+    noise: Literal["relative", "absolute", "mixed"]
+    """Kind of noise, given or the likeliest."""
+    floor: float
+    """Force c over the largest one of a curve below which noise ceases to fall with the force: 0
+    for relative noise, infinite for absolute."""
     condition: float
     """Condition number of the Jacobian with columns of unit length: a symptom only."""
     is_profiled: bool
@@ -79,7 +97,9 @@ class Fit:
     evaluations: int
     """How often the curves were computed."""
     warnings: tuple[str, ...] = ()
-    """What makes the contacts doubtful, in sentences; each was also issued as a `NacreWarning`."""
+    """How the residuals show that the model does not describe the data, and what to free, with
+    errors and intervals wider and linear; what makes the contacts doubtful. Each was also issued as
+    a `NacreWarning`."""
 
     @property
     def identifiable(self) -> dict[str, bool]:
@@ -141,20 +161,42 @@ class Fit:
             verdict = "" if name not in self.reasons else "NOT IDENTIFIABLE"
             rows.append([name, self._value(name), error, f"{low} to {high}", verdict])
         lines = [f"{name} is not identifiable: {text}" for name, text in self.reasons.items()]
-        if self.noise == "relative":
-            noise = f"{100 * self.sigma:.3g} % of the force"
-        else:
+        if self.noise == "absolute":
             noise = written(self.sigma, "N", 3)
+        else:
+            noise = f"{100 * self.sigma:.3g} % of the force"
+        if self.noise == "mixed":
+            noise += f", of at least {100 * self.floor:.2g} % of the largest"
         points = sum(map(len, self.curves))
         lines.append(
             f"noise {noise} ({'given' if self.is_sigma_known else 'estimated'}), "
             f"χ² {self.chi2 if self.is_sigma_known else self.dof:.4g} at {self.dof} degrees of "
             f"freedom, {points} points, condition {self.condition:.3g}"
         )
-        if not self.is_profiled:
+        lines += [f"warning: {text}" for text in self.warnings]
+        lines += self._given()
+        if self.sigma < ROUNDING * (1 if self.noise != "absolute" else self.curves[0].force.max()):
+            lines.append("residuals are rounding: the intervals say nothing of a measurement")
+        if UNFIT in self.reasons.values():
+            lines.append("intervals are linear, and widened by what the residuals show")
+        elif not self.is_profiled:
             lines.append("intervals are linear, and no other start was tried: profile=False")
-        lines += [f"warning: {warning}" for warning in self.warnings]
         return ["parameter", "estimate", "±", "95 % interval", ""], rows, lines
+
+    def _given(self) -> list[str]:
+        """Return lines on numbers of which 1 % matters beside the intervals, most first."""
+        lines = []
+        for name, rates in self.sensitivity.items():
+            low, high = self.intervals[name]
+            half = (high - low) / 2 / (1 if name.endswith(".poisson") else self.estimates[name])
+            most = sorted(rates, key=lambda held: -abs(rates[held]))
+            told = [f"{rates[held]:+.2g} % for {_step(held)}" for held in most]
+            told = told[: sum(0.01 * abs(rate) > 0.5 * half for rate in rates.values())]
+            if told:
+                lines.append(
+                    f"{name} holds for what is given: it changes by {', '.join(told[:GIVEN])}"
+                )
+        return lines
 
     def _value(self, name: str) -> str:
         return self._written(name, self.estimates[name])
@@ -215,16 +257,18 @@ class Fit:
         ValueError
             If a key is missing or unknown, a value does not fit, or a newer version wrote the data.
         """
-        state = checked_state(
-            {"warnings": [], **data}, "Fit", {field.name for field in fields(Fit)}
-        )
+        state = checked_state(data, "Fit", {field.name for field in fields(Fit)})
         with refusing("Fit"):
             for name in ("body", "tip", "counterbody", "adhesion"):
                 state[name] = decode(state[name])
             for name in ("estimates", "standard_errors"):
                 state[name] = {key: float(value) for key, value in state[name].items()}
-            for name in ("chi2", "sigma", "condition"):
+            for name in ("chi2", "sigma", "floor", "condition"):
                 state[name] = float(state[name])
+            state["sensitivity"] = {
+                name: {held: float(rate) for held, rate in rates.items()}
+                for name, rates in state["sensitivity"].items()
+            }
             for name in ("dof", "evaluations"):
                 state[name] = operator.index(state[name])
             state["curves"] = [
@@ -257,9 +301,19 @@ class Fit:
                 [part.shape for part in parts] == points
                 for parts in (self.residuals, self.loads, self.approaches)
             )
-            and self.noise in ("relative", "absolute")
+            and self.noise in ("relative", "absolute", "mixed")
+            and {*self.sensitivity} <= names
             and max(abs(self.dof), abs(self.evaluations)) < 1 << 53
             and isinstance(self.is_sigma_known, bool)
             and isinstance(self.is_profiled, bool)
             and System.holds(self.body, self.tip, self.counterbody, self.adhesion)
         )
+
+
+def _step(held: str) -> str:
+    """Return in words what a hundredth of the unit of a sensitivity is."""
+    if held.endswith(".poisson"):
+        return f"0.01 of {held}"
+    if held.rpartition(".")[2] in NUISANCES:
+        return f"{held} of 1 % of the depth"
+    return f"1 % of {held}"

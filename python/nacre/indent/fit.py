@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.indent._model import Model
+from nacre.indent._model import Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
-from nacre.indent._result import Fit
+from nacre.indent._residuals import Examined, examined, likeliest
+from nacre.indent._result import UNFIT, Fit
 from nacre.indent._system import System
 from nacre.indent.checks import check, contact_point, suspicious_units
 from nacre.indent.curves import Curve
@@ -36,7 +37,7 @@ def fit(
     counterbody: core.HalfSpace | core.Elastic | None = None,
     adhesion: core.Adhesion | None = None,
     nuisance: Sequence[str] = (),
-    noise: Literal["relative", "absolute"] = "relative",
+    noise: Literal["auto", "relative", "absolute"] = "auto",
     sigma: float | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
@@ -68,12 +69,13 @@ def fit(
         Adhesion within the contact (JKR) or outside (DMT).
     nuisance : sequence of str
         Any of "contact_point", "drift" (curves with a time) and "compliance".
-    noise : {"relative", "absolute"}
-        Noise of the force: a share of each force, or the same at each point.
+    noise : {"auto", "relative", "absolute"}
+        Noise of the force: a share of each force, or the same at each point. By default the
+        likelier of these by what varies from point to point, or both where that is likelier.
     sigma : float, optional
-        Standard deviation of the noise, a share or [N]. By default it is estimated from the
-        residuals, as a share of a curve's largest force where it is absolute; intervals are then
-        Student's.
+        Standard deviation of the noise, a share or [N], where `noise` is given. By default it is
+        estimated from the residuals, as a share of a curve's largest force where it is absolute;
+        intervals are then Student's.
     prior : mapping, optional
         What is known otherwise of free parameters: value and standard deviation by name.
     bounds : mapping, optional
@@ -100,10 +102,19 @@ def fit(
     Warns
     -----
     NacreWarning
-        If points are out of order, unloading is mixed in, or a unit is likely to be wrong.
+        If points are out of order, unloading is mixed in, a unit is likely to be wrong, or the
+        model does not describe the data; `Fit.warnings` has what was said of the model.
 
     Notes
     -----
+    Residuals must be noise: neighbours without correlation, by Durbin and Watson's ratio; without a
+    part that a number held by the fit would explain, such as the contact point or a thickness, by
+    score tests; and of the size of `sigma` where that is given. Otherwise no parameter is
+    identifiable, the warning names what to free, and intervals are linear and wider: by the
+    correlation, and by what the first remedy would change. What no residual shows, such as the
+    radius of a paraboloid on a bare body, remains: estimates hold for the numbers that are given,
+    and `Fit.sensitivity` says how they depend on them.
+
     A parameter is identifiable if its 95 % interval by profile likelihood closes within the bounds
     and is at most a factor of exp(0.5) either way, if this agrees with the linear interval within a
     factor of 1.5, and if no other start leads to a minimum outside of it with a χ² that is less
@@ -132,16 +143,21 @@ def fit(
     for curve in curves:
         check(curve, stacklevel=3)
         _check_units(curve, system)
-    model = Model(
-        curves,
-        system,
-        free,
-        nuisance,
-        noise=noise,
-        sigma=sigma,
-        prior=prior or {},
-        bounds=bounds or {},
-    )
+
+    def made(noise: Noise, floor: float = 0.0) -> Model:
+        return Model(
+            curves,
+            system,
+            free,
+            nuisance,
+            noise=noise,
+            floor=floor,
+            sigma=sigma,
+            prior=prior or {},
+            bounds=bounds or {},
+        )
+
+    model = made("absolute" if noise == "auto" else noise)
     if model.dof < 1:
         raise ValueError(
             f"data must have more points than free parameters, {len(model.names)}, got "
@@ -150,6 +166,10 @@ def fit(
     tell = progress or (lambda text: None)
     tell("first estimate")
     start = _start(model)
+    if noise == "auto":
+        rough = minimum(model, start, rough=True)
+        model = made(*likeliest(model, rough))
+        start = rough if math.isfinite(model.chi2(rough)) else _start(model)
     best = _best(model, start)
     minima: list[tuple[Array, float]] = []
     if profile:
@@ -162,13 +182,16 @@ def fit(
                 best = estimated(model, minimum(model, x))
             else:
                 minima.append((x, chi2))
+    found = examined(model, best)
+    for text in found.warnings:
+        warnings.warn(text, core.NacreWarning, stacklevel=2)
     ends: dict[str, tuple[float, float]] = {}
-    if profile:
+    if profile and not found.warnings:
         for k, unknown in enumerate(model.unknowns):
             if not unknown.kind:
                 tell(f"interval of {unknown.name}")
                 ends[unknown.name] = interval(model, best, k)
-    return _result(model, best, ends, minima, profile)
+    return _result(model, found, ends, minima, profile)
 
 
 def _curves(data: Data) -> list[Curve]:
@@ -187,10 +210,14 @@ def _curves(data: Data) -> list[Curve]:
 
 
 def _check_arguments(noise: str, sigma: float | None, nuisance: Sequence[str]) -> None:
-    if noise not in ("relative", "absolute"):
-        raise ValueError(f"noise must be 'relative' or 'absolute', got {noise!r}")
+    if noise not in ("auto", "relative", "absolute"):
+        raise ValueError(f"noise must be 'auto', 'relative' or 'absolute', got {noise!r}")
     if sigma is not None and not 0 < sigma < math.inf:
         raise ValueError(f"sigma must be positive and finite, got {sigma}")
+    if sigma is not None and noise == "auto":
+        raise ValueError(
+            "noise must be 'relative' or 'absolute' where sigma is given, as a share or in newtons"
+        )
     if isinstance(nuisance, str):
         raise TypeError(f"nuisance must be a sequence of names, got {nuisance!r}")
 
@@ -300,11 +327,12 @@ def _places(model: Model, starts: Sequence[Mapping[str, float]], x: Array) -> li
 
 def _result(
     model: Model,
-    best: Estimate,
+    examined: Examined,
     ends: dict[str, tuple[float, float]],
     minima: list[tuple[Array, float]],
     profile: bool,
 ) -> Fit:
+    best = examined.estimate
     x, rates = best.x, model.rates(best.x)
     spread = best.spread
     intervals = {}
@@ -314,7 +342,7 @@ def _result(
         low, high = (_value(unknown.value, end) for end in pair)
         intervals[unknown.name] = low, high
     load, _ = model.loads(x)
-    rest = np.log(model.force / load) if model.noise == "relative" else model.force - load
+    rest = -model.at(x)[0][: load.size] / model.weight
     approach = model.approach(x)
     sigma = 1 / float(model.weight[0]) * (1.0 if model.is_known else math.sqrt(best.variance))
     with np.errstate(invalid="ignore"):
@@ -329,7 +357,9 @@ def _result(
         covariance=covariance,
         correlation=best.correlation,
         intervals=intervals,
-        reasons=reasons(model, best, ends, minima),
+        reasons=reasons(model, best, ends, minima)
+        | dict.fromkeys(model.free if examined.warnings else (), UNFIT),
+        sensitivity=examined.sensitivity,
         residuals=[rest[part] for part in model.parts],
         loads=[load[part] for part in model.parts],
         approaches=[approach[part] for part in model.parts],
@@ -338,6 +368,7 @@ def _result(
         sigma=sigma,
         is_sigma_known=model.is_known,
         noise=model.noise,
+        floor=model.floor,
         condition=best.condition,
         is_profiled=profile,
         free=tuple(model.free),
@@ -347,7 +378,7 @@ def _result(
         counterbody=system.counterbody,
         adhesion=system.adhesion,
         evaluations=model.evaluations,
-        warnings=tuple(told),
+        warnings=(*examined.warnings, *told),
     )
 
 

@@ -142,11 +142,11 @@ def _draw(fit: Fit, axes: Axes, number: int) -> None:
 def _residuals(fit: Fit, axes: Axes, number: int) -> None:
     curve, rest = fit.curves[number], fit.residuals[number]
     depth = Scale.of(float(np.abs(curve.depth).max()), "m")
-    if fit.noise == "relative":
-        factor, label = 100.0, "residual [%]"
-    else:
+    if fit.noise == "absolute":
         scale = Scale.of(float(np.abs(rest).max()), "N")
         factor, label = scale.factor, f"residual [{scale.unit}]"
+    else:
+        factor, label = 100.0, "residual [%]"
     axes.axhspan(-2 * factor * fit.sigma, 2 * factor * fit.sigma, color="0.93", zorder=0)
     axes.axhline(0.0, color="0.6", linewidth=0.6)
     colour = COLOURS[number % len(COLOURS)]
