@@ -65,7 +65,9 @@ fn waves_of_the_period_are_exact() -> Result<()> {
         let mut ratios: Vec<f64> = rows.iter().map(|row| number(row, "nu")).collect();
         ratios.dedup();
         for poisson in ratios {
-            let rows = rows.iter().filter(|row| number(row, "nu") == poisson);
+            let rows = rows
+                .iter()
+                .filter(|row| (number(row, "nu") - poisson).abs() < 1e-9);
             let [places, due] = [place, value].map(|key| {
                 let values = rows.clone().map(|row| number(row, key));
                 values.collect::<Vec<f64>>()
