@@ -236,9 +236,9 @@ impl Ends {
             let nodes = Nodes::new(nearest, dx, nx - beyond);
             let endings: Vec<&Ending> = ends.iter().map(|end| &end.ending).collect();
             let datum = (high - low).max(2.0 * (x - low).abs().max((high - x).abs()));
-            let found = known
-                .iter()
-                .find(|(n, d, e, _)| *n == nodes && *d == datum && *e == endings);
+            let found = known.iter().find(|(n, d, e, _)| {
+                *n == nodes && d.to_bits() == datum.to_bits() && *e == endings
+            });
             let coefficients = match found {
                 Some((.., coefficients)) => coefficients.clone(),
                 None => threads.run(|| total(&endings, &nodes, (grid, datum), threads))?,

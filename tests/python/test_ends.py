@@ -289,3 +289,11 @@ def test_no_warning_without_contact_at_the_ends() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", nacre.NacreWarning)
         nacre.solve(nacre.Sphere(5e-3), body, load=1.0)
+
+
+def test_stresses_near_ends_of_periodic_grids_are_refused() -> None:
+    body = nacre.HalfSpace(STEEL, ends=(-1e-4, None))
+    grid = nacre.Grid((32, 32), (4e-4, 4e-4), periodic=(False, True))
+    solution = nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=1.0)
+    with pytest.raises(ValueError, match="needs a grid that is not periodic"):
+        solution.stress(1e-5)

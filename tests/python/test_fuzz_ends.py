@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from typing import Any
 
 import numpy as np
 from hypothesis import HealthCheck, assume, given, settings
@@ -63,7 +64,7 @@ def solved(
     pair: tuple[nacre.HalfSpace, nacre.HalfSpace],
     grid: nacre.Grid,
     heights: np.ndarray,
-    **motion: float | tuple[float | None, float | None],
+    **motion: Any,
 ) -> nacre.Solution:
     """Return the contact of two bodies and a map of heights, by the whole operator."""
     shape = nacre.HeightMap(heights, grid.spacing, center=grid.center, periodic=grid.periodic)

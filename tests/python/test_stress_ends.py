@@ -108,13 +108,11 @@ def test_the_vtk_file_has_nothing_beyond_an_end(solution: nacre.Solution, tmp_pa
 
 
 @pytest.mark.parametrize("quantity", ["von_mises", "xx", "tension"])
-def test_pictures_leave_out_what_is_beyond_an_end(
-    solution: nacre.Solution, quantity: str, tmp_path: Path
-) -> None:
+def test_pictures_leave_out_what_is_beyond_an_end(solution: nacre.Solution, quantity: str) -> None:
     axes = plot.stress_section(solution, quantity, rows=8)
-    axes.figure.savefig(tmp_path / "a.png")
+    axes.figure.canvas.draw()
     (mesh, *_) = axes.collections
-    drawn = np.ma.getmaskarray(mesh.get_array())
+    drawn = np.ma.getmaskarray(np.ma.asarray(mesh.get_array()))
     np.testing.assert_array_equal(drawn[0], (GRID.x < LOW) | (GRID.x > HIGH))
     low, high = mesh.get_clim()
     assert np.isfinite([low, high]).all()
@@ -123,7 +121,7 @@ def test_pictures_leave_out_what_is_beyond_an_end(
 
 def test_interface_maps_leave_out_what_is_beyond_an_end(solution: nacre.Solution) -> None:
     for quantity in ("shear", "normal"):
-        axes = plot.interface_map(solution, quantity=quantity)  # type: ignore[arg-type]
+        axes = plot.interface_map(solution, quantity=quantity)
         axes.figure.canvas.draw()
         assert np.isfinite(axes.collections[0].get_clim()).all()
 
