@@ -109,7 +109,8 @@ impl Problem<'_> {
         }
     }
 
-    /// δ with which the residuals `r` − C δ of sticking cells vanish in the mean; across the tractions, where none sticks.
+    /// δ with which the residuals `r` − C δ vanish in the mean: those of sticking cells, and those across the tractions of
+    /// slipping ones.
     /// In rolling M is not symmetric, and M C is no weight: M weighs the residuals themselves.
     fn multipliers(&self, weights: &[Vec<f64>], states: &[State], r: &[f64]) -> Vec<f64> {
         if self.columns.is_empty() {
@@ -118,21 +119,10 @@ impl Problem<'_> {
         if self.operator.rolling.is_some() {
             return Linear::new(self.operator, states, self.columns.clone()).multipliers(r);
         }
-        let sticks = states.contains(&State::Stick);
-        let weigh = |(weight, column): (&Vec<f64>, &Vec<f64>)| {
-            if !sticks {
-                let mut across = column.clone();
-                restrict(states, &mut across);
-                return across;
-            }
-            let both = states.iter().chain(states);
-            let of_cell = |(value, state): (&f64, &State)| match state {
-                State::Stick => *value,
-                _ => 0.0,
-            };
-            weight.iter().zip(both).map(of_cell).collect()
-        };
-        let weights: Vec<Vec<f64>> = weights.iter().zip(&self.columns).map(weigh).collect();
+        let mut weights = weights.to_vec();
+        weights
+            .iter_mut()
+            .for_each(|weight| restrict(states, weight));
         let right: Vec<f64> = weights.iter().map(|weight| dot(weight, r)).collect();
         small_system(&self.columns, &weights, &right)
     }

@@ -14,6 +14,7 @@ use super::arguments::keywords::Keywords;
 use super::arguments::{count, read_only};
 use super::background::{self, Caller};
 use super::errors::{ConvergenceError, NacreWarning};
+use super::grid::PyGrid;
 use super::shapes::Shape;
 use super::state::{self, Reduced, from_dict_docs, to_dict_docs};
 use super::stress::keywords::{
@@ -125,6 +126,12 @@ fn cached<'py>(
 
 #[pymethods]
 impl PySolution {
+    /// Grid.
+    #[getter]
+    fn grid(&self) -> PyGrid {
+        PyGrid(*self.solution.grid())
+    }
+
     /// Pressure [Pa], at least 0.
     #[getter]
     fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {

@@ -485,3 +485,29 @@ fn a_break_stops_yielding() -> Result<()> {
     assert!(stopped.report.balance.force < 1e-12);
     Ok(())
 }
+
+/// Loads that leave few cells below the hardness: those that newly touch start from no pressure. Loads at which the last round was
+/// solved to a thousandth alone, and histories of loads of all sizes.
+#[test]
+fn few_cells_below_the_hardness_are_solved_to_the_tolerance() -> Result<()> {
+    let steel = Elastic::new(210e9, 0.3)?;
+    let contact = Contact::plan(steel, Grid::new([64, 64], [4e-4, 4e-4])?, Setup::default())?;
+    let (ball, hardness) = (Paraboloid::new(5e-3, 5e-3)?, 3.6985e8);
+    for load in [
+        0.5125, 0.8619, 2.2637, 4.6412, 4.995, 5.0, 5.05, 5.5195, 6.8972,
+    ] {
+        let found = contact.solve(&ball, &Motion::load(load), &limited(hardness))?;
+        check_bounds(&load.to_string(), &contact, &ball, &found, &|_| hardness)?;
+    }
+    let loads = crate::support::random::uniform([1, 40], 11).mapv(|r| 10_f64.powf(2.3 * r - 1.0));
+    let mut last: Option<Solution> = None;
+    for load in &loads {
+        let options = last
+            .as_ref()
+            .map_or_else(|| limited(hardness), |s| next(s, hardness));
+        let found = contact.solve(&ball, &Motion::load(*load), &options)?;
+        assert!(found.report.converged(), "{load}: {:?}", found.report);
+        last = Some(found);
+    }
+    Ok(())
+}

@@ -25,12 +25,6 @@ pub(in crate::contact) type Elastic<'a> = dyn FnMut(
 /// Rounds of yielding after which the solve is given up: rough contacts take some ten to thirty.
 const ROUNDS: usize = 300;
 
-/// Rounds without fewer cells on the wrong side, after which one cell changes at a time until there are.
-const PATIENCE: usize = 8;
-
-/// Largest gap of a cell that yields, relative to the tolerance: above the errors of the parts, so that these change no cell.
-const OPEN: f64 = 0.3;
-
 /// Load that is left to the cells that do not yield, relative to all, which is rounding: a tenth of what counts as
 /// balanced.
 const NO_LOAD: f64 = 2e-14;
@@ -62,8 +56,6 @@ pub(in crate::contact) struct Yielding<'a, 'b> {
     displaced: Vec<f64>,
     /// Overlap −g of all cells after the last round.
     overlap: Vec<f64>,
-    /// Fewest cells on the wrong side so far, and rounds since then.
-    fewest: [usize; 2],
     criteria: StopCriteria,
     elastic: &'a mut Elastic<'b>,
     watch: &'a mut Watch<'b>,
@@ -86,7 +78,6 @@ impl<'a, 'b> Yielding<'a, 'b> {
             held: zeros(),
             displaced: zeros(),
             overlap: zeros(),
-            fewest: [usize::MAX, 0],
             criteria,
             elastic,
             watch,
@@ -144,32 +135,22 @@ impl<'a, 'b> Yielding<'a, 'b> {
     }
 
     /// Finds which cells yield, from the pressure of those that did not and the overlap of those that did. False
-    /// where they are the same as before. Blocks of cells change, and single ones where blocks lead nowhere: Júdice & Pires,
-    /// Comput. Oper. Res. 21 (1994) 587, doi:10.1016/0305-0548(94)90106-6.
+    /// where they are the same as before.
     ///
     /// # Errors
     /// Eccentricity or moment that no pressure up to the hardness has.
     fn update(&mut self, problem: &Problem, pressure: &[f64]) -> Result<bool> {
-        let slack = OPEN * self.criteria.tolerance * self.scale(problem, pressure);
-        let is_wrong = |k: &usize| match self.held[*k] > 0.0 {
-            true => self.overlap[*k] < -slack,
-            false => pressure[*k] > self.hardness.at(*k),
-        };
-        let mut wrong: Vec<usize> = (0..pressure.len()).filter(is_wrong).collect();
-        self.fewest = match wrong.len() < self.fewest[0] {
-            true => [wrong.len(), 0],
-            false => [self.fewest[0], self.fewest[1] + 1],
-        };
-        // Sets that all change may come back; the last wrong cell alone leads to the end.
-        if self.fewest[1] > PATIENCE {
-            wrong.drain(..wrong.len().saturating_sub(1));
+        let slack = TIGHTER * self.criteria.tolerance * self.scale(problem, pressure);
+        let mut changed = false;
+        let mut joining = Vec::new();
+        for (k, held) in self.held.iter_mut().enumerate() {
+            let limit = self.hardness.at(k);
+            if *held > 0.0 && self.overlap[k] < -slack {
+                (*held, changed) = (0.0, true);
+            } else if *held <= 0.0 && pressure[k] > limit {
+                joining.push((k, pressure[k] / limit));
+            }
         }
-        let (leaving, joining): (Vec<usize>, Vec<usize>) =
-            wrong.into_iter().partition(|&k| self.held[k] > 0.0);
-        leaving.iter().for_each(|&k| self.held[k] = 0.0);
-        let changed = !leaving.is_empty();
-        let excess = |k: usize| (k, pressure[k] / self.hardness.at(k));
-        let mut joining: Vec<(usize, f64)> = joining.into_iter().map(excess).collect();
         // Where the others could not bear the rest, only those yield that bear most too much.
         joining.sort_by(|(_, a), (_, b)| b.total_cmp(a));
         let mut count = joining.len();
@@ -244,12 +225,13 @@ impl<'a, 'b> Yielding<'a, 'b> {
         let cells = slice_mut(&mut start).iter_mut().zip(rest.gap);
         cells.for_each(|(p, h)| *p = if h.is_finite() { *p } else { 0.0 });
         let balanced = rest.freedoms.balance(slice_mut(&mut start));
-        // The same error is a larger one of the lesser displacement under the rest of the load.
-        let (whole, part) = (
-            self.scale(rest, slice(&start)),
-            slice(&start).iter().copied(),
-        );
-        let less = whole / local(rest, part).min(whole);
+        // The same error is a larger one of the lesser displacement under the rest of the load, where that is known.
+        let less = if balanced {
+            let whole = self.scale(rest, slice(&start));
+            whole / local(rest, slice(&start).iter().copied()).min(whole)
+        } else {
+            1.0
+        };
         let (before, most) = (self.outcome, self.criteria.max_iterations);
         let criteria = StopCriteria {
             tolerance: (TIGHTER * less * self.criteria.tolerance).min(LOOSEST),
