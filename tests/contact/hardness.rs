@@ -420,10 +420,9 @@ fn wrong_input_is_refused() -> Result<()> {
         ..Motion::load(0.99 * 1e-3 * area)
     };
     let refused = contact.solve(&punch, &eccentric, &limited(1e-3));
-    assert_eq!(
-        refused.expect_err("it must be refused").to_string(),
-        "no pressure up to the hardness has this eccentricity or moment: give a larger hardness or a smaller load"
-    );
+    let refused = refused.expect_err("it must be refused").to_string();
+    let expected = "moment, or load times eccentricity, along x must be between ";
+    assert!(refused.starts_with(expected), "{refused}");
     for wrong in [0.0, -1.0, f64::NAN] {
         assert_eq!(
             message(&limited(wrong)),

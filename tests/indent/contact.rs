@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use nacre::indent::{Form, Indent, Stack, Tip};
+use nacre::indent::{Adhesion, Form, Indent, Stack, Tip};
 use nacre::{Elastic, Error, HalfSpace, Layer, Result, Substrate};
 use serde_json::Value;
 
@@ -39,8 +39,10 @@ fn two_programs_find_the_same() -> Result<()> {
             let tip = tip(case, a)?;
             let indent = Indent::new(&stack, &tip);
             let is_flat = tip.fixed_radius().is_some();
+            // A punch on a stiff coat would leave it in the middle: it adheres.
+            let adhesion = Adhesion::Jkr { work: 1.0 };
             let point = match is_flat {
-                true => indent.at_approach(1.0)?,
+                true => indent.with_adhesion(adhesion)?.at_approach(1.0)?,
                 false => indent.at_radius(a)?,
             };
             let mut pairs = vec![

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 
 import numpy as np
-from hypothesis import HealthCheck, given, settings
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import nacre
@@ -16,9 +17,13 @@ fuzz = settings(
     max_examples=int(ASKED) if ASKED else 4,
     derandomize=ASKED is None,
     deadline=None,
+    phases=[Phase.generate],  # states take up to seconds: failures are not shrunk
     database=None,
     suppress_health_check=list(HealthCheck),
 )
+# Contacts are random, and many are deep.
+pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
+
 REFUSALS = (ValueError, nacre.ConvergenceError)
 
 

@@ -188,7 +188,8 @@ class Fit:
         lines = []
         for name, rates in self.sensitivity.items():
             low, high = self.intervals[name]
-            half = (high - low) / 2 / (1 if name.endswith(".poisson") else self.estimates[name])
+            relative = 1.0 if name.endswith(".poisson") else self.estimates[name] or 1.0
+            half = (high - low) / 2 / relative
             most = sorted(rates, key=lambda held: -abs(rates[held]))
             told = [f"{rates[held]:+.2g} % for {_step(held)}" for held in most]
             told = told[: sum(0.01 * abs(rate) > 0.5 * half for rate in rates.values())]
