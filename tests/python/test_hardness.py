@@ -150,7 +150,7 @@ def test_a_file_without_its_dent_is_refused(tmp_path: Path) -> None:
     path = LOADED.save(tmp_path / "dent.nc")
     with h5py.File(path, "r+") as file:
         del file["indentation"]
-    with pytest.raises(ValueError, match="not what was saved"):
+    with pytest.raises(ValueError, match="saved again by another program"):
         nacre.load(path)
 
 
@@ -237,4 +237,4 @@ def test_the_command_line_goes_on_from_a_file(
     assert code == 0
     direct = CONTACT.solve(BALL, load=20.0, hardness=LIMIT, initial=LOADED)
     assert json.loads(out)["peak_pressure"] == pytest.approx(direct.peak_pressure)
-    assert run("solve", less, "--initial", "nothing.nc")[0] == 1
+    assert run("solve", less, "--initial", "nothing.nc")[0] == 2

@@ -104,7 +104,8 @@ def test_information_is_what_a_fit_states(ratio: float) -> None:
     test = Indentation(body, tip)
     depth = np.linspace(0.05, 1.0, 60) * test.at(radius=1.5).approach
     force = test.curve(approach=depth).load
-    found = fit((depth, force), body, tip, [YOUNG, THICKNESS], sigma=0.01, profile=False)
+    free = [YOUNG, THICKNESS]
+    found = fit((depth, force), body, tip, free, noise="relative", sigma=0.01, profile=False)
     least = information(ratio, [1.5])
     # Without noise the fit ends at the truth, to 1e-5 of an error.
     assert least["young"][0] == pytest.approx(found.standard_errors[YOUNG] / ratio, rel=1e-4)

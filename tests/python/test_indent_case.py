@@ -171,7 +171,7 @@ def test_the_reference_has_every_tip_and_key() -> None:
     assert '[adhesion] with kind = "maugis"' in told
     assert "work: finite number [N/m]; required" in told
     assert "half_angle" in told
-    assert "approach: finite number, or a list of them [m]" in told
+    assert "approach: finite number, or a list of at most 10000 of them [m]" in told
     schema = _reference.schema()["$defs"]
     assert {"SphereTip", "JkrAdhesion", "Indent", "IndentCase"} <= schema.keys()
 
