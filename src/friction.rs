@@ -93,7 +93,7 @@ impl Contact {
     }
 
     /// [`Contact::slide`] that calls `progress` with the number of the step and its report so far. Its break ends the
-    /// history: the last solution is then unfinished, with [`Termination::Stopped`](crate::Termination::Stopped), and with
+    /// history: the last solution is then unfinished, with [`Termination::Stopped`], and with
     /// tractions and shift as they were before its step.
     ///
     /// # Errors

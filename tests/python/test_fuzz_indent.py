@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import numpy as np
 import pytest
@@ -79,7 +80,7 @@ def assert_clear(refusal: Exception) -> None:
     assert len(str(refusal)) > 10
 
 
-def at(test: Indentation, **given: float) -> IndentState | None:
+def at(test: Indentation, **given: Any) -> IndentState | None:
     """Return a state that is in order, or None where nacre refuses with a reason."""
     try:
         state = test.at(**given)
@@ -92,7 +93,9 @@ def at(test: Indentation, **given: float) -> IndentState | None:
 
 def assert_disc(test: Indentation, state: IndentState) -> None:
     """Look at pressure and gap on two thousand places each, which the certificate does not use."""
-    a, outer, adhesion = state.radius, state.outer_radius, test.adhesion
+    a, outer = state.radius, state.outer_radius
+    adhesion: Any = test.adhesion
+    tip: Any = test.tip
     kind = None if adhesion is None else adhesion.kind
     inside = a * np.sin(np.linspace(0.0, 0.5 * np.pi, 2002)[1:-1])
     pressure = state.pressure(inside)
@@ -100,7 +103,7 @@ def assert_disc(test: Indentation, state: IndentState) -> None:
     mean = abs(state.load) / (np.pi * a * a)
     if kind in (None, "dmt"):
         if kind == "dmt":
-            mean += 2 * adhesion.work * test.tip.end_radius / a**2
+            mean += 2 * adhesion.work * tip.end_radius / a**2
         # The certificate takes 1e-6 of the mean pressure for rounding.
         assert pressure.min() > -2e-6 * mean
     if kind == "maugis":
@@ -124,7 +127,9 @@ def assert_disc(test: Indentation, state: IndentState) -> None:
 
 @fuzz
 @given(bodies, st.one_of(ended, others), st.none() | works.map(Adhesion.dmt), radii)
-def test_states_without_singular_edges_are_discs(body, tip, adhesion, radius):
+def test_states_without_singular_edges_are_discs(
+    body: nacre.HalfSpace, tip: Tip, adhesion: Adhesion | None, radius: float
+) -> None:
     if adhesion is not None and tip.end_radius is None:
         adhesion = None
     test = Indentation(body, tip, adhesion=adhesion)
@@ -141,13 +146,17 @@ def test_states_without_singular_edges_are_discs(body, tip, adhesion, radius):
 
 @fuzz
 @given(bodies, punches, st.none() | works.map(Adhesion.jkr), powers(-4.0, -1.0))
-def test_punches_bear_no_tension_without_adhesion(body, tip, adhesion, approach):
+def test_punches_bear_no_tension_without_adhesion(
+    body: nacre.HalfSpace, tip: Tip, adhesion: Adhesion | None, approach: float
+) -> None:
     at(Indentation(body, tip, adhesion=adhesion), approach=approach)
 
 
 @fuzz
 @given(bodies, st.one_of(ended, others), adhesions, radii)
-def test_adhering_states_are_discs(body, tip, adhesion, radius):
+def test_adhering_states_are_discs(
+    body: nacre.HalfSpace, tip: Tip, adhesion: Adhesion, radius: float
+) -> None:
     test = Indentation(body, tip, adhesion=adhesion)
     state = at(test, radius=radius)
     if state is None or adhesion.kind == "maugis":
@@ -166,7 +175,7 @@ def test_adhering_states_are_discs(body, tip, adhesion, radius):
 
 @fuzz
 @given(bodies, st.one_of(ended, others), radii)
-def test_curves_have_discs_alone(body, tip, radius):
+def test_curves_have_discs_alone(body: nacre.HalfSpace, tip: Tip, radius: float) -> None:
     test = Indentation(body, tip)
     state = at(test, radius=radius)
     if state is None:

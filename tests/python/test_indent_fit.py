@@ -149,7 +149,7 @@ def noisy(seed: int, share: float = 0.01) -> np.ndarray:
     return loads() * np.exp(share * np.random.default_rng(seed).standard_normal(DEPTH.size))
 
 
-@pytest.mark.filterwarnings("ignore:the model does not describe")
+@pytest.mark.filterwarnings("ignore:the model does not describe", "ignore:the contact is too deep")
 @pytest.mark.parametrize(("depth", "force"), [(1, 1e3), (1, 1e-3), (1, 1e6), (1e3, 1), (1e-3, 1)])
 def test_a_wrong_unit_is_named(depth: float, force: float) -> None:
     data = DEPTH * depth, noisy(6) * force

@@ -27,7 +27,7 @@ test.{call}
         ("jkr(5.0)", "curve(approach=[1e-6, 2e-6])"),
     ],
 )
-def test_interrupts(adhesion, call):
+def test_interrupts(adhesion: str, call: str) -> None:
     command = [sys.executable, "-c", LONG.format(adhesion=adhesion, call=call)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True) as process:
