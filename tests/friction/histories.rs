@@ -1,7 +1,7 @@
 //! Histories, combinations of forces and motions, friction by cell, symmetries, and full slip.
 
 use nacre::friction::{FrictionOptions, FrictionSolution, Step};
-use nacre::{Contact, Error, Grid, Motion, Options, Result, Setup};
+use nacre::{Contact, Elastic, Error, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Setup};
 use ndarray::Array2;
 
 use crate::support::pairs::{RADIUS, ball, coated, equal, load, material, pair, slid};
@@ -323,5 +323,51 @@ fn torque_is_about_the_origin() -> Result<()> {
     let arm = moment / pressure.sum();
     assert!((arm.abs() - 0.65).abs() < 0.01);
     assert!((solution.torque() / (force * arm) - 1.0).abs() < 1e-9);
+    Ok(())
+}
+
+/// Different bodies with little friction slip nearly everywhere, and a shift along both axes and a twist are found for forces
+/// and a torque: each holds to the tolerance.
+#[test]
+fn little_friction_under_forces_and_a_torque() -> Result<()> {
+    let setup = Setup {
+        counterbody: Some(HalfSpace::from(Elastic::new(1e3, 0.3)?).into()),
+        ..Setup::default()
+    };
+    let contact = Contact::plan(
+        Elastic::new(1.0, 0.3)?,
+        Grid::new([48, 48], [3.0, 3.0])?,
+        setup,
+    )?;
+    let (shape, load) = (Paraboloid::new(RADIUS, RADIUS)?, 4.0 / 3.0 / 0.91 / RADIUS);
+    for friction in [0.01, 0.05, 0.1] {
+        for [along, across, turning] in [
+            [0.3, 0.3, 0.2],
+            [0.0, 0.0, 0.0],
+            [0.1, -0.5, 0.1],
+            [0.02, 0.0, -0.3],
+        ] {
+            let bears = friction * load;
+            let (force, torque) = (
+                [along * bears, across * bears],
+                turning * bears * 3.0 * std::f64::consts::PI / 16.0,
+            );
+            let step = Step {
+                force: force.map(Some),
+                torque: Some(torque),
+                ..Step::press(Motion::load(load), friction)
+            };
+            let found = contact.slide(&shape, &[step], &FrictionOptions::default(), None)?;
+            let report = &found[0].report;
+            assert!(
+                report.converged(),
+                "{friction} {force:?} {torque}: {report:?}"
+            );
+            let error = |found: f64, due: f64| (found - due).abs();
+            let [x, y] = found[0].force();
+            assert!(error(x, force[0]).max(error(y, force[1])) < 1e-7 * bears);
+            assert!(error(found[0].torque(), torque) < 1e-7 * bears);
+        }
+    }
     Ok(())
 }

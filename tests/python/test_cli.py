@@ -227,8 +227,6 @@ def test_a_hostile_file_is_one_line_and_exit_code_2(
 LONG = {
     "loads": '[tip]\nkind = "sphere"\nradius = 5e-6\n[adhesion]\nkind = "maugis"\nwork = 0.05\n'
     "strength = 1e7\n[indent]\nload = [" + "1e-3, " * 10_000 + "]\n",
-    "radius": '[tip]\nkind = "paraboloid"\nradius = 1e23\n[adhesion]\nkind = "jkr"\nwork = 0.05\n'
-    "[indent]\nload = 1e-3\n",
     "steps": '[shape]\nkind = "sphere"\nradius = 5e-3\n[solve]\nload = 10\n[slide]\n'
     "friction = 0.2\n[[slide.steps]]\nforce = { x = 0.1 }\n[[slide.steps]]\nforce = { x = -0.1 }\n",
 }
@@ -252,6 +250,16 @@ try:
 except SystemExit as ended:
     print(ended.code, time.perf_counter() - asked[0] if asked else -1)
 """
+
+
+def test_a_radius_beyond_all_contacts_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "case.toml"
+    tip = '[tip]\nkind = "paraboloid"\nradius = 1e23\n[adhesion]\nkind = "jkr"\nwork = 0.05\n'
+    case.write_text(FILM + tip + "[indent]\nload = 1e-3\n")
+    assert main("indent", str(case)) == 2
+    assert "no minimum within the radii" in capsys.readouterr().err
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
