@@ -297,3 +297,26 @@ def test_stresses_near_ends_of_periodic_grids_are_refused() -> None:
     solution = nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=1.0)
     with pytest.raises(ValueError, match="need a grid that has cells along x and is not periodic"):
         solution.stress(1e-5)
+
+
+@pytest.mark.parametrize(
+    ("length", "bar"), [(0.1, 3e-3), (0.5, 3e-3), (1, 1e-3), (2, 1e-3), (5, 1e-3)]
+)
+def test_flush_bodies_without_lateral_strain_have_the_pressure_of_a_line(
+    length: float, bar: float
+) -> None:
+    """For ν = 0 the faces of both bodies stay plane: Hertz's line, however short they are."""
+    elastic, half_width, radius = nacre.Elastic(210e9, 0.0), 1e-4, 5e-3
+    side = length * half_width
+    body = nacre.HalfSpace(elastic, ends=(-side / 2, side / 2))
+    load = np.pi * 105e9 * half_width**2 / (4 * radius)
+    grid = nacre.Grid((16, 64), (side, 4 * half_width))
+    cylinder = nacre.Cylinder(radius)
+    found = nacre.solve(cylinder, body, body, grid=grid, load=load * side)
+    line = nacre.solve(
+        cylinder, elastic, elastic, grid=nacre.Grid.line(64, 4 * half_width), load=load
+    )
+    error = np.abs(found.pressure - line.pressure.ravel()).max() / line.peak_pressure
+    free_ends = found.report.free_ends
+    assert free_ends is not None
+    assert error <= free_ends["error"] <= bar

@@ -72,7 +72,7 @@ impl Report {
     /// How free ends of the bodies are counted; `None` where there are none.
     pub fn free_ends(&self) -> Option<FreeEnds> {
         let bodies = std::iter::once(&self.body).chain(&self.counterbody);
-        Ends::of(&bodies.collect::<Vec<_>>()).form()
+        Ends::of(&bodies.collect::<Vec<_>>()).form(self.grid.size()[1])
     }
 
     /// The error that says which conditions of convergence were not met; the message quotes `tolerance`.

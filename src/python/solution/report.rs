@@ -244,7 +244,7 @@ impl PyReport {
     ///
     /// ``plates`` says whether a body has two ends, and is taken as a plate. ``error`` is the largest error of
     /// the displacement, relative to it, that was measured for such bodies, for bare plates that of the pressure
-    /// too, down to lengths of half the contact's half-width; None for layers whose moduli differ by a factor of
+    /// too, larger for lengths below a quarter of the grid's width; None for layers whose moduli differ by a factor of
     /// more than 10.
     #[getter]
     fn free_ends<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
