@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.special import betainc
 
 import nacre
 from nacre.indent import Curve, Fit, Indentation, Tip, fit
@@ -72,12 +73,17 @@ def test_what_is_wrong_with_a_model_is_named(name: str) -> None:
 
 
 def test_correlated_noise_is_seen_and_widens_the_interval() -> None:
-    # Points whose correlation is 0.9 count as a nineteenth: intervals √19 = 4.4 times as wide.
+    # Points that are correlated by r count as (1 − r)/(1 + r), and Durbin and Watson's ratio is
+    # 2 (1 − r), within 1/n. The load grows with the modulus by a power of 1 at most, so that σ/√n
+    # is the least error under noise.
     for seed in range(3):
         with pytest.warns(nacre.NacreWarning, match="Durbin and Watson"):
             found = quick((DEPTH, noisy(seed, rho=0.9)), film(2e9))
-        plain = found.sigma / math.sqrt(DEPTH.size)
-        assert found.standard_errors[YOUNG] / found.estimates[YOUNG] > 2 * plain
+        rest = found.residuals[0]
+        wider = 4 / (np.diff(rest) @ np.diff(rest) / (rest @ rest)) - 1
+        assert wider > 4
+        least = (1 - 1 / 60) * math.sqrt(wider / DEPTH.size) * found.sigma
+        assert found.standard_errors[YOUNG] / found.estimates[YOUNG] > least
 
 
 def test_freeing_what_is_named_mends_the_fit() -> None:
@@ -105,8 +111,19 @@ def test_the_chance_of_durbins_and_watsons_ratio() -> None:
     rest = rng.standard_normal((4000, 24))
     rest -= rest @ basis @ basis.T
     ratios, dues, chances = np.array([durbin_watson(r, basis, parts) for r in rest]).T
-    # The standard error of the mean, and of counts of chances: the beta variable is nearly exact.
-    assert abs(ratios.mean() - dues[0]) < 4 * ratios.std() / math.sqrt(4000)
+    # Moments of rᵀAr/rᵀr by dense matrices: tr MA/dof, and 2 (tr (MA)² − (tr MA)²/dof) over
+    # dof (dof + 2).
+    step = np.diff(np.eye(24), axis=0)
+    step = step[np.arange(23) != 9]  # points 9 and 10 are in two parts
+    both, dof = (np.eye(24) - basis @ basis.T) @ step.T @ step, 22
+    mean = np.trace(both) / dof
+    variance = 2 * (np.trace(both @ both) - dof * mean**2) / (dof * (dof + 2))
+    a = mean / 4
+    total = a * (1 - a) / (variance / 16) - 1
+    np.testing.assert_allclose(dues, mean, rtol=1e-12)
+    due = betainc(a * total, (1 - a) * total, ratios / 4)
+    np.testing.assert_allclose(chances, due, rtol=1e-9)
+    # The standard error of counts of chances: the beta variable is nearly exact.
     for level in (10 * LEVEL, 0.5, 0.9):
         count = 4000 * level
         assert abs((chances < level).sum() - count) < 4 * math.sqrt(count * (1 - level))
