@@ -32,8 +32,8 @@ LEVEL = 0.003
 """Probability of a false alarm of each test; that of a fit, with the criteria of identifiability,
 stays below 0.02."""
 ROUNDING = 1e-6
-"""Size of residuals, over the force or the given noise, below which they are rounding of the data or
-the model; no instrument has so little noise."""
+"""Size of residuals, over the force or the given noise, below which they are rounding of the data
+or the model; no instrument has so little noise."""
 FLOORS = (0.0, *(10.0 ** (k / 2) for k in range(-8, 1)), math.inf)
 """Forces over the largest one below which noise that goes with the force ceases to fall."""
 GAIN = 1.0
