@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::convolution::Convolution;
+use crate::compliance::convolution::Convolution;
+use crate::compliance::response::Body;
+use crate::compliance::traction::Tangential;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::response::Body;
-use crate::surface::Surface;
-use crate::traction::Tangential;
+use crate::model::grid::Grid;
+use crate::model::surface::Surface;
 
 mod automatic;
 mod batch;

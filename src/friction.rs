@@ -15,7 +15,7 @@
 //! ```
 //!
 //! Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990), doi:10.1007/978-94-015-7889-9. Bodies are
-//! half-spaces with any layers ([`crate::traction`]).
+//! half-spaces with any layers ([`crate::compliance::traction`]).
 //!
 //! | file | what |
 //! |---|---|
@@ -35,7 +35,7 @@ use std::ops::ControlFlow;
 
 use crate::contact::{Contact, Termination};
 use crate::error::Result;
-use crate::surface::Surface;
+use crate::model::surface::Surface;
 
 mod creep;
 mod fields;

@@ -21,24 +21,22 @@
 //!
 //! # Modules
 //!
-//! The modules form one chain; each imports from earlier ones only.
+//! The core solves the contact of coated bodies, as Spinu et al. do: frequency response, influence
+//! coefficients, convolution by FFT, conjugate gradients. The rest stands on it. The rooms form one
+//! chain; each imports only from earlier ones.
 //!
-//! | module | contents |
+//! | room | modules |
 //! |---|---|
-//! | [`mod@error`] | the error type |
-//! | [`material`], [`body`] | elastic materials, layers, half-spaces |
-//! | [`hertz`] | closed forms for points, lines and ellipses, equivalent radii |
-//! | [`grid`], [`surface`] | cells of uniform pressure, undeformed shapes |
-//! | [`response`] | frequency response û(α)/p̂(α) of a body |
-//! | [`indent`] | indentation by axisymmetric tips, without a grid |
-//! | [`influence`] | influence coefficients `C[i, j]` |
-//! | [`convolution`] | displacement from pressure, by DC-FFT |
-//! | [`ends`] | free ends of bodies |
-//! | [`traction`] | influence coefficients of tractions, and their convolution |
-//! | [`contact`] | pressure from shape, load and moments, by constrained conjugate gradients |
-//! | [`mod@stress`] | stress and displacement below the surface |
-//! | [`friction`] | partial slip, histories and rolling |
-//! | [`gradient`] | derivatives of solved contacts |
+//! | errors | [`mod@error`]: the error type |
+//! | numerics | small dense systems, Fourier transforms, threads |
+//! | model | [`material`], [`body`]: elastic materials, layers, half-spaces; [`grid`]: cells of uniform pressure; [`surface`]: undeformed shapes; [`hertz`]: closed forms for points, lines and ellipses |
+//! | compliance | [`response`]: frequency response û(α)/p̂(α) of a body; [`influence`]: influence coefficients `C[i, j]`; [`convolution`]: displacement from pressure, by DC-FFT; [`traction`]: the same of tractions; [`ends`]: free ends of bodies |
+//! | contact | [`contact`]: pressure from shape, load and moments |
+//! | *on the core* | |
+//! | stress | [`mod@stress`]: stress and displacement below the surface |
+//! | friction | [`friction`]: partial slip, histories and rolling |
+//! | indent | [`indent`]: indentation by axisymmetric tips, without a grid |
+//! | gradient | [`gradient`]: derivatives of solved contacts |
 //!
 //! # Features
 //!
@@ -55,64 +53,31 @@
 //! - The Fourier transform is f̂(m, n) = ∬ f e^{−i(mx+ny)} dx dy, with α = √(m² + n²). The discrete
 //!   forward transform is unscaled, and the inverse divides by the number of points.
 
-pub mod error;
-
-mod parallel;
-
-mod dense;
-
-pub mod material;
-
-pub mod body;
-
-pub mod hertz;
-
-pub mod grid;
-
-pub mod surface;
-
-pub mod response;
-
-mod graded;
-
-mod fft;
-
-mod kernel;
-
-mod images;
-
-pub mod indent;
-
-pub mod influence;
-
-pub mod convolution;
-
-pub mod ends;
-
-pub mod traction;
-
+mod compliance;
 pub mod contact;
-
-pub mod stress;
-
-pub mod friction;
-
-pub mod gradient;
-
 #[cfg(feature = "serde")]
-mod serial;
-
+mod data;
+pub mod error;
+pub mod friction;
+pub mod gradient;
+pub mod indent;
+mod model;
+mod numerics;
 #[cfg(feature = "python")]
 mod python;
+pub mod stress;
+
+pub use compliance::{convolution, ends, influence, response, traction};
+pub use model::{body, grid, hertz, material, surface};
 
 pub use body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
+pub use compliance::graded::graded_layers;
 pub use contact::{
     Algorithm, Case, Contact, Discretisation, Hardness, Motion, Options, Report, Setup, Solution,
     Solver, Termination, Warning, solve,
 };
 pub use convolution::Convolution;
 pub use error::{Error, Result};
-pub use graded::graded_layers;
 pub use grid::Grid;
 pub use influence::Method;
 pub use material::Elastic;

@@ -30,9 +30,9 @@ use std::ops::ControlFlow;
 
 use ndarray::ArrayRef2;
 
-use crate::body::HalfSpace;
 use crate::error::Result;
-use crate::grid::Grid;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
 
 mod derived;
 mod ends;

@@ -3,13 +3,9 @@
 `python tests/house.py [ROOT]` prints each violation as `path:line: message`, and exits with 1 if
 there is one. The rules:
 
-1. Sentences. No doc comment (`///`, `//!`) and no docstring begins with "Of", "Those", "That of" or
-   "The same": the first sentence names the thing and can be read alone.
-2. Circles. No file needs an item of another file that needs, directly or through others, an item of
+1. Circles. No file needs an item of another file that needs, directly or through others, an item of
    the first.
-3. Order. A module of `src/` imports only from modules before it in `CHAIN`.
-4. Size. At most `FILES` files in a folder below `src/`, and at most `LINES` lines in a file of
-   `src/` and `python/nacre/`, but for `LONGER`.
+2. Order. A module of `src/` imports only from modules before it in `CHAIN`.
 
 A Rust file needs each item that it imports or names by a path through `crate`, `super`, `self` or a
 module. The item counts where it is defined: re-exports are followed, so that a module that only
@@ -30,42 +26,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 CHAIN = [
-    *(
-        "error",
-        "parallel",
-        "dense",
-        "material",
-        "body",
-        "hertz",
-        "grid",
-        "surface",
-        "response",
-        "graded",
-    ),
-    *(
-        "fft",
-        "kernel",
-        "images",
-        "indent",
-        "influence",
-        "convolution",
-        "ends",
-        "traction",
-        "contact",
-    ),
-    *("stress", "friction", "gradient", "serial", "python"),
+    *("error", "numerics", "model", "compliance", "contact"),
+    *("stress", "friction", "indent", "gradient", "data", "python"),
 ]
-FILES = 12
-LINES = 450
-LONGER = {
-    "python/nacre/_core.pyi": "one stub for one compiled module",
-    "src/python/contact/friction/solution.rs": "the docstrings of FrictionSolution",
-    "src/python/solution.rs": "the docstrings of the class Solution, which Python shows",
-}
-
-RUST_DOCUMENTED = ("src", "tests", "benches", "examples")
-PYTHON_DOCUMENTED = ("python", "tests/python", "benches/peers", "docs/gallery", "examples")
-OPENING = re.compile(r"(Of|Those|That of|The same)\b")
 
 # Comments, strings and characters of Rust; a lifetime is not a character.
 QUIET = re.compile(
@@ -114,39 +77,6 @@ def files_below(root: Path, folders: Iterable[str], suffixes: set[str]) -> Itera
     """Yield the files of these suffixes in these folders of `root`, sorted, each once."""
     found = {path for folder in folders for path in (root / folder).rglob("*")}
     yield from sorted(path for path in found if path.suffix in suffixes)
-
-
-# Sentences
-
-
-def rust_openings(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the first line of each doc comment, with its number."""
-    last = None
-    for number, line in enumerate(text.splitlines(), 1):
-        match = re.match(r"\s*(//[/!])(?!/) ?(.*)", line)
-        marker = match[1] if match else None
-        if match and marker != last:
-            yield number, match[2]
-        last = marker
-
-
-def python_openings(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the first line of each docstring, with its number."""
-    for node in ast.walk(ast.parse(text)):
-        # A string by itself documents a module, a class, a function or an attribute.
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            yield node.lineno, str(node.value.value).lstrip()
-
-
-def sentences(root: Path) -> Iterator[Violation]:
-    """Yield doc comments and docstrings that begin with a pronoun."""
-    rust = [(path, rust_openings) for path in files_below(root, RUST_DOCUMENTED, {".rs"})]
-    python = files_below(root, PYTHON_DOCUMENTED, {".py", ".pyi"})
-    for path, openings in [*rust, *((path, python_openings) for path in python)]:
-        for line, text in openings(path.read_text(encoding="utf-8")):
-            if found := OPENING.match(text):
-                name = path.relative_to(root).as_posix()
-                yield Violation(name, line, f'the first sentence begins with "{found[1]}"')
 
 
 # Rust's imports
@@ -390,33 +320,11 @@ def circles(needs: Iterable[Need]) -> Iterator[Violation]:
             yield Violation(start, line, f"files import each other: {way}")
 
 
-# Sizes
-
-
-def sizes(root: Path, longer: Iterable[str]) -> Iterator[Violation]:
-    """Yield folders of too many files, files of too many lines, and exceptions without a need."""
-    for folder in sorted(path for path in (root / "src").rglob("*") if path.is_dir()):
-        count = sum(path.is_file() for path in folder.iterdir())
-        if count > FILES:
-            name = folder.relative_to(root).as_posix()
-            yield Violation(name, 1, f"{count} files in a folder, at most {FILES}")
-    lengths = {
-        path.relative_to(root).as_posix(): len(path.read_text(encoding="utf-8").splitlines())
-        for path in files_below(root, ["src", "python/nacre"], {".rs", ".py", ".pyi"})
-    }
-    for name, length in lengths.items():
-        if length > LINES and name not in longer:
-            yield Violation(name, LINES + 1, f"{length} lines in a file, at most {LINES}")
-    for name in longer:
-        if lengths.get(name, 0) <= LINES:
-            yield Violation("tests/house.py", 1, f"LONGER: {name} needs no exception any more")
-
-
-def violations(root: Path, longer: Iterable[str] = tuple(LONGER)) -> list[Violation]:
-    """Return every violation in the tree at `root`; files `longer` than the others are excepted."""
+def violations(root: Path) -> list[Violation]:
+    """Return every violation in the tree at `root`."""
     crate = Crate(root)
     rust, python = list(crate.needs()), list(python_needs(root))
-    found = [*sentences(root), *circles(rust), *circles(python), *sizes(root, longer)]
+    found = [*circles(rust), *circles(python)]
     found += order(rust, [file.name for file in crate.files.values()])
     return sorted(set(found))
 

@@ -14,8 +14,8 @@ use super::solution::Solution;
 use super::solver::Termination;
 use super::start::Sampled;
 use crate::error::Result;
-use crate::parallel::{SetOnDrop, Threads, check_memory};
-use crate::surface::Surface;
+use crate::model::surface::Surface;
+use crate::numerics::parallel::{SetOnDrop, Threads, check_memory};
 
 /// One of many load cases.
 #[derive(Debug, Clone, Copy)]

@@ -17,8 +17,8 @@ use super::problem::fields::{Fields, slice};
 use super::problem::freedoms::Freedoms;
 use super::problem::patch::{Patch, bounds, enclosing, widened};
 use super::solver::{Outcome, StopCriteria, Termination, Watch};
-use crate::grid::full_window;
-use crate::surface::Surface;
+use crate::model::grid::full_window;
+use crate::model::surface::Surface;
 use discretisation::GridResult;
 use levels::{Level, Levels};
 

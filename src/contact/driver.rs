@@ -24,10 +24,10 @@ use super::solution::report::{Progress, Report};
 use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
 use super::start::{Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure};
-use crate::ends::check_carried;
+use crate::compliance::ends::check_carried;
 use crate::error::Result;
-use crate::parallel::{Rows, check_memory};
-use crate::surface::{Lifted, Surface};
+use crate::model::surface::{Lifted, Surface};
+use crate::numerics::parallel::{Rows, check_memory};
 
 /// Arrays of a solve with a hardness, besides those of every solve. Measured: 68 bytes a cell.
 const YIELDING_ARRAYS: u64 = 9;
@@ -313,9 +313,9 @@ mod tests {
 
     use crate::contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solver, Termination};
     use crate::error::Result;
-    use crate::grid::Grid;
-    use crate::material::Elastic;
-    use crate::surface::Paraboloid;
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
+    use crate::model::surface::Paraboloid;
 
     /// A break at any iteration, on the two coarser grids or on the finest, ends the solve at once. The pressure
     /// of that moment carries the load, and the report is that of a stopped solve.

@@ -19,7 +19,7 @@ use ndarray::{Array2, ArrayRef2};
 use super::problem::Problem;
 use super::problem::fields::slice;
 use crate::error::{Error, Result};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 
 pub(super) use yielding::{Elastic, Yielding};
 

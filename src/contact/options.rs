@@ -3,9 +3,9 @@
 use ndarray::Array2;
 
 use super::hardness::Hardness;
+use crate::compliance::influence::Method;
+use crate::compliance::response::Body;
 use crate::error::{Error, Result};
-use crate::influence::Method;
-use crate::response::Body;
 
 /// Options of a plan, beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]

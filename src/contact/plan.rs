@@ -11,14 +11,14 @@ use super::cascade::unresolved::Unresolved;
 use super::options::Setup;
 use super::problem::INDEFINITE;
 use super::problem::scale::LocalDisplacement;
-use crate::convolution::{Addition, Convolution};
-use crate::ends::Ends;
+use crate::compliance::convolution::{Addition, Convolution};
+use crate::compliance::ends::Ends;
+use crate::compliance::influence::{Method, coefficients_on};
+use crate::compliance::response::Body;
+use crate::compliance::traction::Tangential;
 use crate::error::{Error, Result};
-use crate::grid::Grid;
-use crate::influence::{Method, coefficients_on};
-use crate::parallel::{Threads, check_memory};
-use crate::response::Body;
-use crate::traction::Tangential;
+use crate::model::grid::Grid;
+use crate::numerics::parallel::{Threads, check_memory};
 use datum::Datum;
 
 /// Arrays of a solve, as many as there are on one cell at the same time. Measured: 135 bytes a cell in all
@@ -88,7 +88,7 @@ impl Plan {
             return Ok(Arc::clone(known));
         }
         if self.ends.any() {
-            return Err(Error::Inconsistent(crate::traction::GO_ON));
+            return Err(Error::Inconsistent(crate::compliance::traction::GO_ON));
         }
         if self.grid.is_periodic() != [false; 2] {
             return Err(Error::Inconsistent(

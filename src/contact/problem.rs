@@ -17,10 +17,12 @@ pub(super) mod load_point;
 pub(super) mod patch;
 pub(super) mod scale;
 
-use crate::convolution::{Convolution, Workspace};
+use crate::compliance::convolution::{Convolution, Workspace};
 use crate::error::Error;
-use crate::grid::Window;
-use crate::parallel::{Lanes, Row, Rows, Total, ZERO, all, sum, update, update_with_largest};
+use crate::model::grid::Window;
+use crate::numerics::parallel::{
+    Lanes, Row, Rows, Total, ZERO, all, sum, update, update_with_largest,
+};
 use constraint::NonNegative;
 use fit::FitSums;
 use freedoms::Freedoms;

@@ -13,7 +13,7 @@ use ndarray::{Array1, Array2};
 use super::hardness::{Hardness, check_indentation};
 use super::problem::constraint::NonNegative;
 use crate::error::{Error, Result, finite};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 use gap::Gap;
 use report::Report;
 

@@ -7,9 +7,9 @@ use ndarray::{Array2, ArrayRef2};
 use super::problem::Problem;
 use super::problem::fields::{array, slice};
 use crate::error::{Error, Result};
-use crate::grid::Grid;
-use crate::parallel::{ONE, Rows, all, sum};
-use crate::surface::Surface;
+use crate::model::grid::Grid;
+use crate::model::surface::Surface;
+use crate::numerics::parallel::{ONE, Rows, all, sum};
 
 /// Gaps of the shape that was sampled last on one grid, kept while a solution has them.
 #[derive(Default)]

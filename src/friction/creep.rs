@@ -7,12 +7,12 @@ use std::sync::Arc;
 use super::law::Law;
 use super::newton::{Effort, Problem};
 use super::operator::{Direction, Operator};
-use crate::body::{HalfSpace, Substrate};
+use crate::compliance::response::Body;
+use crate::compliance::traction::Tangential;
 use crate::error::{Error, Result, positive};
-use crate::grid::Grid;
-use crate::parallel::Threads;
-use crate::response::Body;
-use crate::traction::Tangential;
+use crate::model::body::{HalfSpace, Substrate};
+use crate::model::grid::Grid;
+use crate::numerics::parallel::Threads;
 
 /// Kalker's coefficients of an elliptic contact with the semi-axes a, along the direction of rolling, and b:
 ///
@@ -108,7 +108,7 @@ pub fn creep_coefficients_watched(
             .half_space()
             .is_some_and(|layers| layers.ends() != [None; 2])
         {
-            return Err(Error::Inconsistent(crate::traction::GO_ON));
+            return Err(Error::Inconsistent(crate::compliance::traction::GO_ON));
         }
     }
     let shear = shear(&body, counterbody.as_ref())?;

@@ -6,9 +6,9 @@ use super::law::State;
 use super::solution::TangentialMotion;
 use super::step::Freedom;
 use super::task::{Solved, Task, ahead, each};
+use crate::compliance::traction::Tangential;
 use crate::contact::Warning;
-use crate::grid::Grid;
-use crate::traction::Tangential;
+use crate::model::grid::Grid;
 
 /// Tractions, displacements and slip of the whole grid.
 pub(super) struct Fields {

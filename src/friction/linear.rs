@@ -10,7 +10,7 @@
 
 use super::law::{State, restrict};
 use super::operator::Operator;
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// Vectors between restarts.
 const RESTART: usize = 40;

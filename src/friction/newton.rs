@@ -8,7 +8,7 @@
 use super::law::{Law, State, restrict};
 use super::linear::{Linear, small_system};
 use super::operator::Operator;
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// What is asked for: A q = g + C δ where cells stick, Cᵀ q = forces.
 pub(super) struct Problem<'a> {

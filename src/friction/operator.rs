@@ -1,7 +1,7 @@
 //! The operators of sliding and of rolling, on the cells that may change.
 
 use super::law::{State, restrict};
-use crate::traction::TangentialWindow;
+use crate::compliance::traction::TangentialWindow;
 
 /// Direction of rolling: an axis, and the sign of the direction in which the leading edge lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

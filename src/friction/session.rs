@@ -14,11 +14,11 @@ use super::newton::{Effort, Quality};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Rolling, Step};
 use super::task::{Before, Task, bounds, check_bound, check_forces};
+use crate::compliance::traction::Tangential;
 use crate::contact::{Contact, Motion, OVERFLOW, Options, Solution, Termination, Warning};
 use crate::error::{Error, Result};
-use crate::grid::Grid;
-use crate::surface::{Lifted, Surface};
-use crate::traction::Tangential;
+use crate::model::grid::Grid;
+use crate::model::surface::{Lifted, Surface};
 
 /// Callback that gets the number of the step and its report so far, and breaks to stop.
 pub type FrictionProgress<'a> = dyn FnMut(usize, &FrictionReport) -> ControlFlow<()> + Send + 'a;

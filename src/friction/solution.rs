@@ -7,7 +7,7 @@ use ndarray::Array2;
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
 use crate::error::{Error, Result};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 use crate::stress::{Member, Stress, StressOptions, StressPlan, StressProgress};
 
 /// Tangential motion of the counterbody over the body.

@@ -4,7 +4,7 @@ use ndarray::Array2;
 
 use crate::contact::Motion;
 use crate::error::{Error, Result, finite};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 
 /// Coefficient of friction μ ≥ 0.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,9 +9,9 @@ use super::law::Law;
 use super::newton::{Effort, Outcome, Problem, Watch};
 use super::operator::{Direction, Operator};
 use super::step::{Freedom, Freedoms, Friction, Rolling, RollingDirection};
+use crate::compliance::traction::{Tangential, TangentialWindow};
 use crate::error::{Error, Result};
-use crate::grid::{Grid, Window};
-use crate::traction::{Tangential, TangentialWindow};
+use crate::model::grid::{Grid, Window};
 
 /// What is asked of the tangential motion.
 #[derive(Debug, Clone)]

@@ -13,8 +13,8 @@ use super::state::{Saddle, State};
 use super::stress::StressSeed;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
-use crate::parallel::dot;
-use crate::surface::Surface;
+use crate::model::surface::Surface;
+use crate::numerics::parallel::dot;
 
 /// Margin below which a contact is next to one of other cells: 100 times what is left of the polished residual.
 const MARGIN: f64 = 1e-10;

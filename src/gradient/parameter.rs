@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use crate::body::{BodyParameter, HalfSpace};
+use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
-use crate::response::Body;
+use crate::model::body::{BodyParameter, HalfSpace};
+use crate::model::surface::Surface;
 use crate::stress::Member;
-use crate::surface::Surface;
 
 /// One number that a solved contact depends on.
 ///

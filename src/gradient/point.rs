@@ -1,7 +1,7 @@
 //! Cells and weights of points and peaks.
 
 use crate::error::{Error, Result, finite};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 
 /// Distance, in cells, within which a coordinate counts as that of a cell centre or of the grid's border.
 const CENTRE: f64 = 1e-9;

@@ -6,7 +6,7 @@ use super::point::{bilinear, parabola};
 use super::state::State;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
-use crate::grid::Window;
+use crate::model::grid::Window;
 
 /// Relative difference of two pressures that tie.
 const TIE: f64 = 1e-9;

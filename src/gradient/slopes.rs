@@ -6,13 +6,13 @@ use ndarray::Array2;
 
 use super::parameter::{Parameter, layered};
 use super::state::State;
+use crate::compliance::influence::unchecked_coefficients;
+use crate::compliance::response::ResponseSlope;
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
-use crate::grid::{full_window, repeating};
-use crate::influence::unchecked_coefficients;
-use crate::response::ResponseSlope;
+use crate::model::grid::{full_window, repeating};
+use crate::model::surface::Surface;
 use crate::stress::Member;
-use crate::surface::Surface;
 
 /// b = K̇ p + ḣ − B_q ṡ_q and Ḟ/dA of one parameter.
 pub(super) struct Slope {

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use crate::contact::{Solution, Tangent, block, bounds};
 use crate::error::{Error, Result};
-use crate::grid::{Window, full_window};
-use crate::parallel::dot;
+use crate::model::grid::{Window, full_window};
+use crate::numerics::parallel::dot;
 
 /// Cells around the contact that the window holds, which may join it first.
 const RING: usize = 2;
@@ -378,8 +378,11 @@ fn check(solution: &Solution) -> Result<()> {
             "surfaces that yield depend on the history of loads: leave out hardness and indentation",
         ));
     }
-    if solution.report.method != crate::influence::Method::Exact
-        && !matches!(solution.report.method, crate::influence::Method::Spectral)
+    if solution.report.method != crate::compliance::influence::Method::Exact
+        && !matches!(
+            solution.report.method,
+            crate::compliance::influence::Method::Spectral
+        )
     {
         return Err(refused(
             "its coefficients are conversions: take the method \"exact\"",

@@ -8,9 +8,9 @@ use super::point::bilinear;
 use super::seed::{Seed, refused};
 use super::state::State;
 use super::tensor::measured;
-use crate::body::{BodyParameter, HalfSpace, Interface};
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
+use crate::model::body::{BodyParameter, HalfSpace, Interface};
 use crate::stress::{Section, Side, StressOptions, Weights};
 
 /// Step of differences with respect to a number of the body, relative to it. By Richardson's extrapolation they are in error

@@ -21,7 +21,7 @@ use super::point::{Point, distance};
 use super::tip::TipParameter;
 use super::zone::Rate;
 use crate::error::{Error, Result};
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// What was given of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

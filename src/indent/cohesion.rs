@@ -26,7 +26,7 @@ use super::point::Point;
 use super::tip::Tip;
 use super::zone::Zone;
 use crate::error::{Error, Result};
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// The contact of radius `a` with a cohesive zone, whose width c − a is looked for from e^`start` on; at the end its
 /// logarithm is in `start`.

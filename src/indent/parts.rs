@@ -6,7 +6,7 @@ use super::equation::stack::Stack;
 use super::equation::system::{System, times};
 use super::tip::Tip;
 use crate::error::{Error, Result};
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// φ₁ of a flat punch at unit approach and φ_F of the profile, with what follows from them.
 #[derive(Debug)]

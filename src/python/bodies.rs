@@ -6,9 +6,9 @@ use pyo3::types::{PyDict, PyTuple, PyType};
 
 use super::arguments::{Real, Repr, ends, hash, items, remade};
 use super::words::Word;
-use crate::body::{HalfSpace, Interface, Layer, Substrate};
-use crate::material::Elastic;
-use crate::response::Body;
+use crate::compliance::response::Body;
+use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::model::material::Elastic;
 
 /// An isotropic linear elastic material.
 ///

@@ -10,8 +10,8 @@ use super::background::{self, Caller};
 use super::bodies::{PyLayer, body, substrate};
 use super::grid::PyGrid;
 use super::words::{self, REFINEMENT};
-use crate::influence;
-use crate::response::{self, Compliance};
+use crate::compliance::influence;
+use crate::compliance::response::{self, Compliance};
 
 mod convolution;
 

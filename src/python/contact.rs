@@ -15,8 +15,8 @@ use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
 use super::solution::PySolution;
 use super::words::method_words;
-use crate::body::HalfSpace;
 use crate::contact::Contact;
+use crate::model::body::HalfSpace;
 
 mod batch;
 mod friction;

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::arguments::{Pair, Real, count, flags, hash, read_only, truth};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 
 /// A uniform grid of rectangular cells, with constant pressure over each.
 ///

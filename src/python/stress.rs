@@ -7,7 +7,7 @@ use super::arguments::keywords::Keywords;
 use super::arguments::real_matrix;
 use super::bodies::body;
 use super::grid::PyGrid;
-use crate::body::HalfSpace;
+use crate::model::body::HalfSpace;
 use crate::stress::stress_watched;
 
 mod field;

@@ -3,9 +3,9 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::body::Interface;
+use crate::compliance::influence::Method;
 use crate::contact::{Algorithm, Solver, Termination, Warning};
-use crate::influence::Method;
+use crate::model::body::Interface;
 use crate::stress::{Member, Side};
 
 /// A value that Python names by a word.

@@ -1,7 +1,7 @@
 //! What the free ends of a body add to the stress of the body that goes on.
 //!
 //! The stress of a quarter space is the sum of those of two half-spaces: one under the even pressure P on the
-//! surface, and one under Q on the end face ([`crate::ends`]). What is added is therefore the stress of the
+//! surface, and one under Q on the end face ([`crate::compliance::ends`]). What is added is therefore the stress of the
 //! layered half-space under the mirror image of the pressure and under P − p on both sides of the end, and that of
 //! a half-space of the substrate below the end face. The two ends of a body are superposed.
 //!
@@ -14,10 +14,10 @@ use ndarray::Array2;
 use super::half_space::{HalfSpacePlan, PlaneEvaluator, PointEvaluator, components};
 use super::options::StressProgress;
 use super::section::Span;
-use crate::body::{HalfSpace, Substrate};
-use crate::ends::{EndPressure, Where};
+use crate::compliance::ends::{EndPressure, Where};
+use crate::compliance::response::interior::Place;
 use crate::error::Result;
-use crate::response::interior::Place;
+use crate::model::body::{HalfSpace, Substrate};
 
 mod face;
 mod images;

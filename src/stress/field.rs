@@ -5,8 +5,8 @@ use std::fmt;
 use ndarray::{Array1, Array3, Axis};
 
 use super::options::Side;
-use crate::body::HalfSpace;
 use crate::error::{Error, Result, finite};
+use crate::model::body::HalfSpace;
 
 /// Stress at some depths. Arrays are (depths, nx, ny); on a section nx or ny is 1. Tension is
 /// positive. Beyond a free end of the body, values are NaN; equal stresses have NaN at the same places.

@@ -1,8 +1,8 @@
 //! The traction of friction.
 
 use super::options::StressOptions;
-use crate::body::{HalfSpace, Interface, Layer};
 use crate::error::{Error, Result, finite};
+use crate::model::body::{HalfSpace, Interface, Layer};
 
 /// How one body of a contact slides on the other.
 #[derive(Debug, Clone, Copy)]

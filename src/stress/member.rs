@@ -12,10 +12,10 @@ use super::plan::StressPlan;
 use super::request::stress_once;
 use super::subcell::Pair;
 use super::summary::{Strengths, StressSummary, summary_once};
-use crate::body::HalfSpace;
+use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::error::{Error, Result};
-use crate::response::Body;
+use crate::model::body::HalfSpace;
 
 /// One of the two bodies of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

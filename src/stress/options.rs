@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::body::HalfSpace;
 use crate::error::{Error, Result, finite};
+use crate::model::body::HalfSpace;
 
 /// Side of an interface, for a depth that lies on one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

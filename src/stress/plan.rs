@@ -11,11 +11,11 @@ use super::half_space::{
 };
 use super::options::StressProgress;
 use super::section::Span;
-use crate::body::HalfSpace;
+use crate::compliance::kernel::COMPONENTS;
+use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
-use crate::grid::{Grid, Window};
-use crate::kernel::COMPONENTS;
-use crate::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::grid::{Grid, Window};
 
 /// Stress below a pressure, planned once and evaluated any number of times.
 ///

@@ -11,11 +11,11 @@ use super::options::{StressOptions, StressProgress};
 use super::plan::{PlaneStress, PointStress, StressPlan};
 use super::section::{Points, place};
 use super::subcell::STRESSES;
-use crate::body::HalfSpace;
+use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
-use crate::grid::Grid;
-use crate::parallel::check_memory;
-use crate::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
+use crate::numerics::parallel::check_memory;
 
 /// Weights of the components σ_xx … σ_xz in each cell, in C order.
 pub(crate) type Weights = [Vec<f64>; STRESSES];

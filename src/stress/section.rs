@@ -4,10 +4,10 @@ use ndarray::Array1;
 
 use super::half_space::MAGNITUDES;
 use super::options::{Section, Side};
-use crate::body::{HalfSpace, Substrate};
+use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result, finite};
-use crate::grid::{Grid, Window};
-use crate::response::interior::Place;
+use crate::model::body::{HalfSpace, Substrate};
+use crate::model::grid::{Grid, Window};
 
 mod span;
 

@@ -8,11 +8,11 @@ use super::friction::Sliding;
 use super::half_space::Source;
 use super::options::{StressOptions, StressProgress};
 use super::plan::{PlaneStress, StressPlan};
-use crate::body::{HalfSpace, Layer, Substrate};
+use crate::compliance::response::interior::Place;
 use crate::error::{Result, positive};
-use crate::grid::Grid;
-use crate::parallel::check_memory;
-use crate::response::interior::Place;
+use crate::model::body::{HalfSpace, Layer, Substrate};
+use crate::model::grid::Grid;
+use crate::numerics::parallel::check_memory;
 
 mod depths;
 mod extremes;

@@ -2,11 +2,11 @@
 
 use super::relief::Relief;
 use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
+use crate::compliance::influence::CellInfluence;
+use crate::compliance::response::Body;
 use crate::contact::problem::patch::block;
 use crate::contact::solution::Solution;
 use crate::error::Result;
-use crate::influence::CellInfluence;
-use crate::response::Body;
 
 /// Blocks of cells along each axis whose mean pressure stands for their own: a block is then at most a third
 /// of its distance from places outside the margin of a grid.

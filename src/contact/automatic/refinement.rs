@@ -4,8 +4,8 @@ use crate::contact::problem::constraint::NonNegative;
 use crate::contact::solution::Solution;
 use crate::contact::solution::warnings::Warning;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::surface::Surface;
+use crate::model::grid::Grid;
+use crate::model::surface::Surface;
 
 /// Estimated error of the peak pressure, relative to the peak, above which cells are divided.
 const PEAK_ERROR: f64 = 0.01;

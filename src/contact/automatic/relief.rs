@@ -1,7 +1,7 @@
 //! Low places of a shape that is tilted: the places where it may touch.
 
 use super::task::{Frame, enclosing};
-use crate::surface::{Extent, Surface};
+use crate::model::surface::{Extent, Surface};
 
 /// Even parts of a side of the region that is looked at; chosen by trial.
 const PARTS: u32 = 12;

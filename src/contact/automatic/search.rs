@@ -8,8 +8,8 @@ use crate::contact::solution::Solution;
 use crate::contact::solution::report::Progress;
 use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
-use crate::grid::{Grid, Window};
-use crate::surface::Extent;
+use crate::model::grid::{Grid, Window};
+use crate::model::surface::Extent;
 
 /// Cells across the narrower width of the contact. The 64 that are promised are raised by 7 %, because the
 /// contact on the coarse grid is up to 6 % too wide.

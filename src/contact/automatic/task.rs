@@ -1,5 +1,6 @@
 //! The contact that is solved on one grid after another, and rectangles.
 
+use crate::compliance::response::Body;
 use crate::contact::motion::Motion;
 use crate::contact::options::{Options, Setup};
 use crate::contact::plan::Plan;
@@ -9,9 +10,8 @@ use crate::contact::solution::Solution;
 use crate::contact::solution::report::Progress;
 use crate::contact::start::Sampled;
 use crate::error::Result;
-use crate::grid::{Grid, Window, full_window};
-use crate::response::Body;
-use crate::surface::Surface;
+use crate::model::grid::{Grid, Window, full_window};
+use crate::model::surface::Surface;
 
 /// Ends of a rectangle along x and along y.
 pub(super) type Frame = [[f64; 2]; 2];

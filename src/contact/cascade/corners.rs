@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 use ndarray::Array2;
 
 use crate::contact::problem::constraint::NonNegative;
-use crate::grid::Grid;
-use crate::surface::Surface;
+use crate::model::grid::Grid;
+use crate::model::surface::Surface;
 
 /// Parts into which an interval is divided in the search for a corner.
 const PARTS: usize = 8;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 
 use super::discretisation::GridResult;
+use crate::compliance::convolution::{Addition, Convolution};
 use crate::contact::problem::Problem;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, copied, enclosing, widened};
@@ -15,11 +16,10 @@ use crate::contact::problem::scale::LocalDisplacement;
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
 use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
 use crate::contact::start::checked_gaps;
-use crate::convolution::{Addition, Convolution};
 use crate::error::Result;
-use crate::grid::{Grid, full_window, repeating};
-use crate::parallel::{Pool, Rows, all, update, update_with_largest};
-use crate::surface::Surface;
+use crate::model::grid::{Grid, full_window, repeating};
+use crate::model::surface::Surface;
+use crate::numerics::parallel::{Pool, Rows, all, update, update_with_largest};
 
 /// Cells of the coarsest grid along each direction, at least. A direction with fewer than twice as many is
 /// not halved; chosen by trial.

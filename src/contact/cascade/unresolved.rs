@@ -47,10 +47,10 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use ndarray::Array2;
 
 use super::discretisation::Discretisation;
+use crate::compliance::response::Body;
 use crate::contact::problem::patch::rows;
-use crate::grid::{Grid, Window};
-use crate::parallel::{Lanes, ONE, update_with_largest, where_positive};
-use crate::response::Body;
+use crate::model::grid::{Grid, Window};
+use crate::numerics::parallel::{Lanes, ONE, update_with_largest, where_positive};
 
 /// Terms of the alternating series.
 const TERMS: usize = 16;
@@ -229,11 +229,11 @@ fn alternating_sum(term: impl Fn(usize) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{Pairs, Unresolved, alternating_sum};
-    use crate::body::{HalfSpace, Layer, Substrate};
+    use crate::compliance::response::Body;
     use crate::error::Result;
-    use crate::grid::Grid;
-    use crate::material::Elastic;
-    use crate::response::Body;
+    use crate::model::body::{HalfSpace, Layer, Substrate};
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
 
     #[test]
     fn alternating_sums_are_known() {

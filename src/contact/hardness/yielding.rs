@@ -8,7 +8,7 @@ use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Multipliers, Problem};
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Termination, Watch};
 use crate::error::{Error, Result};
-use crate::grid::full_window;
+use crate::model::grid::full_window;
 
 /// Solves an elastic contact from a pressure, or from a uniform one. The arguments are the problem, its gap as an
 /// array, the pressure, the fields of the solution and when to end.

@@ -14,13 +14,13 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
+use crate::compliance::convolution::{Addition, Convolution};
+use crate::compliance::response::Body;
 use crate::contact::problem::INDEFINITE;
 use crate::contact::solver::linear_cg;
-use crate::convolution::{Addition, Convolution};
 use crate::error::{Error, Result};
-use crate::grid::Grid;
-use crate::parallel::Threads;
-use crate::response::Body;
+use crate::model::grid::Grid;
+use crate::numerics::parallel::Threads;
 
 /// Factor between data that are tried.
 const FARTHER: f64 = 10.0;

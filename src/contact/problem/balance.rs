@@ -2,7 +2,7 @@
 
 use super::fit::{add_gram, add_moments};
 use super::freedoms::Freedoms;
-use crate::parallel::{all, sum, where_positive};
+use crate::numerics::parallel::{all, sum, where_positive};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
@@ -130,7 +130,7 @@ mod tests {
     use crate::contact::motion::Motion;
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
-    use crate::grid::Grid;
+    use crate::model::grid::Grid;
 
     const CELLS: [usize; 2] = [13, 18];
 

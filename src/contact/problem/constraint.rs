@@ -1,6 +1,6 @@
 //! Pressures that a cell can carry.
 
-use crate::parallel::{Lanes, ONE, ZERO, where_positive};
+use crate::numerics::parallel::{Lanes, ONE, ZERO, where_positive};
 
 /// The constraint p ≥ 0: surfaces that touch push each other, and never pull.
 ///

@@ -4,8 +4,8 @@ use ndarray::Array2;
 
 use crate::contact::problem::patch::Patch;
 use crate::contact::problem::{Multipliers, Problem, Quality};
-use crate::grid::Window;
-use crate::parallel::Rows;
+use crate::model::grid::Window;
+use crate::numerics::parallel::Rows;
 
 /// Pressure and displacement of a problem, and their quality once it was checked.
 pub(crate) struct Fields {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::constraint::NonNegative;
 use super::freedoms::Freedoms;
-use crate::parallel::{Lanes, ONE, Row, Total, sum, update};
+use crate::numerics::parallel::{Lanes, ONE, Row, Total, sum, update};
 
 /// Sums over cells from which [`Freedoms::fitted`] finds the multipliers of the rigid motion.
 ///
@@ -270,8 +270,8 @@ mod tests {
     use crate::contact::motion::Motion;
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
-    use crate::grid::Grid;
-    use crate::parallel::{Rows, Threads, ZERO};
+    use crate::model::grid::Grid;
+    use crate::numerics::parallel::{Rows, Threads, ZERO};
 
     const CELLS: [usize; 2] = [9, 14];
 

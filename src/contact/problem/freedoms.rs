@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use crate::contact::motion::Motion;
 use crate::error::{Error, Result, finite, positive};
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 
 /// The degrees of freedom in g = h + u − Bλ: the columns of B are the loaded ones 1, (x − x0)/ℓx,
 /// (y − y0)/ℓy, and the prescribed ones are part of h.

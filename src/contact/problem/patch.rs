@@ -3,8 +3,8 @@
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
 use crate::contact::problem::constraint::NonNegative;
-use crate::grid::{Window, full_window};
-use crate::parallel::each_row;
+use crate::model::grid::{Window, full_window};
+use crate::numerics::parallel::each_row;
 
 /// Cells around the contact that a window holds; chosen by trial.
 const WINDOW_MARGIN: usize = 6;

@@ -8,8 +8,8 @@
 
 use std::f64::consts::PI;
 
-use crate::grid::Grid;
-use crate::response::Body;
+use crate::compliance::response::Body;
+use crate::model::grid::Grid;
 
 /// Local displacements of contacts of any number of cells.
 #[derive(Debug, Clone)]
@@ -65,11 +65,11 @@ impl LocalDisplacement {
 #[cfg(test)]
 mod tests {
     use super::{LocalDisplacement, MULTIPLE};
-    use crate::body::{HalfSpace, Layer};
+    use crate::compliance::response::Body;
     use crate::error::Result;
-    use crate::grid::Grid;
-    use crate::material::Elastic;
-    use crate::response::Body;
+    use crate::model::body::{HalfSpace, Layer};
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
 
     /// A bare body of E* = 1 has D = 2, so that the local displacement of a disc of radius a under a force F is
     /// 20 F/πa, and that of a strip under a line load F 10 F. Between powers of two, the table is linear in

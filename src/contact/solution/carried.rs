@@ -4,8 +4,8 @@ use ndarray::Array2;
 
 use crate::contact::motion::Motion;
 use crate::contact::problem::patch::rows;
-use crate::grid::{Grid, Window};
-use crate::parallel::update_with_largest;
+use crate::model::grid::{Grid, Window};
+use crate::numerics::parallel::update_with_largest;
 
 /// Errors of force and moments, relative to what was asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

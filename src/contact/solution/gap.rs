@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use crate::contact::problem::Multipliers;
 use crate::contact::problem::freedoms::Freedoms;
-use crate::parallel::Row;
+use crate::numerics::parallel::Row;
 
 /// The gap of a solution, or what it is computed from.
 #[derive(Debug, Clone)]

@@ -5,8 +5,8 @@ use ndarray::Array2;
 
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::rows;
-use crate::grid::Window;
-use crate::parallel::{Lanes, ONE, all, sum, update_with_largest};
+use crate::model::grid::Window;
+use crate::numerics::parallel::{Lanes, ONE, all, sum, update_with_largest};
 
 /// Outline of the cells in contact.
 pub(super) struct Outline {
@@ -97,7 +97,7 @@ mod tests {
     use ndarray::Array2;
 
     use super::Outline;
-    use crate::grid::full_window;
+    use crate::model::grid::full_window;
 
     /// Outline of the contact with these pressures, in a window of the whole grid.
     fn outline(pressure: &Array2<f64>, gap: &Array2<f64>) -> Outline {

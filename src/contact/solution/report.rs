@@ -4,17 +4,17 @@ use std::ops::ControlFlow;
 
 use super::carried::Balance;
 use super::warnings::Warning;
+use crate::compliance::ends::{Ends, FreeEnds};
+use crate::compliance::influence::Method;
+use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::motion::Motion;
 use crate::contact::plan::Plan;
 use crate::contact::problem::Quality;
 use crate::contact::solver::{Solver, Termination};
-use crate::ends::{Ends, FreeEnds};
 use crate::error::Error;
-use crate::grid::Grid;
-use crate::influence::Method;
-use crate::response::Body;
-use crate::surface::Surface;
+use crate::model::grid::Grid;
+use crate::model::surface::Surface;
 
 /// Course of a solve and quality of its solution. All numbers are computed afresh at the end.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,8 +7,8 @@ use crate::contact::Solution;
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::bounds;
 use crate::error::Result;
-use crate::grid::full_window;
-use crate::parallel::dot;
+use crate::model::grid::full_window;
+use crate::numerics::parallel::dot;
 
 /// Residual of the linear systems. The error of the stiffness is its square.
 const TOLERANCE: f64 = 1e-9;

@@ -5,19 +5,19 @@ use std::sync::{Arc, OnceLock};
 
 use ndarray::Array2;
 
+use crate::compliance::convolution::{Addition, Convolution, Workspace};
+use crate::compliance::ends::Ends;
+use crate::compliance::influence::{Method, memory};
+use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::{bodies, operator};
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::block;
 use crate::contact::solver::linear_cg;
-use crate::convolution::{Addition, Convolution, Workspace};
-use crate::ends::Ends;
 use crate::error::Result;
-use crate::grid::{Grid, Window, full_window, repeating};
-use crate::influence::{Method, memory};
-use crate::parallel::{Threads, check_memory, dot};
-use crate::response::Body;
+use crate::model::grid::{Grid, Window, full_window, repeating};
+use crate::numerics::parallel::{Threads, check_memory, dot};
 
 /// Residual of a linear solve, relative to its right side, below which it is rounding.
 const ROUNDING: f64 = 1e-15;

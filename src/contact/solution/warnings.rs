@@ -5,10 +5,10 @@ use std::fmt;
 use ndarray::Array2;
 
 use super::outline::Outline;
+use crate::compliance::ends::Ends;
 use crate::contact::problem::constraint::NonNegative;
-use crate::ends::Ends;
-use crate::grid::{Grid, Window};
-use crate::surface::{Extent, Surface};
+use crate::model::grid::{Grid, Window};
+use crate::model::surface::{Extent, Surface};
 
 /// A warning: something about a solution that its user should know.
 #[derive(Debug, Clone, Copy, PartialEq)]

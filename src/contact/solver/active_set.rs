@@ -27,9 +27,9 @@ use ndarray::ArrayRef2;
 use super::{Outcome, Solver, StopCriteria, Termination, Watch};
 use crate::contact::problem::Problem;
 use crate::contact::problem::constraint::NonNegative;
-use crate::dense::{backward, cholesky, forward};
-use crate::grid::full_window;
-use crate::parallel::dot;
+use crate::model::grid::full_window;
+use crate::numerics::dense::{backward, cholesky, forward};
+use crate::numerics::parallel::dot;
 
 /// Cells of the largest contact that this method takes: to factorise its matrix costs less than a
 /// convolution on 64 × 64 cells.

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use super::conjugacy::Conjugacy;
 use crate::contact::problem::INDEFINITE;
 use crate::error::{Error, Result};
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// Iterations after which a system counts as unsolvable; solvable ones take some tens.
 const MAX_ITERATIONS: usize = 10_000;

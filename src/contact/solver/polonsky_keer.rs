@@ -15,8 +15,8 @@ use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fields::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Problem};
 use crate::error::Result;
-use crate::grid::full_window;
-use crate::parallel::dot;
+use crate::model::grid::full_window;
+use crate::numerics::parallel::dot;
 
 /// Energy below 0 that may be rounding: of the displacement, some 1e-15 of that of one cell under the sum of
 /// all magnitudes.

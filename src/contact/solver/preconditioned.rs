@@ -28,11 +28,11 @@ use std::mem;
 use super::active_set;
 use super::conjugacy::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use crate::compliance::convolution::{Convolution, Workspace};
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fit::FitSums;
 use crate::contact::problem::{Problem, Quality, QualitySums, depths};
-use crate::convolution::{Convolution, Workspace};
-use crate::parallel::{
+use crate::numerics::parallel::{
     Lanes, Lease, ONE, Rows, ZERO, all, update, update_with_largest, where_positive,
 };
 use arrays::Arrays;

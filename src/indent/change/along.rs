@@ -15,7 +15,7 @@ use super::super::density::Density;
 use super::super::equation::system::times;
 use super::super::point::Point;
 use super::super::zone::Zone;
-use crate::parallel::dot;
+use crate::numerics::parallel::dot;
 
 /// What a unit of approach does at fixed contact radius: to φ(a) − ψ(a) and to the load, with the outer radius that follows.
 #[derive(Debug)]

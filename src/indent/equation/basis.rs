@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::OnceLock;
 
 use super::waves::Waves;
-use crate::kernel::quadrature::Rule;
+use crate::compliance::kernel::quadrature::Rule;
 
 /// Contact radius, in thicknesses of the top layer, up to which values at nodes are cheaper than polynomials.
 const NODAL: f64 = 40.0;
@@ -277,8 +277,8 @@ fn spherical_bessel(y: f64, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::{Basis, spherical_bessel};
+    use crate::compliance::kernel::quadrature::Rule;
     use crate::indent::equation::waves::Waves;
-    use crate::kernel::quadrature::Rule;
 
     /// Recurrence and the sum Σ (2k+1) j_k² = 1 (Abramowitz & Stegun, 10.1.50), below, at and above the orders.
     #[test]

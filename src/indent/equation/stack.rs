@@ -4,9 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use super::super::tip::TipParameter;
 use super::waves::Waves;
-use crate::body::BodyParameter;
+use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives};
 use crate::error::{Error, Result};
-use crate::response::{Body, asymptote_derivatives, normal_derivatives};
+use crate::model::body::BodyParameter;
 
 /// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
 pub(in crate::indent) const MOST_RATIO: f64 = 1024.0;

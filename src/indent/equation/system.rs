@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::super::tip::{MOST_KINKS, Tip};
 use super::basis::Basis;
 use super::stack::{Level, Stack};
-use crate::dense::{backward, cholesky, forward};
 use crate::error::{Error, Result};
-use crate::parallel::{Lanes, dot};
+use crate::numerics::dense::{backward, cholesky, forward};
+use crate::numerics::parallel::{Lanes, dot};
 
 /// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Wavenumbers at which the response of the bodies is known, and cosines and sines there.
 
-use crate::kernel::quadrature::Rule;
-use crate::parallel::Lanes;
+use crate::compliance::kernel::quadrature::Rule;
+use crate::numerics::parallel::Lanes;
 
 /// Wavenumber, in inverse top layers, from which on the response is that of the top layer: what is left of the rest is
 /// some x² e^{−2x} = 3e-12 of it.

@@ -3,11 +3,11 @@
 use spec_math::cephes64::{j0, j1};
 
 use super::{Point, distance};
+use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result};
 use crate::indent::equation::basis::{Panel, rule};
 use crate::indent::equation::waves::Waves;
 use crate::indent::tip::FEW_KINKS;
-use crate::response::interior::{Column, Place};
 
 /// Depth, in contact radii, above which the waves that matter are too many.
 const SHALLOWEST: f64 = 1e-2;
@@ -94,8 +94,8 @@ impl Point {
         let below = body.layers().get(place.layer);
         place.material = match (below, body.substrate()) {
             (Some(layer), _) => layer.material(),
-            (None, crate::body::Substrate::Elastic(material)) => material,
-            (None, crate::body::Substrate::Rigid) => {
+            (None, crate::model::body::Substrate::Elastic(material)) => material,
+            (None, crate::model::body::Substrate::Rigid) => {
                 return Err(Error::Parameter {
                     name: "z",
                     requirement: "above the rigid base",

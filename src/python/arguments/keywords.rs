@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
 use super::{Real, Repr, count, number, pair, real_array, real_matrix};
+use crate::compliance::influence::Method;
 use crate::contact::{Hardness, Motion, Options};
-use crate::influence::Method;
 use crate::python::words::{REFINEMENT, Word, method};
 
 /// Signature of the keywords that say how coefficients are planned.

@@ -7,16 +7,16 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::body::HalfSpace;
-use crate::convolution::Convolution;
-use crate::influence::coefficients_on;
-use crate::parallel::Threads;
+use crate::compliance::convolution::Convolution;
+use crate::compliance::influence::coefficients_on;
+use crate::compliance::response::Body;
+use crate::model::body::HalfSpace;
+use crate::numerics::parallel::Threads;
 use crate::python::arguments::keywords::{self, Keywords, plan_docs, plan_signature};
 use crate::python::arguments::{count, read_only, real_matrix, remade};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
 use crate::python::grid::PyGrid;
-use crate::response::Body;
 
 /// A planned convolution: the displacement of a surface under any pressure.
 ///
@@ -127,7 +127,10 @@ impl PyConvolution {
         let counterbody = counterbody.map(self::body).transpose()?;
         Ok(background::run(py, None, move |_: &mut Caller<()>| {
             let grid = grid.0;
-            crate::parallel::check_memory(grid.shape(), Convolution::memory(grid.shape()))?;
+            crate::numerics::parallel::check_memory(
+                grid.shape(),
+                Convolution::memory(grid.shape()),
+            )?;
             let shared = Arc::new(Threads::new(threads)?);
             let mut coefficients = coefficients_on(&*Body::from(body), &grid, method, &shared)?;
             if let Some(counterbody) = counterbody {

@@ -4,9 +4,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::friction::PyFrictionSolution;
-use crate::body::HalfSpace;
+use crate::compliance::response::Body;
 use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
-use crate::grid::Grid;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
 use crate::python::arguments::keywords::{
     self, Keywords, Single, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
     search_signature, single_docs, single_signature,
@@ -16,7 +17,6 @@ use crate::python::bodies::body;
 use crate::python::grid::PyGrid;
 use crate::python::shapes::{Shape, shape};
 use crate::python::solution::{PyReport, PySolution};
-use crate::response::Body;
 
 /// Setup of a plan.
 pub(super) fn setup(

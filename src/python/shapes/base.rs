@@ -9,9 +9,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::model::surface::{self, Profile, Shifted, Superposition, Surface};
 use crate::python::arguments::{Real, Repr, array_repr, hash, remade};
 use crate::python::grid::PyGrid;
-use crate::surface::{self, Profile, Shifted, Superposition, Surface};
 
 /// A kind of shape with a Python class of the same name. `repr` and pickles are made of its arguments.
 pub(super) trait Kind: Surface {

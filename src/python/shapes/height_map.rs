@@ -6,8 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::base::{Kind, PyShape, held, object};
+use crate::model::surface::HeightMap;
 use crate::python::arguments::{Pair, Real, Repr, flags, read_only, real_matrix};
-use crate::surface::HeightMap;
 
 /// A measured surface: heights at cell centres, positive towards the other body.
 ///

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-use crate::hertz;
+use crate::model::hertz;
 use crate::python::arguments::{Real, hash, mapped};
 use crate::python::bodies::PyElastic;
 

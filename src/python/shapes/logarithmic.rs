@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
+use crate::model::surface::{FujiwaraKawase, LogarithmicProfile, Profile};
 use crate::python::arguments::{Real, hash, mapped};
-use crate::surface::{FujiwaraKawase, LogarithmicProfile, Profile};
 
 /// A logarithmic axial profile of a roller, straight over its middle where `flat_length` > 0.
 ///

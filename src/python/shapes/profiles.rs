@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use super::logarithmic::PyLogarithmicProfile;
+use crate::model::surface::{Profile, SampledProfile};
 use crate::python::arguments::{Repr, array_repr, mapped, read_only, real_array};
-use crate::surface::{Profile, SampledProfile};
 
 /// A measured axial profile of a roller: drops at positions, linear in between, +inf beyond.
 ///

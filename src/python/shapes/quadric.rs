@@ -4,8 +4,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::base::{Kind, PyShape, held, object};
+use crate::model::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 use crate::python::arguments::{Real, numbers};
-use crate::surface::{Cylinder, FlatPunch, Paraboloid, Sphere};
 
 /// A sphere: ``h = R - sqrt(R**2 - r**2)``, +inf beyond R.
 ///

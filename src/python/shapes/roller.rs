@@ -6,8 +6,8 @@ use pyo3::types::PyDict;
 use super::base::{Kind, PyShape, held, object};
 use super::profiles;
 use crate::error::Error;
+use crate::model::surface::{CrownedProfile, Profile, Roller};
 use crate::python::arguments::Real;
-use crate::surface::{CrownedProfile, Profile, Roller};
 
 /// A roller, axis along x, with an axial profile d(x): ``h = R - sqrt((R - d)**2 - y**2)``.
 ///

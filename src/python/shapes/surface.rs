@@ -4,8 +4,8 @@ use ndarray::Array2;
 
 use super::base::Shape;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::surface::{Extent, Surface};
+use crate::model::grid::Grid;
+use crate::model::surface::{Extent, Surface};
 
 impl Surface for Shape {
     fn gap(&self, x: f64, y: f64) -> f64 {

@@ -9,9 +9,9 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::contact::Solution;
 use crate::error::Result;
 use crate::gradient::{LinearOptions, Linearisation};
+use crate::model::surface::Surface;
 use crate::python::background::{self, Caller};
 use crate::python::shapes::{PyShape, Shape, shape};
-use crate::surface::Surface;
 
 /// The call of a method of `nacre.Solution` that makes a value, for pickles.
 pub(super) struct Made {

@@ -4,8 +4,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::compliance::ends::FreeEnds;
 use crate::contact::{Balance, Discretisation, Motion, Report, Warning};
-use crate::ends::FreeEnds;
 use crate::python::bodies::PyHalfSpace;
 use crate::python::grid::PyGrid;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};

@@ -6,7 +6,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::body::{HalfSpace, Layer, Substrate};
+use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::python::arguments::keywords::Keywords;
 use crate::python::arguments::{Pair, Real, Repr, real_array};
 use crate::python::background;

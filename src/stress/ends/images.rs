@@ -3,7 +3,7 @@
 use ndarray::{Array2, ArrayRef2};
 
 use crate::error::Result;
-use crate::grid::Grid;
+use crate::model::grid::Grid;
 
 /// Pressures that are added up on cells beside those of a grid, and on these.
 #[derive(Debug)]

@@ -4,11 +4,11 @@ use std::ops::{ControlFlow, Range};
 
 use super::images::Images;
 use super::strip::Strip;
-use crate::body::HalfSpace;
+use crate::compliance::response::interior::Place;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::parallel::Threads;
-use crate::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
+use crate::numerics::parallel::Threads;
 use crate::stress::half_space::{HalfSpacePlan, PlaneEvaluator, Source, SurfaceLoad};
 use crate::stress::options::StressProgress;
 

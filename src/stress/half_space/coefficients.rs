@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use crate::fft::Keep;
-use crate::kernel::cells::Source;
-use crate::kernel::loads::{
+use crate::compliance::kernel::cells::Source;
+use crate::compliance::kernel::loads::{
     self, COMPONENTS, EXCHANGED, Load, ODD, PressureStress, TractionStress,
 };
-use crate::kernel::plane::{Kernel, Plan};
-use crate::kernel::plans::Kernels;
-use crate::kernel::strip::{self, LinePlan};
-use crate::response::interior::Place;
+use crate::compliance::kernel::plane::{Kernel, Plan};
+use crate::compliance::kernel::plans::Kernels;
+use crate::compliance::kernel::strip::{self, LinePlan};
+use crate::compliance::response::interior::Place;
+use crate::numerics::fft::Keep;
 use crate::stress::half_space::plan::HalfSpacePlan;
 use crate::stress::half_space::repeats::{Repeats, rows_of};
 

@@ -6,10 +6,10 @@ use std::ops::ControlFlow;
 use ndarray::Array2;
 
 use super::plan::{HalfSpacePlan, transforms_memory};
-use crate::fft::{KernelRows, Workspace};
-use crate::grid::Grid;
-use crate::parallel::Threads;
-use crate::response::interior::Place;
+use crate::compliance::response::interior::Place;
+use crate::model::grid::Grid;
+use crate::numerics::fft::{KernelRows, Workspace};
+use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 use crate::stress::subcell::{NearTable, STRESSES};
 

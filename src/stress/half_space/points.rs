@@ -6,9 +6,9 @@ use std::ops::{ControlFlow, Range};
 use rayon::prelude::*;
 
 use super::coefficients::{Coefficients, RowSource, SurfaceLoad};
-use crate::grid::Grid;
-use crate::kernel::COMPONENTS;
-use crate::response::interior::Place;
+use crate::compliance::kernel::COMPONENTS;
+use crate::compliance::response::interior::Place;
+use crate::model::grid::Grid;
 use crate::stress::half_space::plan::{HalfSpacePlan, loaded_cells};
 use crate::stress::options::StressProgress;
 use crate::stress::subcell::STRESSES;

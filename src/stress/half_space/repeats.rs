@@ -12,17 +12,17 @@ use std::ops::Range;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use crate::body::{HalfSpace, Substrate};
-use crate::fft::Keep;
-use crate::grid::Grid;
-use crate::images::Images;
-use crate::kernel::cells::{FAR, Source};
-use crate::kernel::loads::{COMPONENTS, EXCHANGED, Load, Pressure, Traction};
-use crate::kernel::plane::Kernel;
-use crate::kernel::plans::Kernels;
-use crate::kernel::strip::{self, LinePlan};
-use crate::material::Elastic;
-use crate::response::interior::Place;
+use crate::compliance::images::Images;
+use crate::compliance::kernel::cells::{FAR, Source};
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Load, Pressure, Traction};
+use crate::compliance::kernel::plane::Kernel;
+use crate::compliance::kernel::plans::Kernels;
+use crate::compliance::kernel::strip::{self, LinePlan};
+use crate::compliance::response::interior::Place;
+use crate::model::body::{HalfSpace, Substrate};
+use crate::model::grid::Grid;
+use crate::model::material::Elastic;
+use crate::numerics::fft::Keep;
 
 /// Distance of the end of the sums, in longest lengths of what is summed: 1e-7 of the coefficient of the loaded cell is
 /// left.

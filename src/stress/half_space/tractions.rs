@@ -8,11 +8,11 @@ use super::coefficients::SurfaceLoad;
 use super::plan::{HalfSpacePlan, Source};
 use super::plane::PlaneEvaluator;
 use super::points::PointEvaluator;
-use crate::body::HalfSpace;
+use crate::compliance::response::interior::Place;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::parallel::Threads;
-use crate::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
+use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
 /// Tractions along x and along y, uniform over each cell.

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::body::HalfSpace;
 use crate::error::{Error, Result};
-use crate::grid::Grid;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
 use crate::stress::half_space::Source;
 
 /// Rows of a grid that a body has, and its end faces.

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, NormalEquations, SquaredPressure, may_be_fitted};
 use super::neighbours::{around, is_at_border};
-use crate::parallel::Threads;
+use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
 /// Distance from the edge, in cells, from which on inwards pressure is fitted. Cells up to here take

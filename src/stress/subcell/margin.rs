@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::near::STRESSES;
-use crate::grid::{Grid, Window};
+use crate::model::grid::{Grid, Window};
 
 /// Cells of the margin: more than fits, closings of edges and the reach of loads together.
 const CELLS: usize = 24;

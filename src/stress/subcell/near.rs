@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 use super::cut::{CUTS, Cuts, Piece};
 use super::reconstruction::{INERTIA, Interior, Reconstruction, RootCell, mean_root};
-use crate::grid::Grid;
-use crate::parallel::Threads;
+use crate::model::grid::Grid;
+use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
 /// Number of stress components; pressure within cells adds no displacements.

@@ -18,7 +18,7 @@ use super::cut::{Piece, pieces};
 use super::edge::{BAND, EdgeCell, edge_cells};
 use super::fit::SquaredPressure;
 use super::neighbours::{RectangleSums, edge_distances};
-use crate::parallel::Threads;
+use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
 /// The pressure of a solved contact, reconstructed.

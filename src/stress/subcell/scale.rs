@@ -6,7 +6,7 @@
 //! on a thin soft coating. A polynomial fitted to p² over some cells finds the edge if one of the two
 //! holds from the cells inside the edge to within a cell of it.
 
-use crate::response::Response;
+use crate::compliance::response::Response;
 
 /// Longest wavelength over 2π that a fit sees, in cells: the window of [`super::fit`].
 const LONGEST: f64 = 8.0;
@@ -53,9 +53,9 @@ impl Pair<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{HalfSpace, Layer};
     use crate::error::Result;
-    use crate::material::Elastic;
+    use crate::model::body::{HalfSpace, Layer};
+    use crate::model::material::Elastic;
 
     /// Bare bodies and coatings that are thin or thick compared with a cell; not those of about a cell,
     /// nor thin ones that are soft enough to bear the pressure as springs do.

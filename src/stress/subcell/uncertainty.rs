@@ -14,9 +14,9 @@
 //! D is the stress under a unit pressure of wavenumber α, and under the friction in proportion to it. On
 //! hard coatings it is large at wavelengths of a few thicknesses.
 
-use crate::body::HalfSpace;
-use crate::grid::{Grid, Window};
-use crate::response::interior::{Column, Place};
+use crate::compliance::response::interior::{Column, Place};
+use crate::model::body::HalfSpace;
+use crate::model::grid::{Grid, Window};
 
 use super::edge::BAND;
 use super::neighbours::edge_distances;

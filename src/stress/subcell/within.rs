@@ -7,14 +7,14 @@ use super::margin::Margin;
 use super::near::{Components, NearPlan, NearTable};
 use super::scale::Pair;
 use super::uncertainty::{LocalSteps, Uncertainty};
-use crate::body::HalfSpace;
-use crate::grid::{Grid, Window};
-use crate::kernel::loads::{COMPONENTS, EXCHANGED, PressureStress, TractionStress};
-use crate::kernel::plane::Kernel;
-use crate::kernel::plans::Kernels;
-use crate::kernel::strip;
-use crate::parallel::Threads;
-use crate::response::interior::Place;
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, PressureStress, TractionStress};
+use crate::compliance::kernel::plane::Kernel;
+use crate::compliance::kernel::plans::Kernels;
+use crate::compliance::kernel::strip;
+use crate::compliance::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::grid::{Grid, Window};
+use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
 /// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is

@@ -1,7 +1,7 @@
 //! Depths at which a summary looks for the extremes of the stress.
 
-use crate::body::{HalfSpace, Substrate};
-use crate::response::interior::Place;
+use crate::compliance::response::interior::Place;
+use crate::model::body::{HalfSpace, Substrate};
 
 /// Depths below the top of a layer, in half-widths of the contact. Chosen by trial: dense where the
 /// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).
@@ -91,9 +91,9 @@ pub(super) fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Layer;
     use crate::error::Result;
-    use crate::material::Elastic;
+    use crate::model::body::Layer;
+    use crate::model::material::Elastic;
 
     /// Where the thickness is the half-width, some depths come from both lists: each is a place once.
     #[test]

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::response::interior::Place;
+use crate::compliance::response::interior::Place;
 use crate::stress::derived::{Peak, Tensor};
 use crate::stress::options::StressProgress;
 use crate::stress::plan::{PlaneStress, StressPlan};

@@ -1,6 +1,6 @@
 //! Memory of an iteration.
 
-use crate::parallel::Rows;
+use crate::numerics::parallel::Rows;
 
 /// Memory of the arrays of an iteration; it may be larger than needed.
 #[derive(Debug, Default)]

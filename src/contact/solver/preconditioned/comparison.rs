@@ -6,18 +6,18 @@ use ndarray::Array2;
 
 use super::textbook::{Field, Textbook, convolved, largest, sum};
 use super::{Approximation, Assessment, Memory, PATIENCE, Preconditioned, Step};
-use crate::body::{HalfSpace, Layer};
+use crate::compliance::convolution::Convolution;
+use crate::compliance::influence::{Method, influence_coefficients};
+use crate::compliance::response::Body;
 use crate::contact::motion::Motion;
 use crate::contact::problem::Problem;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::scale::LocalDisplacement;
-use crate::convolution::Convolution;
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::influence::{Method, influence_coefficients};
-use crate::material::Elastic;
-use crate::parallel::Pool;
-use crate::response::Body;
+use crate::model::body::{HalfSpace, Layer};
+use crate::model::grid::Grid;
+use crate::model::material::Elastic;
+use crate::numerics::parallel::Pool;
 
 /// A problem of the comparison; lengths and moduli are of order 1.
 struct Case {

@@ -2,10 +2,10 @@
 
 use super::arrays::Arrays;
 use super::{Images, PATIENCE, Preconditioned};
+use crate::compliance::convolution::Convolution;
 use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fit::Products;
-use crate::convolution::Convolution;
-use crate::parallel::{ONE, Total, all, dot, update, where_positive};
+use crate::numerics::parallel::{ONE, Total, all, dot, update, where_positive};
 
 /// A preconditioned residual that is orthogonal to the loaded degrees of freedom: z − Σ `factors` images.
 struct Deflated {

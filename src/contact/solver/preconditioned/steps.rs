@@ -9,10 +9,10 @@ use std::ops::Range;
 
 use super::arrays::Arrays;
 use super::{Displacement, Preconditioned, Step};
+use crate::compliance::convolution::Convolution;
 use crate::contact::problem::Problem;
 use crate::contact::problem::constraint::NonNegative;
-use crate::convolution::Convolution;
-use crate::parallel::{all, sum, update};
+use crate::numerics::parallel::{all, sum, update};
 
 impl Preconditioned<'_> {
     /// A step of the pressure `p`, after the step `last`.

@@ -9,8 +9,8 @@ use std::collections::HashSet;
 use std::iter::zip;
 
 use super::{Approximation, Step};
+use crate::compliance::convolution::Convolution;
 use crate::contact::problem::Problem;
-use crate::convolution::Convolution;
 
 /// A field over all cells.
 pub(super) type Field = Vec<f64>;

@@ -3,13 +3,13 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::body::HalfSpace;
+use crate::compliance::response::Body;
 use crate::friction::{CreepCoefficients, creep_coefficients_watched};
+use crate::model::body::HalfSpace;
 use crate::python::arguments::{Pair, count};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
-use crate::response::Body;
 
 /// Kalker's linear coefficients of an elliptic contact, with their estimated errors.
 ///

@@ -10,9 +10,11 @@ use super::keywords::{Found, found, friction};
 use super::sliding::{Telling, planned, series};
 use super::solution::PyFrictionSolution;
 use super::{found_docs, found_signature, roll_docs, roll_signature, rolled_docs};
-use crate::body::HalfSpace;
+use crate::compliance::response::Body;
 use crate::contact::Contact;
 use crate::friction::{FrictionReport, FrictionSolution, Rolling, RollingDirection};
+use crate::model::body::HalfSpace;
+use crate::model::surface::Surface;
 use crate::python::arguments::keywords::{
     self, Keywords, motion_signature, plan_docs, plan_signature,
 };
@@ -22,8 +24,6 @@ use crate::python::contact::single::setup;
 use crate::python::grid::PyGrid;
 use crate::python::shapes::{Shape, shape};
 use crate::python::words::Word;
-use crate::response::Body;
-use crate::surface::Surface;
 
 /// Arguments of rolling.
 pub(in crate::python::contact) struct Rolled {

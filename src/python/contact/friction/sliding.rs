@@ -11,9 +11,10 @@ use super::keywords::{Found, found, friction};
 use super::report::PyFrictionReport;
 use super::solution::PyFrictionSolution;
 use super::{found_docs, found_signature, slid_docs, slide_docs, slide_signature};
-use crate::body::HalfSpace;
+use crate::compliance::response::Body;
 use crate::contact::{Contact, Motion, Options, choose_grid};
 use crate::friction::{FrictionReport, FrictionSolution, Step};
+use crate::model::body::HalfSpace;
 use crate::python::arguments::Repr;
 use crate::python::arguments::keywords::{
     self, Keywords, motion_signature, plan_docs, plan_signature,
@@ -24,7 +25,6 @@ use crate::python::bodies::body;
 use crate::python::contact::single::setup;
 use crate::python::grid::PyGrid;
 use crate::python::shapes::{Shape, shape};
-use crate::response::Body;
 
 /// Message of progress: number of the step and report.
 pub(super) type Told = (usize, PyFrictionReport);

@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-use crate::hertz;
+use crate::model::hertz;
 use crate::python::arguments::{Real, hash, real_array};
 
 /// Contact of two bodies that are curved differently along x and y: a ball in a groove, a barrel on a ring.

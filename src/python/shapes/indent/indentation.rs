@@ -12,9 +12,9 @@ use super::results::{PyIndentCurve, PyPullOff};
 use super::state::{PyIndentState, chosen, worked, worst};
 use super::tip::PyTip;
 use crate::Result;
+use crate::compliance::response::Body;
 use crate::indent::{Adhesion, Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
 use crate::python::stress::keywords::issue_warnings;
-use crate::response::Body;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
 ///

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use ndarray::Array2;
 
-use crate::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::compliance::response::interior::{Column, InPlane, Place};
 use crate::error::Result;
-use crate::grid::Grid;
-use crate::material::Elastic;
-use crate::response::interior::{Column, InPlane, Place};
+use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::model::grid::Grid;
+use crate::model::material::Elastic;
 use crate::stress::{Stress, StressOptions, stress};
 
 const CELLS: [usize; 2] = [24, 15];

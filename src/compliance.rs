@@ -1,0 +1,10 @@
+//! Surface displacement that a pressure causes: frequency response, influence coefficients, convolution.
+
+pub mod convolution;
+pub mod ends;
+pub(crate) mod graded;
+pub(crate) mod images;
+pub mod influence;
+pub(crate) mod kernel;
+pub mod response;
+pub mod traction;

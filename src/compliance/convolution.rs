@@ -1,0 +1,353 @@
+//! Discrete convolution by FFT (DC-FFT): displacement from pressure, exact up to rounding for any
+//! pressure on the grid, without periodic images.
+//!
+//! Liu, Wang & Liu, Wear 243 (2000) 101, doi:10.1016/S0043-1648(00)00427-0.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use ndarray::{Array2, ArrayRef2};
+
+use crate::error::{Error, Result};
+use crate::numerics::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
+use crate::numerics::parallel::Threads;
+use crate::numerics::parallel::{Lease, Pool};
+
+mod addition;
+mod periodic;
+mod stages;
+
+pub(crate) use addition::{Addition, RowWeights, length, pair};
+
+/// The convolution of a pressure with influence coefficients, planned once and applied many times.
+///
+/// ```text
+/// u[i, j] = Σ_kl C[|i−k|, |j−l|] p[k, l]
+/// ```
+///
+/// ```
+/// use ndarray::array;
+/// let coefficients = array![[1.0, 0.5], [0.25, 0.125]];
+/// let convolution = nacre::Convolution::plan(&coefficients, Some(1))?;
+/// let u = convolution.apply(&array![[1.0, 0.0], [0.0, 0.0]])?;
+/// assert!((&u - &coefficients).iter().all(|d| d.abs() < 1e-15));
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Convolution {
+    shape: [usize; 2],
+    self_influence: f64,
+    transform: PaddedTransform,
+    spectrum: Arc<EvenSpectrum>,
+    threads: Arc<Threads>,
+    /// Operators that are added to the convolution.
+    additions: Vec<Addition>,
+    /// Memory that is not in use, shared with companions of this convolution.
+    idle: Pool<Memory>,
+    /// Time spent by this convolution and its companions.
+    clock: Arc<Clock>,
+}
+
+/// Sum of the time spent in convolutions \[ns\].
+#[derive(Debug, Default)]
+struct Clock(AtomicU64);
+
+impl Clock {
+    fn during<R>(&self, work: impl FnOnce() -> R) -> R {
+        let start = Instant::now();
+        let result = work();
+        self.add(start, 1);
+        result
+    }
+
+    /// Counts the time of `work`, one share of work that `among` threads do at the same time.
+    fn during_part(&self, among: usize, work: impl FnOnce()) {
+        let start = Instant::now();
+        work();
+        self.add(start, among as u64);
+    }
+
+    fn add(&self, start: Instant, among: u64) {
+        let spent = start.elapsed().as_nanos() as u64 / among;
+        self.0.fetch_add(spent, Ordering::Relaxed);
+    }
+}
+
+/// Memory for one application of a convolution at a time. When it is dropped, the convolution keeps the
+/// memory for the next workspace.
+#[derive(Debug)]
+pub struct Workspace(Lease<Memory>);
+
+/// Memory of the transforms, and of each operator that is added.
+#[derive(Debug, Default)]
+struct Memory {
+    fft: FftWorkspace,
+    added: Vec<addition::Memory>,
+}
+
+impl Convolution {
+    /// Plans the convolution with `coefficients` (nx, ny), given at offsets ≥ 0, on `threads`
+    /// threads; `None` stands for all threads of the machine.
+    ///
+    /// # Errors
+    /// Where a coefficient is not finite, the shape is empty, or `threads` is 0.
+    pub fn plan(coefficients: &ArrayRef2<f64>, threads: Option<usize>) -> Result<Self> {
+        Self::plan_on(coefficients, Arc::new(Threads::new(threads)?))
+    }
+
+    pub(crate) fn plan_on(coefficients: &ArrayRef2<f64>, threads: Arc<Threads>) -> Result<Self> {
+        Self::plan_repeated(coefficients, [false; 2], threads)
+    }
+
+    /// Plans the convolution of pressures that repeat along directions that are `periodic`, with coefficients of the
+    /// period, C\[n − i\] = C\[i\].
+    pub(crate) fn plan_repeated(
+        coefficients: &ArrayRef2<f64>,
+        periodic: [bool; 2],
+        threads: Arc<Threads>,
+    ) -> Result<Self> {
+        let shape = [coefficients.nrows(), coefficients.ncols()];
+        if coefficients.is_empty() {
+            return Err(Error::Shape {
+                name: "coefficients",
+                expected: [1, 1],
+                found: shape,
+            });
+        }
+        if let Some((index, _)) = coefficients.indexed_iter().find(|(_, c)| !c.is_finite()) {
+            return Err(Error::NonFinite {
+                name: "coefficients",
+                index: [index.0, index.1],
+            });
+        }
+        let transform = PaddedTransform::plan_repeated(shape, periodic, &threads);
+        Ok(Self::with(
+            coefficients,
+            transform,
+            &threads,
+            Pool::default(),
+            Arc::default(),
+        ))
+    }
+
+    fn with(
+        coefficients: &ArrayRef2<f64>,
+        transform: PaddedTransform,
+        threads: &Arc<Threads>,
+        idle: Pool<Memory>,
+        clock: Arc<Clock>,
+    ) -> Self {
+        let mut workspace = lease(&idle, &transform);
+        let spectrum =
+            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.0.fft, threads));
+        Self {
+            shape: [coefficients.nrows(), coefficients.ncols()],
+            self_influence: coefficients[[0, 0]],
+            transform,
+            spectrum: Arc::new(spectrum),
+            threads: Arc::clone(threads),
+            additions: Vec::new(),
+            idle,
+            clock,
+        }
+    }
+
+    /// This convolution on other threads, with the same spectrum.
+    pub(crate) fn on_threads(&self, threads: &Arc<Threads>) -> Self {
+        Self {
+            transform: self.transform.on_threads(threads),
+            spectrum: Arc::clone(&self.spectrum),
+            threads: Arc::clone(threads),
+            additions: self.additions.clone(),
+            idle: Pool::default(),
+            clock: Arc::default(),
+            ..*self
+        }
+    }
+
+    /// This convolution with the threads, the memory and the clock of `other`.
+    pub(crate) fn sharing_with(&self, other: &Self) -> Self {
+        Self {
+            idle: other.idle.clone(),
+            clock: Arc::clone(&other.clock),
+            ..self.on_threads(&other.threads)
+        }
+    }
+
+    /// A convolution with other `coefficients`, which repeats along directions that are `periodic`, and shares threads, memory and clock with this one.
+    /// Windows and coarser grids have such companions.
+    pub(crate) fn companion(&self, coefficients: &ArrayRef2<f64>, periodic: [bool; 2]) -> Self {
+        let shape = [coefficients.nrows(), coefficients.ncols()];
+        let transform = PaddedTransform::plan_repeated(shape, periodic, &self.threads);
+        Self::with(
+            coefficients,
+            transform,
+            &self.threads,
+            self.idle.clone(),
+            Arc::clone(&self.clock),
+        )
+    }
+
+    /// This convolution plus `additions`, each for as many rows as the convolution has, and no shorter ones.
+    pub(crate) fn plus(self, additions: Vec<Addition>) -> Self {
+        Self { additions, ..self }
+    }
+
+    /// What the additions contribute to the displacement of a cell in one row under unit pressure on a cell in another,
+    /// at a `distance` of so many cells along y.
+    pub(crate) fn added(&self, rows: [usize; 2], distance: usize) -> f64 {
+        let additions = self.additions.iter();
+        additions.map(|added| added.entry(rows, distance)).sum()
+    }
+
+    /// [`Convolution::companion`] for a window whose first row is `first`, with the part of the additions there.
+    pub(crate) fn on_window(&self, coefficients: &ArrayRef2<f64>, first: usize) -> Self {
+        let rows = first..first + coefficients.nrows();
+        let additions = self.additions.iter();
+        let additions = additions.map(|a| a.on_rows(rows.clone())).collect();
+        self.companion(coefficients, [false; 2]).plus(additions)
+    }
+
+    /// Cost of an application, in arbitrary units: points of the padded mesh times their logarithm.
+    pub(crate) fn work(&self) -> f64 {
+        self.transform.work()
+    }
+
+    /// Bytes of a plan for data of `shape`, with one workspace.
+    pub(crate) fn memory(shape: [usize; 2]) -> u64 {
+        PaddedTransform::memory(shape)
+    }
+
+    /// Shape (nx, ny) of pressure and displacement.
+    pub fn shape(&self) -> [usize; 2] {
+        self.shape
+    }
+
+    /// Displacement of a loaded cell per unit of its own pressure.
+    pub(crate) fn self_influence(&self) -> f64 {
+        self.self_influence
+    }
+
+    /// Threads that apply this convolution.
+    pub(crate) fn own_threads(&self) -> &Threads {
+        &self.threads
+    }
+
+    /// Number of threads that apply this convolution.
+    pub fn threads(&self) -> usize {
+        self.threads.count()
+    }
+
+    /// Time spent so far in this convolution, and in those that solves derive from it, on planning
+    /// spectra, transforms and products \[s\]. Times of concurrent applications are added.
+    pub fn seconds(&self) -> f64 {
+        1e-9 * self.clock.0.load(Ordering::Relaxed) as f64
+    }
+
+    /// Memory for [`Convolution::apply_into`].
+    pub fn workspace(&self) -> Workspace {
+        lease(&self.idle, &self.transform)
+    }
+
+    /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
+    ///
+    /// # Errors
+    /// As [`Convolution::apply_into`].
+    pub fn apply(&self, pressure: &ArrayRef2<f64>) -> Result<Array2<f64>> {
+        let mut displacement = Array2::zeros(self.shape);
+        self.apply_into(pressure, &mut displacement, &mut self.workspace())?;
+        Ok(displacement)
+    }
+
+    /// Writes the displacement under `pressure` into `displacement`, as [`Convolution::apply`] computes
+    /// it. No memory is allocated where both arrays are in C order.
+    ///
+    /// # Errors
+    /// Where an array does not have the shape of the convolution, or a pressure is not finite.
+    pub fn apply_into(
+        &self,
+        pressure: &ArrayRef2<f64>,
+        displacement: &mut ArrayRef2<f64>,
+        workspace: &mut Workspace,
+    ) -> Result<()> {
+        for (name, found) in [
+            ("pressure", pressure.dim()),
+            ("displacement", displacement.dim()),
+        ] {
+            if [found.0, found.1] != self.shape {
+                let found = [found.0, found.1];
+                return Err(Error::Shape {
+                    name,
+                    expected: self.shape,
+                    found,
+                });
+            }
+        }
+        if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
+            return Err(Error::NonFinite {
+                name: "pressure",
+                index: index.into(),
+            });
+        }
+        let standard = pressure.as_standard_layout();
+        let input = standard.as_slice().unwrap_or(&[]);
+        if let Some(output) = displacement.as_slice_mut() {
+            self.apply_slices(input, output, workspace);
+        } else {
+            let mut output = vec![0.0; input.len()];
+            self.apply_slices(input, &mut output, workspace);
+            displacement
+                .iter_mut()
+                .zip(output)
+                .for_each(|(d, o)| *d = o);
+        }
+        match displacement.iter().all(|d| d.is_finite()) {
+            true => Ok(()),
+            false => Err(Error::Inconsistent(
+                "pressure must be in units in which its products with the coefficients do not overflow",
+            )),
+        }
+    }
+
+    /// Applies the convolution to slices in C order.
+    pub(crate) fn apply_slices(
+        &self,
+        input: &[f64],
+        output: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
+        let memory = &mut workspace.0;
+        self.transform.reserve(&mut memory.fft);
+        self.clock.during(|| {
+            let (spectrum, threads) = (&self.spectrum, &self.threads);
+            self.transform
+                .convolve_into(spectrum, input, output, &mut memory.fft, threads);
+            self.respond(input, 0..self.shape[0], &mut memory.added);
+            self.add_rows(0, output, &memory.added);
+        });
+    }
+
+    /// Computes what the additions respond to an `input` that is zero outside the rows `occupied`.
+    fn respond(&self, input: &[f64], occupied: Range<usize>, memory: &mut Vec<addition::Memory>) {
+        memory.resize_with(self.additions.len().max(memory.len()), Default::default);
+        for (addition, memory) in self.additions.iter().zip(memory) {
+            addition.respond(input, occupied.clone(), memory, &self.threads);
+        }
+    }
+
+    /// Adds what the additions responded to rows of the output, from row `first` on.
+    fn add_rows(&self, first: usize, output: &mut [f64], memory: &[addition::Memory]) {
+        for (addition, memory) in self.additions.iter().zip(memory) {
+            addition.add_rows(first, self.shape[1], output, memory);
+        }
+    }
+}
+
+/// A workspace from idle memory, large enough for `transform`.
+fn lease(idle: &Pool<Memory>, transform: &PaddedTransform) -> Workspace {
+    let mut memory = idle.lease();
+    transform.reserve(&mut memory.fft);
+    Workspace(memory)
+}

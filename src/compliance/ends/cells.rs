@@ -1,0 +1,209 @@
+//! What a free end adds to the influence coefficients of cells.
+//!
+//! The displacement of cell a under unit pressure on cell b is the sum of that from the mirror image of b,
+//! in closed form at the centre of a, and of the mean over a of what keeps the face free. The means make the
+//! second symmetric and positive; the first is symmetric as it is.
+
+use std::f64::consts::{EULER_GAMMA, PI};
+
+use ndarray::{Array1, Array2, Axis};
+use rayon::prelude::*;
+
+use super::mesh::Modes;
+use super::reduction::Reduction;
+use super::waves::Along;
+use super::{VANISHED, layers};
+use crate::compliance::convolution::{RowWeights, pair};
+use crate::compliance::influence::{CellInfluence, coefficients_apart};
+use crate::compliance::kernel::quadrature::Rule;
+use crate::error::Result;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
+use crate::model::material::Elastic;
+use crate::numerics::parallel::Threads;
+
+/// Cells next to the end that are nodes themselves. Farther off, coefficients are polynomials of the place on
+/// panels that end at twice the distance from which they start.
+const NODES_THEMSELVES: f64 = 8.0;
+
+/// Nodes of a panel. The nearest singularity is a panel's length before its start, so that the polynomials err by
+/// 6^−8, 6e-7 of a coefficient.
+const PANEL_NODES: usize = 8;
+
+/// Distances from the end up to which φ is averaged by its integral, in cells; farther off by Gauss's rule.
+const INTEGRATED: f64 = 4.0;
+
+/// Rows of cells at increasing distances from an end, interpolated from nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Nodes {
+    /// Distance of each node from the end.
+    pub(super) distances: Vec<f64>,
+    pub(super) rows: Vec<RowWeights>,
+    /// Length of a cell.
+    pub(super) spacing: f64,
+}
+
+impl Nodes {
+    /// Nodes for `count` rows of cells, of which the first has its centre at the distance `nearest`.
+    pub(super) fn new(nearest: f64, spacing: f64, count: usize) -> Self {
+        let (mut distances, mut rows) = (Vec::new(), Vec::new());
+        let at = |row: usize| nearest + spacing * row as f64;
+        while rows.len() < count {
+            let start = at(rows.len()) - 0.5 * spacing;
+            let doubled = (start / spacing).round().min((count - rows.len()) as f64);
+            let first = distances.len();
+            if start < NODES_THEMSELVES * spacing || doubled <= PANEL_NODES as f64 {
+                distances.push(at(rows.len()));
+                rows.push(RowWeights {
+                    first,
+                    weights: vec![1.0],
+                });
+                continue;
+            }
+            let last = rows.len() + doubled as usize - 1;
+            let (low, high) = (at(rows.len()), at(last));
+            let angle = |q: usize| PI * (q as f64 + 0.5) / PANEL_NODES as f64;
+            distances.extend(
+                (0..PANEL_NODES).map(|q| 0.5 * (low + high) - 0.5 * (high - low) * angle(q).cos()),
+            );
+            for row in rows.len()..=last {
+                let t = 2.0 * (at(row) - low) / (high - low) - 1.0;
+                rows.push(RowWeights {
+                    first,
+                    weights: chebyshev(t).to_vec(),
+                });
+            }
+        }
+        Self {
+            distances,
+            rows,
+            spacing,
+        }
+    }
+
+    /// Means of functions of kx over a cell around x = `distance`.
+    pub(super) fn mean(&self, modes: &Modes, k: f64, distance: f64) -> Array1<f64> {
+        let (dx, mut sums) = (self.spacing, Array1::zeros(modes.count()));
+        if distance < INTEGRATED * dx {
+            let factor = 1.0 / (k * dx);
+            let low = (distance - 0.5 * dx).max(0.0);
+            modes.add_integrals(k * (distance + 0.5 * dx), factor, &mut sums);
+            modes.add_integrals(k * low, -factor, &mut sums);
+            return sums;
+        }
+        for (part, w) in Rule::gauss_legendre(3).nodes(0.0, 0.5) {
+            modes.add(k * (distance + part * dx), w, &mut sums);
+        }
+        sums
+    }
+
+    /// Nodes that are within `most` of the end with all of their cell, or part of it.
+    fn within(&self, most: f64) -> usize {
+        let near = |d: &&f64| **d - 0.5 * self.spacing < most;
+        self.distances.iter().take_while(near).count()
+    }
+}
+
+/// Distances of nodes from an end, and weights of the nodes for `count` rows of cells of length `spacing`, of which the
+/// first has its centre at the distance `nearest`.
+pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, Vec<RowWeights>) {
+    let Nodes {
+        distances, rows, ..
+    } = Nodes::new(nearest, spacing, count);
+    (distances, rows)
+}
+
+/// Weights of the Chebyshev nodes −cos((q + ½)π/n) at t.
+fn chebyshev(t: f64) -> [f64; PANEL_NODES] {
+    let nodes: [[f64; 2]; PANEL_NODES] = std::array::from_fn(|q| {
+        let angle = PI * (q as f64 + 0.5) / PANEL_NODES as f64;
+        let sign = if q % 2 == 0 { 1.0 } else { -1.0 };
+        [-angle.cos(), sign * angle.sin()]
+    });
+    if let Some(at) = nodes.iter().position(|[x, _]| (x - t).abs() < 1e-14) {
+        return std::array::from_fn(|q| if q == at { 1.0 } else { 0.0 });
+    }
+    let terms = nodes.map(|[x, weight]| weight / (t - x));
+    let sum: f64 = terms.iter().sum();
+    terms.map(|term| term / sum)
+}
+
+/// Coefficient of the logarithm in what keeps the face free, −c ln k as k → 0. The whole body is displaced as much more than
+/// a half-space as the edge of a quarter space of ν = ½ is.
+pub(super) fn logarithm() -> f64 {
+    2.0 * PI * PI / (PI * PI - 4.0) - 2.0
+}
+
+/// Longest wave that stands for a pressure that is uniform along y, over the distance from the end. The displacement
+/// differs by a term that is linear in k, which twice the wave takes away, and by 1e-7.
+const UNIFORM: f64 = 1e-4;
+
+/// Coefficients \[m/Pa\] that a free end adds for a `body` on a substrate of `material` on cells of a `grid`: pairs of
+/// nodes, distances along y. Where the grid repeats, with the `datum` at this distance. On the threads of the caller.
+pub(super) fn coefficients(
+    (body, material): (&HalfSpace, Elastic),
+    nodes: &Nodes,
+    (grid, datum): (&Grid, f64),
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let ([dx, dy], count) = (grid.spacing(), nodes.distances.len());
+    let along = Along::of(grid);
+    // Means over cells leave amplitudes that fall as k⁻²; the rest is 1e-7 of the integral.
+    let fallen = 150.0 / (dx * dx * dy).cbrt();
+    let first = nodes.distances[0] - 0.5 * dx;
+    let highest = if first > 1e-9 * dx {
+        fallen.min(VANISHED / first)
+    } else {
+        fallen
+    };
+    let uniform = UNIFORM / nodes.distances[count - 1];
+    let zeroth = [(uniform, 2.0), (2.0 * uniform, -1.0)];
+    let waves = along.waves(along.farthest(), highest, &zeroth);
+    let reduction = Reduction::of(material.poisson());
+
+    let pairs = pair(count - 1, count - 1) + 1;
+    let mut amplitudes = Array2::zeros((waves.wavenumbers.len(), pairs));
+    (amplitudes.axis_iter_mut(Axis(0)).into_par_iter())
+        .zip(&waves.wavenumbers)
+        .for_each(|(mut row, &k)| {
+            let near = nodes.within(VANISHED / k);
+            let means: Vec<Array1<f64>> = nodes.distances[..near]
+                .iter()
+                .map(|&d| nodes.mean(&reduction.displacement, k, d))
+                .collect();
+            let factor = layers::factor(body, k);
+            for a in 0..near {
+                for b in 0..=a {
+                    row[pair(a, b)] = factor * means[a].dot(&means[b]);
+                }
+            }
+        });
+    let short = 2.0 / material.plane_strain_modulus();
+    let factor = short * dx * dy / PI.powi(2);
+    let weights = Array2::from_shape_fn(
+        (along.distances.len(), waves.wavenumbers.len()),
+        |(l, k)| factor * waves.weights[k][l],
+    );
+    let mut coefficients = amplitudes.t().dot(&weights.t());
+
+    let apart = (0..count).flat_map(|a| (0..=a).map(move |b| [a, b]));
+    let apart = apart.map(|[a, b]| nodes.distances[a] + nodes.distances[b]);
+    let apart: Vec<f64> = apart.collect();
+    if along.repeats {
+        // The wave ½ uniform stands for the limit; with the datum, 2 exp(−γ)/datum does.
+        let limit = (0.25 * uniform * datum).ln() + EULER_GAMMA;
+        coefficients += factor * PI / grid.size()[1] * logarithm() * limit;
+        coefficients += &coefficients_apart(body, grid, (&apart, datum), threads)?;
+        return Ok(coefficients);
+    }
+    let reach = 2.0 * nodes.distances[count - 1] + along.farthest();
+    let mirror = CellInfluence::plan(body, [dx, dy], reach)?;
+    (coefficients.axis_iter_mut(Axis(0)).into_par_iter())
+        .zip(apart)
+        .for_each(|(row, apart)| {
+            for (c, &y) in row.into_iter().zip(&along.distances) {
+                *c += mirror.at([apart, y]);
+            }
+        });
+    Ok(coefficients)
+}

@@ -1,0 +1,43 @@
+//! Free ends of layered bodies: a model of nacre's own.
+//!
+//! The half-space under the even pressure P(|x|) is taken with its layers, so that the mirror image is exact. What
+//! keeps the face free is that of the substrate, with a factor for each wavenumber k along y,
+//!
+//! ```text
+//! D_n^⅓ D_t^⅔        D_n = c11(k)/c11₀(k)        D_t = c22(k)/c22₀(k)
+//! ```
+//!
+//! where c are the compliances of the layered surface and c₀ of the bare substrate. To free the face takes motion
+//! along the surface rather than across it. The exponents were chosen by trial. With ν = 0.3 everywhere, one coating
+//! up to 4 times as hard or as soft as the substrate, the displacement is within 3.2 % of a solution by finite elements
+//! (`tests/compliance/ends.rs`), and within 9 % up to 10 times. Nearly incompressible soft coatings are the worst: 16 %.
+
+use crate::compliance::response::{Compliance, alpha_compliance};
+use crate::model::body::{HalfSpace, Substrate};
+
+/// Factor of what keeps the face free, at wavenumber `k`.
+pub(super) fn factor(body: &HalfSpace, k: f64) -> f64 {
+    let (Substrate::Elastic(material), false) = (body.substrate(), body.layers().is_empty()) else {
+        return 1.0;
+    };
+    let (here, below) = (alpha_compliance(body, k), Compliance::homogeneous(material));
+    (here.c11 / below.c11).cbrt() * (here.c22 / below.c22).cbrt().powi(2)
+}
+
+/// Largest ratio of the moduli of a body, at least 1; 1 for a body without layers.
+pub(super) fn contrast(body: &HalfSpace) -> f64 {
+    let layers = body.layers().iter().map(|layer| layer.material());
+    let substrate = match body.substrate() {
+        Substrate::Elastic(material) => Some(material),
+        Substrate::Rigid => None,
+    };
+    let young = layers.chain(substrate).map(|material| material.young());
+    let [low, high] = young.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], e| {
+        [low.min(e), high.max(e)]
+    });
+    if body.layers().is_empty() {
+        1.0
+    } else {
+        (high / low).max(1.0 + f64::EPSILON)
+    }
+}

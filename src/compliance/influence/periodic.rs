@@ -1,0 +1,136 @@
+//! Influence coefficients of grids that repeat: sums over images ([`crate::compliance::images`]), or waves.
+//!
+//! The mean of the coefficients is û/p̂(0) under a pressure everywhere on a rigid base, and taken as 0 on an elastic one;
+//! where one direction is open, it is that of the line contact.
+
+use std::f64::consts::PI;
+
+use ndarray::{Array2, Axis, Zip};
+
+use super::exact::{CellInfluence, WHOLE_CELLS};
+use super::line;
+use crate::compliance::images::Images;
+use crate::compliance::response::Response;
+use crate::error::{Error, Result};
+use crate::model::body::Substrate;
+use crate::model::grid::Grid;
+use crate::numerics::fft::inverse_even;
+use crate::numerics::parallel::Threads;
+
+/// Distance of the end of the sums, in longest lengths of what is summed: 1e-10 of the coefficient of the loaded cell is
+/// left.
+const RINGS: f64 = 16.0;
+
+/// Distance of the offsets from the corners of a block, in its shorter sides, at least.
+const NEAREST: f64 = 1e-3;
+
+/// Sums over the images of a cell at `offsets` along x and the offsets of the cells along y that are computed, up to
+/// constants.
+fn sums(
+    body: &dyn Response,
+    images: &Images,
+    spacing: [f64; 2],
+    offsets: &[f64],
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let cell = CellInfluence::plan_on(body, spacing, WHOLE_CELLS, images.reach(), threads)?;
+    let (sides, reach) = (images.block_sides(), images.block_reach());
+    let block = CellInfluence::plan_on(body, sides, NEAREST, reach, threads)?;
+    let mut sums = Array2::zeros((offsets.len(), images.kept()[1]));
+    threads.run(|| {
+        let far = images.far(|at| [cell.at_distance(at)], |at| [block.at_distance(at)]);
+        Zip::indexed(&mut sums)
+            .and(&far[0])
+            .par_for_each(|(i, j), sum, far| {
+                let at = [offsets[i], j as f64 * spacing[1]];
+                *sum = *far;
+                for k in images.near(0) {
+                    for l in images.near(1) {
+                        *sum += cell.at_distance(images.place(at, [k, l]));
+                    }
+                }
+            });
+    });
+    Ok(sums)
+}
+
+/// Coefficients \[m/Pa\] on a `grid` that repeats along y alone, at any `offsets` along x of at least a cell, with the
+/// datum at a distance: (offsets, ny/2 + 1).
+pub(super) fn apart(
+    body: &dyn Response,
+    grid: &Grid,
+    (offsets, datum): (&[f64], f64),
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let (spacing, [_, ny]) = (grid.spacing(), grid.shape());
+    let farthest = offsets.iter().fold(0.0_f64, |most, x| most.max(*x));
+    let rows = (farthest / spacing[0]).ceil() as usize + 1;
+    let longer = Grid::new([rows, ny], [rows as f64 * spacing[0], grid.size()[1]])?;
+    let images = Images::plan(&longer.periodic(grid.is_periodic())?, RINGS).at_offsets(offsets);
+    let mut sums = sums(body, &images, spacing, offsets, threads)?;
+    let uniform = line::apart(body, (spacing[0], datum), offsets, threads)?;
+    for (mut line, uniform) in sums.axis_iter_mut(Axis(0)).zip(uniform) {
+        let total: f64 = (0..ny).map(|l| line[l.min(ny - l)]).sum();
+        line += (uniform - total) / ny as f64;
+    }
+    Ok(sums)
+}
+
+/// Coefficients (nx, ny) \[m/Pa\] without the local compliance; C\[n − i\] = C\[i\] along periodic directions.
+pub(super) fn coefficients(
+    body: &dyn Response,
+    grid: &Grid,
+    threads: &Threads,
+) -> Result<Array2<f64>> {
+    let (spacing, size) = (grid.spacing(), grid.size());
+    let images = Images::plan(grid, RINGS);
+    let rows = (0..images.kept()[0]).map(|i| i as f64 * spacing[0]);
+    let sums = sums(body, &images, spacing, &rows.collect::<Vec<_>>(), threads)?;
+    let mut whole = images.whole(&sums, [false; 2]);
+    let mean = if grid.is_periodic() == [true; 2] {
+        vec![uniform(body)]
+    } else {
+        let open = usize::from(grid.is_periodic()[0]);
+        let strips = Grid::line(grid.shape()[open], size[open])?;
+        line::coefficients(body, &strips, threads)?
+            .iter()
+            .copied()
+            .collect()
+    };
+    images.with_mean(&mut whole, &mean);
+    Ok(whole)
+}
+
+/// Coefficients with which waves of the grid are displaced by û/p̂ at their wave number.
+///
+/// # Errors
+/// Unless both directions are periodic.
+pub(super) fn sampled(body: &dyn Response, grid: &Grid, threads: &Threads) -> Result<Array2<f64>> {
+    if grid.is_periodic() != [true; 2] {
+        return Err(Error::Inconsistent(
+            "method \"spectral\" needs a grid that is periodic along x and along y",
+        ));
+    }
+    let step = grid.size().map(|length| 2.0 * PI / length);
+    let response = |k: usize, l: usize| {
+        let alpha = (k as f64 * step[0]).hypot(l as f64 * step[1]);
+        match alpha > 0.0 {
+            true => body.normal(alpha) / alpha,
+            false => uniform(body),
+        }
+    };
+    Ok(inverse_even(grid.shape(), grid.shape(), response, threads))
+}
+
+/// Displacement under a unit pressure everywhere, on a rigid base; 0 on an elastic one, without the local compliance.
+fn uniform(body: &dyn Response) -> f64 {
+    let limits = body.asymptotes();
+    // A derivative of the response of layers has limits of either sign.
+    let elastic = body.half_space().map_or(limits.long > 0.0, |body| {
+        matches!(body.substrate(), Substrate::Elastic(_))
+    });
+    match elastic {
+        true => 0.0,
+        false => limits.constant,
+    }
+}

@@ -1,0 +1,161 @@
+//! Influence coefficients of stress and displacement at one depth, without aliasing.
+//!
+//! The layered body at a place differs from a half-space of the material that is there by a
+//! response whose transforms ([`Series`]) are smooth.
+//!
+//! On the loaded cell and next to it, the half-space is taken in closed form ([`super::love`],
+//! [`super::cerruti`]) and the difference is integrated from its corners ([`super::quadrature`]). Farther
+//! off, or deeper, one table holds both together, to be integrated over the cell.
+
+use super::COMPONENTS;
+use super::cells::FAR;
+use super::loads::{Load, PointLoad};
+use super::mesh::{Multipliers, Spectrum};
+use super::quadrature::{CellRules, Rules};
+use super::series::Series;
+use super::table::{FewPieces, FewTerms};
+use crate::compliance::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::material::Elastic;
+
+/// The plan of a body's kernels, which all depths share.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) body: HalfSpace,
+    spacing: [f64; 2],
+    /// Nearest distance to a corner of a cell, or of a piece of one.
+    nearest: f64,
+    reach: f64,
+    cells: CellRules,
+    /// None where the body is homogeneous.
+    spectrum: Option<Spectrum>,
+}
+
+impl Plan {
+    /// Plans kernels for cells of sides `spacing`, and pieces down to `finest` of them, at offsets up to `reach`.
+    pub(crate) fn new(body: &HalfSpace, spacing: [f64; 2], finest: f64, reach: f64) -> Self {
+        let nearest = NEAREST * finest * 0.5 * spacing[0].min(spacing[1]);
+        Self {
+            body: body.clone(),
+            spacing,
+            nearest,
+            reach,
+            cells: CellRules::new(Rules::stress()),
+            spectrum: Spectrum::new(body, [nearest, reach]),
+        }
+    }
+
+    /// Transforms of powers of the wavenumber, for the functions of a load.
+    pub(crate) fn multipliers<const N: usize, L: Load<N>>(&self) -> Vec<Multipliers> {
+        let of = |spectrum: &Spectrum| L::ORDERS.map(|order| spectrum.mesh.multipliers(order));
+        self.spectrum
+            .as_ref()
+            .map(of)
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+}
+
+/// Nearest distance to a corner of a cell, in half sides: half a side, and some more for the nodes of
+/// quadratures.
+const NEAREST: f64 = 0.4;
+
+/// The coefficients of one load at one place.
+#[derive(Debug)]
+pub(crate) struct Kernel<'a, const N: usize> {
+    plan: &'a Plan,
+    material: Elastic,
+    depth: f64,
+    /// h_ν of the layered body.
+    layered: FewPieces<N>,
+    /// h_ν of the layered body far off.
+    far: FewTerms<N>,
+    /// η_ν of the difference from a half-space, where there is one and cells are not small compared with the
+    /// depth.
+    mean_difference: Option<FewPieces<N>>,
+}
+
+impl<'a, const N: usize> Kernel<'a, N> {
+    /// The kernel of load L at `place`. On the threads of the caller.
+    pub(crate) fn new<L: Load<N>>(
+        plan: &'a Plan,
+        multipliers: &[Multipliers],
+        place: &Place,
+    ) -> Self {
+        let (material, depth) = (place.material, place.depth);
+        let point = PointLoad::new::<L>(material, depth);
+        let series = plan.spectrum.as_ref().map(|spectrum| {
+            let differences = spectrum.differences(&plan.body, place, L::radial);
+            let samples = std::array::from_fn(|k| {
+                let bias = L::ORDERS[k].kind.bias();
+                let values = differences.iter();
+                values.map(|(alpha, d)| alpha.powf(bias) * d[k]).collect()
+            });
+            Series::new(&spectrum.mesh, &L::ORDERS, multipliers, samples, depth)
+        });
+        let half = plan.spacing.map(|d| 0.5 * d);
+        let (least, most) = (half[0].min(half[1]), half[0].max(half[1]));
+        // Deep enough, no cell is treated as near.
+        let nearest = if plan.cells.all_far(depth, least) {
+            0.0
+        } else {
+            plan.nearest
+        };
+        let layered = FewPieces::new([nearest, plan.reach], depth * depth, |r| {
+            let mut h = r.map(|r| point.at(r * r));
+            if let Some(series) = &series {
+                let rest = series.reduced(r);
+                let pairs = h.iter_mut().flatten().zip(rest.iter().flatten());
+                pairs.for_each(|(h, d)| *h += d);
+            }
+            h
+        });
+        let mean_difference = series
+            .filter(|_| nearest > 0.0)
+            .map(|series| FewPieces::new([nearest, 12.0 * most], 0.0, |r| series.mean(r)));
+        // Differences reach one cell further in.
+        let far = 2.0 * (FAR - 2.0) * most;
+        let start = (far * far - depth * depth).max(0.0).sqrt();
+        let far = FewTerms::new([start.min(plan.reach), plan.reach], depth * depth, |r| {
+            r.map(|r| layered.at(r * r))
+        });
+        Self {
+            plan,
+            material,
+            depth,
+            layered,
+            far,
+            mean_difference,
+        }
+    }
+
+    /// Components of a unit load on a cell of half sides `half`, at (x, y) from its centre.
+    pub(crate) fn at<L: Load<N>>(&self, at: [f64; 2], half: [f64; 2]) -> [f64; COMPONENTS] {
+        let mut sum = [0.0; COMPONENTS];
+        let mut add = |weight: f64, values: [f64; COMPONENTS]| {
+            sum.iter_mut()
+                .zip(values)
+                .for_each(|(s, v)| *s += weight * v);
+        };
+        let cells = &self.plan.cells;
+        let point = |x: f64, y: f64| L::components(&self.layered.at(x * x + y * y), x, y);
+        if !cells.nodes(at, half, self.depth, |weight, x, y| {
+            add(weight, point(x, y))
+        }) {
+            add(1.0, L::closed(self.material, half, at, self.depth));
+            if let Some(mean) = &self.mean_difference {
+                cells.corners(at, half, |weight, r, [cos, sin]| {
+                    add(weight, L::components(&mean.at(r * r), cos, sin));
+                });
+            }
+        }
+        sum
+    }
+
+    /// Components of a unit load on a point, at (x, y) from it, where that is far.
+    #[inline]
+    pub(crate) fn far<L: Load<N>>(&self, x: f64, y: f64) -> [f64; COMPONENTS] {
+        L::components(&self.far.at(x * x + y * y), x, y)
+    }
+}

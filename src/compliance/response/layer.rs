@@ -1,0 +1,304 @@
+//! One layer as an element between its two faces: the step of the recursion, which is nacre's own.
+
+mod poisson;
+
+pub(super) use poisson::of_energy;
+
+use super::compliance::Compliance;
+use crate::model::body::Interface;
+use crate::model::material::Elastic;
+
+/// A layer of thickness h at wavenumber α, x = αh, with traction t = (P, τ) given on top and
+/// displacement u = (W, V) given at the bottom:
+///
+/// ```text
+/// u_top = H11 t_top + H12 u_bot      t_bot = H12ᵀ t_top − H22 u_bot
+/// ```
+///
+/// H11 is stored times α \[1/Pa\], H22 over α \[Pa\]. With η = 1−ν, ε = 1−2ν, k = 3−4ν,
+/// Δ = k cosh 2x + 2x² + 5 − 12ν + 8ν²:
+///
+/// ```text
+/// Gα H11 Δ :    11  η (k sinh 2x − 2x)      22  η (k sinh 2x + 2x)      12  εk sinh²x − x²
+/// H12 Δ :       11  4η (2η cosh x + x sinh x)     12  4η (ε sinh x − x cosh x)
+///               21  4η (ε sinh x + x cosh x)      22  4η (2η cosh x − x sinh x)
+/// H22 Δ/(Gα) :  11  4η (sinh 2x − 2x)       22  4η (sinh 2x + 2x)       12  4 (ε sinh²x + x²)
+/// det H22 = 8 (sinh²x − x²)/Δ · (Gα)²
+/// twist:        Gα h11 = h22/(Gα) = tanh x         h12 = 1/cosh x
+/// ```
+///
+/// Numerators and Δ are multiplied by 2e^{−2x}, so that nothing grows; the differences that cancel
+/// at small x come from their power series. Derived for nacre from the stresses of a layer (Burmister,
+/// J. Appl. Phys. 16 (1945) 89).
+pub(super) struct Slab {
+    h11: Symmetric,
+    h12: [[f64; 2]; 2],
+    h22: Symmetric,
+    det_h22: f64,
+    twist: Twist,
+}
+
+/// A symmetric 2 × 2 matrix: elements 11, 12, 22.
+struct Symmetric(f64, f64, f64);
+
+impl Symmetric {
+    /// vᵀ M v
+    fn form(&self, [a, b]: [f64; 2]) -> f64 {
+        a * (self.0 * a + self.1 * b) + b * (self.1 * a + self.2 * b)
+    }
+}
+
+struct Twist {
+    h11: f64,
+    h12: f64,
+    h22: f64,
+}
+
+/// x below which differences that cancel come from their power series.
+const SMALL: f64 = 0.5;
+
+/// sinh 2x − 2x, x cosh x − sinh x, sinh²x − x², by their power series; for 0 ≤ x < [`SMALL`], where
+/// twelve terms leave (2x)²⁴/27! < 1e-28.
+fn small_differences(x: f64) -> (f64, f64, f64) {
+    let (x2, y2) = (x * x, 4.0 * x * x);
+    // Each sum runs over k = 1, 2, …; its term is the one before times the ratio of the series.
+    let (mut sinh, mut mixed, mut square) = (0.0, 0.0, 0.0);
+    let mut a = 2.0 * x; // (2x)^{2k+1}/(2k+1)!
+    let mut b = x; // x^{2k+1}/(2k+1)!
+    let mut c = x2; // (2x)^{2k+2}/(2 (2k+2)!)
+    for k in 1..=12 {
+        let k = f64::from(k);
+        a *= y2 / (2.0 * k * (2.0 * k + 1.0));
+        b *= x2 / (2.0 * k * (2.0 * k + 1.0));
+        c *= y2 / ((2.0 * k + 1.0) * (2.0 * k + 2.0));
+        sinh += a;
+        mixed += 2.0 * k * b;
+        square += c;
+    }
+    (sinh, mixed, square)
+}
+
+/// The functions of x that the elements consist of, each times 2e^{−2x}.
+struct Shapes {
+    x: f64,
+    /// 2e^{−2x}
+    scale: f64,
+    /// e^{−x} and e^{−2x}, as they are.
+    decay: [f64; 2],
+    cosh: f64,
+    sinh: f64,
+    /// x
+    xs: f64,
+    /// x²
+    x2s: f64,
+    /// sinh 2x − 2x
+    sinh2_2x: f64,
+    /// x cosh x − sinh x
+    xcosh_sinh: f64,
+    /// sinh²x − x²
+    sinhsq_x2: f64,
+}
+
+impl Shapes {
+    fn new(x: f64) -> Self {
+        let e1 = (-x).exp();
+        let e2 = e1 * e1;
+        let scale = 2.0 * e2;
+        let (cosh, sinh) = (e1 * (1.0 + e2), -e1 * (-2.0 * x).exp_m1());
+        let (xs, x2s) = (x * scale, x * x * scale);
+        let (sinh2_2x, xcosh_sinh, sinhsq_x2) = if x < SMALL {
+            let (a, b, c) = small_differences(x);
+            (scale * a, scale * b, scale * c)
+        } else {
+            let half = (-2.0 * x).exp_m1();
+            (
+                -(-4.0 * x).exp_m1() - 2.0 * xs,
+                x * cosh - sinh,
+                0.5 * half * half - x2s,
+            )
+        };
+        Self {
+            x,
+            scale,
+            decay: [e1, e2],
+            cosh,
+            sinh,
+            xs,
+            x2s,
+            sinh2_2x,
+            xcosh_sinh,
+            sinhsq_x2,
+        }
+    }
+
+    /// Δ times 2e^{−2x}.
+    fn delta(&self, nu: f64) -> f64 {
+        let (k, [_, e2]) = (3.0 - 4.0 * nu, self.decay);
+        k * (1.0 + e2 * e2) + 2.0 * self.x2s + self.scale * (5.0 - 12.0 * nu + 8.0 * nu * nu)
+    }
+}
+
+impl Slab {
+    pub(super) fn new(material: Elastic, x: f64) -> Self {
+        Self::of(material, &Shapes::new(x))
+    }
+
+    fn of(material: Elastic, shapes: &Shapes) -> Self {
+        let (g, nu) = (material.shear(), material.poisson());
+        let (eta, epsilon, k) = (1.0 - nu, 1.0 - 2.0 * nu, 3.0 - 4.0 * nu);
+        let delta = shapes.delta(nu);
+        let &Shapes {
+            x,
+            decay: [e1, e2],
+            cosh,
+            sinh,
+            xs,
+            x2s,
+            sinh2_2x,
+            xcosh_sinh,
+            sinhsq_x2,
+            ..
+        } = shapes;
+        let (xsinh, xcosh) = (x * sinh, x * cosh);
+        let h11 = 1.0 / (g * delta);
+        let h12 = 4.0 * eta / delta;
+        let h22 = 4.0 * g / delta;
+        Self {
+            h11: Symmetric(
+                h11 * eta * (k * sinh2_2x + 4.0 * epsilon * xs),
+                h11 * (epsilon * k * sinhsq_x2 + (epsilon * k - 1.0) * x2s),
+                h11 * eta * (k * sinh2_2x + 8.0 * eta * xs),
+            ),
+            h12: [
+                [
+                    h12 * (2.0 * eta * cosh + xsinh),
+                    -h12 * (2.0 * nu * xcosh + epsilon * xcosh_sinh),
+                ],
+                [
+                    h12 * (2.0 * eta * sinh + xcosh_sinh),
+                    h12 * (2.0 * eta * cosh - xsinh),
+                ],
+            ],
+            h22: Symmetric(
+                h22 * eta * sinh2_2x,
+                h22 * (epsilon * sinhsq_x2 + 2.0 * eta * x2s),
+                h22 * eta * (sinh2_2x + 4.0 * xs),
+            ),
+            det_h22: 8.0 * sinhsq_x2 / delta * g * g,
+            twist: Twist {
+                h11: x.tanh() / g,
+                h12: 2.0 * e1 / (1.0 + e2),
+                h22: x.tanh() * g,
+            },
+        }
+    }
+
+    /// α times the compliance of the top face of this layer on a body of compliance `below`.
+    ///
+    /// Bonded, with all terms positive:
+    ///
+    /// ```text
+    /// X = (C⁻¹ + H22)⁻¹ = (C + det C · adj H22) / (1 + tr(C H22) + det C · det H22)
+    /// C_top = H11 + H12 X H12ᵀ
+    /// ```
+    ///
+    /// Frictionless: C⁻¹ becomes diag(1/c11, 0).
+    pub(super) fn onto(&self, below: Compliance, interface: Interface) -> Compliance {
+        let Symmetric(k11, k12, k22) = self.h22;
+        let Compliance { c11, c12, c22, ct } = below;
+        let (x, twist) = match interface {
+            Interface::Bonded => {
+                let det = c11 * c22 - c12 * c12;
+                let den = 1.0 + c11 * k11 + 2.0 * c12 * k12 + c22 * k22 + det * self.det_h22;
+                let x = Symmetric(
+                    (c11 + det * k22) / den,
+                    (c12 - det * k12) / den,
+                    (c22 + det * k11) / den,
+                );
+                (x, ct / (1.0 + ct * self.twist.h22))
+            }
+            Interface::Frictionless => {
+                let den = c11 * self.det_h22 + k22;
+                let x = Symmetric(c11 * k22 / den, -c11 * k12 / den, (1.0 + c11 * k11) / den);
+                (x, 1.0 / self.twist.h22)
+            }
+        };
+        let [[a, b], [c, d]] = self.h12;
+        let Symmetric(x11, x12, x22) = x;
+        Compliance {
+            c11: self.h11.0 + a * a * x11 + 2.0 * a * b * x12 + b * b * x22,
+            c12: self.h11.1 + a * c * x11 + (a * d + b * c) * x12 + b * d * x22,
+            c22: self.h11.2 + c * c * x11 + 2.0 * c * d * x12 + d * d * x22,
+            ct: self.twist.h11 + self.twist.h12 * self.twist.h12 * twist,
+        }
+    }
+
+    /// Traction at the bottom face of this layer, on a body of compliance `below`, under `traction`
+    /// (P, τ) on its top, and α times the displacement of the layer's side of that face.
+    ///
+    /// Bonded, with f = H12ᵀ t and M = H22 C:
+    ///
+    /// ```text
+    /// D = 1 + tr M + det M      t_bot = (I + adj M) f / D      u_bot = (C + det C · adj H22) f / D
+    /// ```
+    ///
+    /// Frictionless: the limit for C⁻¹ = diag(1/c11, 0), where the shear traction is 0.
+    pub(super) fn through(
+        &self,
+        below: Compliance,
+        interface: Interface,
+        [p, tau]: [f64; 2],
+    ) -> ([f64; 2], [f64; 2]) {
+        let Symmetric(k11, k12, k22) = self.h22;
+        let Compliance { c11, c12, c22, .. } = below;
+        let [[a, b], [c, d]] = self.h12;
+        let (f1, f2) = (a * p + c * tau, b * p + d * tau);
+        match interface {
+            Interface::Bonded => {
+                let det = c11 * c22 - c12 * c12;
+                let (m11, m12) = (k11 * c11 + k12 * c12, k11 * c12 + k12 * c22);
+                let (m21, m22) = (k12 * c11 + k22 * c12, k12 * c12 + k22 * c22);
+                let den = 1.0 + m11 + m22 + det * self.det_h22;
+                let traction = [
+                    ((1.0 + m22) * f1 - m12 * f2) / den,
+                    ((1.0 + m11) * f2 - m21 * f1) / den,
+                ];
+                let displacement = [
+                    ((c11 + det * k22) * f1 + (c12 - det * k12) * f2) / den,
+                    ((c12 - det * k12) * f1 + (c22 + det * k11) * f2) / den,
+                ];
+                (traction, displacement)
+            }
+            Interface::Frictionless => {
+                let den = c11 * self.det_h22 + k22;
+                let pressure = (k22 * f1 - k12 * f2) / den;
+                let lateral = ((1.0 + c11 * k11) * f2 - c11 * k12 * f1) / den;
+                ([pressure, 0.0], [c11 * pressure, lateral])
+            }
+        }
+    }
+
+    /// Traction Q at the bottom face of this layer under the twist `q` on its top, and α times the
+    /// displacement U there.
+    pub(super) fn twist_through(
+        &self,
+        below: Compliance,
+        interface: Interface,
+        q: f64,
+    ) -> (f64, f64) {
+        let f = self.twist.h12 * q;
+        match interface {
+            Interface::Bonded => {
+                let q = f / (1.0 + below.ct * self.twist.h22);
+                (q, below.ct * q)
+            }
+            Interface::Frictionless => (0.0, f / self.twist.h22),
+        }
+    }
+
+    /// Twice the strain energy of the layer under `traction` on its top and `displacement` of its bottom,
+    /// tᵀ H11 t + uᵀ H22 u.
+    pub(super) fn energy(&self, traction: [f64; 2], displacement: [f64; 2]) -> f64 {
+        self.h11.form(traction) + self.h22.form(displacement)
+    }
+}

@@ -1,0 +1,307 @@
+//! Values as data, with the feature `serde`: materials, bodies, grids, profiles and shapes are structures of
+//! the arguments that make them, under the names that Python uses. Reading them checks them as their
+//! constructors do.
+
+use ndarray::Array2;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::error::{Error, Result};
+use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
+use crate::model::grid::Grid;
+use crate::model::material::Elastic;
+use crate::model::surface::{
+    CrownedProfile, Cylinder, FlatPunch, HeightMap, LogarithmicProfile, Paraboloid, Profile,
+    Roller, SampledProfile, Sphere,
+};
+
+/// Implements both traits of a type by its fields, the expressions that read them from `self`, and the
+/// call that makes the value.
+macro_rules! value {
+    (
+        $kind:ident by $data:ident { $($(#[$meta:meta])* $field:ident: $type:ty = $read:expr;)* }
+        $of:ident, $given:ident => $make:expr
+    ) => {
+        #[derive(Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct $data {
+            $($(#[$meta])* $field: $type,)*
+        }
+
+        impl Serialize for $kind {
+            fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+                let $of = self;
+                $data { $($field: $read,)* }.serialize(serializer)
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $kind {
+            fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
+                let $given = $data::deserialize(data)?;
+                let make = || -> Result<Self> { $make };
+                make().map_err(D::Error::custom)
+            }
+        }
+    };
+}
+
+value! {
+    Elastic by ElasticData { young: f64 = of.young(); poisson: f64 = of.poisson(); }
+    of, given => Self::new(given.young, given.poisson)
+}
+
+value! {
+    Layer by LayerData {
+        material: Elastic = of.material();
+        thickness: f64 = of.thickness();
+        #[serde(default)]
+        interface: Interface = of.interface();
+        name: Option<String> = of.name().map(String::from);
+    }
+    of, given => {
+        let layer = Self::new(given.material, given.thickness)?.with_interface(given.interface);
+        match given.name {
+            Some(name) => layer.with_name(name),
+            None => Ok(layer),
+        }
+    }
+}
+
+value! {
+    HalfSpace by HalfSpaceData {
+        substrate: Substrate = of.substrate();
+        #[serde(default)]
+        layers: Vec<Layer> = of.layers().to_vec();
+        #[serde(default, skip_serializing_if = "goes_on")]
+        ends: [Option<f64>; 2] = of.ends();
+    }
+    of, given => Self::new(given.substrate, given.layers)?.with_ends(given.ends)
+}
+
+/// Whether a body has no free end.
+fn goes_on(ends: &[Option<f64>; 2]) -> bool {
+    *ends == [None; 2]
+}
+
+/// Whether a grid repeats in no direction.
+fn is_open(periodic: &[bool; 2]) -> bool {
+    *periodic == [false; 2]
+}
+
+value! {
+    // A line has one cell along x.
+    Grid by GridData {
+        shape: [usize; 2] = of.shape();
+        size: [f64; 2] = of.size();
+        #[serde(default)]
+        center: [f64; 2] = of.center();
+        #[serde(default, skip_serializing_if = "is_open")]
+        periodic: [bool; 2] = of.is_periodic();
+    }
+    of, given => {
+        let grid = match given.shape {
+            [1, cells] => Self::line(cells, given.size[1])?,
+            shape => Self::new(shape, given.size)?,
+        };
+        grid.centered_at(given.center)?.periodic(given.periodic)
+    }
+}
+
+value! {
+    Sphere by SphereData {
+        radius: f64 = of.radius();
+        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        counter_radius_y: Option<f64> = of.counter_radii()[1];
+    }
+    of, given => Self::new(given.radius)?
+        .with_counter_radii([given.counter_radius_x, given.counter_radius_y])
+}
+
+value! {
+    Paraboloid by ParaboloidData {
+        radius_x: f64 = of.radius_x();
+        radius_y: f64 = of.radius_y();
+        counter_radius_x: Option<f64> = of.counter_radii()[0];
+        counter_radius_y: Option<f64> = of.counter_radii()[1];
+    }
+    of, given => Self::new(given.radius_x, given.radius_y)?
+        .with_counter_radii([given.counter_radius_x, given.counter_radius_y])
+}
+
+value! {
+    Cylinder by CylinderData {
+        radius: f64 = of.radius();
+        counter_radius: Option<f64> = of.counter_radius();
+    }
+    of, given => {
+        let cylinder = Self::new(given.radius)?;
+        match given.counter_radius {
+            Some(radius) => cylinder.with_counter_radius(radius),
+            None => Ok(cylinder),
+        }
+    }
+}
+
+value! {
+    FlatPunch by FlatPunchData { radius: f64 = of.radius(); }
+    of, given => Self::new(given.radius)
+}
+
+value! {
+    CrownedProfile by CrownedProfileData {
+        flat_length: f64 = of.flat_length();
+        crown_radius: f64 = of.crown_radius();
+    }
+    of, given => Self::new(given.flat_length, given.crown_radius)
+}
+
+value! {
+    LogarithmicProfile by LogarithmicProfileData {
+        amplitude: f64 = of.amplitude();
+        length: f64 = of.length();
+        flat_length: f64 = of.flat_length();
+        end_factor: f64 = of.end_factor();
+    }
+    of, given => Self::new(given.amplitude, given.length, given.flat_length, given.end_factor)
+}
+
+value! {
+    SampledProfile by SampledProfileData {
+        x: Vec<f64> = of.samples().map(|[x, _]| x).collect();
+        drop: Vec<f64> = of.samples().map(|[_, drop]| drop).collect();
+    }
+    of, given => Self::new(&given.x, &given.drop)
+}
+
+value! {
+    Roller by RollerData {
+        radius: f64 = of.radius();
+        profile: Profile = of.profile().clone();
+        length: Option<f64> = of.length();
+        counter_radius: Option<f64> = of.counter_radius();
+    }
+    of, given => {
+        let mut roller = Self::with_profile(given.radius, given.profile)?;
+        if let Some(length) = given.length {
+            roller = roller.with_length(length)?;
+        }
+        match given.counter_radius {
+            Some(radius) => roller.with_counter_radius(radius),
+            None => Ok(roller),
+        }
+    }
+}
+
+value! {
+    HeightMap by HeightMapData {
+        heights: Vec<Vec<f64>> = of.heights().outer_iter().map(|row| row.to_vec()).collect();
+        spacing: [f64; 2] = of.spacing();
+        #[serde(default)]
+        center: [f64; 2] = of.center();
+        #[serde(default, skip_serializing_if = "is_open")]
+        periodic: [bool; 2] = of.is_periodic();
+    }
+    of, given => {
+        let shape = [given.heights.len(), given.heights.first().map_or(0, Vec::len)];
+        let heights = Array2::from_shape_vec(shape, given.heights.concat()).map_err(|_| {
+            Error::Inconsistent("heights must be rows of the same length")
+        })?;
+        Self::new(heights, given.spacing)?
+            .centered_at(given.center)?
+            .periodic(given.periodic)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Debug;
+
+    use serde::de::DeserializeOwned;
+
+    use super::*;
+    use crate::compliance::influence::Method;
+    use crate::contact::{Algorithm, Motion};
+
+    /// Asserts that JSON gives a value back.
+    fn kept<T: Serialize + DeserializeOwned + PartialEq + Debug>(
+        value: T,
+    ) -> serde_json::Result<()> {
+        let text = serde_json::to_string(&value)?;
+        println!("{text}");
+        assert_eq!(serde_json::from_str::<T>(&text)?, value);
+        Ok(())
+    }
+
+    /// Message of the error with which JSON is refused.
+    fn refused<T: DeserializeOwned>(text: &str) -> String {
+        serde_json::from_str::<T>(text)
+            .err()
+            .map_or_else(String::new, |error| error.to_string())
+    }
+
+    #[test]
+    fn values_come_back_from_json() -> std::result::Result<(), Box<dyn std::error::Error>> {
+        let steel = Elastic::new(210e9, 0.3)?;
+        let layer = Layer::new(Elastic::new(1e11 / 3.0, 0.2)?, 1e-6)?;
+        let layers = [
+            layer.clone().with_name("DLC")?,
+            layer.with_interface(Interface::Frictionless),
+        ];
+        kept(HalfSpace::new(steel, layers.clone())?)?;
+        kept(HalfSpace::new(steel, layers.clone())?.with_ends([Some(-1e-2 / 3.0), None])?)?;
+        kept(HalfSpace::new(Substrate::Rigid, layers)?)?;
+        kept(Grid::new([4, 3], [0.1, 0.2])?.centered_at([0.3, -0.4])?)?;
+        kept(Grid::new([4, 3], [0.1, 0.2])?.periodic([true, false])?)?;
+        kept(Grid::line(5, 0.1)?.centered_at([0.0, 0.3])?)?;
+        kept(Sphere::new(5e-3)?.with_counter_radii([Some(-6e-3), None])?)?;
+        kept(Paraboloid::new(5e-3, 1.0)?)?;
+        kept(Cylinder::new(5e-3)?.with_counter_radius(-0.1 / 3.0)?)?;
+        kept(FlatPunch::new(0.1)?)?;
+        kept(Roller::new(5e-3, 1e-2, 1.0)?.with_length(2e-2)?)?;
+        let logarithmic = LogarithmicProfile::iso16281(1e-2, 3e-2)?;
+        kept(Roller::with_profile(5e-3, logarithmic)?.with_counter_radius(0.1)?)?;
+        kept(Roller::with_profile(
+            5e-3,
+            SampledProfile::new(&[0.0, 0.1], &[0.0, 1e-6])?,
+        )?)?;
+        let heights = Array2::from_shape_fn((2, 3), |(i, j)| (i + j) as f64 / 3.0);
+        kept(HeightMap::new(heights, [0.1, 0.2])?)?;
+        kept(Motion {
+            tilt: [Some(1e-3), None],
+            ..Motion::load(10.0)
+        })?;
+        kept([Algorithm::Cascade, Algorithm::PolonskyKeer])?;
+        kept([Method::Exact, Method::Image { refinement: 4 }])?;
+        Ok(())
+    }
+
+    #[test]
+    fn ends_are_left_out_where_a_body_goes_on()
+    -> std::result::Result<(), Box<dyn std::error::Error>> {
+        let body = HalfSpace::from(Elastic::new(1.0, 0.3)?);
+        assert!(!serde_json::to_string(&body)?.contains("ends"));
+        let body = body.with_ends([None, Some(0.25)])?;
+        assert!(serde_json::to_string(&body)?.contains(r#""ends":[null,0.25]"#));
+        // As data that were written before bodies had ends.
+        let older = r#"{"substrate": {"elastic": {"young": 1.0, "poisson": 0.3}}, "layers": []}"#;
+        assert_eq!(serde_json::from_str::<HalfSpace>(older)?.ends(), [None; 2]);
+        Ok(())
+    }
+
+    #[test]
+    fn values_are_checked_when_they_are_read() {
+        let negative = r#"{"young": -1.0, "poisson": 0.3}"#;
+        assert!(refused::<Elastic>(negative).contains("young must be finite and above 0, got -1"));
+        assert!(refused::<Elastic>(r#"{"young": 1.0}"#).contains("missing field `poisson`"));
+        let unknown = r#"{"radius": 1.0, "width": 2.0}"#;
+        assert!(refused::<FlatPunch>(unknown).contains("unknown field `width`"));
+        let ragged = r#"{"heights": [[0.0, 1.0], [2.0]], "spacing": [1.0, 1.0]}"#;
+        assert!(refused::<HeightMap>(ragged).contains("rows of the same length"));
+        assert!(refused::<HalfSpace>(r#"{"substrate": "rigid"}"#).contains("at least one layer"));
+        let reversed =
+            r#"{"substrate": {"elastic": {"young": 1.0, "poisson": 0.3}}, "ends": [1.0, 0.0]}"#;
+        assert!(refused::<HalfSpace>(reversed).contains("ends must be in ascending order"));
+        let narrow = r#"{"radius": 1.0, "counter_radius": -0.5}"#;
+        assert!(refused::<Cylinder>(narrow).contains("counter_radius"));
+    }
+}

@@ -1,0 +1,7 @@
+//! What a contact is made of: materials, bodies, grids, shapes, and Hertz's closed forms.
+
+pub mod body;
+pub mod grid;
+pub mod hertz;
+pub mod material;
+pub mod surface;

@@ -1,0 +1,262 @@
+//! Grids of rectangular cells. The pressure is uniform over each cell.
+
+use std::ops::Range;
+
+use ndarray::Array1;
+
+use crate::error::{Error, Result, finite, positive};
+use crate::numerics::parallel::check_memory;
+
+/// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
+///
+/// ```text
+/// x_i = center_x − lx/2 + (i + ½) dx,   dx = lx / nx        (y alike)
+/// ```
+///
+/// ```
+/// let grid = nacre::Grid::new([4, 2], [8.0, 2.0])?;
+/// assert_eq!(grid.x().to_vec(), [-3.0, -1.0, 1.0, 3.0]);
+/// assert_eq!(grid.spacing(), [2.0, 1.0]);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    shape: [usize; 2],
+    size: [f64; 2],
+    center: [f64; 2],
+    plane_strain: bool,
+    periodic: [bool; 2],
+}
+
+impl Grid {
+    /// A grid of `[nx, ny]` cells over a rectangle of sides `[lx, ly]` \[m\] around the origin.
+    ///
+    /// # Errors
+    /// Unless there are at least two cells in each direction, one array of them fits into memory,
+    /// and the sides are finite and above 0.
+    pub fn new(shape: [usize; 2], size: [f64; 2]) -> Result<Self> {
+        for n in shape {
+            if n < 2 {
+                return Err(Error::Parameter {
+                    name: "shape",
+                    requirement: "at least 2 cells in each direction",
+                    value: n as f64,
+                });
+            }
+        }
+        // A padded mesh has up to (2·9/8)² ≈ 5 times as many points of 16 bytes each, together below
+        // 128 bytes a cell. This number of bytes must not overflow.
+        if shape[0]
+            .checked_mul(shape[1])
+            .and_then(|n| n.checked_mul(128))
+            .is_none()
+        {
+            return Err(Error::Parameter {
+                name: "shape",
+                requirement: "a number of cells that this machine can count",
+                value: shape[0] as f64 * shape[1] as f64,
+            });
+        }
+        // At least one array of f64 must fit.
+        check_memory(shape, 8 * shape[0] as u64 * shape[1] as u64)?;
+        for length in size {
+            positive("size", length)?;
+            if !(1e-100..=1e100).contains(&length) {
+                return Err(Error::Parameter {
+                    name: "size",
+                    requirement: "between 1e-100 and 1e100, so that products of lengths do not overflow",
+                    value: length,
+                });
+            }
+        }
+        Ok(Self {
+            shape,
+            size,
+            center: [0.0; 2],
+            plane_strain: false,
+            periodic: [false; 2],
+        })
+    }
+
+    /// A grid for line contact in plane strain: `cells` strips over `width` \[m\] along y, of
+    /// infinite length along x.
+    ///
+    /// The shape of the grid is (1, `cells`). Loads are per unit length along x, so that forces are
+    /// in \[N/m\]. In plane strain the displacement of an elastic half-space grows without limit
+    /// with the distance. Displacement and approach are therefore relative to the surface of the
+    /// bare substrate at a distance `width` from the load, whatever layers there are. Under a load this
+    /// datum shifts displacement and approach, and changes no pressure. Below stiff layers that are wider
+    /// than the grid an approach cannot be prescribed, since it would fall as the load grows.
+    ///
+    /// # Errors
+    /// Unless there are at least two cells, one array of them fits into memory, and `width` is
+    /// finite and above 0.
+    pub fn line(cells: usize, width: f64) -> Result<Self> {
+        positive("width", width)?;
+        let grid = Self::new([2, cells], [1.0, width])?;
+        Ok(Self {
+            shape: [1, cells],
+            plane_strain: true,
+            ..grid
+        })
+    }
+
+    /// This grid, repeated along x, along y, or both: shape, pressure and displacement are periodic, with the sides of
+    /// the rectangle as periods. Forces are those of one rectangle.
+    ///
+    /// Where both directions are periodic and no base is rigid, a mean pressure would displace the half-space without
+    /// limit. Displacement is therefore relative to its mean, and the approach is that of the mean plane of the deformed
+    /// surface. Where one direction is periodic, the datum is that of [`Grid::line`], with the width of the other one.
+    ///
+    /// # Errors
+    /// On a grid for line contact.
+    pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
+        if self.plane_strain && periodic != [false; 2] {
+            return Err(Error::Inconsistent(
+                "a grid for line contact must not be periodic: give a grid of two or more cells along x that is periodic \
+                 along x",
+            ));
+        }
+        Ok(Self { periodic, ..self })
+    }
+
+    /// Directions in which the grid repeats.
+    pub fn is_periodic(&self) -> [bool; 2] {
+        self.periodic
+    }
+
+    /// Periods along x and along y \[m\]; `None` where the grid does not repeat.
+    pub(crate) fn periods(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|axis| self.periodic[axis].then_some(self.size[axis]))
+    }
+
+    /// Whether this is a grid for line contact in plane strain.
+    pub fn is_line(&self) -> bool {
+        self.plane_strain
+    }
+
+    /// This grid, moved to be centred at `center` \[m\].
+    ///
+    /// # Errors
+    /// Unless `center` is finite.
+    pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
+        finite("center", center[0])?;
+        finite("center", center[1])?;
+        // Adding 0.0 turns −0.0 into 0.0: equal values then print alike.
+        Ok(Self {
+            center: center.map(|c| c + 0.0),
+            ..self
+        })
+    }
+
+    /// An error unless a solution to start from, if there is one, is on this grid.
+    ///
+    /// # Errors
+    /// [`Error::OtherGrid`].
+    pub(crate) fn check_initial(&self, found: Option<&Self>) -> Result<()> {
+        match found {
+            None => Ok(()),
+            Some(found) if found == self => Ok(()),
+            Some(found) => Err(Error::OtherGrid {
+                expected: self.words(),
+                found: found.words(),
+            }),
+        }
+    }
+
+    fn words(&self) -> String {
+        let ([nx, ny], [lx, ly], [x, y]) = (self.shape, self.size, self.center);
+        let repeats = match self.periodic {
+            [false, false] => "",
+            [true, false] => ", periodic along x",
+            [false, true] => ", periodic along y",
+            [true, true] => ", periodic along x and y",
+        };
+        match self.plane_strain {
+            true => format!("a line of {ny} cells over {ly:e} around {y:e}"),
+            false => {
+                format!("{nx} x {ny} cells over ({lx:e}, {ly:e}) around ({x:e}, {y:e}){repeats}")
+            }
+        }
+    }
+
+    /// Unit vector along which a contact on this grid rolls: across the strips of a line contact. `None`
+    /// for other grids, where it is a matter of the shape.
+    pub(crate) fn rolling_direction(&self) -> Option<[f64; 2]> {
+        self.plane_strain.then_some([0.0, 1.0])
+    }
+
+    /// Numbers of cells `[nx, ny]`.
+    pub fn shape(&self) -> [usize; 2] {
+        self.shape
+    }
+
+    /// Side lengths `[lx, ly]` of the rectangle \[m\].
+    pub fn size(&self) -> [f64; 2] {
+        self.size
+    }
+
+    /// Centre of the rectangle \[m\].
+    pub fn center(&self) -> [f64; 2] {
+        self.center
+    }
+
+    /// Side lengths of a cell `[dx, dy]` \[m\].
+    pub fn spacing(&self) -> [f64; 2] {
+        [
+            self.size[0] / self.shape[0] as f64,
+            self.size[1] / self.shape[1] as f64,
+        ]
+    }
+
+    /// Area of a cell \[m²\].
+    pub fn cell_area(&self) -> f64 {
+        let [dx, dy] = self.spacing();
+        dx * dy
+    }
+
+    /// Coordinates of cell centres along x, (nx,) \[m\].
+    pub fn x(&self) -> Array1<f64> {
+        self.coordinates(0)
+    }
+
+    /// Coordinates of cell centres along y, (ny,) \[m\].
+    pub fn y(&self) -> Array1<f64> {
+        self.coordinates(1)
+    }
+
+    /// A grid with the offsets of `cells` cells along x and y of this one, for coefficients that do not depend on where a
+    /// grid ends; where they do, in line contacts and where a grid repeats, this grid.
+    pub(crate) fn of_offsets(&self, cells: [usize; 2]) -> Self {
+        if self.is_line() || self.is_periodic() != [false; 2] {
+            return *self;
+        }
+        let [dx, dy] = self.spacing();
+        let size = [cells[0] as f64 * dx, cells[1] as f64 * dy];
+        Self::new(cells, size).unwrap_or(*self)
+    }
+
+    /// Coordinates of cell centres along `axis`. They are computed from the centre of the grid, so
+    /// that they are exactly symmetric about it.
+    pub(crate) fn coordinates(&self, axis: usize) -> Array1<f64> {
+        let n = self.shape[axis];
+        let spacing = self.spacing()[axis];
+        Array1::from_shape_fn(n, |i| {
+            self.center[axis] + (i as f64 - 0.5 * (n - 1) as f64) * spacing
+        })
+    }
+}
+
+/// A rectangle of cells of a grid: rows i0..i1 and columns j0..j1.
+pub(crate) type Window = [Range<usize>; 2];
+
+/// Directions along which a window of a grid is a whole period.
+pub(crate) fn repeating(grid: &Grid, window: &Window) -> [bool; 2] {
+    let (shape, periodic) = (grid.shape(), grid.is_periodic());
+    [0, 1].map(|k| periodic[k] && window[k].len() == shape[k])
+}
+
+/// The window of all cells of a grid of `shape`.
+pub(crate) fn full_window(shape: [usize; 2]) -> Window {
+    shape.map(|n| 0..n)
+}

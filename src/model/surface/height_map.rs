@@ -1,0 +1,188 @@
+//! Measured surfaces.
+
+use std::sync::Arc;
+
+use ndarray::{Array2, ArrayRef2};
+
+use super::{Extent, Surface, sampled};
+use crate::error::{Error, Result};
+use crate::model::grid::Grid;
+
+/// A measured surface: heights at the centres of a grid's cells, positive towards the other body.
+///
+/// ```text
+/// h = max(heights) − heights
+/// ```
+///
+/// On another grid, gaps are interpolated bilinearly. They are constant over the outer half of the
+/// outermost cells, and +∞ beyond.
+///
+/// ```
+/// use nacre::{HeightMap, Surface};
+/// let map = HeightMap::new(ndarray::array![[0.0, 1.0], [2.0, 3.0]], [1.0, 1.0])?;
+/// assert_eq!(map.gap(0.0, 0.0), 1.5);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightMap {
+    heights: Arc<Array2<f64>>,
+    highest: f64,
+    spacing: [f64; 2],
+    grid: Grid,
+}
+
+impl HeightMap {
+    /// A height map of `heights` (nx, ny) \[m\] at a `spacing` \[m\], centred at the origin.
+    ///
+    /// # Errors
+    /// Where a height is not finite, there are fewer than two samples in a direction, or the
+    /// spacing is not finite and above 0.
+    pub fn new(heights: Array2<f64>, spacing: [f64; 2]) -> Result<Self> {
+        if let Some((index, _)) = heights.indexed_iter().find(|(_, h)| !h.is_finite()) {
+            return Err(Error::NonFinite {
+                name: "heights",
+                index: [index.0, index.1],
+            });
+        }
+        let shape = [heights.nrows(), heights.ncols()];
+        if let Some(&few) = shape.iter().find(|&&n| n < 2) {
+            return Err(Error::Parameter {
+                name: "number of heights along x and along y",
+                requirement: "at least 2",
+                value: few as f64,
+            });
+        }
+        for d in spacing {
+            crate::error::positive("spacing", d)?;
+        }
+        let size = [shape[0] as f64 * spacing[0], shape[1] as f64 * spacing[1]];
+        Ok(Self {
+            highest: heights.fold(f64::NEG_INFINITY, |a, &b| a.max(b)),
+            heights: Arc::new(heights),
+            spacing,
+            grid: Grid::new(shape, size)?,
+        })
+    }
+
+    /// This surface, moved to be centred at `center` \[m\].
+    ///
+    /// # Errors
+    /// Unless `center` is finite.
+    pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
+        Ok(Self {
+            grid: self.grid.centered_at(center)?,
+            ..self
+        })
+    }
+
+    /// This surface, repeated along x, along y, or both: its period is its size.
+    ///
+    /// # Errors
+    /// None: every map has two samples or more along each direction.
+    pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
+        Ok(Self {
+            grid: self.grid.periodic(periodic)?,
+            ..self
+        })
+    }
+
+    /// Directions in which it repeats.
+    pub fn is_periodic(&self) -> [bool; 2] {
+        self.grid.is_periodic()
+    }
+
+    /// Heights, (nx, ny) \[m\].
+    pub fn heights(&self) -> &ArrayRef2<f64> {
+        &self.heights
+    }
+
+    /// Distances between samples \[m\].
+    pub fn spacing(&self) -> [f64; 2] {
+        self.spacing
+    }
+
+    /// Centre of the map \[m\].
+    pub fn center(&self) -> [f64; 2] {
+        self.grid.center()
+    }
+}
+
+/// Relative tolerance of positions and spacings: rounding of coordinates must not exclude a cell
+/// whose centre lies on the rim of the map.
+const ROUNDING: f64 = 1e-9;
+
+/// Indices of the samples below and above `coordinate`, and the weight of the latter; `None` outside the map.
+fn locate(
+    coordinate: f64,
+    center: f64,
+    (n, spacing, periodic): (usize, f64, bool),
+) -> Option<([usize; 2], f64)> {
+    let position = (coordinate - center) / spacing + 0.5 * (n - 1) as f64;
+    if periodic {
+        let below = position.floor();
+        let index = below.rem_euclid(n as f64) as usize % n;
+        return Some(([index, (index + 1) % n], position - below));
+    }
+    // The map ends half a cell beyond the outermost samples.
+    if !(-0.5 - ROUNDING..=n as f64 - 0.5 + ROUNDING).contains(&position) {
+        return None;
+    }
+    let position = position.clamp(0.0, (n - 1) as f64);
+    let below = (position as usize).min(n - 2);
+    Some(([below, below + 1], position - below as f64))
+}
+
+impl Surface for HeightMap {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        let (shape, spacing, center) = (self.grid.shape(), self.grid.spacing(), self.grid.center());
+        let periodic = self.grid.is_periodic();
+        let along = |k: usize, at: f64| locate(at, center[k], (shape[k], spacing[k], periodic[k]));
+        let (Some(([a, b], s)), Some(([c, d], t))) = (along(0, x), along(1, y)) else {
+            return f64::INFINITY;
+        };
+        let at = |i: usize, j: usize| self.highest - self.heights[[i, j]];
+        (1.0 - s) * ((1.0 - t) * at(a, c) + t * at(a, d))
+            + s * ((1.0 - t) * at(b, c) + t * at(b, d))
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        if *grid == self.grid {
+            return Ok(sampled(grid, |i, j| self.highest - self.heights[[i, j]]));
+        }
+        let (own, periods) = (self.extent(), grid.periods());
+        for axis in 0..2 {
+            if periods[axis].is_some() {
+                own[axis].check_period(axis, periods[axis])?;
+            }
+        }
+        for (cell, sample) in grid.spacing().into_iter().zip(self.grid.spacing()) {
+            if cell > 2.0 * sample * (1.0 + ROUNDING) {
+                return Err(Error::Parameter {
+                    name: "grid spacing",
+                    requirement: "at most twice the spacing of the height map",
+                    value: cell,
+                });
+            }
+        }
+        let (x, y) = (grid.x(), grid.y());
+        Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))
+    }
+
+    fn extent(&self) -> [Extent; 2] {
+        let (center, size) = (self.grid.center(), self.grid.size());
+        let periodic = self.grid.is_periodic();
+        [0, 1].map(|k| match periodic[k] {
+            true => Extent::Repeating(size[k]),
+            false => Extent::CutOff([center[k] - 0.5 * size[k], center[k] + 0.5 * size[k]]),
+        })
+    }
+
+    fn grid(&self) -> Option<Grid> {
+        Some(self.grid)
+    }
+
+    /// Not: the gap has corners at the samples.
+    fn is_smooth(&self) -> bool {
+        false
+    }
+}

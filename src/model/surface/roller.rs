@@ -1,0 +1,273 @@
+//! Rollers of finite length.
+
+use ndarray::{Array1, Array2};
+
+use super::counterpart::{Counterpart, sagitta};
+use super::profile::{CrownedProfile, Profile};
+use super::quadric::{ACROSS, convex};
+use super::slope::{absent, by_difference, sagitta_slope};
+use super::{Extent, Surface, sampled};
+use crate::error::{Error, Result, positive};
+use crate::model::grid::Grid;
+
+/// A roller of radius R with its axis along x and an axial profile d(x).
+///
+/// ```text
+/// h = R − √((R − d)² − y²)
+/// ```
+///
+/// Spinu et al., The normal contact of finite length coated cylinders, eq. (3). The gap is +∞ where
+/// the root has no value, beyond the ends of the profile, and beyond |x| = `length` / 2 where a
+/// length is given. On a grid, the drop d of a crowned profile is taken at cell centres. Other
+/// profiles are steep at the ends, and their drop is averaged over each cell.
+///
+/// On a raceway of radius R_2, which is below 0 for a concave one, h has R_2 − √(R_2² − y²) added:
+/// [`Roller::with_counter_radius`].
+///
+/// ```
+/// use nacre::{LogarithmicProfile, Roller, Surface};
+/// let roller = Roller::new(5e-3, 19.13e-3, 7.5)?.with_length(26e-3)?;
+/// assert!((roller.gap(0.0, 3e-3) / 1e-3 - 1.0).abs() < 1e-15);
+/// assert_eq!(roller.gap(14e-3, 0.0), f64::INFINITY);
+///
+/// let iso = Roller::with_profile(5e-3, LogarithmicProfile::iso16281(10e-3, 20e-3)?)?;
+/// assert!((iso.gap(5e-3, 0.0) / (3.5e-6 * (4.0_f64 / 3.0).ln()) - 1.0).abs() < 1e-9);
+///
+/// // On the raceways of an inner ring (convex) and of an outer ring (concave).
+/// let inner = iso.clone().with_counter_radius(20e-3)?;
+/// let outer = iso.with_counter_radius(-30e-3)?;
+/// assert!((inner.equivalent_radius() / 4e-3 - 1.0).abs() < 1e-14);
+/// assert!((outer.equivalent_radius() / 6e-3 - 1.0).abs() < 1e-14);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Roller {
+    radius: f64,
+    profile: Profile,
+    length: Option<f64>,
+    counterpart: Counterpart,
+}
+
+impl Roller {
+    /// A roller of `radius` \[m\], straight over `flat_length` ≥ 0 \[m\], with ends rounded with
+    /// `crown_radius` \[m\].
+    ///
+    /// # Errors
+    /// Unless both radii are finite and above 0, and `flat_length` is finite and at least 0.
+    pub fn new(radius: f64, flat_length: f64, crown_radius: f64) -> Result<Self> {
+        Self::with_profile(radius, CrownedProfile::new(flat_length, crown_radius)?)
+    }
+
+    /// A roller of `radius` \[m\] with any axial profile.
+    ///
+    /// # Errors
+    /// Unless `radius` is finite and above 0.
+    pub fn with_profile(radius: f64, profile: impl Into<Profile>) -> Result<Self> {
+        Ok(Self {
+            radius: convex("radius", radius)?,
+            profile: profile.into(),
+            length: None,
+            counterpart: Counterpart::default(),
+        })
+    }
+
+    /// This roller on a raceway of radius `counter_radius` \[m\] along y: above 0 where the raceway is
+    /// convex, as of an inner ring, and below 0 where it is concave, as of an outer ring. A crown of the
+    /// raceway is part of the profile: its drop adds to that of the roller.
+    ///
+    /// # Errors
+    /// Unless `counter_radius` is finite and above 0, or below minus the radius of the roller.
+    pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
+        Ok(Self {
+            counterpart: Counterpart::cylindrical(counter_radius, self.radius)?,
+            ..self
+        })
+    }
+
+    /// This roller, cut off at |x| = `length` / 2 \[m\].
+    ///
+    /// # Errors
+    /// Unless `length` is finite, above 0 and at least the flat length of a crowned profile.
+    pub fn with_length(self, length: f64) -> Result<Self> {
+        positive("length", length)?;
+        if let Profile::Crowned(crowned) = &self.profile
+            && length < crowned.flat_length()
+        {
+            return Err(Error::Parameter {
+                name: "length",
+                requirement: "at least flat_length",
+                value: length,
+            });
+        }
+        Ok(Self {
+            length: Some(length),
+            ..self
+        })
+    }
+
+    /// Radius of the roller \[m\].
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Radius of the raceway along y \[m\]; `None` for a plane.
+    pub fn counter_radius(&self) -> Option<f64> {
+        self.counterpart.radii()[1]
+    }
+
+    /// Equivalent radius along y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
+    pub fn equivalent_radius(&self) -> f64 {
+        self.counterpart.equivalent([self.radius; 2])[1]
+    }
+
+    /// Axial profile of the roller.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// Length at which the roller is cut off \[m\]; `None` where only the profile ends it.
+    pub fn length(&self) -> Option<f64> {
+        self.length
+    }
+
+    /// Coordinates x \[m\] of the ends, which its body takes ([`HalfSpace::with_ends`]): ±`length` / 2 or, without
+    /// a length, the ends of a logarithmic or sampled profile. `None` where a crown ends the roller.
+    ///
+    /// ```
+    /// use nacre::{Elastic, HalfSpace, Roller};
+    /// let roller = Roller::new(5e-3, 8e-3, 7.5)?.with_length(10e-3)?;
+    /// let body = HalfSpace::from(Elastic::new(210e9, 0.3)?).with_ends(roller.ends())?;
+    /// assert_eq!(body.ends(), [Some(-5e-3), Some(5e-3)]);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    ///
+    /// [`HalfSpace::with_ends`]: crate::HalfSpace::with_ends
+    pub fn ends(&self) -> [Option<f64>; 2] {
+        match self.length {
+            Some(length) => [-0.5 * length, 0.5 * length].map(Some),
+            None if self.profile.has_sharp_ends() => self.profile.ends().map(Some),
+            None => [None; 2],
+        }
+    }
+
+    /// Whether x is within the length of the roller.
+    fn reaches(&self, x: f64) -> bool {
+        self.length.is_none_or(|length| x.abs() <= 0.5 * length)
+    }
+
+    /// Drops of the rows of `grid`; +∞ beyond the ends.
+    fn drops(&self, grid: &Grid) -> Array1<f64> {
+        let half = 0.5 * grid.spacing()[0];
+        grid.x().mapv(|x| {
+            if self.reaches(x) {
+                self.profile.mean_drop(x - half, x + half)
+            } else {
+                f64::INFINITY
+            }
+        })
+    }
+
+    /// Gap R − √((R − d)² − y²) to a plane for the drop d, computed from (R − d)² − y² = R² − (d (2R − d) + y²).
+    fn gap_at(&self, drop: f64, y: f64) -> f64 {
+        if drop > self.radius {
+            return f64::INFINITY;
+        }
+        sagitta(self.radius, drop * (2.0 * self.radius - drop) + y * y)
+            + self.counterpart.gap(0.0, y)
+    }
+}
+
+impl Surface for Roller {
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        if self.reaches(x) {
+            self.gap_at(self.profile.drop(x), y)
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let (drops, y) = (self.drops(grid), grid.y());
+        Ok(sampled(grid, |i, j| self.gap_at(drops[i], y[j])))
+    }
+
+    fn extent(&self) -> [Extent; 2] {
+        let natural = match &self.profile {
+            Profile::Crowned(crowned) => {
+                // The crown ends where the drop is R, or at a quarter of the crown's circle.
+                let (r, ra) = (self.radius, crowned.crown_radius());
+                let crown = if r < ra {
+                    (r * (2.0 * ra - r)).sqrt()
+                } else {
+                    ra
+                };
+                let half = 0.5 * crowned.flat_length() + crown;
+                [-half, half]
+            }
+            other => other.ends(),
+        };
+        let half = 0.5 * self.length.unwrap_or(f64::INFINITY);
+        let ends = [natural[0].max(-half), natural[1].min(half)];
+        let cut = self.profile.has_sharp_ends() || half < natural[1] || -half > natural[0];
+        let x = if cut {
+            Extent::CutOff(ends)
+        } else {
+            Extent::Within(ends)
+        };
+        let [_, half] = self.counterpart.reach([self.radius; 2]);
+        [x, Extent::Within([-half, half])]
+    }
+
+    fn marks(&self) -> [Vec<f64>; 2] {
+        [self.profile.marks(), Vec::new()]
+    }
+
+    fn radii(&self) -> [f64; 2] {
+        let [_, smaller] = self.counterpart.smaller([self.radius; 2]);
+        [self.profile.radius(), smaller]
+    }
+
+    fn rolling_direction(&self) -> Option<[f64; 2]> {
+        Some(ACROSS)
+    }
+
+    /// Radii, and the numbers of the profile: `flat_length` and `crown_radius`, `profile.amplitude`,
+    /// `profile.flat_length` and `profile.end_factor`, or `profile.drop[k]`.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        let mut parameters = vec![("radius".to_owned(), self.radius)];
+        parameters.extend(
+            self.counter_radius()
+                .map(|r| ("counter_radius".to_owned(), r)),
+        );
+        parameters.extend(self.profile.parameters());
+        parameters
+    }
+
+    /// With the root of [`Roller`], ∂h/∂R = 1 − (R − d)/√ and ∂h/∂d = (R − d)/√.
+    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
+        let (drops, y) = (self.drops(grid), grid.y());
+        let per_radius = |drop: f64, y: f64| match drop < self.radius {
+            true => sagitta_slope(self.radius - drop, y * y),
+            false => 0.0,
+        };
+        match (name, self.counter_radius()) {
+            ("radius", _) => Ok(sampled(grid, |i, j| per_radius(drops[i], y[j]))),
+            ("counter_radius", Some(radius)) => by_difference(radius, |radius| {
+                self.clone().with_counter_radius(radius)?.gaps(grid)
+            }),
+            _ => {
+                let half = 0.5 * grid.spacing()[0];
+                let slopes: Option<Vec<f64>> = (grid.x().iter().zip(&drops))
+                    .map(|(x, drop)| match drop.is_finite() {
+                        true => self.profile.mean_drop_slope(name, x - half, x + half),
+                        false => Some(0.0),
+                    })
+                    .collect();
+                let slopes = slopes.ok_or_else(|| absent(name))?;
+                Ok(sampled(grid, |i, j| {
+                    slopes[i] * (1.0 - per_radius(drops[i], y[j]))
+                }))
+            }
+        }
+    }
+}

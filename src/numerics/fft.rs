@@ -1,0 +1,397 @@
+//! Fourier transforms of zero-padded real data, and convolutions with kernels of given parity.
+//!
+//! The forward transform is unscaled; the inverse divides by the number of points, here and
+//! nowhere else. Rows of the padding are not transformed, in either direction: of a padded mesh
+//! (mx, my), only nx rows are transformed along y, and no padding is stored.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+
+use crate::numerics::parallel::{Threads, each_chunk, number};
+
+mod cosine;
+mod even;
+mod parity;
+mod quarter;
+mod series;
+mod stages;
+mod tensor;
+
+pub(crate) use parity::Transformed;
+pub(crate) use quarter::{Keep, KernelRows, QuarterTransform};
+pub(crate) use series::{fourier_coefficients, inverse_even};
+pub(crate) use stages::HalfSpectra;
+pub(crate) use tensor::{ParitySpectrum, Term};
+
+/// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
+/// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value
+/// was chosen by trial.
+const BLOCK: usize = 16;
+
+/// Rows whose entries in a block of columns are read or written together. They are two kilobytes of
+/// contiguous memory; single rows lie on different pages, and each access would have to wait. The
+/// value was chosen by trial.
+const ROW_GROUP: usize = 8;
+
+const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+
+/// The smallest length ≥ `n` of the form 2^a 3^b 5^c.
+pub(crate) fn fast_length(n: usize) -> usize {
+    let smooth = |mut m: usize| {
+        for p in [2, 3, 5] {
+            while m.is_multiple_of(p) {
+                m /= p;
+            }
+        }
+        m == 1
+    };
+    (n.max(1)..).find(|&m| smooth(m)).unwrap_or(n)
+}
+
+/// Transforms of (nx, ny) data, padded with zeros to (mx, my).
+#[derive(Clone)]
+pub(crate) struct PaddedTransform {
+    shape: [usize; 2],
+    padded: [usize; 2],
+    tasks: usize,
+    threads: usize,
+    row_forward: Arc<dyn RealToComplex<f64>>,
+    row_inverse: Arc<dyn ComplexToReal<f64>>,
+    column_forward: Arc<dyn Fft<f64>>,
+    column_inverse: Arc<dyn Fft<f64>>,
+}
+
+impl fmt::Debug for PaddedTransform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "PaddedTransform({:?} in {:?})", self.shape, self.padded)
+    }
+}
+
+/// The transform of a kernel that is even along x and along y, scaled by 1/(mx my). It is real and
+/// even, so that only a quarter is stored, by blocks of columns.
+#[derive(Debug)]
+pub(crate) struct EvenSpectrum(Vec<f64>);
+
+/// Memory for one convolution at a time; it may be larger than a transform needs.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    /// Half spectra of rows, stored by rows or by blocks of columns.
+    mesh: Vec<[Complex64; BLOCK]>,
+    scratches: Scratches,
+}
+
+/// Working memory of the threads, one entry for each.
+#[derive(Debug, Default)]
+pub(crate) struct Scratches(Vec<Mutex<Scratch>>);
+
+#[derive(Debug, Default)]
+struct Scratch {
+    real: Vec<f64>,
+    /// Half spectra of a group of rows.
+    spectra: Vec<Complex64>,
+    columns: Vec<Complex64>,
+    fft: Vec<Complex64>,
+}
+
+/// Number of tasks into which a transform of `shape` is divided.
+fn tasks(shape: [usize; 2], threads: &Threads) -> usize {
+    // Many more tasks than threads keep all threads busy until the last few tasks. The factor 16 was
+    // chosen by trial.
+    match threads.divide(shape[0] * shape[1]) {
+        true => 16 * threads.count(),
+        false => 1,
+    }
+}
+
+/// Row capacity of a block of columns: `rows`, rounded up so that consecutive blocks lie an odd number
+/// of pages plus one row apart. A power-of-two stride would put equal rows of all blocks into the same
+/// few cache sets.
+fn block_rows(rows: usize) -> usize {
+    const PAGE: usize = 4096 / size_of::<[Complex64; BLOCK]>();
+    let beyond = PAGE + 1;
+    rows.saturating_sub(beyond).next_multiple_of(2 * PAGE) + beyond
+}
+
+impl PaddedTransform {
+    /// Transforms padded to lengths ≥ 2n − 1, so that convolutions have no periodic images.
+    pub(crate) fn plan(shape: [usize; 2], threads: &Threads) -> Self {
+        Self::on(shape, shape.map(|n| fast_length(2 * n - 1)), threads)
+    }
+
+    /// Transforms that are not padded. Convolutions are periodic, with the fast length ≥ n as period.
+    pub(crate) fn plan_periodic(shape: [usize; 2], threads: &Threads) -> Self {
+        Self::on(shape, shape.map(fast_length), threads)
+    }
+
+    /// [`Self::plan_periodic`] with n as the period along directions that repeat.
+    pub(crate) fn plan_unpadded(shape: [usize; 2], repeats: [bool; 2], threads: &Threads) -> Self {
+        let length = |k: usize| match repeats[k] {
+            true => shape[k],
+            false => fast_length(shape[k]),
+        };
+        Self::on(shape, [length(0), length(1)], threads)
+    }
+
+    /// Transforms that are padded, but along directions that are `periodic`, with n as the period.
+    pub(crate) fn plan_repeated(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
+        let length = |k: usize| match periodic[k] {
+            true => shape[k],
+            false => fast_length(2 * shape[k] - 1),
+        };
+        Self::on(shape, [length(0), length(1)], threads)
+    }
+
+    fn on(shape: [usize; 2], padded: [usize; 2], threads: &Threads) -> Self {
+        let mut real = RealFftPlanner::new();
+        let mut complex = FftPlanner::new();
+        Self {
+            shape,
+            padded,
+            tasks: tasks(shape, threads),
+            threads: threads.count(),
+            row_forward: real.plan_fft_forward(padded[1]),
+            row_inverse: real.plan_fft_inverse(padded[1]),
+            column_forward: complex.plan_fft_forward(padded[0]),
+            column_inverse: complex.plan_fft_inverse(padded[0]),
+        }
+    }
+
+    /// A copy of this transform for other threads.
+    pub(crate) fn on_threads(&self, threads: &Threads) -> Self {
+        Self {
+            tasks: tasks(self.shape, threads),
+            threads: threads.count(),
+            ..self.clone()
+        }
+    }
+
+    /// Cost of a transform, in arbitrary units: points of the mesh times their logarithm.
+    pub(crate) fn work(&self) -> f64 {
+        let points = self.padded[0] as f64 * self.padded[1] as f64;
+        points * points.ln()
+    }
+
+    /// Bytes of the workspace and one spectrum of a padded transform of `shape`.
+    pub(crate) fn memory(shape: [usize; 2]) -> u64 {
+        let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
+        let half = padded[1] / 2 + 1;
+        block_rows(shape[0]) as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
+    }
+
+    /// Periods of the mesh, in cells.
+    pub(crate) fn periods(&self) -> [usize; 2] {
+        self.padded
+    }
+
+    /// Points of the mesh.
+    pub(crate) fn points(&self) -> f64 {
+        self.padded[0] as f64 * self.padded[1] as f64
+    }
+
+    /// Number of stored columns of the half spectrum.
+    fn columns(&self) -> usize {
+        self.padded[1] / 2 + 1
+    }
+
+    /// Number of stored rows of the quarter spectrum.
+    fn quarter_rows(&self) -> usize {
+        self.padded[0] / 2 + 1
+    }
+
+    fn blocks(&self) -> usize {
+        self.columns().div_ceil(BLOCK)
+    }
+
+    /// Row capacity of a block of columns.
+    fn block_rows(&self) -> usize {
+        block_rows(self.shape[0])
+    }
+
+    /// Number of threads that can work at the same time.
+    pub(crate) fn scratches(&self) -> usize {
+        self.threads.min(self.tasks)
+    }
+
+    pub(crate) fn workspace(&self) -> Workspace {
+        let mut workspace = Workspace::default();
+        self.reserve(&mut workspace);
+        workspace
+    }
+
+    /// Enlarges `workspace` where it is too small for this transform.
+    pub(crate) fn reserve(&self, workspace: &mut Workspace) {
+        fn at_least<T: Clone>(memory: &mut Vec<T>, length: usize, zero: T) {
+            if memory.len() < length {
+                memory.resize(length, zero);
+            }
+        }
+        let fft = self
+            .column_forward
+            .get_inplace_scratch_len()
+            .max(self.column_inverse.get_inplace_scratch_len())
+            .max(self.row_forward.get_scratch_len())
+            .max(self.row_inverse.get_scratch_len());
+        let Workspace {
+            mesh,
+            scratches: Scratches(scratches),
+        } = workspace;
+        at_least(mesh, self.blocks() * self.block_rows(), [ZERO; BLOCK]);
+        if scratches.len() < self.scratches() {
+            scratches.resize_with(self.scratches(), Mutex::default);
+        }
+        for scratch in &mut scratches[..self.scratches()] {
+            let scratch = scratch.get_mut().unwrap_or_else(PoisonError::into_inner);
+            at_least(&mut scratch.real, self.padded[1], 0.0);
+            at_least(
+                &mut scratch.spectra,
+                ROW_GROUP * self.blocks() * BLOCK,
+                ZERO,
+            );
+            at_least(&mut scratch.columns, BLOCK * self.padded[0], ZERO);
+            at_least(&mut scratch.fft, fft, ZERO);
+        }
+    }
+
+    /// Transforms the rows of `input` along y into `rows`.
+    fn rows_forward(
+        &self,
+        input: &[f64],
+        rows: &mut [Complex64],
+        scratches: &Scratches,
+        threads: &Threads,
+    ) {
+        let ([nx, ny], columns) = (self.shape, self.columns());
+        let rows = &mut rows[..nx * columns];
+        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
+            let values = input[first * ny..].chunks_exact(ny);
+            for (half, values) in rows.chunks_exact_mut(columns).zip(values) {
+                self.data_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
+            }
+        };
+        self.over_items(threads, rows, columns, scratches, forward);
+    }
+
+    /// Transforms one row of data, padded with zeros.
+    fn data_to_spectrum(
+        &self,
+        values: &[f64],
+        half: &mut [Complex64],
+        real: &mut [f64],
+        scratch: &mut [Complex64],
+    ) {
+        if values.iter().all(|&value| value == 0.0) {
+            half.fill(ZERO);
+            return;
+        }
+        let (data, padding) = real[..self.padded[1]].split_at_mut(values.len());
+        data.copy_from_slice(values);
+        padding.fill(0.0);
+        self.rows_to_spectrum(&mut real[..self.padded[1]], half, scratch);
+    }
+
+    /// Working memory of the current thread. The lock is never contended, since a task never waits
+    /// for another task while it holds the lock.
+    fn scratch<'a>(&self, scratches: &'a Scratches) -> MutexGuard<'a, Scratch> {
+        let scratch = &scratches.0[number() % self.scratches()];
+        scratch.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Divides `data`, items of `size` elements each, into tasks, and calls `work` for each task with
+    /// the index of its first item, its items, and the working memory of the thread.
+    fn over_items<T: Send>(
+        &self,
+        threads: &Threads,
+        data: &mut [T],
+        size: usize,
+        scratches: &Scratches,
+        work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
+    ) {
+        let per_task = (data.len() / size).div_ceil(self.tasks);
+        self.over_tasks(threads, data, (size, per_task), scratches, work);
+    }
+
+    /// Divides `data`, items of `size` elements each, into tasks of `per_task` items, and calls `work`
+    /// for each as [`Self::over_items`] does.
+    fn over_tasks<T: Send>(
+        &self,
+        threads: &Threads,
+        data: &mut [T],
+        (size, per_task): (usize, usize),
+        scratches: &Scratches,
+        work: impl Fn(usize, &mut [T], &mut Scratch) + Sync + Send,
+    ) {
+        let work = |task: usize, part: &mut [T]| {
+            work(task * per_task, part, &mut self.scratch(scratches));
+        };
+        self.divided(threads, || each_chunk(data, size * per_task, 0, &work));
+    }
+
+    /// Calls `work`, which divides itself into tasks, on `threads`; a single task runs on the calling
+    /// thread.
+    fn divided<R: Send>(&self, threads: &Threads, work: impl FnOnce() -> R + Send) -> R {
+        if self.tasks == 1 {
+            work()
+        } else {
+            threads.run(work)
+        }
+    }
+
+    /// Transforms rows back along y into `values`, from row `first` on and as many as fit. `blocks` are
+    /// the blocks of columns, already transformed back along x.
+    fn rows_from_blocks<'a>(
+        &self,
+        blocks: impl Iterator<Item = &'a [[Complex64; BLOCK]]> + Clone,
+        first: usize,
+        values: &mut [f64],
+        scratch: &mut Scratch,
+    ) {
+        let (ny, count) = (self.shape[1], self.blocks());
+        for (group, values) in values.chunks_mut(ROW_GROUP * ny).enumerate() {
+            let rows = first + group * ROW_GROUP..first + group * ROW_GROUP + values.len() / ny;
+            let (spectra, _) = scratch.spectra.as_chunks_mut();
+            for (block, lines) in blocks.clone().enumerate() {
+                let spectra = spectra[block..].iter_mut().step_by(count);
+                for (spectrum, line) in spectra.zip(&lines[rows.clone()]) {
+                    *spectrum = *line;
+                }
+            }
+            let spectra = scratch.spectra.chunks_exact_mut(count * BLOCK);
+            for (spectrum, values) in spectra.zip(values.chunks_exact_mut(ny)) {
+                let real = &mut scratch.real[..self.padded[1]];
+                self.spectrum_to_rows(&mut spectrum[..self.columns()], real, &mut scratch.fft);
+                values.copy_from_slice(&real[..ny]);
+            }
+        }
+    }
+
+    fn rows_to_spectrum(
+        &self,
+        real: &mut [f64],
+        half: &mut [Complex64],
+        scratch: &mut [Complex64],
+    ) {
+        let scratch = &mut scratch[..self.row_forward.get_scratch_len()];
+        let done = self.row_forward.process_with_scratch(real, half, scratch);
+        debug_assert!(done.is_ok(), "the lengths are those of the plan");
+    }
+
+    fn spectrum_to_rows(
+        &self,
+        half: &mut [Complex64],
+        real: &mut [f64],
+        scratch: &mut [Complex64],
+    ) {
+        // Real data have real entries there; rounding must not leave an imaginary part.
+        half[0].im = 0.0;
+        if self.padded[1].is_multiple_of(2) {
+            half[self.padded[1] / 2].im = 0.0;
+        }
+        let scratch = &mut scratch[..self.row_inverse.get_scratch_len()];
+        let done = self.row_inverse.process_with_scratch(half, real, scratch);
+        debug_assert!(done.is_ok(), "the lengths are those of the plan");
+    }
+}
