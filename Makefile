@@ -72,7 +72,7 @@ torch: $(WHEEL) ## tests of nacre.torch, with PyTorch in an environment of its o
 	$(PYTHON) -m venv $(TARGET)/torch
 	$(TARGET)/torch/bin/python -m pip install --quiet "$$(echo $(TARGET)/wheels/*.whl)[torch]" 'pytest>=9'
 	$(TARGET)/torch/bin/python -m pip install --quiet --force-reinstall --no-deps $(TARGET)/wheels/*.whl
-	$(TARGET)/torch/bin/python -m pytest tests/python/test_torch.py tests/python/test_differentiable.py
+	$(TARGET)/torch/bin/python -m pytest tests/python/test_functions.py
 
 develop: $(DEV) ## build in place: changed Python files count at once, changed Rust after the next make develop
 	rm -f $(WHEEL)
