@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import csv
 import json
-import subprocess
+import pickle
 import sys
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -16,106 +16,90 @@ import pyvista
 import xarray
 
 import nacre
+import nacre.indent
+import results
+import support
+from bodies import BALL, STEEL
 from nacre import values
-from nacre._disk import STUDY, write_dataset
+from results import DLC, GRID, solved
+from results import LAYERED as COATED
+from support import Patch, python, resealed
 
-STEEL = nacre.Elastic(210e9, 0.3)
-DLC = nacre.Elastic(420e9, 0.25)
-COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 4e-5, "frictionless"), nacre.Layer(STEEL, 1e-5)])
-GRID = nacre.Grid((40, 31), (3e-4, 2e-4), (1e-5, -2e-6))
-
-
-def solutions() -> dict[str, nacre.Solution]:
-    sphere = nacre.Sphere(5e-3)
-    return {
-        "both coated, tilted": nacre.solve(
-            sphere,
-            COATED,
-            COATED,
-            grid=GRID,
-            load=10.0,
-            eccentricity=(1e-6, None),
-            tilt=(None, 1e-4),
-        ),
-        "infinite gaps": nacre.solve(nacre.FlatPunch(5e-5), STEEL, grid=GRID, load=10.0),
-        "nothing touches": nacre.solve(sphere, STEEL, grid=GRID, approach=-1e-6),
-        "line": nacre.solve(
-            nacre.Cylinder(5e-3), COATED, grid=nacre.Grid.line(64, 2e-4, 1e-6), load=1e4
-        ),
-        "not converged": nacre.solve(
-            sphere, COATED, grid=GRID, load=10.0, max_iterations=2, check=False
-        ),
-        "converted": nacre.solve(
-            sphere, COATED, grid=GRID, approach=1e-7, method="image", refinement=8, tolerance=1e-5
-        ),
-    }
+SAVED = {**results.NORMAL, **results.FRICTION, **results.INDENT, **results.FITS}
+FIELDS: dict[type, tuple[str, ...]] = {
+    nacre.Solution: ("pressure", "gap", "displacement", "x", "y", "line_load"),
+    nacre.FrictionSolution: (
+        *("traction", "displacement", "slip", "stick", "bound", "dissipation", "pressure"),
+    ),
+    nacre.indent.IndentSolution: ("load", "approach", "radius"),
+    nacre.indent.Fit: ("covariance",),
+}
 
 
-@pytest.fixture(scope="module")
-def solved() -> dict[str, nacre.Solution]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)  # those are saved, too
-        return solutions()
+def same(found: Any, expected: Any) -> None:
+    """Compare every field to the bit, and the whole report."""
+    assert type(found) is type(expected)
+    for name in FIELDS[type(expected)]:
+        field, due = getattr(found, name), getattr(expected, name)
+        assert type(field) is type(due)
+        assert np.asarray(field).tobytes() == np.asarray(due).tobytes()
+    if isinstance(expected, nacre.indent.Fit):
+        assert str(found) == str(expected)
+        assert (found.estimates, found.curves) == (expected.estimates, expected.curves)
+        assert (found.body, found.tip) == (expected.body, expected.tip)
+        return
+    assert found == expected
+    if isinstance(expected, nacre.indent.IndentSolution):
+        for name in ("body", "tip", "adhesion"):
+            assert getattr(found, name) == getattr(expected, name)
+        # The same program solves the same problem: no bit differs.
+        np.testing.assert_array_equal(found.state.load, expected.load)
+    elif isinstance(expected, nacre.FrictionSolution):
+        for name in ("force", "shift", "twist", "creepage", "spin", "direction", "report"):
+            assert getattr(found, name) == getattr(expected, name)
+    else:
+        assert found.report.seconds == expected.report.seconds
 
 
-KINDS = pytest.mark.parametrize(
-    "kind",
-    [
-        "both coated, tilted",
-        "infinite gaps",
-        "nothing touches",
-        "line",
-        "not converged",
-        "converted",
-    ],
-)
-
-
-@KINDS
-def test_netcdf_comes_back_bit_for_bit(
-    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved[kind]
-    loaded = nacre.load(solution.save(tmp_path / "a.nc"))
-    assert loaded == solution  # every field and the whole report
-    for name in ("pressure", "gap", "displacement", "x", "y", "line_load"):
-        assert getattr(loaded, name).tobytes() == getattr(solution, name).tobytes()
-    assert loaded.report.seconds == solution.report.seconds
+@pytest.mark.parametrize("kind", SAVED)
+def test_files_and_copies_are_the_same_bit_for_bit(kind: str, tmp_path: Path) -> None:
+    result = solved(kind)
+    loaded = nacre.load(result.save(tmp_path / "a.nc"))
     assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
+    plain = result.to_dict()
+    if isinstance(result, nacre.indent.IndentSolution | nacre.indent.Fit):
+        plain = json.loads(json.dumps(plain))
+    for found in (
+        *(loaded, pickle.loads(pickle.dumps(loaded)), pickle.loads(pickle.dumps(result))),
+        *(copy.deepcopy(result), type(result).from_dict(plain)),
+    ):
+        same(found, result)
+    if kind in {**results.NORMAL, **results.FRICTION}:
+        read = xarray.load_dataset(tmp_path / "a.nc", engine="h5netcdf")
+        dataset = result.to_xarray()
+        assert read.equals(dataset)
+        for name, variable in dataset.variables.items():
+            assert read.variables[name].attrs == variable.attrs
 
 
-@KINDS
-def test_the_dataset_in_the_file_is_that_of_to_xarray(
-    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    dataset = solved[kind].to_xarray()
-    read = xarray.load_dataset(solved[kind].save(tmp_path / "a.nc"), engine="h5netcdf")
-    assert read.equals(dataset)
-    assert {n: v.attrs for n, v in read.variables.items()} == {
-        n: v.attrs for n, v in dataset.variables.items()
-    }
-
-
-def test_the_attributes_repeat_the_run(solved: dict[str, nacre.Solution]) -> None:
-    solution = solved["both coated, tilted"]
+def test_the_attributes_repeat_the_run() -> None:
+    solution = solved("both coated, tilted")
     said = solution.to_xarray().attrs
     body, counterbody, grid, motion = (
         values.decode(json.loads(said[name])) for name in ("body", "counterbody", "grid", "motion")
     )
-    again = nacre.solve(
-        nacre.Sphere(5e-3), body, counterbody, grid=grid, tolerance=said["tolerance"], **motion
-    )
+    again = nacre.solve(BALL, body, counterbody, grid=grid, tolerance=said["tolerance"], **motion)
     assert again.pressure.tobytes() == solution.pressure.tobytes()
     # The gap of the shape is in the fields too, to rounding: that of numbers of size u.
     x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
     tilted = said["approach"] + said["tilt"][0] * x + said["tilt"][1] * y
     gaps = solution.gap - solution.displacement + tilted
     rounding = 8 * np.finfo(float).eps * np.abs(solution.gap).max()
-    np.testing.assert_allclose(gaps, nacre.Sphere(5e-3).gaps(grid), rtol=0, atol=rounding)
+    np.testing.assert_allclose(gaps, BALL.gaps(grid), rtol=0, atol=rounding)
 
 
-def test_units_and_coordinates_are_there(solved: dict[str, nacre.Solution]) -> None:
-    dataset = solved["infinite gaps"].to_xarray()
+def test_units_and_coordinates_are_there() -> None:
+    dataset = solved("infinite gaps").to_xarray()
     assert {str(n): dataset[n].attrs["units"] for n in dataset.variables} == {
         "pressure": "Pa",
         "gap": "m",
@@ -128,10 +112,8 @@ def test_units_and_coordinates_are_there(solved: dict[str, nacre.Solution]) -> N
 
 
 @pytest.mark.parametrize("kind", ["both coated, tilted", "infinite gaps", "nothing touches"])
-def test_pyvista_reads_the_vtk_file_back(
-    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved[kind]
+def test_pyvista_reads_the_vtk_file_back(kind: str, tmp_path: Path) -> None:
+    solution = solved(kind)
     mesh = pyvista.read(solution.save(tmp_path / "a.vtr"))
     assert isinstance(mesh, pyvista.RectilinearGrid)
     for name in ("pressure", "gap", "displacement"):
@@ -145,10 +127,8 @@ def test_pyvista_reads_the_vtk_file_back(
 
 
 @pytest.mark.parametrize("kind", ["both coated, tilted", "line"])
-def test_stresses_in_the_vtk_file_are_those_of_the_solution(
-    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved[kind]
+def test_stresses_in_the_vtk_file_are_those_of_the_solution(kind: str, tmp_path: Path) -> None:
+    solution = solved(kind)
     depths = [0.0, 2e-5, 4e-5, 5e-5, 8e-5]  # interfaces at 40 and 50 µm
     options: dict[str, Any] = {"body": "body", "displacement": True, "residual": {0: -1e9}}
     mesh = pyvista.read(solution.save(tmp_path / "a.vtr", depths=depths, **options))
@@ -182,7 +162,7 @@ def test_stresses_in_the_vtk_file_are_those_of_the_solution(
 
 def test_on_a_rigid_base_the_vtk_file_ends_above_it(tmp_path: Path) -> None:
     body = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(DLC, 1e-5), nacre.Layer(STEEL, 2e-5)])
-    solution = nacre.solve(nacre.Sphere(5e-3), body, DLC, grid=GRID, load=10.0)
+    solution = nacre.solve(BALL, body, DLC, grid=GRID, load=10.0)
     bottom = body.interfaces[-1]
     mesh = pyvista.read(
         solution.save(tmp_path / "a.vtr", depths=[1e-5, bottom], friction=0.1, direction=(1.0, 0.0))
@@ -212,22 +192,15 @@ def test_on_a_rigid_base_the_vtk_file_ends_above_it(tmp_path: Path) -> None:
     ],
 )
 def test_wrong_depths_leave_no_file(
-    name: str,
-    arguments: dict[str, Any],
-    kind: type[Exception],
-    message: str,
-    solved: dict[str, nacre.Solution],
-    tmp_path: Path,
+    name: str, arguments: dict[str, Any], kind: type[Exception], message: str, tmp_path: Path
 ) -> None:
     with pytest.raises(kind, match=message):
-        solved["infinite gaps"].save(tmp_path / name, **arguments)
+        solved("infinite gaps").save(tmp_path / name, **arguments)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_csv_holds_the_sections_through_the_peak(
-    solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved["both coated, tilted"]
+def test_csv_holds_the_sections_through_the_peak(tmp_path: Path) -> None:
+    solution = solved("both coated, tilted")
     with solution.save(tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     i, j = np.unravel_index(solution.pressure.argmax(), solution.pressure.shape)
@@ -238,10 +211,8 @@ def test_csv_holds_the_sections_through_the_peak(
 
 
 @pytest.mark.parametrize("kind", ["both coated, tilted", "infinite gaps", "line"])
-def test_csv_may_hold_every_cell_after_a_block_of_comments(
-    kind: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved[kind]
+def test_csv_may_hold_every_cell_after_a_block_of_comments(kind: str, tmp_path: Path) -> None:
+    solution = solved(kind)
     lines = solution.save(tmp_path / "a.csv", whole=True).read_text(encoding="utf-8").splitlines()
     said = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
     unit = "N/m" if kind == "line" else "N"
@@ -258,33 +229,27 @@ def test_csv_may_hold_every_cell_after_a_block_of_comments(
 
 
 @pytest.mark.parametrize("ending", [".png", ".pdf", ".svg"])
-def test_a_picture_is_saved_and_closed(
-    ending: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
+def test_a_picture_is_saved_and_closed(ending: str, tmp_path: Path) -> None:
     from matplotlib import pyplot
 
     before = pyplot.get_fignums()
-    content = solved["both coated, tilted"].save(tmp_path / f"a{ending}").read_bytes()
+    content = solved("both coated, tilted").save(tmp_path / f"a{ending}").read_bytes()
     assert content.startswith({".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}[ending])
     assert pyplot.get_fignums() == before
 
 
 @pytest.mark.parametrize("name", ["a.txt", "a", "a.vtu"])
-def test_another_ending_is_refused(
-    name: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
+def test_another_ending_is_refused(name: str, tmp_path: Path) -> None:
     endings = r"\.nc, \.vtr, \.csv, \.png, \.pdf, \.svg"
     with pytest.raises(ValueError, match=f"path must end in {endings}, got"):
-        solved["line"].save(tmp_path / name)
+        solved("line").save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("kind", ["line", "slid"])
 @pytest.mark.parametrize("ending", [".nc", ".vtr", ".csv", ".png"])
 def test_a_failed_write_keeps_the_old_file_and_leaves_no_other(
-    ending: str,
-    solved: dict[str, nacre.Solution],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    kind: str, ending: str, tmp_path: Path, monkeypatch: Patch
 ) -> None:
     path = tmp_path / f"a{ending}"
     path.write_text("old")
@@ -294,7 +259,7 @@ def test_a_failed_write_keeps_the_old_file_and_leaves_no_other(
 
     monkeypatch.setattr("os.replace", fail)
     with pytest.raises(OSError, match="no space"):
-        solved["line"].save(path)
+        solved(kind).save(path)
     assert path.read_text() == "old"
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 
@@ -334,8 +299,7 @@ except OSError as error:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of a file")
 def test_a_full_disk_is_an_error_and_the_process_goes_on(tmp_path: Path) -> None:
-    command = [sys.executable, "-c", FULL]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    done = python("-c", FULL, folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     names = [line.split()[0] for line in done.stdout.splitlines()]
     assert names == ["a.nc", "a.vtr", "b.vtr", "a.csv", "a.png", "study"]
@@ -353,24 +317,51 @@ def rewritten(path: Path, **changes: Any) -> Path:
             del dataset.attrs[name]
         else:
             dataset.attrs[name] = value
-    write_dataset(dataset, path.with_name("changed.nc"))
+    resealed(dataset, path.with_name("changed.nc"))
     return path.with_name("changed.nc")
 
 
+@pytest.mark.parametrize(
+    ("kind", "fields"),
+    [
+        ("both coated, tilted", ("gap",)),
+        ("cells, coupled", ("traction", "slip", "friction", "gap", "normal_displacement")),
+    ],
+)
 def test_files_are_read_as_nacre_wrote_them_alone(
-    solved: dict[str, nacre.Solution], tmp_path: Path
+    kind: str, fields: tuple[str, ...], tmp_path: Path
 ) -> None:
-    path = solved["both coated, tilted"].save(tmp_path / "a.nc")
-    dataset = xarray.load_dataset(path, engine="h5netcdf")
-    dataset.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+    dataset = xarray.load_dataset(solved(kind).save(tmp_path / "a.nc"), engine="h5netcdf")
+    path = tmp_path / "b.nc"
+    dataset.to_netcdf(path, engine="h5netcdf")
     with pytest.raises(ValueError, match=r"b\.nc.*saved again by another program"):
-        nacre.load(tmp_path / "b.nc")
-    write_dataset(dataset.drop_vars("gap"), tmp_path / "c.nc")
-    with pytest.raises(ValueError, match=r'c\.nc.*the key "gap" is missing'):
-        nacre.load(tmp_path / "c.nc")
-    write_dataset(dataset, tmp_path / "d.nc", STUDY)
-    with pytest.raises(ValueError, match=r"d\.nc.*it is a study"):
-        nacre.load(tmp_path / "d.nc")
+        nacre.load(path)
+    for field in fields:
+        key = field.removeprefix("normal_")
+        resealed(dataset.drop_vars(field), path)
+        with pytest.raises(ValueError, match=rf'b\.nc.*the key "{key}" is missing'):
+            nacre.load(path)
+        dataset.assign({field: 2 * dataset[field]}).to_netcdf(path, engine="h5netcdf")
+        with pytest.raises(ValueError, match=r"b\.nc.*changed, or saved again by another program"):
+            nacre.load(path)
+        resealed(dataset.assign({field: dataset[field].isel(x=0)}), path)
+        with pytest.raises(ValueError, match=rf"b\.nc.*{key}"):
+            nacre.load(path)
+    resealed(dataset, path, support.STUDY)
+    with pytest.raises(ValueError, match=r"b\.nc.*it is a study"):
+        nacre.load(path)
+    state = json.loads(dataset.attrs["nacre_solution"]) | {"format": 2, "nacre": "7.3.1"}
+    resealed(dataset.assign_attrs(nacre_solution=json.dumps(state)), path)
+    with pytest.raises(ValueError, match=r"b\.nc.* has format 2, written by nacre 7\.3\.1"):
+        nacre.load(path)
+
+
+@pytest.mark.parametrize("length", [0, 100, 5000])
+def test_half_a_file_is_refused(length: int, tmp_path: Path) -> None:
+    path = solved("slid").save(tmp_path / "a.nc")
+    path.write_bytes(path.read_bytes()[:length])
+    with pytest.raises(ValueError, match=r"a\.nc.*not that of a file of nacre: .*cut"):
+        nacre.load(path)
 
 
 def damaged(name: str, value: object) -> dict[str, Any]:
@@ -407,10 +398,8 @@ CHANGED: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("message", CHANGED)
-def test_a_damaged_file_is_refused_by_its_name(
-    message: str, solved: dict[str, nacre.Solution], tmp_path: Path
-) -> None:
-    solution = solved["both coated, tilted"]
+def test_a_damaged_file_is_refused_by_its_name(message: str, tmp_path: Path) -> None:
+    solution = solved("both coated, tilted")
     path = solution.save(tmp_path / "a.nc")
     changes = dict(CHANGED[message])
     for name, value in changes.items():
@@ -493,8 +482,7 @@ def test_a_missing_extra_is_named(missing: str, extra: str, call: str, tmp_path:
         "s = nacre.solve(nacre.Sphere(5e-3), steel, load=1.0)\n"
         f"{call}\n"
     )
-    command = [sys.executable, str(script)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    done = python(script, folder=tmp_path)
     assert done.stderr.splitlines()[-1] == (
         f"ModuleNotFoundError: this needs {missing}: pip install 'nacre-contact[{extra}]'"
     )

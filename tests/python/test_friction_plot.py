@@ -2,41 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
-import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
 import nacre
+import results
+from bodies import BALL, HELD, STEEL
 from nacre import plot
 from nacre.units import Scale
+from results import CELLS, CONTACT, solved
 
-STEEL = nacre.Elastic(210e9, 0.3)
-BALL, ROD = nacre.Sphere(5e-3), nacre.Cylinder(5e-3)
-GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4), (1e-6, -2e-6))
-CONTACT = nacre.Contact(STEEL, GRID, STEEL)
-LINE = nacre.Contact(STEEL, nacre.Grid.line(64, 2e-4), STEEL)
-HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
-SOLVED: dict[str, nacre.FrictionSolution] = {
-    "slid": CONTACT.slide(BALL, **HELD, force=(2.0, 1.0), torque=1e-5),
-    "rolled": CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
-    "line": LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),
-    "line rolled": LINE.roll(ROD, load=1e4, friction=0.3, creepage=(1e-4, None)),
-    "apart": CONTACT.slide(BALL, approach=-1e-6, friction=0.3),
-}
+SOLVED = {name: solved(name) for name in results.FRICTION if "not" not in name}
 every = pytest.mark.parametrize("kind", SOLVED)
-
-
-@pytest.fixture(autouse=True)
-def _figures() -> Iterator[None]:
-    """Draw without a screen, and close what was drawn."""
-    with mpl.rc_context({"backend": "agg"}):
-        yield
-    plt.close("all")
 
 
 # Studies of histories and creep.
@@ -57,7 +38,7 @@ def test_a_history_is_a_dataset() -> None:
     rolls = nacre.friction.history([SOLVED["rolled"]])
     np.testing.assert_array_equal(rolls.creepage, [SOLVED["rolled"].creepage])
     assert (rolls.dissipated.units, "shift" in rolls) == ("N", False)
-    assert nacre.friction.history([SOLVED["line"]]).force.units == "N/m"
+    assert nacre.friction.history([SOLVED["line slid"]]).force.units == "N/m"
 
 
 @pytest.mark.parametrize("direction", ["+x", "-x", "+y", "-y"])
@@ -85,7 +66,7 @@ def test_a_creep_curve_counts_along_and_across_rolling(direction: str, lateral: 
 @pytest.mark.parametrize("wrong", [{"friction": 0.0}, {"load": None, "approach": -1e-6}])
 def test_without_friction_or_contact_there_is_no_ratio(wrong: dict[str, Any]) -> None:
     curve = nacre.friction.creep_curve(
-        BALL, STEEL, STEEL, creepages=[1e-3], grid=GRID, direction="+x", **HELD | wrong
+        BALL, STEEL, STEEL, creepages=[1e-3], grid=CELLS, direction="+x", **HELD | wrong
     )
     assert np.isnan(curve.traction_ratio.item())
     assert curve.longitudinal_force.item() == 0
@@ -123,7 +104,7 @@ def test_pictures_go_into_given_axes() -> None:
     assert SOLVED["slid"].plot(axes) is axes
     assert SOLVED["slid"].plot(axes=axes) is axes
     with pytest.raises(TypeError, match="axes must be axes of Matplotlib, got 'here'"):
-        plot.friction(SOLVED["line"], "here")  # type: ignore[arg-type]
+        plot.friction(SOLVED["line slid"], "here")  # type: ignore[arg-type]
 
 
 def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
@@ -139,7 +120,7 @@ def test_a_loop_and_a_creep_curve_show_their_numbers() -> None:
     with pytest.raises(ValueError, match="must be steps of sliding, got one of rolling"):
         plot.loop([SOLVED["rolled"]])
     curve = nacre.friction.creep_curve(
-        BALL, STEEL, STEEL, creepages=[1e-4, 1e-3], grid=GRID, direction="+x", **HELD
+        BALL, STEEL, STEEL, creepages=[1e-4, 1e-3], grid=CELLS, direction="+x", **HELD
     )
     axes = plot.creep_curve(curve)
     assert axes.get_xlabel() == "longitudinal creepage [10⁻³]"

@@ -1,0 +1,91 @@
+"""Results of every kind, each solved once."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import nacre
+from bodies import BALL, HELD, ROD, STEEL, quiet
+from nacre.indent import Adhesion, Curve, Fit, Indentation, Tip, fit
+
+DLC = nacre.Elastic(420e9, 0.25)
+LAYERED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 4e-5, "frictionless"), nacre.Layer(STEEL, 1e-5)])
+COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-5)])
+GRID = nacre.Grid((40, 31), (3e-4, 2e-4), (1e-5, -2e-6))
+CELLS = nacre.Grid((40, 36), (2.4e-4, 2.2e-4), (1e-6, -2e-6))
+CONTACT = nacre.Contact(STEEL, CELLS, STEEL)
+LINE = nacre.Contact(STEEL, nacre.Grid.line(64, 2e-4), STEEL)
+FILM = nacre.HalfSpace(
+    nacre.Elastic(70e9, 0.22), [nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-6, name="film")]
+)
+ROUND = Tip.sphere(5e-6)
+
+
+def fitted() -> Fit:
+    depth = np.linspace(10e-9, 300e-9, 12)
+    noise = np.exp(0.01 * np.random.default_rng(3).standard_normal((2, depth.size)))
+    load = Indentation(FILM, ROUND).curve(approach=depth).load
+    curves = [Curve(depth, load * part, name=f"A{k}") for k, part in enumerate(noise)]
+    free, nuisance = ["body.layers[0].material.young"], ["contact_point"]
+    return fit(curves, FILM, ROUND, free, nuisance=nuisance, profile=False)
+
+
+NORMAL: dict[str, Callable[[], nacre.Solution]] = {
+    "both coated, tilted": lambda: nacre.solve(
+        BALL, LAYERED, LAYERED, grid=GRID, load=10.0, eccentricity=(1e-6, None), tilt=(None, 1e-4)
+    ),
+    "infinite gaps": lambda: nacre.solve(nacre.FlatPunch(5e-5), STEEL, grid=GRID, load=10.0),
+    "nothing touches": lambda: nacre.solve(BALL, STEEL, grid=GRID, approach=-1e-6),
+    "line": lambda: nacre.solve(ROD, LAYERED, grid=nacre.Grid.line(64, 2e-4, 1e-6), load=1e4),
+    "not converged": lambda: nacre.solve(
+        BALL, LAYERED, grid=GRID, load=10.0, max_iterations=2, check=False
+    ),
+    "converted": lambda: nacre.solve(
+        BALL, LAYERED, grid=GRID, approach=1e-7, method="image", refinement=8, tolerance=1e-5
+    ),
+}
+FRICTIONS = np.linspace(0.1, 0.5, 40 * 36).reshape(40, 36)
+FRICTION: dict[str, Callable[[], nacre.FrictionSolution]] = {
+    "slid": lambda: CONTACT.slide(BALL, **HELD, force=(2.0, 1.0), torque=1e-5),
+    "cells, coupled": lambda: nacre.Contact(COATED, CELLS, STEEL).slide(
+        BALL, load=10.0, friction=FRICTIONS, shift=(1e-7, None)
+    ),
+    "rolled": lambda: CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
+    "line slid": lambda: LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),
+    "line rolled": lambda: LINE.roll(ROD, load=1e4, friction=0.3, creepage=(1e-4, None)),
+    "apart": lambda: CONTACT.slide(BALL, approach=-1e-6, friction=0.3),
+    "not converged in friction": lambda: CONTACT.slide(
+        BALL, **HELD, force=(2.0, None), max_convolutions=2, check=False
+    ),
+}
+
+
+def indented(**given: Any) -> Callable[[], nacre.indent.IndentSolution]:
+    asked: dict[str, Any] = {"body": FILM, "tip": ROUND} | given
+    return lambda: nacre.indent.solve(**asked)
+
+
+RADII = np.linspace(0, 4e-6, 5)
+INDENT: dict[str, Callable[[], nacre.indent.IndentSolution]] = {
+    "one": indented(load=1e-3),
+    "row": indented(approach=[1e-9, 1e-8, 1e-7]),
+    "plane": indented(radius=[[1e-7, 2e-7], [3e-7, 4e-7]]),
+    "sticky": indented(load=[1e-4, 1e-3], adhesion=Adhesion.jkr(0.05), control="approach"),
+    "maugis": indented(
+        load=1e-3, adhesion=Adhesion.maugis(0.05, 1e7), counterbody=nacre.Elastic(70e9, 0.22)
+    ),
+    "sharp": indented(load=[1e-3], tip=Tip.cone(0.3)),
+    "rough": indented(load=1e-4, tip=Tip.profile(RADII, np.arange(5.0) ** 2 / 1e7)),
+}
+FITS: dict[str, Callable[[], Fit]] = {"fit": fitted}
+
+
+@functools.cache
+def solved(kind: str) -> Any:
+    """Return the result of a kind; what it warns of is saved with it."""
+    makers: dict[str, Callable[[], Any]] = {**NORMAL, **FRICTION, **INDENT, **FITS}
+    return quiet(makers[kind])
