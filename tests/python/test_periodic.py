@@ -14,7 +14,9 @@ from scipy.integrate import quad
 from scipy.special import k0
 
 import nacre
+from nacre import plot
 from nacre.case import Case, CaseError
+from support import DATA
 
 BODY = nacre.Elastic(1.0, 0.0)
 GRID = nacre.Grid((32, 24), (1.0, 0.75), periodic=(True, True))
@@ -22,7 +24,6 @@ X, Y = np.meshgrid(GRID.x, GRID.y, indexing="ij")
 HEIGHTS = 1e-3 * np.cos(2 * np.pi * X) + 5e-4 * np.cos(2 * np.pi * Y / 0.75)
 MAP = nacre.HeightMap(HEIGHTS, 1 / 32, periodic=(True, True))
 MEAN = HEIGHTS.max() - HEIGHTS.mean()
-HALF = nacre.Grid((16, 24), (0.5, 0.75), periodic=(True, True))
 
 
 def test_a_wave_along_the_period_falls_off_as_bessels_function() -> None:
@@ -83,58 +84,6 @@ def test_the_table_leaves_out_what_makes_no_sense() -> None:
         assert row not in text
 
 
-ERRORS: dict[str, tuple[type[Exception], str]] = {
-    "nacre.Grid((4, 4), (1.0, 1.0), periodic=True)": (
-        TypeError,
-        "periodic must be a pair of bools",
-    ),
-    "nacre.Grid((4, 4), (1.0, 1.0), periodic=(1, 0))": (TypeError, "periodic must be a pair"),
-    "nacre.HeightMap(HEIGHTS, 1.0, periodic=(True,))": (TypeError, "periodic must be a pair"),
-    "nacre.solve(MAP, BODY, load=1.0, tilt=(1e-3, None))": (ValueError, "along x the grid is"),
-    "nacre.Contact(BODY, GRID).solve(nacre.Sphere(9.0).shifted(0.2, 0), load=1e-3)": (
-        ValueError,
-        "shape must repeat along x",
-    ),
-    "nacre.Contact(BODY, GRID, method='image')": (
-        ValueError,
-        '"exact" or "spectral" on a periodic',
-    ),
-    "nacre.Contact(BODY, nacre.Grid((4, 4), (1.0, 1.0)), method='spectral')": (
-        ValueError,
-        "periodic along x and along y",
-    ),
-    "nacre.slide(MAP, BODY, BODY, load=1e-3, friction=0.1)": (ValueError, "not periodic"),
-    "nacre.solve(MAP, BODY, grid=nacre.Grid((32, 24), (1.0, 0.75)), load=1e-3)": (
-        ValueError,
-        r"repeat along x as the shape does, with its period 1e0 .* was a grid that does not repeat",
-    ),
-    # The height at both ends of half a period is the same.
-    "nacre.solve(MAP, BODY, grid=HALF, load=1e-3)": (
-        ValueError,
-        r"repeat along x as the shape does, with its period 1e0 .* was a grid of period 5e-1",
-    ),
-    "nacre.solve(MAP, BODY, grid=nacre.Grid.line(24, 0.75), load=1e-3)": (
-        ValueError,
-        "repeat along y",
-    ),
-    "nacre.solve(MAP + MAP, BODY, grid=nacre.Grid((32, 24), (1.0, 0.75)), load=1e-3)": (
-        ValueError,
-        "repeat along x",
-    ),
-    "nacre.solve(MAP, BODY, approach=1.01 * MEAN)": (
-        ValueError,
-        r"approach must be below 1\.4\d+e-3, the mean gap.*was 1\.5\d+e-3",
-    ),
-}
-
-
-@pytest.mark.parametrize("call", ERRORS)
-def test_what_does_not_fit_is_refused(call: str) -> None:
-    kind, message = ERRORS[call]
-    with pytest.raises(kind, match=message):
-        eval(call, globals())
-
-
 def test_maps_that_repeat_on_grids_that_fit() -> None:
     """A map on two of its periods is the map; below a ball it goes on, however wide the grid is."""
     one = nacre.solve(MAP, BODY, load=1e-3)
@@ -169,14 +118,9 @@ def test_an_approach_up_to_full_contact_has_a_solution() -> None:
 
 def test_case_files(tmp_path: Path) -> None:
     np.save(tmp_path / "wave.npy", HEIGHTS)
+    shape = {"kind": "height_map", "path": "wave.npy", "spacing": 1 / 32, "detrend": "none"}
     case: dict[str, Any] = {
-        "shape": {
-            "kind": "height_map",
-            "path": "wave.npy",
-            "spacing": 1 / 32,
-            "detrend": "none",
-            "periodic": [True, True],
-        },
+        "shape": shape | {"periodic": [True, True]},
         "body": {"substrate": {"young": 1.0, "poisson": 0.0}},
         "solve": {"load": 1e-3},
     }
@@ -197,8 +141,7 @@ def test_other_programs_find_the_same_pressure(
     make_periodic_peers.py made. They meet 1e-12 or so of the energy, the square of which is the
     error of a pressure.
     """
-    path = Path(__file__).parents[1] / "data" / "periodic_peers.json"
-    data = json.loads(path.read_text(encoding="utf-8"))
+    data = json.loads((DATA / "periodic_peers.json").read_text(encoding="utf-8"))
     cells, side, layer = data["cells"], data["side"], data["layer"]
     at = (np.arange(cells) + 0.5) / cells
     heights = sum(
@@ -241,7 +184,7 @@ def test_stresses_repeat_and_bear_the_load() -> None:
         )
         assert stress.zz[k].mean() == pytest.approx(-0.004, rel=1e-9)
     summary = solution.stress_summary(friction=0.2, direction=(0, 1))
-    largest = solution.stress(np.linspace(0, 0.6, 61), friction=0.2, direction=(0, 1)).von_mises
+    largest = solution.stress(np.linspace(0, 0.6, 31), friction=0.2, direction=(0, 1)).von_mises
     assert summary.layers[0].von_mises[0] == pytest.approx(largest.max(), rel=1e-2)
 
 
@@ -253,7 +196,5 @@ def test_plans_sections_and_files_know_that_stresses_repeat(tmp_path: Path) -> N
     np.testing.assert_allclose(section.zz, whole.zz[..., 5], atol=1e-12)
     solution.save(tmp_path / "below.vtr", depths=[0.0, 0.1])
     assert (tmp_path / "below.vtr").stat().st_size > 1000
-    from nacre import plot
-
     axes = plot.stress_section(solution)
     assert axes.get_xlabel().startswith("x")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
 from typing import Any
 
 import matplotlib as mpl
@@ -17,21 +16,15 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 import nacre
+import support
+from bodies import BALL, ROD, STEEL
 from nacre import design, plot
 from nacre.units import Scale, written
+from support import errors, table
 
 Array = npt.NDArray[np.float64]
-STEEL = nacre.Elastic(210e9, 0.3)
 ROLLER = nacre.Roller(5e-3, 8e-3, 2.0)
 LONG = nacre.Grid((96, 24), (14e-3, 3e-4))
-
-
-@pytest.fixture(autouse=True)
-def _figures() -> Iterator[None]:
-    """Draw without a screen, and close what was drawn."""
-    with mpl.rc_context({"backend": "agg"}):
-        yield
-    plt.close("all")
 
 
 @pytest.fixture(scope="module")
@@ -41,17 +34,17 @@ def tilted() -> nacre.Solution:
 
 @pytest.fixture(scope="module")
 def ball() -> nacre.Solution:
-    return nacre.solve(nacre.Sphere(5e-3), STEEL, load=100.0)
+    return nacre.solve(BALL, STEEL, load=100.0)
 
 
 @pytest.fixture(scope="module")
 def line() -> nacre.Solution:
-    return nacre.solve(nacre.Cylinder(5e-3), STEEL, grid=nacre.Grid.line(64, 4e-4), load=5e4)
+    return nacre.solve(ROD, STEEL, grid=nacre.Grid.line(64, 4e-4), load=5e4)
 
 
 @pytest.fixture(scope="module")
 def nothing() -> nacre.Solution:
-    return nacre.solve(nacre.Sphere(5e-3), STEEL, grid=LONG, approach=-1e-6)
+    return nacre.solve(BALL, STEEL, grid=LONG, approach=-1e-6)
 
 
 def curve_of(axes: Axes) -> tuple[Array, Array]:
@@ -149,7 +142,7 @@ def test_axes_are_taken_and_returned(tilted: nacre.Solution, ball: nacre.Solutio
 
 
 def test_a_comparison_names_each_curve_and_its_peak(ball: nacre.Solution) -> None:
-    other = nacre.solve(nacre.Sphere(5e-3), STEEL, load=200.0)
+    other = nacre.solve(BALL, STEEL, load=200.0)
     axes = plot.compare({"100 N": ball, "200 N": other}, "y")
     legend = axes.get_legend()
     assert legend is not None
@@ -180,9 +173,6 @@ def test_a_line_contact_has_one_section(line: nacre.Solution) -> None:
     axes = line.plot()
     assert sorted(axes) == ["numbers", "y"]
     drawn(axes["y"].figure)
-    for refused in (plot.pressure_map, plot.relief):
-        with pytest.raises(ValueError, match="must have cells along x"):
-            refused(line)
 
 
 def test_without_contact_there_is_a_picture_that_says_so(nothing: nacre.Solution) -> None:
@@ -192,33 +182,22 @@ def test_without_contact_there_is_a_picture_that_says_so(nothing: nacre.Solution
     drawn(nothing.plot_3d().figure)
 
 
-def test_bad_arguments_are_named(tilted: nacre.Solution) -> None:
-    with pytest.raises(ValueError, match="along must be 'x' or 'y', got 'z'"):
-        plot.section(tilted, "z")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"quantity must be one of .*, got 'force'"):
-        plot.section(tilted, quantity="force")
-    with pytest.raises(ValueError, match="along must be 'x' for the line load"):
-        plot.section(tilted, "y", quantity="line_load")
-    with pytest.raises(ValueError, match=r"at must lie on the grid, -0\.00015 to 0\.00015, got 1"):
-        plot.section(tilted, at=1.0)
-    with pytest.raises(ValueError, match="axes must be named map, x, y or numbers, got 'z'"):
-        tilted.plot({"z": plt.figure().add_subplot()})
-    with pytest.raises(ValueError, match="at least one solution"):
-        plot.compare([])
+@pytest.fixture(scope="module")
+def chart() -> Any:
+    lists: Any = {"thickness": [1e-6, 1e-5, 1e-4], "young": [1e11, 2e11, 4e11]}
+    return design.coating_chart(BALL, STEEL, load=10.0, tolerance=1e-4, **lists)
 
 
 @pytest.mark.parametrize("quantity", ["peak_pressure", "coating_tension", "interface_shear"])
-def test_levels_on_contours_are_within_the_frame(quantity: str) -> None:
-    chart = design.coating_chart(
-        nacre.Sphere(2e-3),
-        STEEL,
-        thickness=[1e-6, 3e-6, 10e-6],
-        young=[1e11, 2e11, 4e11],
-        load=5.0,
-        tolerance=1e-4,
-    )
+def test_a_chart_has_units_and_levels_within_its_frame(chart: Any, quantity: str) -> None:
     axes = plot.chart(chart, quantity)
     drawn(axes.figure)
+    assert axes.get_xlabel() == "thickness [µm]"
+    assert axes.get_xscale() == "log"
+    assert axes.get_ylabel() == "Young's modulus of the coating [GPa]"
+    if quantity != "peak_pressure":
+        highest = axes.collections[0].get_clim()[1]
+        assert highest == pytest.approx(1e-6 * chart[quantity].max().item(), rel=0.2)  # levels
     frame = axes.get_window_extent()
     boxes = [text.get_window_extent() for text in axes.texts]
     assert len(boxes) >= 4
@@ -227,26 +206,8 @@ def test_levels_on_contours_are_within_the_frame(quantity: str) -> None:
         assert frame.y0 < box.y0 < box.y1 < frame.y1
 
 
-def test_studies_are_drawn_with_their_units() -> None:
-    chart = design.coating_chart(
-        nacre.Sphere(5e-3),
-        STEEL,
-        thickness=[1e-6, 1e-5, 1e-4],
-        young=[1e11, 2e11],
-        load=10.0,
-        tolerance=1e-4,
-    )
-    axes = plot.chart(chart)
-    assert axes.get_xlabel() == "thickness [µm]"
-    assert axes.get_xscale() == "log"
-    assert axes.get_ylabel() == "Young's modulus of the coating [GPa]"
-    drawn(axes.figure)
-    for quantity in ("coating_tension", "interface_shear"):
-        axes = plot.chart(chart, quantity)
-        drawn(axes.figure)
-        highest = axes.collections[0].get_clim()[1]
-        assert highest == pytest.approx(1e-6 * chart[quantity].max().item(), rel=0.2)  # levels
-    curve = design.load_curve(nacre.Sphere(5e-3), STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
+def test_a_curve_has_units_and_bars_of_its_errors(chart: Any) -> None:
+    curve = design.load_curve(BALL, STEEL, [10.0, 20.0, 30.0], tolerance=1e-4)
     axes = plot.curve(curve, "stiffness")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("load [N]", "stiffness [MN/m]")
     x, y = curve_of(axes)
@@ -263,10 +224,6 @@ def test_studies_are_drawn_with_their_units() -> None:
     share = 100 * (abs(chart.peak_pressure_discretisation) / chart.peak_pressure).max().item()
     label = plot.chart(chart).figure.axes[1].get_ylabel()
     assert label == f"peak pressure [GPa], ± {share:.2g} % at most"
-    with pytest.raises(ValueError, match="quantity must depend on 2 parameters"):
-        plot.chart(curve, "approach")
-    with pytest.raises(ValueError, match=r"quantity must be one of .*, got 'force'"):
-        plot.curve(curve, "force")
 
 
 def test_colours_differ_in_lightness_for_those_who_see_no_hue() -> None:
@@ -281,7 +238,7 @@ def test_colours_differ_in_lightness_for_those_who_see_no_hue() -> None:
 def coated() -> nacre.Solution:
     body = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.25), 30e-6)])
     grid = nacre.Grid((61, 51), (5e-4, 4e-4))
-    return nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=20.0)
+    return nacre.solve(BALL, body, grid=grid, load=20.0)
 
 
 def meshes(axes: Axes) -> list[QuadMesh]:
@@ -303,7 +260,9 @@ def test_a_stress_section_shows_the_stress(coated: nacre.Solution, quantity: str
     values = field.principal[0] if quantity == "tension" else getattr(field, quantity)
     assert axes.get_ylim()[1] == 0.0
     np.testing.assert_allclose(shown, values / 1e9, atol=1e-9)
-    assert written(float(values.max()), "Pa", 3) in axes.get_title(loc="left")
+    title = axes.get_title(loc="left")
+    assert written(float(values.max()), "Pa", 3) in title
+    assert "the cross marks the largest value" in title
 
 
 def test_curves_over_depth_hold_both_sides_of_an_interface(coated: nacre.Solution) -> None:
@@ -359,27 +318,44 @@ def test_stress_of_lines_and_of_nothing_can_be_drawn(
         plot.stress_depth(nothing, points=4),
     ):
         drawn(axes.figure)
-    with pytest.raises(ValueError, match=r"^the grid of a solution must have cells along x"):
-        plot.interface_map(line)
 
 
-def test_bad_stress_pictures(coated: nacre.Solution, ball: nacre.Solution) -> None:
-    with pytest.raises(ValueError, match=r"^quantity must be one of xx, .*, got 'pressure'$"):
-        plot.stress_section(coated, "pressure")
-    with pytest.raises(ValueError, match=r"^along must be 'x' or 'y', got 'z'$"):
-        plot.stress_section(coated, along="z")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"^depth must be finite and above 0, got -1$"):
-        plot.stress_depth(coated, depth=-1.0)
-    with pytest.raises(ValueError, match=r"^quantities must hold at least one name"):
-        plot.stress_depth(coated, [])
-    with pytest.raises(ValueError, match=r"^the number of depths must be at least 1, got 0$"):
-        plot.stress_depth(coated, points=0)
-    with pytest.raises(ValueError, match=r"^interface must be from 0 to 0, got 1$"):
-        plot.interface_map(coated, 1)
-    with pytest.raises(ValueError, match=r"^quantity must be 'shear' or 'normal', got 'xx'$"):
-        plot.interface_map(coated, quantity="xx")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"^a solution must have layers for a map of an interface"):
-        plot.interface_map(ball)
+CURVE = "design.load_curve(BALL, STEEL, [10.0], tolerance=1e-4)"
+
+
+WRONG = {
+    "plot.section(tilted, 'z')": "along must be 'x' or 'y', got 'z'",
+    "plot.section(tilted, quantity='force')": "quantity must be one of .*, got 'force'",
+    "plot.section(tilted, 'y', quantity='line_load')": "along must be 'x' for the line load",
+    "plot.section(tilted, at=1.0)": r"at must lie on the grid, -0\.00015 to 0\.00015, got 1",
+    "tilted.plot({'z': plt.figure().add_subplot()})": "axes must be named map, x, y or "
+    "numbers, got 'z'",
+    "plot.compare([])": "at least one solution",
+    f"plot.chart({CURVE}, 'approach')": "quantity must depend on 2 parameters",
+    f"plot.curve({CURVE}, 'force')": "quantity must be one of .*, got 'force'",
+    "plot.stress_section(coated, 'pressure')": r"^quantity must be one of xx, .*, got "
+    "'pressure'$",
+    "plot.stress_section(coated, along='z')": r"^along must be 'x' or 'y', got 'z'$",
+    "plot.stress_depth(coated, depth=-1.0)": r"^depth must be finite and above 0, got -1$",
+    "plot.stress_depth(coated, [])": r"^quantities must hold at least one name",
+    "plot.stress_depth(coated, points=0)": r"^the number of depths must be at least 1, got 0$",
+    "plot.interface_map(coated, 1)": r"^interface must be from 0 to 0, got 1$",
+    "plot.interface_map(coated, quantity='xx')": r"^quantity must be 'shear' or 'normal', "
+    "got 'xx'$",
+    "plot.interface_map(ball)": r"^a solution must have layers for a map of an interface",
+    "plot.interface_map(line)": r"^the grid of a solution must have cells along x",
+    "plot.pressure_map(line)": "must have cells along x",
+    "plot.relief(line)": "must have cells along x",
+}
+
+
+@table(*errors(ValueError, WRONG))
+def test_bad_arguments_are_named(
+    call: str, kind: type[Exception], words: str, request: pytest.FixtureRequest
+) -> None:
+    needed = [name for name in ("tilted", "coated", "ball", "line") if name in call]
+    made = {name: request.getfixturevalue(name) for name in needed}
+    support.refused(call, kind, words, {"plot": plot, "plt": plt, "design": design} | made)
 
 
 def test_settings_of_the_user_stay(ball: nacre.Solution) -> None:
@@ -440,17 +416,12 @@ def test_axes_of_a_user_s_own_sweep_have_units() -> None:
     assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
 
 
-def test_titles_say_what_is_drawn(coated: nacre.Solution) -> None:
-    title = plot.stress_section(coated, rows=6).get_title(loc="left")
-    assert "the cross marks the largest value" in title
-
-
 def test_axes_carry_the_units_that_are_set() -> None:
     steel = nacre.Elastic(210e3, 0.3)  # MPa
     body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e3, 0.3), 0.02)])
     solution = nacre.solve(nacre.Sphere(5.0), body, load=100.0)
     si = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
-    study = design.load_curve(nacre.Sphere(5e-3), si, load=[10.0, 20.0])
+    study = design.load_curve(BALL, si, load=[10.0, 20.0])
     with nacre.display_units("N-mm-MPa"):
         axes = plot.section(solution, "x")
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "pressure [MPa]")
