@@ -7,32 +7,23 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import nacre
-import nacre.cli
+import support
+from bodies import BALL, STEEL, quiet
+from support import Capture, command, written
 
-ASKED = os.environ.get("NACRE_FUZZ")
-fuzz = settings(
-    max_examples=int(ASKED) if ASKED else 15,
-    derandomize=ASKED is None,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+fuzz = support.fuzz(15)
 
-STEEL = nacre.Elastic(210e9, 0.3)
 ALLOY = nacre.Elastic(30e9, 0.35)
 COATED = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(80e9, 0.25), 2e-5)])
-BALL = nacre.Sphere(5e-3)
 GRID = nacre.Grid((32, 32), (8e-4, 8e-4))
 CLOSE = 1e-6
 """Differences of pressures over the peak. At a tolerance of 1e-9 they are some 1e-8."""
@@ -50,13 +41,6 @@ motions = st.one_of(
 )
 tolerances = st.sampled_from([1e-2, 1e-4, 1e-9])
 plans = st.tuples(bodies, st.one_of(st.none(), bodies))
-
-
-def quiet(call: Any, *arguments: Any, **keywords: Any) -> Any:
-    """Return what `call` returns, without warnings."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)
-        return call(*arguments, **keywords)
 
 
 def agree(one: Any, other: Any, tolerance: float = CLOSE) -> None:
@@ -152,33 +136,21 @@ def test_another_grid_is_refused(grid: nacre.Grid, hardness: float | None) -> No
             other.roll(BALL, initial=slid, **roll)
 
 
-def test_the_command_line_starts_from_another_shape(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_line_starts_from_another_shape(tmp_path: Path, capsys: Capture) -> None:
     text = """
-        [shape]
-        kind = "sphere"
-        radius = {radius}
-        [body]
-        substrate = {{ young = 210e9, poisson = 0.3 }}
-        [counterbody]
-        substrate = {{ young = 210e9, poisson = 0.3 }}
-        [grid]
-        shape = [32, 32]
-        size = [8e-4, 8e-4]
-        [solve]
-        load = 20.0
+        shape = {{ kind = "sphere", radius = {radius} }}
+        body.substrate = {{ young = 210e9, poisson = 0.3 }}
+        counterbody.substrate = {{ young = 210e9, poisson = 0.3 }}
+        grid = {{ shape = [32, 32], size = [8e-4, 8e-4] }}
+        solve.load = 20.0
     """
 
-    def solved(*more: str, radius: float) -> Any:
-        path = tmp_path / "case.toml"
-        path.write_text(text.format(radius=radius), encoding="utf-8")
-        with pytest.raises(SystemExit) as ended:
-            nacre.cli.main(["solve", str(path), "--json", *more])
-        assert ended.value.code == 0
+    def solved(*more: object, radius: float) -> Any:
+        path = written(tmp_path, text.format(radius=radius))
+        assert command("solve", path, "--json", *more) == 0
         return json.loads(capsys.readouterr().out)["peak_pressure"]
 
-    saved = str(tmp_path / "small.nc")
+    saved = tmp_path / "small.nc"
     solved("--save", saved, radius=5e-3)
     expected = solved(radius=2e-2)
     assert solved("--initial", saved, radius=2e-2) == pytest.approx(expected, rel=CLOSE)
@@ -213,9 +185,9 @@ def test_a_stopped_step_can_be_gone_on_with() -> None:
 SMALL = nacre.Grid((16, 16), (5e-4, 5e-4))
 PAIR = nacre.Contact(STEEL, SMALL, STEEL, threads=1)
 UNLIKE = nacre.Contact(STEEL, SMALL, threads=1)
-HELD: dict[str, Any] = {"load": 20.0, "friction": 0.2}
-PULLED = HELD | {"force": (1.0, None)}
-ROLLED = HELD | {"direction": "+x", "creepage": (1e-3, None)}
+PRESS: dict[str, Any] = {"load": 20.0, "friction": 0.2}
+PULLED = PRESS | {"force": (1.0, None)}
+ROLLED = PRESS | {"direction": "+x", "creepage": (1e-3, None)}
 NUMBERS = [math.nan, math.inf, -math.inf, 0.0, -1.0, 5e-324, 1e-300, 1e-30, 1e12, 1e30, 1e300]
 
 

@@ -5,29 +5,18 @@ A few calls that are the same in every run; ``NACRE_FUZZ`` tries many others.
 
 from __future__ import annotations
 
-import os
-import warnings
 from typing import Any
 
 import numpy as np
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import nacre
+import support
+from bodies import quiet
+from support import powers
 
-ASKED = os.environ.get("NACRE_FUZZ")
-fuzz = settings(
-    max_examples=int(ASKED) if ASKED else 6,
-    derandomize=ASKED is None,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
-
-
-def powers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Return numbers between powers of ten."""
-    return st.floats(low, high).map(lambda power: 10.0**power)
+fuzz = support.fuzz(6)
 
 
 @st.composite
@@ -68,9 +57,8 @@ def solved(
 ) -> nacre.Solution:
     """Return the contact of two bodies and a map of heights, by the whole operator."""
     shape = nacre.HeightMap(heights, grid.spacing, center=grid.center, periodic=grid.periodic)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)
-        solution = nacre.solve(shape, *pair, grid=grid, tolerance=1e-10, threads=1, **motion)
+    options = {"grid": grid, "tolerance": 1e-10, "threads": 1}
+    solution: nacre.Solution = quiet(nacre.solve, shape, *pair, **options, **motion)
     assert solution.report.converged
     assert (solution.pressure >= 0).all()
     gap = solution.gap[np.isfinite(solution.gap)]

@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import warnings
 
 import numpy as np
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import nacre
+from bodies import quiet
 from nacre.indent import Curve, Fit, Indentation, Tip, fit
+from support import fuzz, powers
 
-ASKED = os.environ.get("NACRE_FUZZ")
 PATHS = (
     "body.layers[0].material.young",
     "body.layers[0].thickness",
@@ -29,18 +28,7 @@ MOST = 2000
 """Evaluations that no fit of four parameters exceeds: two dozen minima of at most 60 each."""
 
 
-def powers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Return numbers between powers of ten."""
-    return st.floats(low, high).map(lambda power: 10.0**power)
-
-
-@settings(
-    max_examples=int(ASKED) if ASKED else 5,
-    derandomize=ASKED is None,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+@fuzz(5)
 @given(
     contrast=powers(-2, 2),
     poisson=st.floats(0.05, 0.49),
@@ -84,13 +72,11 @@ def test_random_fits_end(
         value * (factor if path in free and not path.endswith("poisson") else 1.0)
         for value, factor, path in zip(true, guess, PATHS, strict=True)
     ]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", nacre.NacreWarning)
-        try:
-            found = fit(curve, *system(start), free, nuisance=nuisance, profile=profile)
-        except ValueError as error:
-            assert str(error)  # noqa: PT017 a refusal says why
-            return
+    try:
+        found = quiet(fit, curve, *system(start), free, nuisance=nuisance, profile=profile)
+    except ValueError as error:
+        assert str(error)  # noqa: PT017 a refusal says why
+        return
     assert found.evaluations < MOST
     assert all(map(math.isfinite, found.estimates.values()))
     for name, (low, high) in found.intervals.items():
