@@ -8,27 +8,22 @@ import pytest
 import nacre
 from nacre import _reference
 from nacre.case import Case, CaseError
-from nacre.cli import main
+from support import ROOT, Capture, command, written
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "indent.toml"
-
-
-def run(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(["indent", *arguments])
-    return int(ended.value.code or 0)
+EXAMPLE = ROOT / "examples" / "indent.toml"
 
 
-def test_the_example_is_printed_and_written(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+TEXT = EXAMPLE.read_text(encoding="utf-8")
+
+
+def test_the_example_is_printed_and_written(tmp_path: Path, capsys: Capture) -> None:
     rows = tmp_path / "a.csv"
-    assert run(str(EXAMPLE), "--save", str(rows)) == 0
+    assert command("indent", EXAMPLE, "--save", rows) == 0
     assert "pull-off" in capsys.readouterr().out
     version, head, *lines = rows.read_text().splitlines()
     assert version == f"# source: nacre {nacre.__version__}"
     assert head.startswith("load [N],approach [m]")
-    assert run(str(EXAMPLE), "--json") == 0
+    assert command("indent", EXAMPLE, "--json") == 0
     found = json.loads(capsys.readouterr().out)
     glass, film = nacre.Elastic(70e9, 0.22), nacre.Elastic(3e9, 0.4)
     test = nacre.indent.Indentation(
@@ -55,12 +50,10 @@ def test_the_example_is_printed_and_written(
     ],
 )
 def test_tips_of_all_kinds(tip: str, adhesion: str, tmp_path: Path) -> None:
-    path = tmp_path / "case.toml"
-    text = EXAMPLE.read_text(encoding="utf-8").replace('kind = "sphere"\nradius = 5e-6', tip)
+    text = TEXT.replace('kind = "sphere"\nradius = 5e-6', tip)
     text = text.replace('"jkr"', f'"{adhesion}"')
     text = text.replace("[indent]\n", '[indent]\ncontrol = "approach"\n')
-    path.write_text(text, encoding="utf-8")
-    assert run(str(path)) == 0
+    assert command("indent", written(tmp_path, text)) == 0
 
 
 @pytest.mark.parametrize(
@@ -96,11 +89,10 @@ def test_tips_of_all_kinds(tip: str, adhesion: str, tmp_path: Path) -> None:
     ],
 )
 def test_bad_input_is_one_line(
-    old: str, new: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    old: str, new: str, told: str, tmp_path: Path, capsys: Capture
 ) -> None:
-    path = tmp_path / "case.toml"
-    path.write_text(EXAMPLE.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
-    assert run(str(path)) == 2
+    path = written(tmp_path, TEXT.replace(old, new))
+    assert command("indent", path) == 2
     said = capsys.readouterr().err
     assert told in said
     assert said.count("\n") == 1
@@ -115,21 +107,12 @@ parameters."tip.radius" = [5e-6, 6e-6]
 """
 
 
-def ended(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(arguments)
-    return int(end.value.code or 0)
-
-
-def test_a_study_of_an_indentation_is_run_and_kept(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    pytest.importorskip("xarray")
+def test_a_study_of_an_indentation_is_run_and_kept(tmp_path: Path, capsys: Capture) -> None:
     path = tmp_path / "film.toml"
-    example = EXAMPLE.read_text(encoding="utf-8").partition("[sweep]")[0]
+    example = TEXT.partition("[sweep]")[0]
     text = example.replace("[1e-4, 1e-3]", "1e-3")
     path.write_text(text + SWEEP, encoding="utf-8")
-    assert ended("sweep", str(path)) == 0
+    assert command("sweep", path) == 0
     assert "4 cases, 0 failed" in capsys.readouterr().out
     assert (tmp_path / "film.nc").is_file()
     case = Case.read(path)
@@ -137,30 +120,27 @@ def test_a_study_of_an_indentation_is_run_and_kept(
     study = nacre.sweep(case, **case.study())
     assert study.approach[1, 1] == alone.approach
     path.write_text(text + SWEEP.replace("tip.radius", "tip.radus"), encoding="utf-8")
-    assert ended("sweep", str(path)) == 2
+    assert command("sweep", path) == 2
     assert "the nearest are tip.radius" in capsys.readouterr().err
     path.write_text(text + SWEEP.replace("pull_off_load", "peak_pressure"), encoding="utf-8")
-    assert ended("sweep", str(path)) == 2
+    assert command("sweep", path) == 2
     assert "nacre.indent.IndentSolution" in capsys.readouterr().err
 
 
-def test_each_command_names_the_other_for_a_case_of_the_other_kind(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    assert ended("solve", str(EXAMPLE)) == 2
+def test_each_command_names_the_other_for_a_case_of_the_other_kind(capsys: Capture) -> None:
+    assert command("solve", EXAMPLE) == 2
     assert "nacre indent" in capsys.readouterr().err
-    assert ended("indent", str(EXAMPLE.with_name("roller.toml"))) == 2
+    assert command("indent", EXAMPLE.with_name("roller.toml")) == 2
     assert "nacre solve" in capsys.readouterr().err
 
 
-def test_a_saved_case_is_loaded(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("xarray")
+def test_a_saved_case_is_loaded(tmp_path: Path, capsys: Capture) -> None:
     assert (
-        run(str(EXAMPLE), "--save", str(tmp_path / "a.nc"), "--save", str(tmp_path / "a.csv")) == 0
+        command("indent", EXAMPLE, "--save", tmp_path / "a.nc", "--save", tmp_path / "a.csv") == 0
     )
     found = nacre.indent.solve(**Case.read(EXAMPLE).arguments())
     assert nacre.load(tmp_path / "a.nc") == found
-    assert run(str(EXAMPLE), "--save", str(tmp_path / "a.png")) == 2
+    assert command("indent", EXAMPLE, "--save", tmp_path / "a.png") == 2
     assert "--save must end in" in capsys.readouterr().err
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +77,7 @@ def test_functions_and_arrays_are_outputs() -> None:
 
 def test_processes_change_no_bit() -> None:
     names = {"tip.radius": [4e-6, 5e-6]}
-    with ProcessPoolExecutor(1) as pool:
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         apart = nacre.sweep(CASE, names, executor=pool)
     assert apart.identical(nacre.sweep(CASE, names))
 
