@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -14,35 +12,21 @@ import pytest
 import nacre
 import nacre.cli
 from nacre.paper import cases
+from support import Capture, Patch, command, interrupted, python, written
 
 
-def run(*arguments: str) -> tuple[int, str, str]:
+def run(*arguments: object) -> tuple[int, str, str]:
     """Run ``nacre`` in a process of its own: exit code, stdout, stderr."""
-    command = [sys.executable, "-m", "nacre.cli", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = python("-m", "nacre.cli", *arguments)
     return done.returncode, done.stdout, done.stderr
 
 
-def main(*arguments: str) -> int:
-    """Run ``nacre`` in this process: exit code."""
-    with pytest.raises(SystemExit) as error:
-        nacre.cli.main(arguments)
-    assert isinstance(error.value.code, int)
-    return error.value.code
-
-
-def test_help_names_the_commands() -> None:
+def test_help_names_the_commands_and_info_the_versions(capsys: Capture) -> None:
     code, out, err = run("--help")
     assert (code, err) == (0, "")
     assert [name for name in ("info", "paper", "solve", "sweep") if f" {name} " not in out] == []
-
-
-def test_version_is_one_line() -> None:
     assert run("--version") == (0, f"nacre {nacre.__version__}\n", "")
-
-
-def test_info_prints_the_versions(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main("info") == 0
+    assert command("info") == 0
     assert nacre.__version__ in capsys.readouterr().out
 
 
@@ -60,10 +44,10 @@ def test_info_prints_the_versions(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(
-    arguments: list[str], names: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], names: str, tmp_path: Path, capsys: Capture
 ) -> None:
     (tmp_path / "FILE").touch()
-    assert main(*(a.replace("FILE", str(tmp_path / "FILE")) for a in arguments)) == 2
+    assert command(*(a.replace("FILE", str(tmp_path / "FILE")) for a in arguments)) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("nacre: ")
@@ -76,27 +60,23 @@ def test_bad_input_leaves_no_traceback_in_a_process() -> None:
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
-@pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("rich", "cli")])
-def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
-    code = (
-        f"import sys; sys.modules[{missing!r}] = None; import nacre.cli; nacre.cli.main(['info'])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+@pytest.mark.parametrize(
+    ("missing", "extra", "arguments"),
+    [
+        ("typer", "cli", ["info"]),
+        ("rich", "cli", ["info"]),
+        ("matplotlib", "plot", ["paper", "--out", "out"]),  # before anything is solved
+    ],
+)
+def test_a_missing_extra_is_named(
+    missing: str, extra: str, arguments: list[str], tmp_path: Path
+) -> None:
+    code = f"import sys; sys.modules[{missing!r}] = None; import nacre.cli"
+    done = python("-c", f"{code}; nacre.cli.main({arguments})", folder=tmp_path)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert f"nacre-contact[{extra}]" in done.stderr
-
-
-def test_missing_matplotlib_is_named_before_solving(tmp_path: Path) -> None:
-    code = (
-        "import sys; sys.modules['matplotlib'] = None; import nacre.cli;"
-        f"nacre.cli.main(['paper', '--out', {str(tmp_path)!r}])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert "nacre-contact[plot]" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert list(tmp_path.iterdir()) == []
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
 
 def test_paper_prints_table_claim_and_reference(tmp_path: Path) -> None:
@@ -114,7 +94,7 @@ def test_paper_prints_table_claim_and_reference(tmp_path: Path) -> None:
 
 
 def test_a_solve_that_does_not_converge_is_exit_code_1(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: Patch, capsys: Capture
 ) -> None:
     class Contact:
         def __init__(self, *arguments: object, **options: object) -> None: ...
@@ -123,7 +103,7 @@ def test_a_solve_that_does_not_converge_is_exit_code_1(
             raise nacre.ConvergenceError("residual 1e-3 after 9 iterations")
 
     monkeypatch.setattr(nacre, "Contact", Contact)
-    assert main("paper", "--out", str(tmp_path)) == 1
+    assert command("paper", "--out", str(tmp_path)) == 1
     err = capsys.readouterr().err
     assert err.startswith("nacre: ")
     assert "sphere, h = 0.1 mm, E1/E2 = " in err
@@ -134,14 +114,9 @@ def test_a_solve_that_does_not_converge_is_exit_code_1(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
 def test_interrupt_is_exit_code_130_without_traceback(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "nacre.cli", "paper", "--out", str(tmp_path)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        assert process.stdout is not None
-        assert b"rigid" in process.stdout.readline()  # it is about to solve
-        process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert b"Traceback" not in err
+    ended = interrupted("-m", "nacre.cli", "paper", "--out", tmp_path)  # it is about to solve
+    assert ended.code == 130
+    assert "Traceback" not in ended.errors
     assert list(tmp_path.iterdir()) == []
 
 
@@ -192,10 +167,7 @@ def hostile(tmp_path: Path) -> Path:
     ids=" ".join,
 )
 def test_a_hostile_file_is_one_line_and_exit_code_2(
-    arguments: list[str],
-    hostile: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    arguments: list[str], hostile: Path, monkeypatch: Patch, capsys: Capture
 ) -> None:
     monkeypatch.chdir(hostile)
     names = "missing empty text binary nested digits folder fifo endless huge".split()
@@ -215,7 +187,7 @@ def test_a_hostile_file_is_one_line_and_exit_code_2(
             text = SPHERE.replace('kind = "sphere"\nradius = 5e-3', shape)
             Path("map.toml").write_text(text)
         start = time.process_time()
-        assert main(*(argument.replace("FILE", file) for argument in arguments)) == 2, name
+        assert command(*(argument.replace("FILE", file) for argument in arguments)) == 2, name
         out, err = capsys.readouterr()
         assert out == ""
         assert err.startswith("nacre: ")
@@ -252,13 +224,9 @@ except SystemExit as ended:
 """
 
 
-def test_a_radius_beyond_all_contacts_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    case = tmp_path / "case.toml"
+def test_a_radius_beyond_all_contacts_is_refused(tmp_path: Path, capsys: Capture) -> None:
     tip = '[tip]\nkind = "paraboloid"\nradius = 1e23\n[adhesion]\nkind = "jkr"\nwork = 0.05\n'
-    case.write_text(FILM + tip + "[indent]\nload = 1e-3\n")
-    assert main("indent", str(case)) == 2
+    assert command("indent", written(tmp_path, f"{FILM}{tip}[indent]\nload = 1e-3\n")) == 2
     assert "no minimum within the radii" in capsys.readouterr().err
 
 
@@ -271,24 +239,15 @@ def test_a_long_solve_of_a_case_shows_that_it_goes_on_and_ends_at_ctrl_c(
     if name == "steps":
         head, step = text.split("[[slide.steps]]", 1)
         text = head + ("[[slide.steps]]" + step) * 2000
-    (tmp_path / "case.toml").write_text(FILM + text)
     verb = "solve" if name == "steps" else "indent"
-    command = [sys.executable, "-c", WAITING, verb, str(tmp_path / "case.toml")]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        assert process.stdout is not None
-        assert process.stderr is not None
-        try:
-            assert process.stderr.readline().startswith(b"nacre: solving, 0:00:0")
-            sent = time.perf_counter()
-            process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=60)
-        finally:
-            process.kill()
-    assert out.startswith(b"130 "), (out, err)
-    assert b"Traceback" not in err
+    path = written(tmp_path, FILM + text)
+    ended = interrupted("-u", "-c", WAITING, verb, path, stream="stderr")
+    assert ended.first.startswith("nacre: solving, 0:00:0")
+    assert ended.lines[0].startswith("130 "), ended
+    assert "Traceback" not in ended.errors
     # A check is due each 0.2 s; the process has its libraries to unload, on a machine that may
     # have other work.
-    assert time.perf_counter() - sent < 5
+    assert ended.waited < 5
 
 
 def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
@@ -304,14 +263,14 @@ def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
     for name in names:
         text = SPHERE.replace("[sweep]", f'[sweep]\nstore = "{name}"')
         case.write_text(text)
-        code, _, err = run("sweep", str(case))
+        code, _, err = run("sweep", case)
         assert code == 2, name
         assert "sweep.store: " in err
         assert err.count("\n") == 1
         assert sorted(tmp_path.iterdir()) == [folder]
-    assert main("sweep", str(case), "--store", str(outside)) == 0  # the command line may
+    assert command("sweep", case, "--store", outside) == 0  # the command line may
     assert outside.exists()
     case.write_text(SPHERE.replace("[sweep]", '[sweep]\nstore = "below/x.nc"'))
     (folder / "below").mkdir()
-    assert main("sweep", str(case)) == 0
+    assert command("sweep", case) == 0
     assert (folder / "below" / "x.nc").exists()

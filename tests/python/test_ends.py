@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 import warnings
 from math import inf, pi
 from pathlib import Path
@@ -13,10 +14,11 @@ import pytest
 import xarray
 
 import nacre
+from bodies import BALL, STEEL
 from nacre import values
 from nacre.case import Case
+from support import DATA, Capture, command
 
-STEEL = nacre.Elastic(210e9, 0.3)
 LAYERS = [nacre.Layer(nacre.Elastic(420e9, 0.25), 2e-6)]
 COATED = nacre.HalfSpace(STEEL, LAYERS)
 
@@ -26,15 +28,10 @@ pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # the end
 # Arguments.
 
 
-def test_a_body_goes_on_by_default() -> None:
-    assert nacre.HalfSpace(STEEL).ends == (None, None)
-    assert nacre.HalfSpace(STEEL, ends=(None, None)) == nacre.HalfSpace(STEEL)
-    assert repr(nacre.HalfSpace(STEEL)).endswith("layers=[])")
-
-
 @pytest.mark.parametrize(
     ("given", "ends"),
     [
+        ((None, None), (None, None)),
         ((-1e-3, 2e-3), (-1e-3, 2e-3)),
         ([-1, None], (-1.0, None)),
         (np.array([0.25, 0.5]), (0.25, 0.5)),
@@ -44,12 +41,16 @@ def test_a_body_goes_on_by_default() -> None:
     ],
 )
 def test_ends_may_be_missing_or_infinite(
-    given: tuple[float, float], ends: tuple[float | None, float | None]
+    given: Any, ends: tuple[float | None, float | None]
 ) -> None:
-    assert nacre.HalfSpace(STEEL, LAYERS, ends=given).ends == ends
+    body = nacre.HalfSpace(STEEL, LAYERS, ends=given)
+    assert body.ends == ends
+    assert (body == nacre.HalfSpace(STEEL, LAYERS)) == (ends == (None, None))
 
 
-def test_bodies_with_other_ends_differ() -> None:
+def test_bodies_go_on_by_default_and_differ_by_their_ends() -> None:
+    assert nacre.HalfSpace(STEEL).ends == (None, None)
+    assert repr(nacre.HalfSpace(STEEL)).endswith("layers=[])")
     bodies = [nacre.HalfSpace(STEEL, ends=ends) for ends in [(None, 1.0), (0.0, 1.0), (0.0, None)]]
     assert len({nacre.HalfSpace(STEEL), *bodies}) == 4
 
@@ -72,12 +73,14 @@ def test_a_roller_knows_its_ends() -> None:
 SOFT = 1e-6
 UNIT = nacre.Elastic((1 - 0.3**2) / SOFT, 0.3)
 STRAIGHT = nacre.Roller(1 / (4 * SOFT), flat_length=20.0, crown_radius=1 / SOFT, length=20.0)
-REFERENCES = {
-    case["case"]: case
-    for case in json.loads(
-        (Path(__file__).parents[1] / "data" / "finite_roller.json").read_text(encoding="utf-8")
-    )["cases"]
-}
+REFERENCES = json.loads((DATA / "finite_roller.json").read_text(encoding="utf-8"))["cases"]
+REFERENCE = next(
+    case for case in REFERENCES if case["case"] == "0.3 C roller exact, raceway half-space"
+)
+BESIDE = [
+    pair for pair in zip(REFERENCE["x_over_b"], REFERENCE["p_axis"], strict=True) if pair[0] > 0.4
+]
+"""Distances from the end, and pressures there: the reference states an error of 0.2 %."""
 
 
 def straight(body: nacre.HalfSpace | nacre.Elastic, roller: nacre.HalfSpace) -> nacre.Solution:
@@ -88,13 +91,6 @@ def straight(body: nacre.HalfSpace | nacre.Elastic, roller: nacre.HalfSpace) -> 
 def on_axis(solution: nacre.Solution, x: float) -> float:
     axis = solution.pressure[:, 31:33].mean(axis=1)
     return float(np.interp(x, solution.x + 10.0, axis))
-
-
-REFERENCE = REFERENCES["0.3 C roller exact, raceway half-space"]
-BESIDE = [
-    pair for pair in zip(REFERENCE["x_over_b"], REFERENCE["p_axis"], strict=True) if pair[0] > 0.4
-]
-"""Distances from the end, and pressures there: the reference states an error of 0.2 %."""
 
 
 def test_two_single_ends_are_those_of_the_reference() -> None:
@@ -142,7 +138,7 @@ def test_a_plan_has_the_ends_of_its_bodies() -> None:
     assert contact.body.ends == (-1e-4, None)
     assert contact.counterbody is not None
     assert contact.counterbody.ends == (None, None)
-    solution = contact.solve(nacre.Sphere(5e-3), load=10.0)
+    solution = contact.solve(BALL, load=10.0)
     assert solution.report.body == contact.body
     # Nothing touches beyond the end.
     assert not solution.pressure[solution.x < -1e-4].any()
@@ -159,7 +155,7 @@ def test_the_report_says_how_ends_are_counted() -> None:
     grid = nacre.Grid((48, 48), (2.4e-4, 2.4e-4))
 
     def told(body: nacre.HalfSpace | nacre.Elastic) -> dict[str, bool | float | None] | None:
-        return nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=10.0).report.free_ends
+        return nacre.solve(BALL, body, grid=grid, load=10.0).report.free_ends
 
     assert told(STEEL) is None
     assert told(nacre.HalfSpace(STEEL, ends=(-1e-4, None))) == {"plates": False, "error": 1e-5}
@@ -173,14 +169,10 @@ def test_the_report_says_how_ends_are_counted() -> None:
 # What is saved.
 
 
-def ended() -> nacre.Solution:
+def test_a_file_gives_the_ends_back(tmp_path: Path) -> None:
     grid = nacre.Grid((32, 32), (4e-4, 4e-4))
     body = nacre.HalfSpace(STEEL, LAYERS, ends=(-1e-4 / 0.8, None))
-    return nacre.solve(nacre.Sphere(5e-3), body, STEEL, grid=grid, load=10.0)
-
-
-def test_a_file_gives_the_ends_back(tmp_path: Path) -> None:
-    solution = ended()
+    solution = nacre.solve(BALL, body, STEEL, grid=grid, load=10.0)
     assert "coated end" in solution.report.warning_kinds
     saved = nacre.load(solution.save(tmp_path / "a.nc"))
     assert saved == solution
@@ -241,19 +233,13 @@ def test_a_study_takes_bodies_with_ends_and_counts_their_warnings(tmp_path: Path
     assert (tmp_path / "a.journal").read_bytes() == journal  # nothing was solved again
 
 
-CASE: dict[str, Any] = {
-    "shape": {
-        "kind": "roller",
-        "radius": 5.0,
-        "flat_length": 0.2,
-        "crown_radius": 1e3,
-        "length": 0.2,
-    },
-    "body": {"substrate": {"young": 210e3, "poisson": 0.3}},
-    "counterbody": {"substrate": {"young": 210e3, "poisson": 0.3}, "ends": [-0.1, 0.1]},
-    "grid": {"shape": [24, 24], "size": [0.24, 0.24]},
-    "solve": {"load": 10.0},
-}
+CASE: dict[str, Any] = tomllib.loads("""
+shape = { kind = "roller", radius = 5.0, flat_length = 0.2, crown_radius = 1e3, length = 0.2 }
+body.substrate = { young = 210e3, poisson = 0.3 }
+counterbody = { substrate = { young = 210e3, poisson = 0.3 }, ends = [-0.1, 0.1] }
+grid = { shape = [24, 24], size = [0.24, 0.24] }
+solve.load = 10.0
+""")
 
 
 def test_a_case_is_the_call_in_python() -> None:
@@ -276,11 +262,10 @@ def test_the_ends_of_a_case_can_be_swept(tmp_path: Path) -> None:
     assert single.approach.values.tolist() == [both, one]
 
 
-def test_the_reference_of_case_files_has_the_ends() -> None:
-    from nacre import _reference
-
-    told = _reference.text()
-    assert "ends: pair of numbers, or of -inf and inf where the body goes on [m]" in told
+def test_the_reference_of_case_files_has_the_ends(capsys: Capture) -> None:
+    assert command("schema") == 0
+    told = "ends: pair of numbers, or of -inf and inf where the body goes on [m]"
+    assert told in capsys.readouterr().out
 
 
 def test_no_warning_without_contact_at_the_ends() -> None:
@@ -288,13 +273,13 @@ def test_no_warning_without_contact_at_the_ends() -> None:
     body = nacre.HalfSpace(STEEL, ends=(-1e-3, 1e-3))
     with warnings.catch_warnings():
         warnings.simplefilter("error", nacre.NacreWarning)
-        nacre.solve(nacre.Sphere(5e-3), body, load=1.0)
+        nacre.solve(BALL, body, load=1.0)
 
 
 def test_stresses_near_ends_of_periodic_grids_are_refused() -> None:
     body = nacre.HalfSpace(STEEL, ends=(-1e-4, None))
     grid = nacre.Grid((32, 32), (4e-4, 4e-4), periodic=(False, True))
-    solution = nacre.solve(nacre.Sphere(5e-3), body, grid=grid, load=1.0)
+    solution = nacre.solve(BALL, body, grid=grid, load=1.0)
     with pytest.raises(ValueError, match="need a grid that has cells along x and is not periodic"):
         solution.stress(1e-5)
 

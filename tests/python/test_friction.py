@@ -4,26 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-import signal
-import subprocess
-import sys
-import time
 from math import pi, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import nacre
+from bodies import BALL, HELD, STEEL
+from support import DATA, interrupted
 
-STEEL = nacre.Elastic(210e9, 0.3)
 SOFT = nacre.Elastic(70e9, 0.2)
-BALL = nacre.Sphere(5e-3)
 GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4))
 CONTACT = nacre.Contact(STEEL, GRID, STEEL)
-HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
-"""Friction bears 3 N."""
 
 
 def unit(poisson: float) -> nacre.Elastic:
@@ -91,9 +84,7 @@ def test_carter() -> None:
     )
 
 
-TABLE = json.loads(
-    (Path(__file__).parents[1] / "data/friction/kalker_table_E3.json").read_text(encoding="utf-8")
-)
+TABLE = json.loads((DATA / "friction/kalker_table_E3.json").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("ratio", [0.7, 1.0])
@@ -278,6 +269,12 @@ def test_large_twists_are_warned_of() -> None:
         CONTACT.slide(BALL, **HELD, twist=-0.2)
 
 
+def test_a_step_keeps_the_tilt_of_the_step_before() -> None:
+    steps: list[dict[str, Any]] = [{"tilt": (1e-3, None), "load": 10.0}, {"load": 9.0}]
+    _, second = CONTACT.slide(BALL, steps, **HELD)
+    assert second.normal.tilt == (1e-3, 0.0)
+
+
 # How a solve ends.
 
 
@@ -360,6 +357,8 @@ def test_progress_that_returns_false_stops(no: object) -> None:
     steps = pulled(1.0, 2.0, 1.0)
     found = CONTACT.slide(BALL, steps, **HELD, progress=lambda n, _: no if n == 1 else None)
     assert [s.report.termination for s in found] == ["converged", "stopped"]
+    rolled = CONTACT.roll(BALL, **HELD, direction="+x", progress=lambda *_: no)
+    assert rolled.report.termination == "stopped"
 
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("mine"), KeyboardInterrupt(), SystemExit(3)])
@@ -402,20 +401,10 @@ def told(number, report):
 try:
     {call}
 except KeyboardInterrupt as error:
-    now = time.monotonic()
-    print(now, len(getattr(error, "solutions", [])))
+    print(time.monotonic(), len(getattr(error, "solutions", [])))
 """
-    with subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True
-    ) as process:
-        try:
-            assert process.stdout is not None
-            assert process.stdout.readline() == "solving\n"
-            start = time.monotonic()
-            process.send_signal(signal.SIGINT)
-            said = process.communicate(timeout=30)[0].splitlines()[-1].split()
-        finally:
-            process.kill()
+    run = interrupted("-c", script)
+    ended, finished = run.lines[-1].split()
     # It is looked for every 50 ms; the rest is for a busy machine.
-    assert float(said[0]) - start < 0.5
-    assert int(said[1]) >= 3 or "max" in solve
+    assert float(ended) - run.sent < 0.5
+    assert int(finished) >= 3 or "max" in solve

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +13,12 @@ import pytest
 import xarray
 
 import nacre
-import nacre.cli
+from bodies import BALL, HELD, STEEL
 from nacre import _reference
 from nacre.case import Case, CaseError
+from support import Capture, command, python, written
 
-STEEL = nacre.Elastic(210e9, 0.3)
-BALL = nacre.Sphere(5e-3)
 GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4))
-HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
 
 HEAD = """
 [materials]
@@ -51,30 +48,12 @@ ROLL = (
     + "force = { across = 0.5 }\n"
 )
 
-BASE: dict[str, Any] = {
-    "shape": {"kind": "sphere", "radius": 5e-3},
-    "body": {"substrate": {"young": 210e9, "poisson": 0.3}},
-    "counterbody": {"substrate": {"young": 210e9, "poisson": 0.3}},
-    "grid": {"shape": [40, 36], "size": [2.4e-4, 2.2e-4]},
-    "solve": {"load": 10.0},
-}
+BASE = tomllib.loads(HEAD)
+CASE = {"shape": BALL, "body": STEEL, "counterbody": STEEL, "grid": GRID, **HELD}
 
 
 def called(function: Any = nacre.slide, **keywords: Any) -> Any:
     return function(BALL, STEEL, STEEL, grid=GRID, **HELD | keywords)
-
-
-def written(folder: Path, text: str) -> Path:
-    path = folder / "case.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
-def nacre_command(*arguments: object) -> int:
-    with pytest.raises(SystemExit) as error:
-        nacre.cli.main([str(argument) for argument in arguments])
-    assert isinstance(error.value.code, int)
-    return error.value.code
 
 
 CALLS: dict[str, Any] = {
@@ -175,12 +154,10 @@ def test_the_reference_has_every_key() -> None:
 
 
 @each
-def test_solve_saves_the_bits_of_the_call(
-    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_solve_saves_the_bits_of_the_call(text: str, tmp_path: Path, capsys: Capture) -> None:
     files = [tmp_path / f"a.{ending}" for ending in ("nc", "vtr", "csv", "png")]
     saved = [option for file in files for option in ("--save", file)]
-    assert nacre_command("solve", written(tmp_path, text), *saved) == 0
+    assert command("solve", written(tmp_path, text), *saved) == 0
     expected = CALLS[text]()
     found = nacre.load(files[0])
     for name in ("traction", "slip", "displacement", "pressure"):
@@ -196,10 +173,8 @@ def test_solve_saves_the_bits_of_the_call(
 
 
 @each
-def test_json_holds_the_numbers_exactly(
-    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert nacre_command("solve", written(tmp_path, text + "[stress]\n"), "--json") == 0
+def test_json_holds_the_numbers_exactly(text: str, tmp_path: Path, capsys: Capture) -> None:
+    assert command("solve", written(tmp_path, text + "[stress]\n"), "--json") == 0
     found, expected = json.loads(capsys.readouterr().out), CALLS[text]()
     assert tuple(found["force"]) == expected.force
     for name in ("torque", "dissipated", "tangential_energy"):
@@ -226,19 +201,16 @@ def test_what_fails_is_one_line_and_its_exit_code(line: str, tmp_path: Path) -> 
     code, message = FAILS[line]
     first = "" if line.startswith("friction") else "friction = 0.3\n"
     path, out = written(tmp_path, f"{HEAD}[slide]\n{first}{line}\n"), tmp_path / "out.nc"
-    command = [sys.executable, "-m", "nacre.cli", "solve", str(path), "--save", str(out)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = python("-m", "nacre.cli", "solve", path, "--save", out)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (code, "", 1)
     assert message in done.stderr
     assert not out.exists()
 
 
-def test_what_does_not_converge_is_exit_code_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_does_not_converge_is_exit_code_1(tmp_path: Path, capsys: Capture) -> None:
     text = SLIDE.replace("load = 10.0", "load = 10.0\ntolerance = 1e-16")
     out = tmp_path / "out.nc"
-    assert nacre_command("solve", written(tmp_path, text), "--save", out) == 1
+    assert command("solve", written(tmp_path, text), "--save", out) == 1
     err = capsys.readouterr().err
     assert err.count("\n") == 1
     assert "not converged" in err
@@ -251,8 +223,7 @@ OUTPUTS = ["force", "torque", "shift", "twist", "dissipated", "tangential_energy
 
 
 def test_a_study_has_the_outputs_of_friction(tmp_path: Path) -> None:
-    case = {"shape": BALL, "body": STEEL, "counterbody": STEEL, "grid": GRID, **HELD}
-    case |= {"steps": [{"force": (1.0, None)}, {"force": (0.5, 0.2), "torque": 1e-6}]}
+    case = CASE | {"steps": [{"force": (1.0, None)}, {"force": (0.5, 0.2), "torque": 1e-6}]}
     parameters, store = {"friction": [0.2, 0.3]}, tmp_path / "a.nc"
     study = nacre.sweep(case, parameters, outputs=OUTPUTS, store=store, progress=False)
     for friction in (0.2, 0.3):
@@ -271,8 +242,7 @@ def test_a_study_has_the_outputs_of_friction(tmp_path: Path) -> None:
 
 
 def test_a_study_of_rolling() -> None:
-    case = {"shape": BALL, "body": STEEL, "counterbody": STEEL, "grid": GRID, **HELD}
-    case |= {"direction": "-x", "creepage": (1e-3, None)}
+    case = CASE | {"direction": "-x", "creepage": (1e-3, None)}
     outputs = ["force", "creepage", "dissipated", "von_mises"]
     study = nacre.sweep(case, {"spin": [0.0, 10.0]}, outputs=outputs, progress=False)
     expected = called(nacre.roll, direction="-x", creepage=(1e-3, None), spin=10.0)
@@ -284,7 +254,7 @@ def test_a_study_of_rolling() -> None:
 
 
 def test_outputs_that_the_case_has_not_are_the_cases_error() -> None:
-    case = {"shape": BALL, "body": STEEL, "grid": GRID, **HELD}
+    case = {name: value for name, value in CASE.items() if name != "counterbody"}
     for output, keywords, said in [
         ("creepage", {}, "the output creepage is not one of sliding"),
         ("shift", {"direction": "+x"}, "the output shift is not one of rolling"),
@@ -302,9 +272,8 @@ def test_outputs_that_the_case_has_not_are_the_cases_error() -> None:
 
 def test_a_study_may_go_on_from_a_solution(tmp_path: Path) -> None:
     before = called(force=(2.0, None))
-    case = {"shape": BALL, "body": STEEL, "counterbody": STEEL, "grid": GRID, "initial": before}
+    case = CASE | {"initial": before, "force": (1.0, None)}
     keywords: dict[str, Any] = {"outputs": ["force", "dissipated"], "progress": False}
-    case |= {"load": 10.0, "friction": 0.3, "force": (1.0, None)}
     store = tmp_path / "a.nc"
     study = nacre.sweep(case, {"friction": [0.3, 0.4]}, store=store, **keywords)
     expected = called(initial=before, force=(1.0, None))
@@ -341,13 +310,11 @@ SWEPT: dict[str, tuple[str, str, list[float], Any]] = {
 
 
 @pytest.mark.parametrize("name", SWEPT)
-def test_nacre_sweep_changes_keys_of_friction(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_nacre_sweep_changes_keys_of_friction(name: str, tmp_path: Path, capsys: Capture) -> None:
     text, key, numbers, call = SWEPT[name]
     sweep = f'[sweep]\nparameters."{key}" = {numbers}\noutputs = ["force", "dissipated"]\n'
     path, store = written(tmp_path, text + sweep), tmp_path / "study.nc"
-    assert nacre_command("sweep", path, "--store", store) == 0
+    assert command("sweep", path, "--store", store) == 0
     assert "2 cases, 0 failed" in capsys.readouterr().out
     study = xarray.load_dataset(store, engine="h5netcdf")
     for number in numbers:
@@ -369,11 +336,9 @@ def test_a_roller_rolls_in_a_study_without_a_direction(tmp_path: Path) -> None:
     assert study.force.values[0] == pytest.approx([0.0, 1.0], abs=1e-6)
 
 
-def test_failed_cases_of_a_study_are_exit_code_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_failed_cases_of_a_study_are_exit_code_1(tmp_path: Path, capsys: Capture) -> None:
     sweep = '[sweep]\nparameters."slide.force.x" = [1.0, 4.0]\noutputs = ["dissipated"]\n'
-    assert nacre_command("sweep", written(tmp_path, SLIDE + sweep)) == 1
+    assert command("sweep", written(tmp_path, SLIDE + sweep)) == 1
     out = capsys.readouterr().out
     assert "2 cases, 1 failed" in out
     assert "failed at slide.force.x = 4.0: ValueError: force must be below what friction" in out

@@ -7,15 +7,16 @@ import pickle
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
 import nacre
-import nacre.cli
+from bodies import BALL, STEEL
+from nacre import plot
 from nacre.case import Case, CaseError
+from support import Capture, command, written
 
-STEEL = nacre.Elastic(210e9, 0.3)
-BALL = nacre.Sphere(5e-3)
 GRID = nacre.Grid((48, 48), (5e-4, 5e-4))
 CONTACT = nacre.Contact(STEEL, GRID)
 LIMIT = 2e9
@@ -145,8 +146,6 @@ def test_files_and_pickles_keep_everything(hardness: Any, tmp_path: Path) -> Non
 
 
 def test_a_file_without_its_dent_is_refused(tmp_path: Path) -> None:
-    import h5py
-
     path = LOADED.save(tmp_path / "dent.nc")
     with h5py.File(path, "r+") as file:
         del file["indentation"]
@@ -161,80 +160,43 @@ def test_tables_and_pictures_show_the_dent() -> None:
     assert "hardness" not in str(CONTACT.solve(BALL, load=10.0))
     spread = np.linspace(2e9, 3e9, GRID.shape[0] * GRID.shape[1]).reshape(GRID.shape)
     assert "2 GPa to 3 GPa" in str(CONTACT.solve(BALL, load=100.0, hardness=spread))
-    from nacre import plot
-
     axes = plot.section(LOADED, "x", quantity="indentation")
     assert axes.get_ylabel() == "indentation [nm]"
     highest = max(np.max(line.get_ydata()) for line in axes.get_lines())
     assert highest == pytest.approx(1e9 * LOADED.indentation.max(), rel=1e-9)
 
 
-CASE: dict[str, Any] = {
-    "materials": {"steel": {"young": 210e9, "poisson": 0.3}},
-    "shape": {"kind": "sphere", "radius": 5e-3},
-    "body": {"substrate": "steel"},
-    "grid": {"shape": [48, 48], "size": [5e-4, 5e-4]},
-    "solve": {"load": 100.0, "hardness": LIMIT},
-}
-
-
 def test_case_files_have_a_hardness() -> None:
-    arguments = Case(CASE).arguments()
-    assert (nacre.solve(**arguments).pressure == LOADED.pressure).all()
+    case: dict[str, Any] = {
+        "shape": {"kind": "sphere", "radius": 5e-3},
+        "body": {"substrate": {"young": 210e9, "poisson": 0.3}},
+        "grid": {"shape": [48, 48], "size": [5e-4, 5e-4]},
+        "solve": {"load": 100.0, "hardness": LIMIT},
+    }
+    assert (nacre.solve(**Case(case).arguments()).pressure == LOADED.pressure).all()
     with pytest.raises(CaseError, match=r"solve\.hardness"):
-        Case({**CASE, "solve": {"load": 1.0, "hardness": "hard"}})
-    study = Case(
-        {
-            **CASE,
-            "sweep": {
-                "parameters": {"solve.hardness": [2e9, 3e9]},
-                "outputs": ["peak_pressure", "plastic_work"],
-            },
-        }
-    )
+        Case(case | {"solve": {"load": 1.0, "hardness": "hard"}})
+    outputs = ["peak_pressure", "plastic_work"]
+    sweep = {"parameters": {"solve.hardness": [2e9, 3e9]}, "outputs": outputs}
+    study = Case(case | {"sweep": sweep})
     found = nacre.sweep(study, **study.study())
     assert found["peak_pressure"].values == pytest.approx([2e9, 3e9], rel=1e-12)
     assert found["plastic_work"].values[0] > found["plastic_work"].values[1] > 0
 
 
-def test_the_command_line_goes_on_from_a_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def write(name: str, load: float) -> Path:
-        path = tmp_path / name
-        path.write_text(
-            f"""
-            [materials]
-            steel = {{ young = 210e9, poisson = 0.3 }}
-            [shape]
-            kind = "sphere"
-            radius = 5e-3
-            [body]
-            substrate = "steel"
-            [grid]
-            shape = [48, 48]
-            size = [5e-4, 5e-4]
-            [solve]
-            load = {load}
-            hardness = 2e9
-            """,
-            encoding="utf-8",
-        )
-        return path
-
-    def run(*arguments: str) -> tuple[int, str]:
-        with pytest.raises(SystemExit) as error:
-            nacre.cli.main(arguments)
-        assert isinstance(error.value.code, int)
-        return error.value.code, capsys.readouterr().out
-
-    saved = str(tmp_path / "loaded.nc")
-    code, out = run("solve", str(write("loaded.toml", 100)), "--save", saved)
-    assert code == 0
-    assert "permanent" in out
-    less = str(write("less.toml", 20))
-    code, out = run("solve", less, "--initial", saved, "--json")
-    assert code == 0
+def test_the_command_line_goes_on_from_a_file(tmp_path: Path, capsys: Capture) -> None:
+    text = """
+        shape = { kind = "sphere", radius = 5e-3 }
+        body.substrate = { young = 210e9, poisson = 0.3 }
+        grid = { shape = [48, 48], size = [5e-4, 5e-4] }
+        solve = { load = LOAD, hardness = 2e9 }
+    """
+    saved = tmp_path / "loaded.nc"
+    assert command("solve", written(tmp_path, text.replace("LOAD", "100")), "--save", saved) == 0
+    assert "permanent" in capsys.readouterr().out
+    less = written(tmp_path, text.replace("LOAD", "20"))
+    assert command("solve", less, "--initial", saved, "--json") == 0
     direct = CONTACT.solve(BALL, load=20.0, hardness=LIMIT, initial=LOADED)
-    assert json.loads(out)["peak_pressure"] == pytest.approx(direct.peak_pressure)
-    assert run("solve", less, "--initial", "nothing.nc")[0] == 2
+    found = json.loads(capsys.readouterr().out)["peak_pressure"]
+    assert found == pytest.approx(direct.peak_pressure)
+    assert command("solve", less, "--initial", "nothing.nc") == 2

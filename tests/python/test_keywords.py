@@ -8,24 +8,23 @@ import numpy as np
 import pytest
 
 import nacre
+from bodies import BALL, STEEL
 from nacre import _indent_tables, _keywords, _schema, _shape_tables, studies, values
 
-STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((16, 16), (2e-4, 2e-4))
-SPHERE = nacre.Sphere(5e-3)
-SOLUTION = nacre.solve(SPHERE, STEEL, grid=GRID, load=10.0)
+SOLUTION = nacre.solve(BALL, STEEL, grid=GRID, load=10.0)
 SOLVE = (_keywords.Motion, _keywords.Plan, _keywords.Search)
 PLAN = SOLUTION.stress_plan()
 
 # What is no number and no word: types of it are in the stub.
 OBJECTS = {"grid", "initial", "progress", "check"}
 FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[type, ...], Callable[..., Any]]] = {
-    "solve": (nacre.solve, SOLVE, lambda **k: nacre.solve(SPHERE, STEEL, **k)),
+    "solve": (nacre.solve, SOLVE, lambda **k: nacre.solve(BALL, STEEL, **k)),
     "Contact": (nacre.Contact, (_keywords.Plan,), lambda **k: nacre.Contact(STEEL, GRID, **k)),
     "Contact.solve": (
         nacre.Contact.solve,
         (_keywords.Motion, _keywords.Search),
-        lambda **k: nacre.Contact(STEEL, GRID).solve(SPHERE, **k),
+        lambda **k: nacre.Contact(STEEL, GRID).solve(BALL, **k),
     ),
     "Contact.solve_many": (
         nacre.Contact.solve_many,
@@ -89,10 +88,10 @@ def test_a_case_names_all_that_says_how_it_is_pressed() -> None:
 
 
 def test_the_defaults_are_those_of_the_signature() -> None:
-    expected = nacre.solve(SPHERE, STEEL, load=10.0)
+    expected = nacre.solve(BALL, STEEL, load=10.0)
     parameters = inspect.signature(nacre.solve).parameters.values()
     spelt = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
-    again = nacre.solve(SPHERE, STEEL, **(spelt | {"load": 10.0}))
+    again = nacre.solve(BALL, STEEL, **(spelt | {"load": 10.0}))
     assert again.pressure.tobytes() == expected.pressure.tobytes()
 
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import nbformat
-import pytest
 from nbclient import NotebookClient
+
+from support import Patch
 
 FIRST = """\
 import nacre
@@ -28,16 +29,18 @@ def images(outputs: list[dict[str, Any]]) -> int:
     return sum("image/png" in output.get("data", {}) for output in outputs)
 
 
-def test_every_cell_of_a_notebook_shows_its_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delenv("MPLBACKEND", raising=False)
+def executed(folder: Path, *sources: str) -> Any:
     v4 = nbformat.v4
-    notebook = v4.new_notebook(cells=[v4.new_code_cell(cell) for cell in CELLS])  # type: ignore[no-untyped-call]
-    client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
-    done = client.execute()
-    shown = [images(cell["outputs"]) for cell in done.cells]
-    assert shown == [1] * len(CELLS), json.dumps(done.cells[-1]["outputs"])[:500]
+    notebook = v4.new_notebook(cells=[v4.new_code_cell(source) for source in sources])  # type: ignore[no-untyped-call]
+    resources = {"metadata": {"path": str(folder)}}
+    return NotebookClient(notebook, timeout=120, resources=resources).execute().cells
+
+
+def test_every_cell_of_a_notebook_shows_its_picture(tmp_path: Path, monkeypatch: Patch) -> None:
+    monkeypatch.delenv("MPLBACKEND", raising=False)
+    cells = executed(tmp_path, *CELLS)
+    shown = [images(cell["outputs"]) for cell in cells]
+    assert shown == [1] * len(CELLS), json.dumps(cells[-1]["outputs"])[:500]
 
 
 def test_a_study_shows_nothing_in_a_notebook_without_widgets(tmp_path: Path) -> None:
@@ -48,9 +51,6 @@ loads = lambda load: {{"shape": nacre.Sphere(5e-3), "body": steel, "load": load}
 study = nacre.sweep(loads, {{"load": [10.0, 20.0]}})
 nacre.display_units("N-m-Pa")
 """
-    v4 = nbformat.v4
-    notebook = v4.new_notebook(cells=[v4.new_code_cell(study)])  # type: ignore[no-untyped-call]
-    client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
-    (cell,) = client.execute().cells
+    (cell,) = executed(tmp_path, study)
     assert [output["output_type"] for output in cell["outputs"]] == ["execute_result"], cell
     assert cell["outputs"][0]["data"] == {"text/plain": "numbers are in N, m, Pa"}

@@ -7,11 +7,15 @@ import pytest
 from scipy.optimize import minimize
 
 import nacre
+from bodies import STEEL
 from nacre.design import Optimum, optimise
 
-STEEL = nacre.Elastic(young=210e9, poisson=0.3)
 BALL = {"shape": nacre.Sphere(5e-3), "body": STEEL}
-CELLS = nacre.Grid((24, 24), (3e-4, 3e-4))
+RADIUS: dict[str, Any] = {
+    **{"build": BALL, "start": {"shape.radius": 5e-3}, "objective": "approach"},
+    **{"cases": [{"load": 10.0}], "grid": nacre.Grid((24, 24), (3e-4, 3e-4))},
+}
+"""What is asked of the radius of a ball."""
 LENGTH, LOAD, ORDER = 12e-3, 5e3, 16.0
 TILTS = (0.0, 0.5e-3, 1e-3)
 ROLLER_CELLS = nacre.Grid((32, 12), (LENGTH, 1e-3))
@@ -98,15 +102,12 @@ def test_the_report_and_the_picture_show_the_course(best: Optimum) -> None:
 
 def test_a_limit_is_reached_and_kept() -> None:
     rows: list[dict[str, float]] = []
+    asked = RADIUS | {"objective": "participation_area", "cases": [{"load": 10.0}, {"load": 20.0}]}
     best = optimise(
-        BALL,
-        {"shape.radius": 5e-3},
-        objective="participation_area",
-        cases=[{"load": 10.0}, {"load": 20.0}],
+        **asked,
         bounds={"shape.radius": (1e-3, 2e-2)},
         constraints=[("located_peak", 1.5e9)],
         across=1.0,
-        grid=CELLS,
         progress=rows.append,
     )
     ((output, limit, reached),) = best.limits
@@ -119,30 +120,6 @@ def test_a_limit_is_reached_and_kept() -> None:
     assert best.values["shape.radius"] == pytest.approx(radius, rel=0.03)  # 5 cells along a radius
     assert rows[-1]["objective"] == pytest.approx(best.objective, rel=1e-3)
     assert "limit 1.5e+09 on located_peak" in str(best)
-
-
-def test_slopes_are_those_of_differences() -> None:
-    from nacre._parameters import scales_of
-    from nacre._problem import Problem
-
-    coated = nacre.HalfSpace(STEEL, [nacre.Layer(nacre.Elastic(400e9, 0.2), 2e-5)])
-    start = {"body.layers[0].thickness": 2e-5, "body.substrate.young": 2e11, "shape.radius": 5e-3}
-    build = {"shape": nacre.Sphere(5e-3), "body": coated, "load": 10.0}
-    stress = {"stress": "plane_shear", "interface": 0, "sharpness": 200.0}
-    scales = scales_of(start, {})
-    problem = Problem(build, scales, "approach", [{"load": 8.0}, {}], [(stress, 1e9)], 4.0)
-    x = np.array([scale.x(start[scale.name]) for scale in scales])
-    problem.begin(x, CELLS)
-    point = problem.at(x)
-    for i, step in enumerate(1e-4 * np.eye(3)):
-        more, less = problem.at(x + step), problem.at(x - step)
-        # The contact of 24 cells keeps its cells, and differences are as good as their step.
-        slope = (more.value - less.value) / 2e-4
-        assert point.slope[i] == pytest.approx(slope, rel=1e-4)
-        # The largest slack is 1: differences of it leave 1e-16 over their step.
-        assert point.d_slack[:, i] == pytest.approx(
-            (more.slack - less.slack) / 2e-4, rel=1e-4, abs=1e-8
-        )
 
 
 def profile_of(
@@ -217,32 +194,16 @@ def test_the_best_profile_of_a_coated_roller_is_another() -> None:
 def test_an_optimum_on_its_bounds_is_a_start() -> None:
     # Fifteen digits of this bound are above it.
     most = 5.747261833873998e-3
-    asked: dict[str, Any] = {
-        "build": BALL,
-        "objective": "located_peak",
-        "cases": [{"load": 10.0}],
-        "bounds": {"shape.radius": (1e-3, most)},
-        "grid": CELLS,
-    }
-    best = optimise(start={"shape.radius": 5e-3}, **asked)
+    asked = RADIUS | {"objective": "located_peak", "bounds": {"shape.radius": (1e-3, most)}}
+    best = optimise(**asked)
     assert best.values == {"shape.radius": most}
-    assert optimise(start=best.values, **asked).values == best.values
+    assert optimise(**asked | {"start": best.values}).values == best.values
 
 
 def test_solves_end_at_their_number() -> None:
-    best = optimise(
-        BALL,
-        {"shape.radius": 5e-3},
-        objective="approach",
-        cases=[{"load": 10.0}],
-        grid=CELLS,
-        max_solves=2,
-    )
-    assert (best.termination, best.solves, best.values) == (
-        "solve limit",
-        2,
-        {"shape.radius": 5e-3},
-    )
+    best = optimise(**RADIUS, max_solves=2)
+    assert (best.termination, best.solves) == ("solve limit", 2)
+    assert best.values == {"shape.radius": 5e-3}
 
 
 @pytest.mark.parametrize(
@@ -263,26 +224,12 @@ def test_solves_end_at_their_number() -> None:
         ({"grid": 32}, "grid must be a Grid"),
         ({"tolerance": 0.0}, "tolerance must be above 0"),
         ({"objective": "contact_area"}, "participation area"),
+        (
+            {"build": {"shape": nacre.FlatPunch(1e-4), "body": STEEL}},
+            "must not move the edge of the shape",
+        ),
     ],
 )
 def test_bad_input_is_refused(change: dict[str, Any], message: str) -> None:
-    asked: dict[str, Any] = {
-        "build": BALL,
-        "start": {"shape.radius": 5e-3},
-        "objective": "approach",
-        "cases": [{"load": 10.0}],
-        "grid": CELLS,
-    }
     with pytest.raises((ValueError, TypeError), match=message):
-        optimise(**(asked | change))
-
-
-def test_the_edge_of_a_shape_is_no_parameter() -> None:
-    with pytest.raises(ValueError, match="must not move the edge of the shape"):
-        optimise(
-            {"shape": nacre.FlatPunch(1e-4), "body": STEEL},
-            {"shape.radius": 1e-4},
-            objective="approach",
-            cases=[{"load": 10.0}],
-            grid=CELLS,
-        )
+        optimise(**RADIUS | change)

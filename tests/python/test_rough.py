@@ -10,7 +10,6 @@ import pytest
 
 import nacre
 from nacre import plot, rough
-from nacre._patches import crosses, patch_labels
 from nacre.case import Case, CaseError
 
 pytestmark = pytest.mark.filterwarnings("ignore::nacre.NacreWarning")  # spots of few cells
@@ -104,9 +103,13 @@ def test_the_corrected_area_of_a_disc() -> None:
     assert excess == pytest.approx(rough.PERIMETER * 8 * 2.6 / 78, rel=0.03)
 
 
-def cells(*rows: str) -> np.ndarray:
-    """Return cells from rows of "#" and "."."""
-    return np.array([[letter == "#" for letter in row] for row in rows])
+def touching(*rows: str, periodic: tuple[bool, bool]) -> nacre.Solution:
+    """Return a solution that touches in the cells of rows of "#" and ".", which are of size 1."""
+    pattern = np.array([[letter == "#" for letter in row] for row in rows], dtype=float)
+    grid = nacre.Grid(pattern.shape, pattern.shape, periodic=periodic)
+    flat = nacre.HeightMap(np.zeros(grid.shape), 1.0, periodic=periodic)
+    state = nacre.solve(flat, BODY, grid=grid, load=1e-3, max_iterations=0, check=False).to_dict()
+    return nacre.Solution.from_dict(state | {"pressure": pattern, "gap": 1.0 - pattern})
 
 
 @pytest.mark.parametrize(
@@ -119,21 +122,10 @@ def cells(*rows: str) -> np.ndarray:
     ],
 )
 def test_patches_are_joined_across_the_seam(periodic: tuple[bool, bool], sizes: list[int]) -> None:
-    pattern = cells(
-        "#..#.#",
-        "#....#",
-        ".##...",
-        "......",
-        "...#..",
-        "##.#..",
-    )
-    grid = nacre.Grid((6, 6), (6.0, 6.0), periodic=periodic)
-    labels = patch_labels(pattern, grid)
-    assert sorted(np.bincount(labels.ravel())[1:].tolist()) == sizes
-    assert ((labels > 0) == pattern).all()
-    assert set(np.unique(labels)) == set(range(len(sizes) + 1))
+    pattern = ("#..#.#", "#....#", ".##...", "......", "...#..", "##.#..")
+    assert sorted(rough.patches(touching(*pattern, periodic=periodic))) == sizes
     # A map without a cell beside is one patch.
-    assert (patch_labels(np.ones((6, 6), dtype=bool), grid) == 1).all()
+    assert rough.patches(touching(*6 * ["######"], periodic=periodic)).tolist() == [36]
 
 
 @pytest.mark.parametrize(
@@ -157,11 +149,9 @@ def test_patches_are_joined_across_the_seam(periodic: tuple[bool, bool], sizes: 
 def test_open_gaps_lead_from_side_to_side(
     rows: list[str], periodic: tuple[bool, bool], along: tuple[bool, bool]
 ) -> None:
-    gap = ~cells(*rows)
-    grid = nacre.Grid(gap.shape, gap.shape, periodic=periodic)
-    assert tuple(crosses(gap, grid, axis) for axis in (0, 1)) == along
-    turned = nacre.Grid(gap.T.shape, gap.T.shape, periodic=periodic[::-1])
-    assert tuple(crosses(gap.T, turned, axis) for axis in (1, 0)) == along
+    assert rough.percolates(touching(*rows, periodic=periodic)) == along
+    turned = ["".join(column) for column in zip(*rows, strict=True)]
+    assert rough.percolates(touching(*turned, periodic=periodic[::-1])) == along[::-1]
 
 
 def test_percolation_ends_as_the_load_grows() -> None:

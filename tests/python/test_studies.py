@@ -46,13 +46,7 @@ def mean_pressure(solution: nacre.Solution) -> float:
     return solution.load / solution.contact_area
 
 
-OUTPUTS: list[Output] = [
-    "peak_pressure",
-    "tilt",
-    "contact_extent",
-    mean_pressure,
-    "pressure",
-]
+OUTPUTS: list[Output] = ["peak_pressure", "tilt", "contact_extent", mean_pressure, "pressure"]
 
 # Other processes import functions by name: from here, in a file of its own.
 MODULE = """
@@ -512,9 +506,7 @@ def test_what_a_function_hides_is_known_to_be_unknown(reason: str) -> None:
     assert unknown.endswith(f"({reason})")
 
 
-def test_modules_of_the_user_count_and_the_key_is_the_same_in_every_process(
-    tmp_path: Path,
-) -> None:
+def test_modules_of_the_user_count_and_the_key_is_the_same_in_every_process(tmp_path: Path) -> None:
     (tmp_path / "script.py").write_text(
         "import helpers\nfrom nacre._identity import identified\n"
         "def f(s):\n"

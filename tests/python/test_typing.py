@@ -49,10 +49,11 @@ WRONG = {
 }
 
 
-def checked(program: str, folder: Path) -> tuple[str, int]:
+def checked(program: str, folder: Path, config: pytest.Config) -> tuple[str, int]:
     path = folder / "program.py"
     path.write_text(program)
-    cache = folder.parent / "mypy"  # shared by the tests
+    assert config.cache is not None
+    cache = config.cache.mkdir("mypy")  # of this and of later runs
     limit = sys.getrecursionlimit()
     out, err, code = api.run(["--strict", "--config-file=", f"--cache-dir={cache}", str(path)])
     sys.setrecursionlimit(limit)  # mypy raises it, and other tests go down to it
@@ -60,14 +61,21 @@ def checked(program: str, folder: Path) -> tuple[str, int]:
     return out, code
 
 
-def test_a_program_that_is_right_passes_mypy_strict(tmp_path: Path) -> None:
-    assert checked(PROGRAM, tmp_path) == ("Success: no issues found in 1 source file\n", 0)
+def test_a_program_that_is_right_passes_mypy_strict(
+    tmp_path: Path, pytestconfig: pytest.Config
+) -> None:
+    assert checked(PROGRAM, tmp_path, pytestconfig) == (
+        "Success: no issues found in 1 source file\n",
+        0,
+    )
 
 
 @pytest.mark.parametrize("right", WRONG)
-def test_a_program_that_is_wrong_does_not(right: str, tmp_path: Path) -> None:
+def test_a_program_that_is_wrong_does_not(
+    right: str, tmp_path: Path, pytestconfig: pytest.Config
+) -> None:
     assert right in PROGRAM
-    out, code = checked(PROGRAM.replace(right, WRONG[right]), tmp_path)
+    out, code = checked(PROGRAM.replace(right, WRONG[right]), tmp_path, pytestconfig)
     assert code == 1
     assert "program.py:" in out
     assert ": error: " in out
