@@ -22,7 +22,7 @@ DEV := $(VENV)/.dev
 DOCS := $(VENV)/.docs
 WHEEL := $(VENV)/.wheel
 
-.PHONY: help demo test check bench fuzz peers kappa torch develop stubs docs publishable
+.PHONY: help demo test quick check bench fuzz peers kappa torch develop stubs docs publishable
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
@@ -38,6 +38,11 @@ test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre,
 	cargo test --doc
 	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
 	$(BIN)/pytest
+
+# Unit tests of Rust, and Python without what takes seconds each: two minutes once built.
+quick: $(WHEEL) $(DEV) ## the tests of a daily edit: Rust unit tests, and those of Python that are fast
+	cargo test --lib --features serde
+	$(BIN)/pytest -q -m "not slow"
 
 check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
 	cargo fmt --check

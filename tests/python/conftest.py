@@ -9,7 +9,19 @@ from pathlib import Path
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "agg")  # pictures are drawn without a screen
+SLOW = """
+docs examples functions fuzz fuzz_contacts fuzz_ends fuzz_files fuzz_fits fuzz_indent
+indent_extremes indent_fit indent_residuals notebook optimise paper peers rough stress_ends
+studies typing
+""".split()
+"""Files that `make quick` leaves out: random cases, programs of the documentation, long fits."""
 CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.path.stem.removeprefix("test_") in SLOW:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(autouse=True)

@@ -283,6 +283,25 @@ def test_kept_solutions_change_no_result(tools: Any) -> None:
             assert (gradient(point) == expected).all()
 
 
+def test_a_derivative_does_not_solve_again(tools: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    solves: list[float] = []
+    contact = nacre.Contact
+
+    class Counted:
+        def __init__(self, **planned: Any) -> None:
+            self.plan = contact(**planned)
+
+        def solve(self, *arguments: Any, **motion: Any) -> nacre.Solution:
+            solves.append(motion["load"])
+            return self.plan.solve(*arguments, **motion)
+
+    monkeypatch.setattr("nacre._core.Contact", Counted)
+    value, here = objective(tools, solver(tools)), zero(tools)
+    for call in (value, tools.at.grad(value), tools.at.jacfwd(value), value):
+        call(here)
+        assert solves == [10.0]
+
+
 def test_threads_share_a_function(tools: Any) -> None:
     gradient = tools.at.grad(objective(tools, solver(tools, keep=1)))
     points = [zero(tools) + 0.01 * k for k in range(4)]

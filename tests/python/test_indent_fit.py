@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 
 import nacre
+from bodies import STEEL
+from bodies import coated as coated_body
 from nacre.indent import Curve, Fit, Tip, fit
 from nacre.indent.classical import classical
+from support import DATA
 
-DATA = json.loads((Path(__file__).parents[1] / "data" / "inverse.json").read_text())
+CURVES = json.loads((DATA / "inverse.json").read_text())["curves"]
 PATHS = {
     "lnE1": "body.layers[0].material.young",
     "lnE2": "body.substrate.young",
@@ -52,7 +55,7 @@ def scaled(case: dict[str, Any], found: Fit, name: str) -> tuple[float, float]:
     return found.estimates[kind] / deepest, found.standard_errors[kind] / deepest
 
 
-KNOWN = [case for case in DATA["curves"] if "maximum_likelihood" in case]
+KNOWN = [case for case in CURVES if "maximum_likelihood" in case]
 
 
 @pytest.mark.parametrize("case", KNOWN, ids=lambda case: str(case["seed"]))
@@ -72,77 +75,56 @@ def test_standard_errors_are_cramers_and_raos(case: dict[str, Any]) -> None:
         assert error == pytest.approx(due, rel=1e-4), name
 
 
-def test_a_thickness_of_the_substrates_material_is_not_identifiable() -> None:
-    steel = nacre.Elastic(210e9, 0.3)
-    body = nacre.HalfSpace(steel, [nacre.Layer(steel, 1e-6)])
-    tip = Tip.paraboloid(1e-5)
-    depth = np.linspace(5e-9, 1e-7, 40)
-    noise = np.exp(0.01 * np.random.default_rng(3).standard_normal(40))
-    force = nacre.indent.Indentation(body, tip).curve(approach=depth).load * noise
-    found = fit((depth, force), body, tip, [PATHS["lnh"]])
-    assert not found.is_identifiable
-    assert PATHS["lnh"] in str(found.reasons) or found.reasons
-
-
-def test_a_substrate_far_below_is_not_identifiable() -> None:
-    layer = nacre.Layer(nacre.Elastic(3e9, 0.3), 1e-3)
-    body = nacre.HalfSpace(nacre.Elastic(210e9, 0.3), [layer])
-    tip = Tip.paraboloid(1e-5)
+TIP = Tip.paraboloid(1e-5)
+STEEL_ON_STEEL = nacre.HalfSpace(STEEL, [nacre.Layer(STEEL, 1e-6)])
+UNKNOWN: dict[str, tuple[Any, float, list[str], list[str]]] = {
+    "a thickness of the substrate's material": (STEEL_ON_STEEL, 1e-7, ["lnh"], []),
     # a = √(Rδ) up to 1e-6, 1e-3 of the layer.
-    depth = np.linspace(5e-9, 1e-7, 40)
-    noise = np.exp(0.01 * np.random.default_rng(4).standard_normal(40))
-    force = nacre.indent.Indentation(body, tip).curve(approach=depth).load * noise
-    found = fit((depth, force), body, tip, [PATHS["lnE1"], PATHS["lnE2"]])
-    assert not found.identifiable[PATHS["lnE2"]]
+    "a substrate far below": (coated_body(3e9, 1e-3), 1e-7, ["lnE1", "lnE2"], ["lnE2"]),
+    # Up to ten thicknesses, modulus trades for thickness.
+    "a thin layer on a rigid base": (
+        *(coated_body(3e9, 2.5e-8, nacre.RIGID), 3e-9),
+        *(["lnE1", "lnh"], []),
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", UNKNOWN)
+def test_what_data_cannot_tell_is_not_identifiable(kind: str) -> None:
+    body, deepest, free, unknown = UNKNOWN[kind]
+    depth = np.linspace(deepest / 20, deepest, 20)
+    noise = np.exp(0.01 * np.random.default_rng(3).standard_normal(20))
+    force = nacre.indent.Indentation(body, TIP).curve(approach=depth).load * noise
+    found = fit((depth, force), body, TIP, [PATHS[name] for name in free])
+    assert not found.is_identifiable
+    assert found.reasons
+    assert not any(found.identifiable[PATHS[name]] for name in unknown)
 
 
 def test_contact_point_and_drift_together_are_not_identifiable() -> None:
-    [case] = [case for case in DATA["curves"] if case["seed"] == 16]
+    [case] = [case for case in CURVES if case["seed"] == 16]
     found = fitted(case)
     # χ² falls along a narrow ridge, to thinner and softer coats.
     assert not any(found.identifiable.values())
-
-
-def test_a_thin_layer_on_a_rigid_base_trades_modulus_for_thickness() -> None:
-    layer = nacre.Layer(nacre.Elastic(3e9, 0.3), 2.5e-8)  # a/h up to 10
-    body = nacre.HalfSpace(nacre.RIGID, [layer])
-    tip = Tip.paraboloid(1e-5)
-    depth = np.linspace(1e-10, 3e-9, 20)
-    noise = np.exp(0.01 * np.random.default_rng(5).standard_normal(20))
-    force = nacre.indent.Indentation(body, tip).curve(approach=depth).load * noise
-    found = fit((depth, force), body, tip, [PATHS["lnE1"], PATHS["lnh"]])
-    assert not found.is_identifiable
 
 
 def test_identifiable_fits_are_not_flagged() -> None:
     assert all(fitted(case).is_identifiable for case in KNOWN[:2])
 
 
-@pytest.mark.parametrize(
-    ("depth", "force", "message"),
-    [
-        ([1e-9, 2e-9, math.nan, 4e-9], [1e-6, 2e-6, 3e-6, 4e-6], "depth"),
-        ([1e-9, 2e-9, 3e-9, 4e-9], [-1e-6, -2e-6, -3e-6, -4e-6], "force"),
-    ],
-)
-def test_wrong_data_are_refused(depth: list[float], force: list[float], message: str) -> None:
-    body = nacre.HalfSpace(nacre.Elastic(3e9, 0.3))
-    with pytest.raises(ValueError, match=message):
-        fit((depth, force), body, Tip.paraboloid(1e-5), ["body.substrate.young"])
-
-
-TIP = Tip.paraboloid(1e-5)
 DEPTH = np.linspace(5e-9, 2e-7, 40)
 EXACT = 1e-6  # relative: loads are interpolated to 1e-9, and a fit stops at 1e-5 of an error
 
 
-def coated(young: float = 3e9, thickness: float = 1e-6) -> nacre.HalfSpace:
-    layer = nacre.Layer(nacre.Elastic(young, 0.3), thickness)
-    return nacre.HalfSpace(nacre.Elastic(70e9, 0.2), [layer])
+def coated(young: float = 3e9) -> nacre.HalfSpace:
+    return coated_body(young, 1e-6, nacre.Elastic(70e9, 0.2))
 
 
 def loads(depth: np.ndarray = DEPTH, tip: Tip = TIP) -> np.ndarray:
     return nacre.indent.Indentation(coated(), tip).curve(approach=depth).load
+
+
+LOADS = loads()
 
 
 def noisy(seed: int, share: float = 0.01) -> np.ndarray:
@@ -172,35 +154,33 @@ def test_unloading_is_named() -> None:
         fit((depth, force), coated(), TIP, [PATHS["lnE1"]], profile=False)
 
 
-def test_data_without_contact_are_refused() -> None:
-    force = 1e-9 * np.random.default_rng(8).standard_normal(DEPTH.size)
-    with pytest.raises(ValueError, match="the curve has no contact"):
-        fit((DEPTH, force), coated(), TIP, [PATHS["lnE1"]], noise="absolute")
-    with pytest.raises(ValueError, match="must lie in contact at the start"):
-        fit((DEPTH - 1e-6, loads()), coated(), TIP, [PATHS["lnE1"]], noise="relative")
-    with pytest.raises(ValueError, match="no depth lies in contact at the start"):
-        fit((DEPTH - 1e-6, loads()), coated(), TIP, [PATHS["lnE1"]])
+CASES: list[tuple[Any, dict[str, Any], str]] = [
+    (([1e-9, 2e-9, math.nan, 4e-9], [1e-6, 2e-6, 3e-6, 4e-6]), {}, "depth"),
+    (([1e-9, 2e-9, 3e-9, 4e-9], [-1e-6, -2e-6, -3e-6, -4e-6]), {}, "force"),
+    (
+        (DEPTH, 1e-9 * np.random.default_rng(8).standard_normal(DEPTH.size)),
+        {"noise": "absolute"},
+        "the curve has no contact",
+    ),
+    ((DEPTH - 1e-6, LOADS), {"noise": "relative"}, "must lie in contact at the start"),
+    ((DEPTH - 1e-6, LOADS), {}, "no depth lies in contact at the start"),
+    # Negative forces have no relative noise.
+    ((DEPTH, LOADS - 1e-5), {"noise": "relative"}, "noise='absolute'"),
+    ((DEPTH, LOADS), {"free": ["body.layers[1].thickness"]}, "free must name parameters among"),
+    ((DEPTH, LOADS), {"free": []}, "free must name a parameter"),
+    ((DEPTH, LOADS), {"nuisance": ["drift"]}, "drift needs the time"),
+    ((DEPTH, LOADS), {"nuisance": ["zero"]}, "nuisance must name"),
+    ((DEPTH, LOADS), {"noise": "white"}, "noise must be 'auto', 'relative' or 'absolute'"),
+    ((DEPTH, LOADS), {"sigma": 0.0}, "sigma must be positive"),
+]
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"free": ["body.layers[1].thickness"]}, "free must name parameters among"),
-        ({"free": []}, "free must name a parameter"),
-        ({"nuisance": ["drift"]}, "drift needs the time"),
-        ({"nuisance": ["zero"]}, "nuisance must name"),
-        ({"noise": "white"}, "noise must be 'auto', 'relative' or 'absolute'"),
-        ({"sigma": 0.0}, "sigma must be positive"),
-    ],
-)
-def test_arguments_are_checked(options: dict[str, Any], message: str) -> None:
+@pytest.mark.parametrize(("data", "options", "message"), CASES)
+def test_wrong_data_and_arguments_are_refused(
+    data: Any, options: dict[str, Any], message: str
+) -> None:
     with pytest.raises(ValueError, match=message):
-        fit((DEPTH, loads()), coated(), TIP, **({"free": [PATHS["lnE1"]]} | options))
-
-
-def test_negative_forces_have_no_relative_noise() -> None:
-    with pytest.raises(ValueError, match="noise='absolute'"):
-        fit((DEPTH, loads() - 1e-5), coated(), TIP, [PATHS["lnE1"]], noise="relative")
+        fit(data, coated(), TIP, **({"free": [PATHS["lnE1"]]} | options))
 
 
 def test_nuisances_of_several_curves_are_their_own() -> None:
@@ -253,14 +233,10 @@ def test_a_radius_trades_with_the_modulus_without_a_prior() -> None:
     assert known.standard_errors["body.substrate.young"] / 210e9 == pytest.approx(0.0101, rel=0.05)
 
 
-def test_fits_are_kept() -> None:
+def test_residuals_are_kept_and_a_changed_state_is_refused() -> None:
     found = fit((DEPTH, noisy(6)), coated(), TIP, [PATHS["lnE1"]])
     state = json.loads(json.dumps(found.to_dict()))
     for copy in (Fit.from_dict(state), pickle.loads(pickle.dumps(found))):
-        assert str(copy) == str(found)
-        assert copy.estimates == found.estimates
-        assert copy.body == found.body
-        assert copy.tip == found.tip
         np.testing.assert_array_equal(copy.residuals[0], found.residuals[0])
     with pytest.raises(ValueError, match="install a newer version"):
         Fit.from_dict(state | {"format": 99})
@@ -283,8 +259,7 @@ def test_fits_are_drawn(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("ratio", "due"), [(0.1, 1.36), (0.5, 0.47), (2.0, -0.39), (10.0, -0.84)])
 def test_oliver_and_pharrs_bias_at_a_contact_as_wide_as_the_layer(ratio: float, due: float) -> None:
     # a = h, ν = 0.3; another program's biases, in whole per cents.
-    layer = nacre.Layer(nacre.Elastic(ratio, 0.3), 1.0)
-    body = nacre.HalfSpace(nacre.Elastic(1.0, 0.3), [layer])
+    body = coated_body(ratio, 1.0, nacre.Elastic(1.0, 0.3))
     test = nacre.indent.Indentation(body, Tip.paraboloid(1e3))
     depth = np.linspace(0.05, 1.0, 80) * test.at(radius=1.0).approach
     curve = Curve(depth, test.curve(approach=depth).load)

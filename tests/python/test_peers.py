@@ -124,17 +124,10 @@ def in_turn(
     problem: str, threads: int, seconds: float, together: float, errors: tuple[float, float]
 ) -> Row:
     """Return a row of what was measured in turn."""
-    return Row(
-        problem,
-        128 if problem == "batch" else 1024,
-        "nacre",
-        threads,
-        seconds=seconds,
-        together=together,
-        setting="idle",
-        error=errors[0],
-        error_together=errors[1],
-    )
+    row = Row(problem, 128 if problem == "batch" else 1024, "nacre", threads, seconds=seconds)
+    row.together, row.setting = together, "idle"
+    row.error, row.error_together = errors
+    return row
 
 
 def test_figures_are_ratios_with_a_verdict() -> None:
