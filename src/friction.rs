@@ -21,13 +21,10 @@
 //! |---|---|
 //! | `step` | what is asked for |
 //! | `law` | Coulomb's law in cells |
-//! | `operator` | the operators of sliding and of rolling |
-//! | `linear` | Newton's linear systems |
+//! | `linear` | the operators of sliding and of rolling, and Newton's linear systems |
 //! | `newton` | tractions for a pressure |
-//! | `task` | sliding in one step, rolling |
-//! | `fields` | fields of the whole grid, and their errors |
+//! | `task` | sliding in one step, rolling; fields of the whole grid, and their errors |
 //! | `session` | pressure and tractions in turn |
-//! | `starts` | tractions from which an iteration starts |
 //! | `solution` | what comes out |
 //! | `creep` | Kalker's coefficients |
 
@@ -38,14 +35,11 @@ use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
-mod fields;
 mod law;
 mod linear;
 mod newton;
-mod operator;
 mod session;
 mod solution;
-mod starts;
 mod step;
 mod task;
 

@@ -15,8 +15,8 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `tip` | profiles, and their F |
-//! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, and their linear system |
-//! | `parts`, `point`, `density` | the two solutions of one radius; states, pressure, displacement |
+//! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, their linear system and its two solutions |
+//! | `point`, `density` | states, pressure, displacement |
 //! | `adhesion`, `zone`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
 //! | `change` | derivatives |
 //! | `curve` | whole curves by interpolation |
@@ -27,9 +27,14 @@ mod change;
 mod cohesion;
 mod curve;
 mod density;
-mod equation;
+mod equation {
+    pub(super) mod basis;
+    pub(super) mod root;
+    pub(super) mod stack;
+    pub(super) mod system;
+    pub(super) mod waves;
+}
 mod indenter;
-mod parts;
 mod point;
 mod pull_off;
 mod tip;

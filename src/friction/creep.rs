@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::law::Law;
+use super::linear::{Direction, Operator};
 use super::newton::{Effort, Problem};
-use super::operator::{Direction, Operator};
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
 use crate::error::{Error, Result, positive};

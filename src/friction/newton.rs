@@ -6,8 +6,7 @@
 //! equations, forces and preconditioner of nacre's own.
 
 use super::law::{Law, State, restrict};
-use super::linear::{Linear, small_system};
-use super::operator::Operator;
+use super::linear::{Linear, Operator, small_system};
 use crate::numerics::parallel::dot;
 
 /// What is asked for: A q = g + C δ where cells stick, Cᵀ q = forces.

@@ -4,15 +4,13 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::output::Output;
-use super::parameter::{Parameter, all, named};
-use super::result::{Direction, Gradient};
+use super::output::{Direction, Gradient, Output};
+use super::parameter::{Parameter, Slope, all, named};
 use super::seed::{Seed, offsets};
-use super::slopes::Slope;
 use super::state::{Saddle, State};
 use super::stress::StressSeed;
 use crate::contact::Solution;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::model::surface::Surface;
 use crate::numerics::parallel::dot;
 
@@ -91,13 +89,12 @@ impl<'a> Linearisation<'a> {
         options: &LinearOptions,
         watch: &mut Watch,
     ) -> Result<Option<Self>> {
-        if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
-            return Err(Error::Parameter {
-                name: "tolerance",
-                requirement: "above 0 and below 1",
-                value: options.tolerance,
-            });
-        }
+        require(
+            "tolerance",
+            options.tolerance,
+            options.tolerance > 0.0 && options.tolerance < 1.0,
+            "above 0 and below 1",
+        )?;
         let Some(state) = State::new(solution, watch)? else {
             return Ok(None);
         };

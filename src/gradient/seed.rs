@@ -1,12 +1,10 @@
 //! Values of outputs, and their derivatives with respect to pressure and motion.
 
-use super::contact::{area_estimate, largest};
 use super::output::Output;
-use super::point::{bilinear, parabola};
 use super::state::State;
 use crate::contact::Solution;
-use crate::error::{Error, Result};
-use crate::model::grid::Window;
+use crate::error::{Error, Result, finite, require};
+use crate::model::grid::{Grid, Window};
 
 /// Relative difference of two pressures that tie.
 const TIE: f64 = 1e-9;
@@ -53,13 +51,12 @@ impl Seed {
             Output::Load => Self::of_moment(state, 0, area),
             Output::Moment(axis) => Self::of_moment(state, 1 + axis_of(*axis)?, area),
             Output::PressureNorm(r) => {
-                if !(*r >= 1.0 && r.is_finite()) {
-                    return Err(Error::Parameter {
-                        name: "exponent of the norm",
-                        requirement: "finite and at least 1",
-                        value: *r,
-                    });
-                }
+                require(
+                    "exponent of the norm",
+                    *r,
+                    *r >= 1.0 && r.is_finite(),
+                    "finite and at least 1",
+                )?;
                 // Relative to the peak, so that powers neither overflow nor vanish.
                 let peak = p.iter().fold(0.0, |a: f64, p| a.max(*p));
                 let sum: f64 = p.iter().map(|p| (p / peak).powf(*r)).sum();
@@ -83,7 +80,7 @@ impl Seed {
             Output::CellPeak => {
                 let [(k, value), (_, next)] = largest(p);
                 if value - next <= TIE * value {
-                    return Err(refused(
+                    return Err(Error::no_derivative(
                         "the cell peak",
                         "two cells have the largest pressure; take the located peak or a pressure norm",
                     ));
@@ -140,13 +137,13 @@ impl Seed {
                 }
             }
             Output::ContactArea => {
-                return Err(refused(
+                return Err(Error::no_derivative(
                     "the area of the cells in contact",
                     "it changes by whole cells; take the participation area, which is smooth, or the area estimate",
                 ));
             }
             Output::ContactExtent => {
-                return Err(refused(
+                return Err(Error::no_derivative(
                     "the extent of the contact",
                     "at a fixed number of cells its derivative is 20 to 40 % wrong on any grid; take the participation \
                      area or the area estimate",
@@ -270,7 +267,7 @@ impl Seed {
                 let given = [solution.approach, solution.tilt[0], solution.tilt[1]];
                 let undeformed = solution.gap()[cell] - solution.displacement[cell] + moved(given);
                 if !undeformed.is_finite() {
-                    return Err(refused(
+                    return Err(Error::no_derivative(
                         "the gap",
                         "it is infinite there: the shape has no surface",
                     ));
@@ -324,9 +321,140 @@ fn axis_of(axis: usize) -> Result<usize> {
     })
 }
 
-pub(super) fn refused(what: &str, reason: &'static str) -> Error {
-    Error::NotDifferentiable {
-        what: what.to_owned(),
-        reason,
+/// The largest and the second largest of `values`, with their numbers.
+pub(super) fn largest(values: &[f64]) -> [(usize, f64); 2] {
+    let mut found = [(0, f64::NEG_INFINITY); 2];
+    for (k, &value) in values.iter().enumerate() {
+        if value > found[0].1 {
+            found = [(k, value), found[0]];
+        } else if value > found[1].1 {
+            found[1] = (k, value);
+        }
     }
+    found
+}
+
+/// Distance from the edge, in cells, of the pressures that set the level.
+const INWARDS: usize = 3;
+
+/// Area of the contact by level sets of p², and its derivative with respect to the pressure. Near the edge p² grows in
+/// proportion to the distance, so that the area above a level t falls by a part in proportion to t, which 2A(t) − A(2t)
+/// takes back:
+///
+/// ```text
+/// A ≈ 2A(t) − A(2t)      A(t) = dA Σ S(p²/t)      S(u) = s² (3 − 2s), s = min(u/2, 1)
+/// ```
+///
+/// t is the mean of p² three cells from the edge, and is kept while differentiating. The method is nacre's own.
+///
+/// # Errors
+/// A contact without such cells.
+pub(super) fn area_estimate(state: &State, area: f64) -> Result<(f64, Vec<f64>)> {
+    let ny = state.tangent.window()[1].len();
+    let nx = state.pressure.len() / ny;
+    let mut left = state.tangent.contact.clone();
+    for _ in 1..INWARDS {
+        left = eroded(&left, [nx, ny]);
+    }
+    let inner = eroded(&left, [nx, ny]);
+    let ring = left.iter().zip(&inner).map(|(left, inner)| *left && !inner);
+    let squares: Vec<f64> = (ring.zip(&state.pressure))
+        .filter_map(|(ring, p)| ring.then_some(p * p))
+        .collect();
+    if squares.is_empty() {
+        return Err(Error::no_derivative(
+            "the solution",
+            "its contact is too small for an estimate of the area: refine the grid",
+        ));
+    }
+    let level = squares.iter().sum::<f64>() / squares.len() as f64;
+    let mut total = 0.0;
+    let slopes = state.pressure.iter().map(|p| {
+        let step = |level: f64| {
+            let s = (0.5 * p * p / level).min(1.0);
+            let slope = if s < 1.0 {
+                6.0 * s * (1.0 - s) * p / level
+            } else {
+                0.0
+            };
+            [s * s * (3.0 - 2.0 * s), slope]
+        };
+        let ([one, d_one], [two, d_two]) = (step(level), step(2.0 * level));
+        total += area * (2.0 * one - two);
+        area * (2.0 * d_one - d_two)
+    });
+    let slopes: Vec<f64> = slopes.collect();
+    Ok((total, state.masked(&slopes)))
+}
+
+/// The cells all of whose neighbours along both axes are `inside`.
+fn eroded(inside: &[bool], [nx, ny]: [usize; 2]) -> Vec<bool> {
+    let at = |i: usize, j: usize| inside[i * ny + j];
+    let cells = (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j)));
+    cells
+        .map(|(i, j)| {
+            // A line contact is endless along x.
+            let along = nx == 1 || i > 0 && i + 1 < nx && at(i - 1, j) && at(i + 1, j);
+            at(i, j) && along && j > 0 && j + 1 < ny && at(i, j - 1) && at(i, j + 1)
+        })
+        .collect()
+}
+
+/// Distance, in cells, within which a coordinate counts as that of a cell centre or of the grid's border.
+const CENTRE: f64 = 1e-9;
+
+/// Cells around (x, y) and their weights, bilinear between cell centres and constant beyond the outer ones. A line contact is
+/// the same at every x.
+///
+/// # Errors
+/// A point that is not on the grid.
+pub(super) fn bilinear(grid: &Grid, at: [f64; 2]) -> Result<Vec<([usize; 2], f64)>> {
+    let along = |axis: usize| -> Result<Vec<(usize, f64)>> {
+        let n = grid.shape()[axis];
+        if axis == 0 && grid.is_line() {
+            return Ok(vec![(0, 1.0)]);
+        }
+        let name = ["x", "y"][axis];
+        let value = finite(name, at[axis])?;
+        let position = (value - grid.center()[axis]) / grid.spacing()[axis] + 0.5 * (n - 1) as f64;
+        require(
+            name,
+            value,
+            (-0.5 - CENTRE..=n as f64 - 0.5 + CENTRE).contains(&position),
+            "on the grid",
+        )?;
+        let nearest = position.round();
+        let position = match (position - nearest).abs() < CENTRE {
+            true => nearest,
+            false => position,
+        };
+        let position = position.clamp(0.0, (n - 1) as f64);
+        let below = position as usize;
+        let weight = position - below as f64;
+        Ok([(below, 1.0 - weight), (below + 1, weight)]
+            .into_iter()
+            .filter(|(_, weight)| *weight > 0.0)
+            .collect())
+    };
+    let (rows, columns) = (along(0)?, along(1)?);
+    let pairs = rows.iter().flat_map(|(i, s)| {
+        let pair = move |(j, t): &(usize, f64)| ([*i, *j], s * t);
+        columns.iter().map(pair)
+    });
+    Ok(pairs.collect())
+}
+
+/// Weights (before, at, after) whose sum with three values is the peak of the parabola through them, and whose sum is 1;
+/// none where the middle is no maximum.
+///
+/// ```text
+/// w = (t (t − 1)/2, 1 − t², t (t + 1)/2)      t = (p₋ − p₊)/(2 (p₋ − 2 p + p₊))
+/// ```
+pub(super) fn parabola([before, at, after]: [f64; 3]) -> Option<[f64; 3]> {
+    let bend = before - 2.0 * at + after;
+    if bend >= 0.0 {
+        return None;
+    }
+    let t = 0.5 * (before - after) / bend;
+    Some([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)])
 }

@@ -392,9 +392,6 @@ fn check(solution: &Solution) -> Result<()> {
 }
 
 /// The error for a solution without a derivative.
-pub(super) fn refused(reason: &'static str) -> Error {
-    Error::NotDifferentiable {
-        what: "the solution".to_owned(),
-        reason,
-    }
+fn refused(reason: &'static str) -> Error {
+    Error::no_derivative("the solution", reason)
 }

@@ -6,7 +6,7 @@ use super::adhesion::{Adhesion, Branch, Control};
 use super::cohesion;
 use super::equation::root::{bracketed, newton};
 use super::equation::stack::Stack;
-use super::parts::Parts;
+use super::equation::system::Parts;
 use super::point::{Point, PullOff};
 use super::tip::Tip;
 use crate::error::{Error, Result, finite};

@@ -2,14 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::error::{Error, Result, positive};
+use super::equation::basis::Break;
+use crate::error::{Error, Result, positive, require};
 
-mod breaks;
-mod form;
-mod sampled;
 mod term;
 
-pub use form::{Form, STEEPEST};
 use term::Term;
 
 /// An axisymmetric tip.
@@ -68,11 +65,11 @@ impl Tip {
                 at: *flat,
                 slope: *slope,
             }],
-            Form::Profile { radii, heights } => sampled::profile(radii, heights)?,
+            Form::Profile { radii, heights } => term::profile(radii, heights)?,
             Form::Area {
                 coefficients,
                 depth,
-            } => sampled::area_function(coefficients, *depth)?,
+            } => term::area_function(coefficients, *depth)?,
         };
         let mut kinks: Vec<f64> = terms.iter().filter_map(Term::kink).collect();
         kinks.sort_by(f64::total_cmp);
@@ -167,7 +164,7 @@ impl Tip {
             Form::Area {
                 coefficients,
                 depth,
-            } => [0.0, sampled::radius(coefficients, *depth)],
+            } => [0.0, term::radius(coefficients, *depth)],
             _ => [0.0, f64::INFINITY],
         }
     }
@@ -375,6 +372,185 @@ pub fn slope_of(angle: f64) -> Result<f64> {
             requirement: "between 0 and pi/2, in radians; np.deg2rad makes them of degrees",
             value: angle,
         }),
+    }
+}
+
+/// Steepest slope of a cone, of a half angle of 11°. The theory is that of small slopes, and errs by their square: there is no such tip
+/// above, and the number is a half angle, in degrees or radians.
+pub const STEEPEST: f64 = 5.0;
+
+/// Form of a tip: its profile g(r) is the gap of the undeformed bodies, and g(0) = 0. Lengths in \[m\].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Form {
+    /// A flat end of this radius, with a sharp edge.
+    FlatPunch {
+        /// Radius of the end, which is that of the contact.
+        radius: f64,
+    },
+    /// g = r²/2R.
+    Paraboloid {
+        /// Radius of curvature R.
+        radius: f64,
+    },
+    /// g = R − √(R² − r²).
+    Sphere {
+        /// Radius R.
+        radius: f64,
+    },
+    /// g = m r.
+    Cone {
+        /// Slope m of the flanks against the surface: cot of the half angle.
+        slope: f64,
+    },
+    /// g = b rⁿ.
+    Power {
+        /// Factor b \[m^(1−n)\].
+        factor: f64,
+        /// Exponent n.
+        exponent: f64,
+    },
+    /// A cone with a spherical end: a paraboloid up to where both have the same slope.
+    RoundedCone {
+        /// Slope of the flanks.
+        slope: f64,
+        /// Radius of curvature of the end.
+        radius: f64,
+    },
+    /// A flat end with a rounded edge: g = (r − b)²/2R beyond b.
+    RoundedPunch {
+        /// Radius b of the flat end.
+        flat: f64,
+        /// Radius of curvature R of the edge.
+        radius: f64,
+    },
+    /// A cone whose end is cut off: g = m (r − b) beyond b.
+    FlatCone {
+        /// Radius b of the flat end.
+        flat: f64,
+        /// Slope m of the flanks.
+        slope: f64,
+    },
+    /// Samples g(r), from the axis on.
+    Profile {
+        /// Distances from the axis, ascending from 0.
+        radii: Vec<f64>,
+        /// Heights g, from 0 on.
+        heights: Vec<f64>,
+    },
+    /// A tip whose section at the distance d from its end has the area Σ C_k d^(2^(1−k)).
+    Area {
+        /// Coefficients C_0, C_1, …
+        coefficients: Vec<f64>,
+        /// Deepest distance from the end up to which the function holds.
+        depth: f64,
+    },
+}
+
+impl Form {
+    /// Names and values of the numbers, in the order in which they are written.
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::FlatPunch { radius } | Self::Paraboloid { radius } | Self::Sphere { radius } => {
+                vec![("radius", *radius)]
+            }
+            Self::Cone { slope } => vec![("slope", *slope)],
+            Self::Power { factor, exponent } => {
+                vec![("factor", *factor), ("exponent", *exponent)]
+            }
+            Self::RoundedCone { slope, radius } => vec![("slope", *slope), ("radius", *radius)],
+            Self::RoundedPunch { flat, radius } => vec![("flat", *flat), ("radius", *radius)],
+            Self::FlatCone { flat, slope } => vec![("flat", *flat), ("slope", *slope)],
+            Self::Profile { .. } => vec![],
+            Self::Area { depth, .. } => vec![("depth", *depth)],
+        }
+    }
+
+    /// An error unless the numbers are those of a tip, in any unit.
+    fn check(&self) -> Result<()> {
+        for (name, value) in self.numbers() {
+            let (range, requirement) = match name {
+                "slope" => (
+                    0.0..=STEEPEST,
+                    "above 0 and at most 5, a half angle of 11 degrees; half_angle= takes an angle in radians",
+                ),
+                "exponent" => (0.01..=100.0, "between 0.01 and 100"),
+                "factor" => (0.0..=f64::MAX, "finite and above 0"),
+                _ => (1e-100..=1e100, "between 1e-100 and 1e100"),
+            };
+            positive(name, value)?;
+            require(name, value, range.contains(&value), requirement)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ratio of the distances of successive breaks from a singularity: 24 nodes on a panel between them leave 3⁻⁴⁸.
+const RATIO: f64 = 4.0;
+
+/// Radius over that of a sphere up to which the eight nodes of smooth profiles leave 1e-14 of its logarithm at R.
+const ROUND: f64 = 0.4;
+
+/// Breaks towards the axis of powers of s, the first panel of which counts nothing: 4⁻¹² = 6e-8 of 1e-6.
+const TO_AXIS: f64 = 12.0;
+
+impl Tip {
+    /// Places up to the contact radius `a` at which panels end, ascending, where the profile has `most` kinks there at most; none
+    /// where F is smooth from the axis to `a`.
+    pub(super) fn breaks(&self, a: f64, most: usize) -> Option<Vec<Break>> {
+        let smooth = |at: f64| Break {
+            at,
+            has_root: false,
+        };
+        let root = |at: f64| Break { at, has_root: true };
+        let mut breaks = Vec::new();
+        match self.form {
+            Form::FlatPunch { .. } | Form::Paraboloid { .. } | Form::Cone { .. } => return None,
+            Form::Sphere { radius } if a <= ROUND * radius => return None,
+            // A logarithm at R.
+            Form::Sphere { radius } => {
+                let mut distance = RATIO * (radius - a);
+                while RATIO * distance < radius {
+                    breaks.insert(0, smooth(radius - distance));
+                    distance *= RATIO;
+                }
+            }
+            // A root on the axis, or s ln s in the derivative, and a steep rise within a/n of the edge.
+            Form::Power { exponent, .. } => {
+                breaks.push(root(0.0));
+                let count = (TO_AXIS / (1.0 + exponent)).ceil();
+                let mut at = a * RATIO.powf(-count);
+                while at < 0.5 * a {
+                    breaks.push(smooth(at));
+                    at *= RATIO;
+                }
+                if exponent > 16.0 {
+                    breaks.push(smooth(a * (1.0 - 8.0 / exponent)));
+                }
+            }
+            _ => {
+                let mut kinks: Vec<f64> = self.terms.iter().filter_map(Term::kink).collect();
+                kinks.retain(|b| *b < a);
+                kinks.sort_by(f64::total_cmp);
+                if kinks.len() > most {
+                    let steps = [-3, -2, -1].map(|k| smooth(a * RATIO.powi(k)));
+                    return Some(steps.into());
+                }
+                let ends = kinks.iter().skip(1).chain(std::iter::once(&a));
+                let mut before = 0.0;
+                for (kink, end) in kinks.iter().zip(ends) {
+                    breaks.push(root(*kink));
+                    // The singularity before this one, or its image at −b.
+                    let mut distance = kink - before;
+                    while distance > 0.0 && kink + 2.0 * distance < *end {
+                        breaks.push(smooth(kink + distance));
+                        distance *= RATIO;
+                    }
+                    before = *kink;
+                }
+            }
+        }
+        Some(breaks)
     }
 }
 

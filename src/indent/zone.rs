@@ -11,9 +11,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use spec_math::cephes64::{j0, j1};
 
 use super::equation::basis::rule;
+use super::equation::system::Parts;
 use super::equation::system::times;
 use super::equation::waves::Waves;
-use super::parts::Parts;
 
 /// Nodes of the integral over a panel of a zone, beside half of the phase of the shortest wave over it.
 const NODES: usize = 24;

@@ -4,7 +4,7 @@ use spec_math::cephes64::{j0, j1};
 
 use super::{Point, distance};
 use crate::compliance::response::interior::{Column, Place};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::indent::equation::basis::{Panel, rule};
 use crate::indent::equation::waves::Waves;
 use crate::indent::tip::FEW_KINKS;
@@ -61,13 +61,12 @@ impl Point {
     /// 1e4 of both, and no such half-space.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
         r.iter().try_for_each(|r| distance(*r))?;
-        if !(SHALLOWEST..=DEEPEST).contains(&(z / self.radius)) {
-            return Err(Error::Parameter {
-                name: "z",
-                requirement: "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
-                value: z,
-            });
-        }
+        require(
+            "z",
+            z,
+            (SHALLOWEST..=DEEPEST).contains(&(z / self.radius)),
+            "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
+        )?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
         if far > FARTHEST * z.max(self.radius) {
             return Err(Error::Parameter {

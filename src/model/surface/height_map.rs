@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ndarray::{Array2, ArrayRef2};
 
 use super::{Extent, Surface, sampled};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::model::grid::Grid;
 
 /// A measured surface: heights at the centres of a grid's cells, positive towards the other body.
@@ -45,12 +45,9 @@ impl HeightMap {
             });
         }
         let shape = [heights.nrows(), heights.ncols()];
-        if let Some(&few) = shape.iter().find(|&&n| n < 2) {
-            return Err(Error::Parameter {
-                name: "number of heights along x and along y",
-                requirement: "at least 2",
-                value: few as f64,
-            });
+        for n in shape {
+            let name = "number of heights along x and along y";
+            require(name, n as f64, n >= 2, "at least 2")?;
         }
         for d in spacing {
             crate::error::positive("spacing", d)?;
@@ -156,13 +153,9 @@ impl Surface for HeightMap {
             }
         }
         for (cell, sample) in grid.spacing().into_iter().zip(self.grid.spacing()) {
-            if cell > 2.0 * sample * (1.0 + ROUNDING) {
-                return Err(Error::Parameter {
-                    name: "grid spacing",
-                    requirement: "at most twice the spacing of the height map",
-                    value: cell,
-                });
-            }
+            let is_fine = cell <= 2.0 * sample * (1.0 + ROUNDING);
+            let requirement = "at most twice the spacing of the height map";
+            require("grid spacing", cell, is_fine, requirement)?;
         }
         let (x, y) = (grid.x(), grid.y());
         Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))
