@@ -1,11 +1,10 @@
 //! The parameters of a contact, by name.
 
 use std::fmt;
-use std::ops::ControlFlow;
 
 use ndarray::Array2;
 
-use super::state::State;
+use super::state::Linearised;
 use crate::compliance::influence::unchecked_coefficients;
 use crate::compliance::response::{Body, ResponseSlope};
 use crate::contact::{Solution, block};
@@ -60,10 +59,7 @@ const ENDS: &str = "the correction for free ends is tabulated for the body as it
                     differences of solves";
 
 /// The half-space of a body whose numbers have derivatives.
-///
-/// # Errors
-/// A body that is a response alone, or has free ends.
-pub(super) fn layered(body: &Body, path: &str) -> Result<HalfSpace> {
+fn layered(body: &Body, path: &str) -> Result<HalfSpace> {
     let refused = |reason| Error::no_derivative(path, reason);
     let body = body.half_space().ok_or_else(|| {
         refused("the body is a response alone, whose numbers are not known; give a HalfSpace")
@@ -113,9 +109,6 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
 }
 
 /// The parameters among `known` with these paths.
-///
-/// # Errors
-/// A path that is not among them.
 pub(super) fn named(known: &[Parameter], paths: &[&str]) -> Result<Vec<Parameter>> {
     let find = |path: &&str| {
         let found = known.iter().find(|one| one.to_string() == **path);
@@ -150,11 +143,11 @@ pub(super) struct Slope {
     pub(super) field: Vec<f64>,
     /// Ḟ/dA of the three freedoms; 0 where they are prescribed.
     pub(super) target: [f64; 3],
-    source: Source,
+    source: SlopeSource,
 }
 
 /// What b is made of outside of the window.
-enum Source {
+enum SlopeSource {
     /// Coefficients of K̇.
     Coefficients(Array2<f64>),
     /// ḣ on the whole grid.
@@ -164,26 +157,19 @@ enum Source {
 }
 
 impl Slope {
-    /// The slope with respect to `parameter`, for [`Slope::at`] at cells within `reach` offsets; `None` where `watch`
-    /// breaks.
-    ///
-    /// # Errors
-    /// A parameter that the contact does not have.
+    /// The slope with respect to `parameter`, for [`Slope::at`] at cells within `reach` offsets.
     pub(super) fn new(
-        (solution, shape): (&Solution, Option<&dyn Surface>),
-        state: &State,
+        solution: &Solution,
+        shape: Option<&dyn Surface>,
+        state: &Linearised,
         parameter: &Parameter,
         reach: [usize; 2],
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Self>> {
-        if watch().is_break() {
-            return Ok(None);
-        }
+    ) -> Result<Self> {
         let report = &solution.report;
         let grid = solution.grid();
         let load = report.motion.load.unwrap_or(0.0);
         let area = grid.cell_area();
-        Ok(Some(match parameter {
+        Ok(match parameter {
             Parameter::Body(member, one, _) => {
                 let body = match member {
                     Member::Body => Some(&report.body),
@@ -197,15 +183,7 @@ impl Slope {
             }
             Parameter::Shape(name) => {
                 let shape = shape.ok_or_else(|| unknown(parameter))?;
-                let slopes = shape.gap_derivative(name, grid)?;
-                Self {
-                    field: block(&slopes, state.tangent.window())
-                        .iter()
-                        .copied()
-                        .collect(),
-                    target: [0.0; 3],
-                    source: Source::Gap(slopes),
-                }
+                Self::of_gap(state, shape.gap_derivative(name, grid)?)
             }
             Parameter::Load => {
                 let mut target = [1.0 / area, 0.0, 0.0];
@@ -215,27 +193,22 @@ impl Slope {
                 Self::of_target(state, target)
             }
             Parameter::Eccentricity(axis) | Parameter::Moment(axis) => {
-                let mut target = [0.0; 3];
-                target[axis + 1] = match parameter {
-                    Parameter::Moment(_) => 1.0 / area,
-                    _ => load / area,
+                let moment = match parameter {
+                    Parameter::Moment(_) => 1.0,
+                    _ => load,
                 };
-                Self::of_target(state, target)
+                Self::of_target(state, unit(axis + 1).map(|of| of * moment / area))
             }
-            Parameter::Approach => Self::of_motion(state, [1.0, 0.0, 0.0]),
-            Parameter::Tilt(axis) => {
-                let mut motion = [0.0; 3];
-                motion[axis + 1] = 1.0;
-                Self::of_motion(state, motion)
-            }
+            Parameter::Approach => Self::of_motion(state, unit(0)),
+            Parameter::Tilt(axis) => Self::of_motion(state, unit(axis + 1)),
             Parameter::Friction => Self::of_motion(state, [0.0; 3]),
-        }))
+        })
     }
 
     /// K̇ p.
     fn of_body(
         solution: &Solution,
-        state: &State,
+        state: &Linearised,
         slope: &ResponseSlope,
         reach: [usize; 2],
     ) -> Result<Self> {
@@ -256,43 +229,41 @@ impl Slope {
         Ok(Self {
             field,
             target: [0.0; 3],
-            source: Source::Coefficients(coefficients),
+            source: SlopeSource::Coefficients(coefficients),
         })
     }
 
-    fn of_target(state: &State, target: [f64; 3]) -> Self {
+    fn of_target(state: &Linearised, target: [f64; 3]) -> Self {
         Self {
             field: vec![0.0; state.pressure.len()],
             target,
-            source: Source::Motion([0.0; 3]),
+            source: SlopeSource::Motion([0.0; 3]),
         }
     }
 
-    fn of_motion(state: &State, motion: [f64; 3]) -> Self {
+    fn of_motion(state: &Linearised, motion: [f64; 3]) -> Self {
         let field = state.moved(motion).iter().map(|moved| -moved).collect();
         Self {
             field,
             target: [0.0; 3],
-            source: Source::Motion(motion),
+            source: SlopeSource::Motion(motion),
         }
     }
 
     /// b of a parameter that moves the gap by `slopes` (nx, ny) per unit.
-    pub(super) fn of_gap(state: &State, slopes: &Array2<f64>) -> Self {
+    pub(super) fn of_gap(state: &Linearised, slopes: Array2<f64>) -> Self {
+        let field = block(&slopes, state.tangent.window());
         Self {
-            field: block(slopes, state.tangent.window())
-                .iter()
-                .copied()
-                .collect(),
+            field: field.iter().copied().collect(),
             target: [0.0; 3],
-            source: Source::Gap(slopes.clone()),
+            source: SlopeSource::Gap(slopes),
         }
     }
 
     /// K̇ p and b at a cell of the grid, which may lie outside of the window.
-    pub(super) fn at(&self, solution: &Solution, state: &State, cell: [usize; 2]) -> [f64; 2] {
+    pub(super) fn at(&self, solution: &Solution, state: &Linearised, cell: [usize; 2]) -> [f64; 2] {
         match &self.source {
-            Source::Coefficients(coefficients) => {
+            SlopeSource::Coefficients(coefficients) => {
                 let entry = |other: [usize; 2]| {
                     let [i, j] = [0, 1].map(|axis| cell[axis].abs_diff(other[axis]));
                     coefficients[[i, j]]
@@ -300,13 +271,20 @@ impl Slope {
                 let sum = state.sum_over_contact(entry);
                 [sum, sum]
             }
-            Source::Gap(slopes) => [0.0, slopes[cell]],
-            Source::Motion([delta, sx, sy]) => {
+            SlopeSource::Gap(slopes) => [0.0, slopes[cell]],
+            SlopeSource::Motion([delta, sx, sy]) => {
                 let (x, y) = (solution.grid().x()[cell[0]], solution.grid().y()[cell[1]]);
                 [0.0, -(delta + sx * x + sy * y)]
             }
         }
     }
+}
+
+/// A unit of one of the three degrees of freedom.
+fn unit(freedom: usize) -> [f64; 3] {
+    let mut unit = [0.0; 3];
+    unit[freedom] = 1.0;
+    unit
 }
 
 fn unknown(parameter: &Parameter) -> Error {

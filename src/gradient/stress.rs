@@ -5,7 +5,7 @@ use ndarray::Array2;
 use super::output::{Measure, StressOutput, StressPlace};
 use super::parameter::Parameter;
 use super::seed::{Seed, bilinear};
-use super::state::State;
+use super::state::Linearised;
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result, require};
 use crate::model::body::{BodyParameter, HalfSpace, Interface};
@@ -124,7 +124,7 @@ impl StressSeed {
     /// A stress without a derivative; bad options.
     pub(super) fn new(
         solution: &Solution,
-        state: &State,
+        state: &Linearised,
         output: &StressOutput,
         pressure: Array2<f64>,
     ) -> Result<(Seed, Self)> {
