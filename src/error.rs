@@ -58,6 +58,12 @@ pub enum Error {
     /// Arguments that contradict each other or do not suffice.
     #[error("{0}")]
     Inconsistent(&'static str),
+    /// A contact of a tip that is no disc, which the theory of discs cannot have.
+    #[error(
+        "the contact of this tip is no disc but a ring here: the pressure of a disc would be negative or the surfaces would \
+         overlap; use nacre.solve"
+    )]
+    Ring,
     /// A load point at which no pressure p ≥ 0 can balance the load.
     #[error(
         "the load point ({x:.6e}, {y:.6e}) must lie strictly inside the convex hull of the cells \

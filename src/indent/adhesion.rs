@@ -42,6 +42,23 @@ pub enum Control {
     Approach,
 }
 
+impl Control {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Load => "load",
+            Self::Approach => "approach",
+        }
+    }
+
+    /// That of approach and load which is given.
+    pub(super) fn of(self, [approach, load]: [f64; 2]) -> f64 {
+        match self {
+            Self::Load => load,
+            Self::Approach => approach,
+        }
+    }
+}
+
 /// Part of the curve on which a state lies, where two have the same load or approach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Branch {

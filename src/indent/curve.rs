@@ -273,7 +273,7 @@ impl Indent {
             match Table::new([pair[0], pair[1]], has_root, logs, row) {
                 Ok(Some(table)) => tables.push(table),
                 // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
-                Ok(None) | Err(Error::Inconsistent(_)) => return Ok(None),
+                Ok(None) | Err(Error::Ring | Error::Inconsistent(_)) => return Ok(None),
                 Err(error) => return Err(error),
             }
         }

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use super::adhesion::{Adhesion, Control};
 use super::density::{Density, bessel_sum};
 use super::equation::stack::Level;
-use super::equation::system::{Parts, times};
+use super::equation::system::{Parts, add, times};
 use super::tip::Tip;
 use super::zone::{Answer, Zone};
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 
 mod disc;
 mod interior;
@@ -53,6 +53,11 @@ impl Point {
         }
     }
 
+    /// What was given of load and approach.
+    pub(super) fn given(&self, control: Control) -> f64 {
+        control.of([self.approach, self.load])
+    }
+
     /// φ in the basis.
     pub(super) fn values(&self) -> Vec<f64> {
         self.combined(|parts| &parts.values, |answer| &answer.values)
@@ -72,9 +77,7 @@ impl Point {
         let pairs = punch.iter().zip(profile);
         let mut all: Vec<f64> = pairs.map(|(a, b)| self.approach * a - b).collect();
         if let Some(zone) = &self.zone {
-            for (value, more) in all.iter_mut().zip(more(&zone.answer)) {
-                *value += more;
-            }
+            add(&mut all, 1.0, more(&zone.answer));
         }
         all
     }
@@ -116,7 +119,7 @@ impl Point {
     /// # Errors
     /// A distance that is negative or not finite.
     pub fn pressure(&self, r: &[f64]) -> Result<Vec<f64>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         let (density, a) = (self.density(), self.radius);
         let at = |r: &f64| -> f64 {
             if *r > a {
@@ -154,7 +157,7 @@ impl Point {
     /// # Errors
     /// A distance that is negative or not finite.
     pub fn displacement(&self, r: &[f64]) -> Result<Vec<f64>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         let density = self.density();
         let short = self.parts.stack.short();
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
@@ -200,17 +203,10 @@ impl Point {
         let hat = match Arc::ptr_eq(level, own) {
             true => self.hat(),
             false => {
-                let rows = self.parts.system.basis.transforms(&level.waves);
-                let values = self.values();
-                let mut hat = vec![0.0; level.waves.len()];
-                for (row, value) in rows.iter().zip(&values) {
-                    hat.iter_mut()
-                        .zip(row)
-                        .for_each(|(sum, b)| *sum += value * b);
-                }
+                let system = &self.parts.system;
+                let [mut hat] = system.transforms_at(&level.waves, [&self.values()]);
                 if let Some(zone) = &self.zone {
-                    let own = zone.transform(&level.waves);
-                    hat.iter_mut().zip(own).for_each(|(sum, more)| *sum += more);
+                    add(&mut hat, 1.0, &zone.transform(&level.waves));
                 }
                 hat
             }
@@ -308,14 +304,8 @@ pub struct PullOff {
     pub point: Option<Point>,
 }
 
-/// An error unless `r` is a distance from the axis.
-pub(super) fn distance(r: f64) -> Result<()> {
-    match r.is_finite() && r >= 0.0 {
-        true => Ok(()),
-        false => Err(Error::Parameter {
-            name: "r",
-            requirement: "finite and at least 0",
-            value: r,
-        }),
-    }
+/// An error unless each of `r` is a distance from the axis.
+pub(super) fn check_distances(r: &[f64]) -> Result<()> {
+    let check = |r: &f64| require("r", *r, r.is_finite() && *r >= 0.0, "finite and at least 0");
+    r.iter().try_for_each(|r| check(r).map(|_| ()))
 }

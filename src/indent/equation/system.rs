@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::super::tip::{MOST_KINKS, Tip};
 use super::basis::Basis;
 use super::stack::{Level, Stack};
-use crate::error::{Error, Result};
+use super::waves::Waves;
+use crate::error::{Error, Result, require};
 use crate::numerics::dense::{backward, cholesky, forward};
 use crate::numerics::parallel::{Lanes, dot};
 
@@ -29,18 +30,10 @@ pub(in crate::indent) struct System {
 
 impl System {
     /// The system of the contact radius `a` \[m\], with waves that resolve oscillations over `length` \[m\], at least 2a.
-    ///
-    /// # Errors
-    /// A radius beyond those that are computed, and a response that is not positive.
     pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
         tip.check_radius(a)?;
-        if a > stack.largest_radius() {
-            return Err(Error::Parameter {
-                name: "radius",
-                requirement: "at most 1024 times the thickness of the top layer",
-                value: a,
-            });
-        }
+        let requirement = "at most 1024 times the thickness of the top layer";
+        require("radius", a, a <= stack.largest_radius(), requirement)?;
         let breaks = tip.breaks(a, MOST_KINKS);
         let basis = Basis::new(a, stack.thickness(), breaks.as_deref(), stack.finer());
         let ones = basis.project(&vec![1.0; basis.places().len()]);
@@ -80,13 +73,17 @@ impl System {
 
     /// p̂(α) = ∫ φ cos αt dt at the waves, of a φ in the basis.
     pub(in crate::indent) fn transform(&self, values: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; self.waves()];
-        for (row, value) in self.rows.iter().zip(values) {
-            for (sum, b) in sums.iter_mut().zip(row) {
-                *sum += value * b;
-            }
-        }
-        sums
+        combined(&self.rows, values, self.waves())
+    }
+
+    /// [`System::transform`] of each of several φ at other waves.
+    pub(in crate::indent) fn transforms_at<const N: usize>(
+        &self,
+        waves: &Waves,
+        values: [&[f64]; N],
+    ) -> [Vec<f64>; N] {
+        let rows = self.basis.transforms(waves);
+        values.map(|values| combined(&rows, values, waves.len()))
     }
 
     /// 2/π Σ g b̂ᵢ over the waves, for each function.
@@ -152,6 +149,21 @@ fn four_dots(left: [&[f64]; 2], right: [&[f64]; 2]) -> [[f64; 2]; 2] {
     sums.map(|pair| pair.map(Lanes::reduce_add))
 }
 
+/// Adds `factor` times `more` to `sum`.
+pub(in crate::indent) fn add(sum: &mut [f64], factor: f64, more: &[f64]) {
+    let pairs = sum.iter_mut().zip(more);
+    pairs.for_each(|(sum, more)| *sum += factor * more);
+}
+
+/// Σ of `rows`, each times its value.
+fn combined(rows: &[Vec<f64>], values: &[f64], length: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; length];
+    for (row, value) in rows.iter().zip(values) {
+        add(&mut sums, *value, row);
+    }
+    sums
+}
+
 /// Products of the elements.
 pub(in crate::indent) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
@@ -175,9 +187,6 @@ pub(in crate::indent) struct Parts {
 
 impl Parts {
     /// The parts at the contact radius `a` \[m\]; `length` as in [`System::new`].
-    ///
-    /// # Errors
-    /// As [`System::new`], and numbers beyond those of the machine.
     pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
         let system = System::new(stack, tip, a, length)?;
         let f = stack.surface_modulus() / PI;
@@ -201,16 +210,10 @@ impl Parts {
             k += 1;
             values
         });
-        if edge.iter().chain(&loads).any(|value| !value.is_finite())
-            || edge[0] <= 0.0
-            || loads[0] <= 0.0
-        {
-            return Err(Error::Parameter {
-                name: "radius",
-                requirement: "one whose load and stiffness are numbers of the machine",
-                value: a,
-            });
-        }
+        let are_finite = edge.iter().chain(&loads).all(|value| value.is_finite());
+        let requirement = "one whose load and stiffness are numbers of the machine";
+        let holds = are_finite && edge[0] > 0.0 && loads[0] > 0.0;
+        require("radius", a, holds, requirement)?;
         Ok(Self {
             stack: stack.clone(),
             tip: tip.clone(),

@@ -34,11 +34,6 @@ const GOLDEN: usize = 14;
 /// Knots of a sampled tip at most at which the surfaces are looked at.
 const MOST_KNOTS: usize = 64;
 
-const NO_DISC: Error = Error::Inconsistent(
-    "the contact of this tip is no disc but a ring here: the pressure of a disc would be negative or the surfaces would overlap; \
-     use nacre.solve",
-);
-
 /// What oscillates in Φ, interpolated on panels.
 struct Layers {
     ends: Vec<f64>,
@@ -144,7 +139,7 @@ impl Point {
             && (far <= a || self.is_apart(&Layers::new(self.panels([a, far]), waves))?)
         {
             true => Ok(()),
-            false => Err(NO_DISC),
+            false => Err(Error::Ring),
         }
     }
 

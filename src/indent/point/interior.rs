@@ -2,10 +2,11 @@
 
 use spec_math::cephes64::{j0, j1};
 
-use super::{Point, distance};
+use super::{Point, check_distances};
 use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result, require};
 use crate::indent::equation::basis::{Panel, rule};
+use crate::indent::equation::system::add;
 use crate::indent::equation::waves::Waves;
 use crate::indent::tip::FEW_KINKS;
 
@@ -60,7 +61,7 @@ impl Point {
     /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius or above 1e6 of it, a distance above
     /// 1e4 of both, and no such half-space.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         require(
             "z",
             z,
@@ -169,13 +170,10 @@ impl Point {
         for (place, (weight, [value, _])) in places.iter().zip(weights.iter().zip(density)) {
             waves.circular(*place, &mut cos, &mut sin);
             let weight = weight * value;
-            hat.iter_mut()
-                .zip(&cos)
-                .for_each(|(hat, cos)| *hat += weight * cos);
+            add(&mut hat, weight, &cos);
         }
         if let Some(zone) = &self.zone {
-            let pairs = hat.iter_mut().zip(zone.transform(waves));
-            pairs.for_each(|(sum, more)| *sum += more);
+            add(&mut hat, 1.0, &zone.transform(waves));
         }
         hat
     }
