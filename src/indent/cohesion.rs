@@ -30,9 +30,6 @@ use crate::numerics::parallel::dot;
 
 /// The contact of radius `a` with a cohesive zone, whose width c − a is looked for from e^`start` on; at the end its
 /// logarithm is in `start`.
-///
-/// # Errors
-/// As [`Parts::new`], and no zone within the radii that can be computed.
 pub(super) fn contact(
     stack: &Stack,
     tip: &Tip,
@@ -104,14 +101,12 @@ impl Apart {
         // u/A1 at c and on the axis.
         let (mut edge, mut axis) = (-2.0 / PI * strength * c, -strength * c);
         if let Some(level) = stack.level(2.0 * c) {
-            let hat = level
-                .waves
-                .alpha
+            let alpha = &level.waves.alpha;
+            let hat = alpha
                 .iter()
                 .map(|alpha| -strength * c * j1(alpha * c) / alpha);
-            let hat: Vec<f64> = hat.collect();
-            let g = times(&level.excess, &hat);
-            edge += bessel_sum(&g, &level.waves.alpha, c);
+            let g = times(&level.excess, &hat.collect::<Vec<f64>>());
+            edge += bessel_sum(&g, alpha, c);
             axis += g.iter().sum::<f64>();
         }
         let approach = tip.gap(c) + stack.short() * edge - work / strength;
@@ -124,9 +119,6 @@ impl Apart {
     }
 
     /// The state in which the tip begins to touch.
-    ///
-    /// # Errors
-    /// None within the radii that can be computed.
     pub(super) fn touching(stack: &Stack, tip: &Tip, numbers: [f64; 2]) -> Result<Self> {
         let gap = |log: f64| Self::new(stack, tip, log.exp(), numbers).gap;
         // From the radius at which the profile itself has opened by w/σ₀, which is too large or too small by the deformation.

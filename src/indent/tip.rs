@@ -3,11 +3,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::equation::basis::Break;
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Result, positive, require};
 
 mod term;
 
-use term::Term;
+use term::ProfileTerm;
 
 /// An axisymmetric tip.
 ///
@@ -20,7 +20,7 @@ use term::Term;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tip {
     form: Form,
-    terms: Vec<Term>,
+    terms: Vec<ProfileTerm>,
     kinks: Vec<f64>,
 }
 
@@ -49,19 +49,19 @@ impl Tip {
         form.check()?;
         let terms = match &form {
             Form::FlatPunch { .. } => vec![],
-            Form::Paraboloid { radius } => vec![Term::paraboloid(1.0 / radius)],
-            Form::Sphere { radius } => vec![Term::Sphere { radius: *radius }],
-            Form::Cone { slope } => vec![Term::power(*slope, 1.0)],
-            Form::Power { factor, exponent } => vec![Term::power(*factor, *exponent)],
-            Form::RoundedCone { slope, radius } => vec![Term::Rounded {
+            Form::Paraboloid { radius } => vec![ProfileTerm::paraboloid(1.0 / radius)],
+            Form::Sphere { radius } => vec![ProfileTerm::Sphere { radius: *radius }],
+            Form::Cone { slope } => vec![ProfileTerm::power(*slope, 1.0)],
+            Form::Power { factor, exponent } => vec![ProfileTerm::power(*factor, *exponent)],
+            Form::RoundedCone { slope, radius } => vec![ProfileTerm::Rounded {
                 at: slope * radius,
                 curvature: 1.0 / radius,
             }],
-            Form::RoundedPunch { flat, radius } => vec![Term::Hinge {
+            Form::RoundedPunch { flat, radius } => vec![ProfileTerm::Hinge {
                 at: *flat,
                 curvature: 1.0 / radius,
             }],
-            Form::FlatCone { flat, slope } => vec![Term::Step {
+            Form::FlatCone { flat, slope } => vec![ProfileTerm::Step {
                 at: *flat,
                 slope: *slope,
             }],
@@ -71,7 +71,7 @@ impl Tip {
                 depth,
             } => term::area_function(coefficients, *depth)?,
         };
-        let mut kinks: Vec<f64> = terms.iter().filter_map(Term::kink).collect();
+        let mut kinks: Vec<f64> = terms.iter().filter_map(ProfileTerm::kink).collect();
         kinks.sort_by(f64::total_cmp);
         if kinks.len() > FEW_KINKS {
             kinks.clear();
@@ -193,8 +193,8 @@ impl Tip {
     /// Whether the slope of the profile nowhere falls, so that the contact is a disc at every load.
     pub(super) fn is_convex(&self) -> bool {
         self.terms.iter().all(|term| match term {
-            Term::Hinge { curvature, .. } => *curvature >= 0.0,
-            Term::Power {
+            ProfileTerm::Hinge { curvature, .. } => *curvature >= 0.0,
+            ProfileTerm::Power {
                 factor, exponent, ..
             } => *factor >= 0.0 && *exponent >= 1.0,
             _ => true,
@@ -213,7 +213,7 @@ impl Tip {
         } else {
             &[]
         };
-        terms.iter().filter_map(Term::kink)
+        terms.iter().filter_map(ProfileTerm::kink)
     }
 
     /// Whether the pressure has no limit on the axis: a cone's.
@@ -228,52 +228,52 @@ impl Tip {
     }
 
     /// Derivatives of the terms with respect to a number of the form.
-    fn rates(&self, number: usize) -> Vec<Term> {
+    fn rates(&self, number: usize) -> Vec<ProfileTerm> {
         match (&self.form, number) {
-            (Form::Paraboloid { radius }, _) => vec![Term::paraboloid(-radius.powi(-2))],
-            (Form::Sphere { radius }, _) => vec![Term::SphereRate { radius: *radius }],
-            (Form::Cone { .. }, _) => vec![Term::power(1.0, 1.0)],
-            (Form::Power { exponent, .. }, 0) => vec![Term::power(1.0, *exponent)],
+            (Form::Paraboloid { radius }, _) => vec![ProfileTerm::paraboloid(-radius.powi(-2))],
+            (Form::Sphere { radius }, _) => vec![ProfileTerm::SphereRate { radius: *radius }],
+            (Form::Cone { .. }, _) => vec![ProfileTerm::power(1.0, 1.0)],
+            (Form::Power { exponent, .. }, 0) => vec![ProfileTerm::power(1.0, *exponent)],
             (Form::Power { factor, exponent }, _) => {
-                let Term::Power { rate, .. } = Term::power(*factor, *exponent) else {
+                let ProfileTerm::Power { rate, .. } = ProfileTerm::power(*factor, *exponent) else {
                     return vec![];
                 };
-                vec![Term::ExponentRate {
+                vec![ProfileTerm::ExponentRate {
                     exponent: *exponent,
                     rate,
                 }]
             }
             // b = m R; ∂Rounded/∂b is a step of its curvature.
-            (Form::RoundedCone { slope, radius }, 0) => vec![Term::Step {
+            (Form::RoundedCone { slope, radius }, 0) => vec![ProfileTerm::Step {
                 at: slope * radius,
                 slope: 1.0,
             }],
             (Form::RoundedCone { slope, radius }, _) => {
                 let (at, rate) = (slope * radius, -radius.powi(-2));
                 vec![
-                    Term::Rounded {
+                    ProfileTerm::Rounded {
                         at,
                         curvature: rate,
                     },
-                    Term::Step {
+                    ProfileTerm::Step {
                         at,
                         slope: slope / radius,
                     },
                 ]
             }
-            (Form::RoundedPunch { flat, radius }, 0) => vec![Term::Step {
+            (Form::RoundedPunch { flat, radius }, 0) => vec![ProfileTerm::Step {
                 at: *flat,
                 slope: -1.0 / radius,
             }],
-            (Form::RoundedPunch { flat, radius }, _) => vec![Term::Hinge {
+            (Form::RoundedPunch { flat, radius }, _) => vec![ProfileTerm::Hinge {
                 at: *flat,
                 curvature: -radius.powi(-2),
             }],
-            (Form::FlatCone { flat, slope }, 0) => vec![Term::PlaceRate {
+            (Form::FlatCone { flat, slope }, 0) => vec![ProfileTerm::PlaceRate {
                 at: *flat,
                 slope: *slope,
             }],
-            (Form::FlatCone { flat, .. }, _) => vec![Term::Step {
+            (Form::FlatCone { flat, .. }, _) => vec![ProfileTerm::Step {
                 at: *flat,
                 slope: 1.0,
             }],
@@ -285,24 +285,22 @@ impl Tip {
     pub(super) fn rate(&self, parameter: TipParameter, places: &[f64]) -> Vec<[f64; 2]> {
         match parameter {
             // F of g(r/√κ) is F(s/√κ).
-            TipParameter::Area => places
-                .iter()
-                .map(|s| {
+            TipParameter::Area => {
+                let rate = |s: &f64| {
                     let [_, slope, bend] = self.transform(*s);
                     // The product vanishes at s = 0 with the curvature of a sharp end.
                     let bend = if *s > 0.0 { s * bend } else { 0.0 };
                     [-0.5 * s * slope, -0.5 * (slope + bend)]
-                })
-                .collect(),
+                };
+                places.iter().map(rate).collect()
+            }
             TipParameter::Number(number) => {
                 let terms = self.rates(number);
-                places
-                    .iter()
-                    .map(|s| {
-                        let [value, slope, _] = sum(&terms, *s);
-                        [value, slope]
-                    })
-                    .collect()
+                let rate = |s: &f64| {
+                    let [value, slope, _] = sum(&terms, *s);
+                    [value, slope]
+                };
+                places.iter().map(rate).collect()
             }
         }
     }
@@ -310,14 +308,9 @@ impl Tip {
     /// Derivative of the profile g(r) with respect to `parameter`.
     pub(super) fn gap_rate(&self, parameter: TipParameter, r: f64) -> f64 {
         match parameter {
-            TipParameter::Area => {
-                // Where the slope has no limit on the axis, the product vanishes.
-                if r > 0.0 {
-                    -0.5 * r * self.slope(r)
-                } else {
-                    0.0
-                }
-            }
+            // Where the slope has no limit on the axis, the product vanishes.
+            TipParameter::Area if r > 0.0 => -0.5 * r * self.slope(r),
+            TipParameter::Area => 0.0,
             TipParameter::Number(number) => self.rates(number).iter().map(|term| term.gap(r)).sum(),
         }
     }
@@ -338,19 +331,12 @@ impl Tip {
             Form::FlatPunch { radius } => (a - radius).abs() <= 1e-12 * radius,
             _ => a > low && a < high,
         };
-        match inside {
-            true => Ok(a),
-            false => Err(Error::Parameter {
-                name: "radius",
-                requirement,
-                value: a,
-            }),
-        }
+        require("radius", a, inside, requirement)
     }
 }
 
 /// Σ of the terms at s; F = (π/2) m s of a cone is among them.
-fn sum(terms: &[Term], s: f64) -> [f64; 3] {
+fn sum(terms: &[ProfileTerm], s: f64) -> [f64; 3] {
     let mut total = [0.0; 3];
     for term in terms {
         for (total, value) in total.iter_mut().zip(term.transform(s)) {
@@ -365,14 +351,10 @@ fn sum(terms: &[Term], s: f64) -> [f64; 3] {
 /// # Errors
 /// Unless the angle lies between 0 and π/2.
 pub fn slope_of(angle: f64) -> Result<f64> {
-    match angle > 0.0 && angle < FRAC_PI_2 {
-        true => Ok(angle.tan().recip()),
-        false => Err(Error::Parameter {
-            name: "half_angle",
-            requirement: "between 0 and pi/2, in radians; np.deg2rad makes them of degrees",
-            value: angle,
-        }),
-    }
+    let requirement = "between 0 and pi/2, in radians; np.deg2rad makes them of degrees";
+    let holds = angle > 0.0 && angle < FRAC_PI_2;
+    require("half_angle", angle, holds, requirement)?;
+    Ok(angle.tan().recip())
 }
 
 /// Steepest slope of a cone, of a half angle of 11°. The theory is that of small slopes, and errs by their square: there is no such tip
@@ -529,7 +511,7 @@ impl Tip {
                 }
             }
             _ => {
-                let mut kinks: Vec<f64> = self.terms.iter().filter_map(Term::kink).collect();
+                let mut kinks: Vec<f64> = self.terms.iter().filter_map(ProfileTerm::kink).collect();
                 kinks.retain(|b| *b < a);
                 kinks.sort_by(f64::total_cmp);
                 if kinks.len() > most {

@@ -69,13 +69,13 @@ impl Point {
             "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
         )?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
-        if far > FARTHEST * z.max(self.radius) {
-            return Err(Error::Parameter {
-                name: "r",
-                requirement: "at most 1e4 of the depth or of the contact radius",
-                value: far,
-            });
-        }
+        let is_near = far <= FARTHEST * z.max(self.radius);
+        require(
+            "r",
+            far,
+            is_near,
+            "at most 1e4 of the depth or of the contact radius",
+        )?;
         let bodies = self.parts.stack.bodies();
         let body = bodies.get(body).and_then(|body| body.half_space());
         let body = body.ok_or(Error::Inconsistent(

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use spec_math::cephes64::{gamma, psi};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 
 /// A term of F(s) = s ∫₀^s g'(r)/√(s²−r²) dr, the indentation at which a bare body is in contact up to s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Term {
+pub(super) enum ProfileTerm {
     /// g = b rⁿ, with rate = b n (√π/2) Γ(n/2)/Γ((n+1)/2): F = rate sⁿ.
     Power {
         factor: f64,
@@ -31,7 +31,7 @@ pub(super) enum Term {
     PlaceRate { at: f64, slope: f64 },
 }
 
-impl Term {
+impl ProfileTerm {
     /// g = b rⁿ.
     pub(super) fn power(factor: f64, exponent: f64) -> Self {
         let ratio = gamma(0.5 * exponent) / gamma(0.5 * exponent + 0.5);
@@ -86,13 +86,8 @@ impl Term {
                     false => 0.0,
                 }
             }
-            Self::PlaceRate { at, slope } => {
-                if r > at {
-                    -slope
-                } else {
-                    0.0
-                }
-            }
+            Self::PlaceRate { at, slope } if r > at => -slope,
+            Self::PlaceRate { .. } => 0.0,
         }
     }
 
@@ -236,14 +231,14 @@ const SHALLOWEST: f64 = 1e-9;
 
 /// Terms of the profile whose slope g' is linear between the places `r`, from (0, slope) on: each piece adds a hinge. The
 /// profile goes on with the last curvature.
-fn hinges(r: &[f64], slopes: &[f64]) -> Vec<Term> {
-    let mut terms = vec![Term::power(slopes[0], 1.0)];
+fn hinges(r: &[f64], slopes: &[f64]) -> Vec<ProfileTerm> {
+    let mut terms = vec![ProfileTerm::power(slopes[0], 1.0)];
     let mut last = 0.0;
     for k in 0..r.len() - 1 {
         let curvature = (slopes[k + 1] - slopes[k]) / (r[k + 1] - r[k]);
         terms.push(match k {
-            0 => Term::paraboloid(curvature),
-            _ => Term::Hinge {
+            0 => ProfileTerm::paraboloid(curvature),
+            _ => ProfileTerm::Hinge {
                 at: r[k],
                 curvature: curvature - last,
             },
@@ -255,11 +250,7 @@ fn hinges(r: &[f64], slopes: &[f64]) -> Vec<Term> {
 
 /// Terms of the profile through the samples g(r), which begin on the axis at 0. Its slope is linear between the midpoints
 /// of the samples, and 0 on the axis.
-///
-/// # Errors
-/// Fewer than three samples, places that do not ascend from 0, numbers that are not finite, and heights that do not begin
-/// with 0.
-pub(super) fn profile(r: &[f64], g: &[f64]) -> Result<Vec<Term>> {
+pub(super) fn profile(r: &[f64], g: &[f64]) -> Result<Vec<ProfileTerm>> {
     if r.len() != g.len() || r.len() < 3 {
         return Err(Error::Shape {
             name: "profile",
@@ -274,20 +265,11 @@ pub(super) fn profile(r: &[f64], g: &[f64]) -> Result<Vec<Term>> {
                 index: [index, 0],
             });
         }
-        if values[0].abs() > 0.0 {
-            return Err(Error::Parameter {
-                name,
-                requirement: "0 at the first sample, which lies on the axis",
-                value: values[0],
-            });
-        }
+        let requirement = "0 at the first sample, which lies on the axis";
+        require(name, values[0], values[0].abs() <= 0.0, requirement)?;
     }
     if let Some(k) = (1..r.len()).find(|&k| r[k] <= r[k - 1]) {
-        return Err(Error::Parameter {
-            name: "profile radii",
-            requirement: "ascending",
-            value: r[k],
-        });
+        require("profile radii", r[k], false, "ascending")?;
     }
     let middles = (1..r.len()).map(|k| 0.5 * (r[k] + r[k - 1]));
     let slopes = (1..r.len()).map(|k| (g[k] - g[k - 1]) / (r[k] - r[k - 1]));
@@ -310,10 +292,7 @@ fn area(coefficients: &[f64], depth: f64) -> [f64; 2] {
 }
 
 /// Terms of the tip whose section at the distance d from its end has the area A(d), up to the deepest `depth`.
-///
-/// # Errors
-/// No coefficients, such that are not finite, and an area that does not grow.
-pub(super) fn area_function(coefficients: &[f64], depth: f64) -> Result<Vec<Term>> {
+pub(super) fn area_function(coefficients: &[f64], depth: f64) -> Result<Vec<ProfileTerm>> {
     if let Some(index) = coefficients.iter().position(|c| !c.is_finite()) {
         return Err(Error::NonFinite {
             name: "area coefficients",
@@ -324,13 +303,9 @@ pub(super) fn area_function(coefficients: &[f64], depth: f64) -> Result<Vec<Term
     for k in 0..SAMPLES {
         let d = depth * SHALLOWEST.powf(1.0 - (k + 1) as f64 / SAMPLES as f64);
         let [area, growth] = area(coefficients, d);
-        if area <= 0.0 || growth <= 0.0 || coefficients.is_empty() {
-            return Err(Error::Parameter {
-                name: "area function",
-                requirement: "above 0 and ascending at all depths up to the deepest; here is the depth where it is not",
-                value: d,
-            });
-        }
+        let requirement = "above 0 and ascending at all depths up to the deepest; here is the depth where it is not";
+        let ascends = area > 0.0 && growth > 0.0 && !coefficients.is_empty();
+        require("area function", d, ascends, requirement)?;
         // π r² = A(g): g' = 2πr/A'.
         let radius = (area / PI).sqrt();
         if radius > r[r.len() - 1] * (1.0 + 1e-9) {
