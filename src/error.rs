@@ -58,6 +58,17 @@ pub enum Error {
     /// Arguments that contradict each other or do not suffice.
     #[error("{0}")]
     Inconsistent(&'static str),
+    /// Something that the kind of adhesion does not permit.
+    #[error("{0}")]
+    Adhesion(&'static str),
+    /// A state of an indentation that does not exist.
+    #[error("{0}")]
+    NoState(&'static str),
+    /// A rolling contact that reaches the edge of the grid.
+    #[error(
+        "in rolling, the contact must end a cell or more before the edge of the grid: give a wider grid"
+    )]
+    RollsOffGrid,
     /// A contact of a tip that is no disc, which the theory of discs cannot have.
     #[error(
         "the contact of this tip is no disc but a ring here: the pressure of a disc would be negative or the surfaces would \

@@ -10,7 +10,7 @@
 //!
 //! (Sneddon, Int. J. Eng. Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4, for M = 0.) The solution is φ = δ φ₁ − φ_F,
 //! that of a flat punch and that of the profile. With S = 2π ∫ φ₁, P = S δ − P_F; without adhesion the pressure ends at the
-//! edge, φ(a) = 0; and the energy identity S' = 2π² φ₁(a)²/E* holds for every stack. The discretisation is nacre's own.
+//! edge, φ(a) = 0; and the energy identity S' = 2π² φ₁(a)²/E* holds for every stack. The discretisation was derived here and is not published elsewhere.
 //!
 //! | file | what it holds |
 //! |---|---|

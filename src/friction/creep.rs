@@ -23,7 +23,7 @@ use crate::numerics::parallel::Threads;
 ///
 /// for the tractions on the body, ξ, η and φ being the creepages and the spin of the counterbody over it. Kalker,
 /// Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990), §2.2.3 and table E3,
-/// doi:10.1007/978-94-015-7889-9; coefficients of coated bodies are nacre's own.
+/// doi:10.1007/978-94-015-7889-9; those of coated bodies are derived here; not published elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CreepCoefficients {
     /// C11, of the longitudinal creepage.
@@ -42,7 +42,7 @@ pub struct CreepCoefficients {
     pub semi_axes: [f64; 2],
 }
 
-/// Callback that says whether to go on.
+/// Callback that says whether to continue.
 pub type CreepWatch<'a> = dyn FnMut() -> ControlFlow<()> + Send + 'a;
 
 /// Cells along each axis of the ellipse, by default.
@@ -59,7 +59,7 @@ const MOST: usize = 2000;
 /// force without creepage, is not part of them. `cells` across the ellipse (default: 64) and half as many are
 /// extrapolated, as errors fall in proportion to the size of the cells.
 ///
-/// `watch` is asked with each convolution whether to go on.
+/// `watch` is asked with each convolution whether to continue.
 ///
 /// # Errors
 /// Semi-axes that are not above 0, fewer than 8 cells, bodies without layers and substrate, two rigid bodies;

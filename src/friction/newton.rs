@@ -3,7 +3,7 @@
 //! In sliding, the tractions minimise ½ qᵀKq − qᵀg over the discs |q| ≤ μp, under the forces that are given: one
 //! solution. A slipping cell keeps |q| = μp; along it, the curvature λ/μp of its disc adds to K. The method is that of
 //! Zhao, Vollebregt & Oosterlee, J. Comput. Phys. 288 (2015) 86, doi:10.1016/j.jcp.2015.02.005 (TangCG), with Newton's
-//! equations, forces and preconditioner of nacre's own.
+//! equations, forces and preconditioner derived here.
 
 use std::ops::ControlFlow;
 
@@ -57,7 +57,7 @@ impl Misfit {
 }
 
 /// Called with each convolution: their number and the misfit at the last outer iteration; a break stops.
-pub(super) type Watch<'a> = dyn FnMut(usize, Misfit) -> ControlFlow<()> + 'a;
+pub(super) type ConvolutionWatch<'a> = dyn FnMut(usize, Misfit) -> ControlFlow<()> + 'a;
 
 /// Inner residuals relative to their start: at most the first; the second times the misfit; and no less than the third
 /// of what is still missing to the tolerance. Chosen by trial.
@@ -133,7 +133,7 @@ impl TractionProblem<'_> {
         &self,
         mut q: Vec<f64>,
         effort: Effort,
-        watch: &mut Watch,
+        watch: &mut ConvolutionWatch,
     ) -> TractionResult {
         self.law.project(&self.law.at_bound(&q), &mut q);
         let mut response = vec![0.0; q.len()];

@@ -13,7 +13,7 @@ use ndarray::Array2;
 use super::newton::{Effort, Misfit};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
-use super::task::{Before, Pressed, Solved, Task, bounds, zeros};
+use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
 use crate::compliance::traction::Tangential;
 use crate::contact::{Contact, Motion, OVERFLOW, Options, Solution, Termination, Warning};
 use crate::error::{Error, Result, require};
@@ -35,7 +35,7 @@ const START: f64 = 1e-3;
 /// The operator of the whole grid rounds otherwise than that of the window.
 const ROUNDING: f64 = 1e-13;
 
-/// The state from which a move goes on.
+/// The state at which a move begins.
 #[derive(Debug, Clone, Copy)]
 pub struct Last<'a> {
     /// The solution that is left behind.
@@ -45,14 +45,14 @@ pub struct Last<'a> {
 }
 
 /// The course of a move, of which its caller is told.
-struct Course<'a, 'b> {
+struct FrictionCourse<'a, 'b> {
     begun: Instant,
     report: FrictionReport,
     stopped: bool,
     progress: &'a mut FrictionProgress<'b>,
 }
 
-impl<'a, 'b> Course<'a, 'b> {
+impl<'a, 'b> FrictionCourse<'a, 'b> {
     fn new(session: &Session, progress: &'a mut FrictionProgress<'b>) -> Self {
         Self {
             begun: Instant::now(),
@@ -98,7 +98,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// The next move after `last`, from which steady rolling does not go on.
+    /// The next move after `last`, which steady rolling does not depend on.
     pub(super) fn solve(
         &self,
         next: Move,
@@ -134,7 +134,7 @@ impl<'a> Session<'a> {
         &self,
         step: &'s Step,
         last: Option<&'s FrictionSolution>,
-    ) -> Result<(Motion, &'s Friction, Task<'s>)> {
+    ) -> Result<(Motion, &'s Friction, TractionTask<'s>)> {
         let grid = self.contact.grid();
         let before = last.map(|last| last.normal.report.motion);
         let motion = match (step.motion, before) {
@@ -154,7 +154,7 @@ impl<'a> Session<'a> {
         let before = before_of(last, grid)?;
         let [x, y] = before.shift;
         let starts = [x, y, before.twist];
-        let task = Task {
+        let task = TractionTask {
             rolling: None,
             is_steady: false,
             increments: [0, 1, 2].map(|k| match freedoms[k] {
@@ -173,7 +173,7 @@ impl<'a> Session<'a> {
         rolling: &'r Rolling,
         is_steady: bool,
         last: Option<&FrictionSolution>,
-    ) -> Result<Task<'r>> {
+    ) -> Result<TractionTask<'r>> {
         let grid = self.contact.grid();
         rolling.friction.check(grid)?;
         let [along, across] = rolling.freedoms(grid)?;
@@ -182,7 +182,7 @@ impl<'a> Session<'a> {
             Freedom::Prescribed(value) => Freedom::Prescribed(value * d),
             other => other,
         };
-        Ok(Task {
+        Ok(TractionTask {
             rolling: Some(rolling),
             is_steady,
             increments: [along, across, Freedom::Prescribed(rolling.spin)].map(over_a_cell),
@@ -193,14 +193,14 @@ impl<'a> Session<'a> {
     /// Pressure and tractions in turn until neither changes the other.
     fn settle(
         &self,
-        task: &Task,
+        task: &TractionTask,
         motion: &Motion,
         friction: &Friction,
         start: Start,
         progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
-        let mut course = Course::new(self, progress);
+        let mut course = FrictionCourse::new(self, progress);
         let mut traction = task.before.traction.clone();
         let mut pressure: Option<Array2<f64>> = start.pressure.cloned();
         let (normal, solved) = loop {
@@ -231,7 +231,7 @@ impl<'a> Session<'a> {
                 true => self.starts(motion, &normal, [x, y], friction, &traction)?,
                 false => vec![traction.clone()],
             };
-            let pressed = Pressed {
+            let pressed = PressedCells {
                 grid,
                 bound: &bound,
                 spreading: &self.spreading(&normal.pressure),
@@ -254,12 +254,12 @@ impl<'a> Session<'a> {
     /// Tractions for a pressure, with what is left of the convolutions.
     fn tractions(
         &self,
-        task: &Task,
-        pressed: Pressed,
+        task: &TractionTask,
+        pressed: PressedCells,
         starts: &[[Array2<f64>; 2]],
         tolerance: f64,
-        course: &mut Course,
-    ) -> Option<Solved> {
+        course: &mut FrictionCourse,
+    ) -> Option<SolvedTask> {
         let counted = course.report.convolutions;
         let effort = Effort {
             tolerance,
@@ -280,14 +280,14 @@ impl<'a> Session<'a> {
     /// The solution with its errors on the whole grid.
     fn finish(
         &self,
-        task: &Task,
+        task: &TractionTask,
         friction: &Friction,
         mut normal: Solution,
-        solved: Option<Solved>,
-        course: Course,
+        solved: Option<SolvedTask>,
+        course: FrictionCourse,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
-        let pressed = Pressed {
+        let pressed = PressedCells {
             grid,
             bound: &bounds(&normal.pressure, friction)?,
             spreading: &self.spreading(&normal.pressure),
@@ -344,7 +344,7 @@ impl<'a> Session<'a> {
         motion: &Motion,
         traction: &[Array2<f64>; 2],
         pressure: Option<&Array2<f64>>,
-        course: &mut Course,
+        course: &mut FrictionCourse,
     ) -> Result<Solution> {
         let mut options = Options {
             tolerance: self.options.tolerance,

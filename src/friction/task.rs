@@ -7,7 +7,7 @@ use ndarray::{Array2, Axis};
 
 use super::law::{CellState, Law};
 use super::linear::Operator;
-use super::newton::{Effort, TractionProblem, TractionResult, Watch};
+use super::newton::{ConvolutionWatch, Effort, TractionProblem, TractionResult};
 use super::solution::TangentialMotion;
 use super::step::{Freedom, Friction, Rolling, RollingDirection};
 use crate::compliance::traction::{Tangential, TangentialWindow};
@@ -17,7 +17,7 @@ use crate::model::grid::{Grid, Window};
 
 /// What is asked of the tangential motion.
 #[derive(Debug)]
-pub(super) struct Task<'a> {
+pub(super) struct TractionTask<'a> {
     /// Rolling; `None` in sliding.
     pub(super) rolling: Option<&'a Rolling>,
     /// Whether rolling is steady, so that no state comes before.
@@ -57,7 +57,7 @@ pub(super) fn zeros(shape: [usize; 2]) -> [Array2<f64>; 2] {
 
 /// What the tractions belong to.
 #[derive(Clone, Copy)]
-pub(super) struct Pressed<'a> {
+pub(super) struct PressedCells<'a> {
     pub(super) grid: &'a Grid,
     /// μp of each cell.
     pub(super) bound: &'a Array2<f64>,
@@ -65,7 +65,7 @@ pub(super) struct Pressed<'a> {
     pub(super) spreading: &'a Array2<f64>,
 }
 
-impl Task<'_> {
+impl TractionTask<'_> {
     pub(super) fn slides(&self) -> bool {
         self.rolling.is_none()
     }
@@ -116,16 +116,14 @@ impl Task<'_> {
         };
         match self.direction().is_some_and(leaves) {
             false => Ok(()),
-            true => Err(Error::Inconsistent(
-                "in rolling, the contact must end a cell or more before the edge of the grid: give a wider grid",
-            )),
+            true => Err(Error::RollsOffGrid),
         }
     }
 
     /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;
     /// `None` where no cell has friction.
-    fn window(&self, pressed: Pressed) -> Option<Window> {
-        let Pressed {
+    fn window(&self, pressed: PressedCells) -> Option<Window> {
+        let PressedCells {
             bound, spreading, ..
         } = pressed;
         if bound.iter().all(|bound| *bound <= 0.0) {
@@ -174,11 +172,11 @@ impl Task<'_> {
     pub(super) fn solve(
         &self,
         tangential: &Tangential,
-        pressed: Pressed,
+        pressed: PressedCells,
         starts: &[[Array2<f64>; 2]],
         effort: Effort,
-        watch: &mut Watch,
-    ) -> Option<Solved> {
+        watch: &mut ConvolutionWatch,
+    ) -> Option<SolvedTask> {
         let window = self.window(pressed)?;
         let operators = tangential.window([window[0].len(), window[1].len()]);
         let law = Law {
@@ -205,7 +203,7 @@ impl Task<'_> {
                 *moved = *loaded.next()?;
             }
         }
-        Some(Solved {
+        Some(SolvedTask {
             window,
             cells: operators.cells(),
             found,
@@ -218,7 +216,7 @@ impl Task<'_> {
         &self,
         operators: &'p Arc<TangentialWindow>,
         law: &'p Law,
-        pressed: Pressed,
+        pressed: PressedCells,
         window: &Window,
     ) -> TractionProblem<'p> {
         let operator = Operator {
@@ -270,9 +268,9 @@ impl Task<'_> {
     pub(super) fn fields(
         &self,
         tangential: &Tangential,
-        pressed: Pressed,
-        solved: Option<&Solved>,
-    ) -> Fields {
+        pressed: PressedCells,
+        solved: Option<&SolvedTask>,
+    ) -> FrictionFields {
         let grid = pressed.grid;
         let shape = grid.shape();
         let traction = solved.map_or_else(|| zeros(shape), |solved| solved.tractions(shape));
@@ -304,7 +302,7 @@ impl Task<'_> {
         let mut slip = zeros(shape);
         let (mut violation, mut scale, mut excess, mut most) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let mut full_slip = solved.is_some();
-        for (cell, state) in solved.into_iter().flat_map(Solved::states) {
+        for (cell, state) in solved.into_iter().flat_map(SolvedTask::states) {
             if *state == CellState::Free {
                 continue;
             }
@@ -329,7 +327,7 @@ impl Task<'_> {
             }
         }
         let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-        Fields {
+        FrictionFields {
             traction,
             displacement,
             slip,
@@ -358,7 +356,7 @@ impl Task<'_> {
 }
 
 /// A solved problem on its window.
-pub(super) struct Solved {
+pub(super) struct SolvedTask {
     window: Window,
     cells: usize,
     pub(super) found: TractionResult,
@@ -366,7 +364,7 @@ pub(super) struct Solved {
     moved: [f64; 3],
 }
 
-impl Solved {
+impl SolvedTask {
     /// Cells of the window, and what they do.
     fn states(&self) -> impl Iterator<Item = ([usize; 2], &CellState)> {
         each(&self.window)
@@ -387,7 +385,7 @@ impl Solved {
 }
 
 /// Tractions, displacements and slip of the whole grid.
-pub(super) struct Fields {
+pub(super) struct FrictionFields {
     pub(super) traction: [Array2<f64>; 2],
     pub(super) displacement: [Array2<f64>; 2],
     pub(super) slip: [Array2<f64>; 2],
@@ -400,7 +398,7 @@ pub(super) struct Fields {
 /// Creepage or twist from which on their squares, of which half is left out, are 5 % of them.
 const LARGE: f64 = 0.1;
 
-impl Fields {
+impl FrictionFields {
     pub(super) fn are_finite(&self) -> bool {
         let fields = [&self.traction, &self.displacement, &self.slip];
         let (TangentialMotion::Slide {
@@ -419,7 +417,7 @@ impl Fields {
     /// The warning of creepages or a twist that are not small, where `pressure` is.
     pub(super) fn warning(
         &self,
-        task: &Task,
+        task: &TractionTask,
         grid: &Grid,
         pressure: &Array2<f64>,
     ) -> Option<Warning> {
@@ -442,8 +440,8 @@ impl Fields {
         (size > LARGE).then_some(Warning::LargeMotion { size })
     }
 
-    /// Brings back the state before the step, where there was one: the history can go on from there.
-    pub(super) fn restore(&mut self, task: &Task) {
+    /// Brings back the state before the step, where there was one: the history can continue from there.
+    pub(super) fn restore(&mut self, task: &TractionTask) {
         if task.is_steady {
             return;
         }

@@ -22,7 +22,7 @@ const MARGIN: f64 = 1e-10;
 pub struct LinearOptions<'a> {
     /// Residual of the linear systems, relative to their right sides. Default: 1e-9.
     pub tolerance: f64,
-    /// Asked before each iteration whether to go on; a break ends the work with [`Error::Stopped`]. Default: `None`.
+    /// Asked before each iteration whether to continue; a break ends the work with [`Error::Stopped`]. Default: `None`.
     pub watch: Option<&'a dyn Fn() -> ControlFlow<()>>,
 }
 

@@ -317,7 +317,7 @@ const INWARDS: usize = 3;
 /// A ≈ 2A(t) − A(2t)      A(t) = dA Σ S(p²/t)      S(u) = s² (3 − 2s), s = min(u/2, 1)
 /// ```
 ///
-/// t is the mean of p² three cells from the edge, and is kept while differentiating. The method is nacre's own.
+/// t is the mean of p² three cells from the edge, and is kept while differentiating. Derived here; not published elsewhere.
 pub(super) fn area_estimate(state: &Linearised, area: f64) -> Result<(f64, Vec<f64>)> {
     let ny = state.tangent.window()[1].len();
     let nx = state.pressure.len() / ny;

@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-13;
 /// Difference between the displacement of a solution and that of its pressure, relative to the largest.
 const OTHER_DISPLACEMENT: f64 = 1e-5;
 
-/// Asked before each iteration of a linear solve whether to go on.
+/// Asked before each iteration of a linear solve whether to continue.
 pub(super) type Asked<'a> = Option<&'a dyn Fn() -> ControlFlow<()>>;
 
 /// A contact linearised at its solution. Arrays are those of the tangent's window, in C order.

@@ -60,21 +60,13 @@ fn depths(body: &HalfSpace, place: &StressPlace) -> Result<Vec<(f64, Side)>> {
             interface, side, ..
         } => vec![(find(interface)?, side)],
         StressPlace::Layer { layer, depths, .. } => {
-            if depths < 2 {
-                return Err(Error::Parameter {
-                    name: "number of depths",
-                    requirement: "at least 2",
-                    value: depths as f64,
-                });
-            }
-            let (bottom, top) = (
-                find(layer)?,
-                if layer > 0 {
-                    interfaces[layer - 1]
-                } else {
-                    0.0
-                },
-            );
+            require("number of depths", depths as f64, depths >= 2, "at least 2")?;
+            let bottom = find(layer)?;
+            let top = if layer > 0 {
+                interfaces[layer - 1]
+            } else {
+                0.0
+            };
             let along = |k: usize| {
                 let part = k as f64 / (depths - 1) as f64;
                 match k + 1 == depths {
@@ -101,27 +93,22 @@ fn options(solution: &Solution, output: &StressOutput, friction: f64, side: Side
 fn planes(
     solution: &Solution,
     output: &StressOutput,
-    (body, pressure): (&HalfSpace, &Array2<f64>),
+    body: &HalfSpace,
+    pressure: &Array2<f64>,
     friction: f64,
 ) -> Result<Vec<Weights>> {
     let plan = solution.uniform_stress_plan(output.member, body, pressure)?;
     let mut found = Vec::new();
     for (z, side) in depths(body, &output.place)? {
         let field = plan.stress(&[z], &options(solution, output, friction, side))?;
-        found.push(
-            field
-                .components
-                .map(|component| component.iter().copied().collect()),
-        );
+        let flat = |component: ndarray::Array3<f64>| component.iter().copied().collect();
+        found.push(field.components.map(flat));
     }
     Ok(found)
 }
 
 impl StressSeed {
     /// The seed of a stress under `pressure`, the polished one on the whole grid.
-    ///
-    /// # Errors
-    /// A stress without a derivative; bad options.
     pub(super) fn new(
         solution: &Solution,
         state: &Linearised,
@@ -129,7 +116,7 @@ impl StressSeed {
         pressure: Array2<f64>,
     ) -> Result<(Seed, Self)> {
         let body = body_of(solution, output)?;
-        let fields = planes(solution, output, (&body, &pressure), output.friction)?;
+        let fields = planes(solution, output, &body, &pressure, output.friction)?;
         let at = depths(&body, &output.place)?;
         let (value, weights, warning) = match &output.place {
             StressPlace::Point([x, y, _], _) => {
@@ -151,10 +138,8 @@ impl StressSeed {
             let options = options(solution, output, output.friction, side);
             slopes += &plan.transposed(z, &plane.weights, &options)?;
         }
-        let window = block(&slopes, state.tangent.window())
-            .iter()
-            .copied()
-            .collect::<Vec<_>>();
+        let window = block(&slopes, state.tangent.window());
+        let window: Vec<f64> = window.iter().copied().collect();
         let mut seed = Seed::linear(state, value, state.masked(&window));
         seed.warning = warning;
         let source = Self {
@@ -168,7 +153,7 @@ impl StressSeed {
 
     /// Σ w σ of planes of another body or friction.
     fn weighted(&self, solution: &Solution, body: &HalfSpace, friction: f64) -> Result<f64> {
-        let found = planes(solution, &self.output, (body, &self.pressure), friction)?;
+        let found = planes(solution, &self.output, body, &self.pressure, friction)?;
         let mut sum = 0.0;
         for (plane, fields) in self.planes.iter().zip(&found) {
             for (weights, field) in plane.weights.iter().zip(fields) {
@@ -267,7 +252,7 @@ const ORDER: i32 = 32;
 /// ∂J/∂σ_k = w_k + (J − Σ w σ)/s · ∂s/∂σ_k      w = e^{βσ}/Σ e^{βσ}      ∂s/∂σ_k = |σ_k/s|^{q−1} sgn σ_k / N
 /// ```
 ///
-/// κ is the `sharpness`, and q = [`ORDER`]; s, unlike the largest stress, is smooth. The choice of s is nacre's own.
+/// κ is the `sharpness`, and q = [`ORDER`]; s, unlike the largest stress, is smooth. The choice of s is made here; not published elsewhere.
 fn soft_mean(values: &[f64], sharpness: f64) -> (f64, Vec<f64>) {
     let count = values.len() as f64;
     let largest = values.iter().fold(f64::NEG_INFINITY, |a, v| a.max(*v));

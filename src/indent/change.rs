@@ -7,7 +7,7 @@
 //! ```
 //!
 //! What is given (radius, load or approach) is held by a change of the radius along the curve; the outer radius of a cohesive zone
-//! follows everything. Derived for nacre.
+//! follows everything. Derived here; not published elsewhere.
 //!
 //! Derivatives along the states of one adhesion, on which the outer radius of a cohesive zone follows everything else.
 //!
@@ -18,14 +18,14 @@
 //! dD = φ₁(a) dδ + D_c dc + (φ' − ψ')(a) da      dG = (u₁(c) − 1) dδ + G_c dc = 0      dP = S dδ + P_c dc
 //! ```
 //!
-//! Derived for nacre. The energy of the stress between the surfaces makes P_c = 2πcσ₀ (u₁(c) − 1), which a test confirms.
+//! Derived here; not published elsewhere. The energy of the stress between the surfaces makes P_c = 2πcσ₀ (u₁(c) − 1), which a test confirms.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::Adhesion;
 use super::density::{Density, bessel_sum};
-use super::equation::stack::{Level, Parameter};
+use super::equation::stack::{Parameter, StackLevel};
 use super::equation::system::{add, times};
 use super::point::{Point, check_distances};
 use super::tip::TipParameter;
@@ -393,7 +393,7 @@ impl Change<'_> {
     }
 
     /// What oscillates in the density, at the waves of `level`.
-    fn wider(&self, level: &Arc<Level>) -> Vec<f64> {
+    fn wider(&self, level: &Arc<StackLevel>) -> Vec<f64> {
         let (point, waves) = (self.point, &level.waves);
         let system = &point.parts.system;
         if system

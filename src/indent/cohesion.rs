@@ -8,7 +8,7 @@
 //!
 //! so that φ on the contact satisfies its equation with −2/π ∫ M cos αs ψ̂ dα more on the right. φ(a) = ψ(a) fixes δ, since the
 //! stress has no infinity, and the gap fixes c. Before the tip touches, ψ acts on 0 < t < c alone: the surfaces are apart, the
-//! load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived for nacre; on a bare body they are Maugis's closed form
+//! load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived here; on a bare body they are Maugis's closed form
 //! (J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T).
 
 use std::f64::consts::PI;
@@ -77,7 +77,7 @@ pub(super) fn contact(
     Ok(excess(*start)?.1)
 }
 
-const NO_ZONE: Error = Error::Inconsistent(
+const NO_ZONE: Error = Error::NoState(
     "no cohesive zone of this contact radius exists: the strength is too small or too large for the layers",
 );
 

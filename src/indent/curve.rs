@@ -1,5 +1,5 @@
 //! Whole curves of load over approach with their derivatives, by interpolation in the contact radius. The interpolation is
-//! nacre's own choice.
+//! derived here; it is not published elsewhere.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -161,7 +161,7 @@ impl Indent {
     /// As [`Indent::at_approach`] for the largest approach, approaches that are not finite, and the adhesion of Maugis and Dugdale.
     pub fn curve(&self, approaches: &[f64], parameters: &[Parameter]) -> Result<Curve> {
         if matches!(self.adhesion(), Adhesion::Maugis { .. }) {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "curves of the adhesion of Maugis and Dugdale are not tabulated: take states by radius",
             ));
         }

@@ -17,7 +17,7 @@ const SMALLEST: f64 = 1e-9;
 /// Smallest contact radius, in any unit, where nothing has a length; its cube is a number of the machine.
 const TINY: f64 = 1e-60;
 
-/// Largest approach of a flat punch, in its radii, whose pressures are numbers of the machine.
+/// Largest approach of a flat punch, in its radii, whose pressures are floating-point numbers.
 const DEEPEST: f64 = 1e100;
 
 /// Smallest contact radius beyond a flat end, relative to it.
@@ -61,13 +61,13 @@ impl Indent {
     /// Numbers that are not above 0, and Derjaguin, Muller and Toporov's for a tip without an end radius.
     pub fn with_adhesion(self, adhesion: Adhesion) -> Result<Self> {
         if matches!(adhesion, Adhesion::Dmt { .. }) && self.tip.end_radius().is_none() {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "the adhesion of Derjaguin, Muller and Toporov needs a tip with an end radius: a paraboloid, a sphere or a \
                  rounded cone",
             ));
         }
         if matches!(adhesion, Adhesion::Maugis { .. }) && self.tip.fixed_radius().is_some() {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "the adhesion of Maugis and Dugdale is for tips whose contact grows: a flat punch has that of Johnson, \
                  Kendall and Roberts",
             ));
@@ -198,7 +198,7 @@ impl Indent {
             }
             low = low.max(last.radius);
         } else if branch == Branch::Unstable {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "only adhesion within the contact has an unstable branch",
             ));
         }
@@ -216,7 +216,7 @@ impl Indent {
             Err(error) => Err(error),
         };
         match found {
-            Err(error @ (Error::Ring | Error::Inconsistent(_))) => {
+            Err(error @ (Error::Ring | Error::NoState(_) | Error::Inconsistent(_))) => {
                 self.other(control, value, range)?.ok_or(error)
             }
             found => found,
@@ -323,7 +323,7 @@ impl Indent {
                 return Ok(point);
             }
         }
-        Err(Error::Inconsistent(
+        Err(Error::NoState(
             "no state of the unstable branch has this load or approach",
         ))
     }

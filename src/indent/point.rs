@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
 use super::density::{Density, bessel_sum};
-use super::equation::stack::Level;
+use super::equation::stack::StackLevel;
 use super::equation::system::{Parts, add, times};
 use super::tip::Tip;
 use super::zone::{Answer, Zone};
@@ -126,7 +126,7 @@ impl Point {
                 return self.zone.as_ref().map_or(0.0, |zone| zone.outside(*r));
             }
             if let Some(zone) = &self.zone {
-                // φ goes on into the zone, so that no edge is singular.
+                // φ continues into the zone, so that no edge is singular.
                 let from_contact = match *r < a {
                     true => Density {
                         edge: 0.0,
@@ -191,7 +191,7 @@ impl Point {
     }
 
     /// Weights times M p̂ at the waves of a level that resolves J₀(αr) up to `far`; none of bare bodies.
-    pub(super) fn wider(&self, far: f64) -> Option<(Vec<f64>, &Arc<Level>)> {
+    pub(super) fn wider(&self, far: f64) -> Option<(Vec<f64>, &Arc<StackLevel>)> {
         let own = self.parts.system.level.as_ref()?;
         // The level of a cohesive zone may already be wider.
         let level = self.parts.stack.level(self.radius + far)?;
@@ -214,7 +214,7 @@ impl Point {
         Some((times(&level.excess, &hat), level))
     }
 
-    /// Step of the density at the edge: φ there, but for a cohesive zone, into which φ goes on.
+    /// Step of the density at the edge: φ there, but for a cohesive zone, into which φ continues.
     pub(super) fn step(&self) -> f64 {
         match self.zone {
             Some(_) => 0.0,

@@ -56,7 +56,7 @@ impl Indent {
             return Ok(touching(Point::new(parts, self.adhesion, approach)));
         }
         match self.adhesion {
-            Adhesion::None => Err(Error::Inconsistent(
+            Adhesion::None => Err(Error::Adhesion(
                 "a tip without adhesion is not pulled off: give an adhesion",
             )),
             // The force outside stays until the last point parts.
@@ -142,7 +142,7 @@ impl Indent {
             .filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1])
             .collect();
         minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let mut found = Err(Error::Inconsistent(
+        let mut found = Err(Error::NoState(
             "the load and the approach have no minimum within the radii that can be computed",
         ));
         // A minimum at which the contact is no disc is no state.
@@ -182,7 +182,7 @@ impl Indent {
         let approach = match self.adhesion {
             Adhesion::Maugis { work, strength } => -work / strength,
             Adhesion::None => {
-                return Err(Error::Inconsistent(
+                return Err(Error::Adhesion(
                     "a tip without adhesion does not jump into contact: give an adhesion",
                 ));
             }
@@ -190,7 +190,7 @@ impl Indent {
         };
         match (control, self.adhesion) {
             (Control::Load, _) => self.at_load(0.0),
-            (Control::Approach, Adhesion::Dmt { .. }) => Err(Error::Inconsistent(
+            (Control::Approach, Adhesion::Dmt { .. }) => Err(Error::Adhesion(
                 "with the adhesion of Derjaguin, Muller and Toporov the approach is continuous at first touch",
             )),
             (Control::Approach, _) => self.at_approach(approach),
@@ -203,7 +203,7 @@ impl Indent {
     /// Another adhesion, and a radius that is not above 0 or at which they touch.
     pub fn apart(&self, outer: f64) -> Result<Apart> {
         let Adhesion::Maugis { work, strength } = self.adhesion else {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "only the adhesion of Maugis and Dugdale acts between surfaces that do not touch",
             ));
         };

@@ -152,10 +152,10 @@ impl HalfSpace {
     }
 
     /// This body with free ends at these coordinates x \[m\]: it is cut off there, across the axis of a roller,
-    /// and nothing holds the end face. `None` where the body goes on.
+    /// and nothing holds the end face. `None` where the body extends further.
     ///
     /// Contacts count both ends ([`crate::compliance::ends`]), and stresses do but for those of friction; frequency response and
-    /// influence coefficients are those of the body that goes on.
+    /// influence coefficients are those of the body without ends.
     ///
     /// ```
     /// use nacre::{Elastic, HalfSpace};
@@ -186,7 +186,7 @@ impl HalfSpace {
         })
     }
 
-    /// Coordinates x \[m\] of the free ends; `None` where the body goes on.
+    /// Coordinates x \[m\] of the free ends; `None` where the body extends further.
     pub fn ends(&self) -> [Option<f64>; 2] {
         self.ends
     }

@@ -232,7 +232,7 @@ impl Ellipse {
     /// \[N\].
     ///
     /// # Errors
-    /// Unless all are finite and above 0, and semi-axes and pressure are numbers of the machine.
+    /// Unless all are finite and above 0, and semi-axes and pressure are floating-point numbers.
     pub fn new(radii: [f64; 2], contact_modulus: f64, load: f64) -> Result<Self> {
         positive("radius_x", radii[0])?;
         positive("radius_y", radii[1])?;

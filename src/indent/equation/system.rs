@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::super::tip::{MOST_KINKS, Tip};
 use super::basis::Basis;
-use super::stack::{Level, Stack};
+use super::stack::{Stack, StackLevel};
 use super::waves::Waves;
 use crate::error::{Error, Result, require};
 use crate::numerics::dense::{backward, cholesky, forward};
@@ -13,12 +13,12 @@ use crate::numerics::parallel::{Lanes, dot};
 
 /// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.
 #[derive(Debug)]
-pub(in crate::indent) struct System {
+pub(in crate::indent) struct ContactSystem {
     /// Contact radius a \[m\].
     pub(in crate::indent) radius: f64,
     pub(in crate::indent) basis: Basis,
     /// Response at the waves; none of bare bodies.
-    pub(in crate::indent) level: Option<Arc<Level>>,
+    pub(in crate::indent) level: Option<Arc<StackLevel>>,
     /// Transforms of the functions at the waves.
     rows: Vec<Vec<f64>>,
     factor: Vec<Vec<f64>>,
@@ -28,7 +28,7 @@ pub(in crate::indent) struct System {
     pub(in crate::indent) edge: [Vec<f64>; 2],
 }
 
-impl System {
+impl ContactSystem {
     /// The system of the contact radius `a` \[m\], with waves that resolve oscillations over `length` \[m\], at least 2a.
     pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
         tip.check_radius(a)?;
@@ -76,7 +76,7 @@ impl System {
         combined(&self.rows, values, self.waves())
     }
 
-    /// [`System::transform`] of each of several φ at other waves.
+    /// [`ContactSystem::transform`] of each of several φ at other waves.
     pub(in crate::indent) fn transforms_at<const N: usize>(
         &self,
         waves: &Waves,
@@ -174,7 +174,7 @@ pub(in crate::indent) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
 pub(in crate::indent) struct Parts {
     pub(in crate::indent) stack: Stack,
     pub(in crate::indent) tip: Tip,
-    pub(in crate::indent) system: System,
+    pub(in crate::indent) system: ContactSystem,
     /// φ₁ and φ_F in the basis.
     pub(in crate::indent) values: [Vec<f64>; 2],
     /// Their transforms at the waves.
@@ -186,9 +186,9 @@ pub(in crate::indent) struct Parts {
 }
 
 impl Parts {
-    /// The parts at the contact radius `a` \[m\]; `length` as in [`System::new`].
+    /// The parts at the contact radius `a` \[m\]; `length` as in [`ContactSystem::new`].
     pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
-        let system = System::new(stack, tip, a, length)?;
+        let system = ContactSystem::new(stack, tip, a, length)?;
         let f = stack.surface_modulus() / PI;
         let places = system.basis.places();
         let profile: Vec<f64> = places.iter().map(|s| f * tip.transform(*s)[0]).collect();

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Where Φ falls within the contact, and is below 0 outside of it, all is well, and no integral is needed. The second formula
-//! follows from that of the displacement with J₀(αr) = 2/π ∫₀^r cos αt/√(r²−t²) dt; both tests were derived for nacre.
+//! follows from that of the displacement with J₀(αr) = 2/π ∫₀^r cos αt/√(r²−t²) dt; both tests were derived here.
 
 use std::f64::consts::PI;
 

@@ -230,7 +230,7 @@ const SAMPLES: usize = 600;
 const SHALLOWEST: f64 = 1e-9;
 
 /// Terms of the profile whose slope g' is linear between the places `r`, from (0, slope) on: each piece adds a hinge. The
-/// profile goes on with the last curvature.
+/// profile continues with the last curvature.
 fn hinges(r: &[f64], slopes: &[f64]) -> Vec<ProfileTerm> {
     let mut terms = vec![ProfileTerm::power(slopes[0], 1.0)];
     let mut last = 0.0;
