@@ -113,7 +113,7 @@ fn friction(c: &mut Criterion) {
         }
         let body = Pair::new(coated, 16).expect("valid").body;
         group.bench_function(BenchmarkId::new("kalker", name), |b| {
-            b.iter(|| creep_coefficients(&body, Some((&body).into()), [1.0, 1.0], None));
+            b.iter(|| creep_coefficients(&body, Some((&body).into()), [1.0, 1.0], None, None));
         });
     }
     group.finish();

@@ -58,6 +58,23 @@ pub enum Error {
     /// Arguments that contradict each other or do not suffice.
     #[error("{0}")]
     Inconsistent(&'static str),
+    /// Something that the kind of adhesion does not permit.
+    #[error("{0}")]
+    Adhesion(&'static str),
+    /// A state of an indentation that does not exist.
+    #[error("{0}")]
+    NoState(&'static str),
+    /// A rolling contact that reaches the edge of the grid.
+    #[error(
+        "in rolling, the contact must end a cell or more before the edge of the grid: give a wider grid"
+    )]
+    RollsOffGrid,
+    /// A contact of a tip that is no disc, which the theory of discs cannot have.
+    #[error(
+        "the contact of this tip is no disc but a ring here: the pressure of a disc would be negative or the surfaces would \
+         overlap; use nacre.solve"
+    )]
+    Ring,
     /// A load point at which no pressure p ≥ 0 can balance the load.
     #[error(
         "the load point ({x:.6e}, {y:.6e}) must lie strictly inside the convex hull of the cells \
@@ -228,6 +245,9 @@ pub enum Error {
         /// Σ μp dA \[N\], or Σ μp r dA \[N m\].
         bears: f64,
     },
+    /// Work that its caller stopped.
+    #[error("the work was stopped before it was complete")]
+    Stopped,
     /// An iteration that ended before the tolerance was met.
     #[error(
         "not converged after {iterations} iterations: {}; raise {limit} or the tolerance",
@@ -247,6 +267,16 @@ pub enum Error {
         /// Option that limits the number of iterations.
         limit: &'static str,
     },
+}
+
+impl Error {
+    /// The refusal of a derivative.
+    pub(crate) fn no_derivative(what: impl Into<String>, reason: &'static str) -> Self {
+        Self::NotDifferentiable {
+            what: what.into(),
+            reason,
+        }
+    }
 }
 
 /// The period of a grid in words.
@@ -277,29 +307,47 @@ fn missed([residual, overlap, balance]: [f64; 3], tolerance: f64) -> String {
     missed.join(", ")
 }
 
+/// Returns `value`, or an error with the `requirement` unless it `holds`.
+pub(crate) fn require(
+    name: &'static str,
+    value: f64,
+    holds: bool,
+    requirement: &'static str,
+) -> Result<f64> {
+    match holds {
+        true => Ok(value),
+        false => Err(Error::Parameter {
+            name,
+            requirement,
+            value,
+        }),
+    }
+}
+
 /// Returns `value`, or an error unless it is finite and above 0.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
-    if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Error::Parameter {
-            name,
-            requirement: "finite and above 0",
-            value,
-        })
-    }
+    let holds = value > 0.0 && value.is_finite();
+    require(name, value, holds, "finite and above 0")
 }
 
 /// Returns `value`, or an error unless it is finite.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Error::Parameter {
+    require(name, value, value.is_finite(), "finite")
+}
+
+/// An error unless an array has the shape of its grid.
+pub(crate) fn same_shape<T>(
+    name: &'static str,
+    array: &ndarray::ArrayRef2<T>,
+    expected: [usize; 2],
+) -> Result<()> {
+    match array.dim().into() {
+        found if found == expected => Ok(()),
+        found => Err(Error::Shape {
             name,
-            requirement: "finite",
-            value,
-        })
+            expected,
+            found,
+        }),
     }
 }
 

@@ -21,42 +21,34 @@
 //! |---|---|
 //! | `step` | what is asked for |
 //! | `law` | Coulomb's law in cells |
-//! | `operator` | the operators of sliding and of rolling |
-//! | `linear` | Newton's linear systems |
+//! | `linear` | the operators of sliding and of rolling, and Newton's linear systems |
 //! | `newton` | tractions for a pressure |
-//! | `task` | sliding in one step, rolling |
-//! | `fields` | fields of the whole grid, and their errors |
+//! | `task` | sliding in one step, rolling; fields of the whole grid, and their errors |
 //! | `session` | pressure and tractions in turn |
-//! | `starts` | tractions from which an iteration starts |
 //! | `solution` | what comes out |
 //! | `creep` | Kalker's coefficients |
 
 use std::ops::ControlFlow;
 
-use crate::contact::{Contact, Termination};
+use crate::contact::Contact;
 use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
-mod fields;
 mod law;
 mod linear;
 mod newton;
-mod operator;
 mod session;
 mod solution;
-mod starts;
 mod step;
 mod task;
 
-pub use creep::{CreepCoefficients, creep_coefficients, creep_coefficients_watched};
-pub use session::FrictionProgress;
+pub use creep::{CreepCoefficients, CreepWatch, creep_coefficients};
+pub use session::{FrictionProgress, Last};
 pub use solution::{FrictionReport, FrictionSolution, TangentialMotion};
-pub use step::{Friction, FrictionOptions, Rolling, RollingDirection, Step};
+pub use step::{Friction, FrictionOptions, Move, Rolling, RollingDirection, Step};
 
-#[cfg(feature = "python")]
-use session::Watching;
-use session::{Last, Session};
+use session::Session;
 
 impl Contact {
     /// Presses `shape` into the body and moves it tangentially, step after step, from `last` on or from the first touch.
@@ -87,47 +79,7 @@ impl Contact {
         options: &FrictionOptions,
         last: Option<&FrictionSolution>,
     ) -> Result<Vec<FrictionSolution>> {
-        self.slide_watched(shape, steps, options, last, &mut |_, _| {
-            ControlFlow::Continue(())
-        })
-    }
-
-    /// [`Contact::slide`] that calls `progress` with the number of the step and its report so far. Its break ends the
-    /// history: the last solution is then unfinished, with [`Termination::Stopped`], and with
-    /// tractions and shift as they were before its step.
-    ///
-    /// # Errors
-    /// As [`Contact::slide`].
-    pub fn slide_watched(
-        &self,
-        shape: &dyn Surface,
-        steps: &[Step],
-        options: &FrictionOptions,
-        last: Option<&FrictionSolution>,
-        progress: &mut FrictionProgress,
-    ) -> Result<Vec<FrictionSolution>> {
-        self.run(|| {
-            let session = Session::new(self, shape, *options)?;
-            history(steps.len(), last, |number, last| {
-                session.step(&steps[number], last, &mut |report| progress(number, report))
-            })
-        })
-    }
-
-    /// One step of a history after `last`, which is a step of the same history where it is the caller's `own`.
-    #[cfg(feature = "python")]
-    pub(crate) fn slide_step(
-        &self,
-        shape: &dyn Surface,
-        step: &Step,
-        options: &FrictionOptions,
-        last: Option<(&FrictionSolution, bool)>,
-        progress: &mut Watching,
-    ) -> Result<FrictionSolution> {
-        self.run(|| {
-            let last = last.map(|(solution, own)| Last { solution, own });
-            Session::new(self, shape, *options)?.step(step, last, progress)
-        })
+        self.history(shape, steps.iter().map(Move::Slide), options, last)
     }
 
     /// Presses `shape` into the body, which rolls at constant speed.
@@ -140,26 +92,14 @@ impl Contact {
         rolling: &Rolling,
         options: &FrictionOptions,
     ) -> Result<FrictionSolution> {
-        self.roll_watched(shape, rolling, options, &mut |_, _| {
-            ControlFlow::Continue(())
-        })
-    }
-
-    /// [`Contact::roll`] that calls `progress` with the report so far.
-    ///
-    /// # Errors
-    /// As [`Contact::slide`].
-    pub fn roll_watched(
-        &self,
-        shape: &dyn Surface,
-        rolling: &Rolling,
-        options: &FrictionOptions,
-        progress: &mut FrictionProgress,
-    ) -> Result<FrictionSolution> {
-        self.run(|| {
-            let session = Session::new(self, shape, *options)?;
-            session.roll(rolling, None, &mut |report| progress(0, report))
-        })
+        let mut progress = |_: &_| ControlFlow::Continue(());
+        self.friction_step(
+            shape,
+            Move::RollSteadily(rolling),
+            options,
+            None,
+            &mut progress,
+        )
     }
 
     /// Rolls cell by cell from `last` on, or from the first touch, one solution for each of `rolling`.
@@ -172,50 +112,46 @@ impl Contact {
         rolling: &[Rolling],
         options: &FrictionOptions,
         last: Option<&FrictionSolution>,
+    ) -> Result<Vec<FrictionSolution>> {
+        self.history(shape, rolling.iter().map(Move::RollOneCell), options, last)
+    }
+
+    /// The move `next` after `last`. It calls `progress` with its report so far; where that breaks, the solution is
+    /// unfinished, with [`Termination::Stopped`](crate::contact::Termination::Stopped), and with tractions and shift as they
+    /// were before.
+    ///
+    /// # Errors
+    /// As [`Contact::slide`].
+    pub fn friction_step(
+        &self,
+        shape: &dyn Surface,
+        next: Move,
+        options: &FrictionOptions,
+        last: Option<Last>,
         progress: &mut FrictionProgress,
+    ) -> Result<FrictionSolution> {
+        self.run(|| Session::new(self, shape, *options)?.solve(next, last, progress))
+    }
+
+    fn history<'m>(
+        &self,
+        shape: &dyn Surface,
+        moves: impl Iterator<Item = Move<'m>> + Send,
+        options: &FrictionOptions,
+        given: Option<&FrictionSolution>,
     ) -> Result<Vec<FrictionSolution>> {
         self.run(|| {
             let session = Session::new(self, shape, *options)?;
-            history(rolling.len(), last, |number, last| {
-                let mut watch = |report: &FrictionReport| progress(number, report);
-                session.roll(&rolling[number], Some(last), &mut watch)
-            })
+            let mut solutions: Vec<FrictionSolution> = Vec::new();
+            for (number, next) in moves.enumerate() {
+                let last = solutions.last().or(given).map(|solution| Last {
+                    solution,
+                    is_own: number > 0,
+                });
+                let mut progress = |_: &_| ControlFlow::Continue(());
+                solutions.push(session.solve(next, last, &mut progress)?);
+            }
+            Ok(solutions)
         })
     }
-
-    /// Rolls by one cell after `last`, which is a step of the same history where it is the caller's `own`.
-    #[cfg(feature = "python")]
-    pub(crate) fn roll_step(
-        &self,
-        shape: &dyn Surface,
-        rolling: &Rolling,
-        options: &FrictionOptions,
-        last: Option<(&FrictionSolution, bool)>,
-        progress: &mut Watching,
-    ) -> Result<FrictionSolution> {
-        self.run(|| {
-            let last = last.map(|(solution, own)| Last { solution, own });
-            Session::new(self, shape, *options)?.roll(rolling, Some(last), progress)
-        })
-    }
-}
-
-/// Steps one after the other, from a state that is given on, until one is stopped.
-fn history(
-    steps: usize,
-    given: Option<&FrictionSolution>,
-    mut step: impl FnMut(usize, Option<Last>) -> Result<FrictionSolution>,
-) -> Result<Vec<FrictionSolution>> {
-    let mut solutions: Vec<FrictionSolution> = Vec::new();
-    for number in 0..steps {
-        let last = solutions.last().or(given);
-        let own = number > 0;
-        let solution = step(number, last.map(|solution| Last { solution, own }))?;
-        let stopped = solution.report.termination == Termination::Stopped;
-        solutions.push(solution);
-        if stopped {
-            break;
-        }
-    }
-    Ok(solutions)
 }

@@ -42,18 +42,12 @@
 //! [`Solution::gradient`]: crate::Solution::gradient
 
 mod adjoint;
-mod contact;
 mod output;
 mod parameter;
-mod point;
-mod result;
 mod seed;
-mod slopes;
 mod state;
 mod stress;
-mod tensor;
 
 pub use adjoint::{LinearOptions, Linearisation};
-pub use output::{Measure, Output, StressOutput, StressPlace};
+pub use output::{Direction, Gradient, Measure, Output, StressOutput, StressPlace};
 pub use parameter::Parameter;
-pub use result::{Direction, Gradient};

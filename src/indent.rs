@@ -10,13 +10,13 @@
 //!
 //! (Sneddon, Int. J. Eng. Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4, for M = 0.) The solution is φ = δ φ₁ − φ_F,
 //! that of a flat punch and that of the profile. With S = 2π ∫ φ₁, P = S δ − P_F; without adhesion the pressure ends at the
-//! edge, φ(a) = 0; and the energy identity S' = 2π² φ₁(a)²/E* holds for every stack. The discretisation is nacre's own.
+//! edge, φ(a) = 0; and the energy identity S' = 2π² φ₁(a)²/E* holds for every stack. The discretisation was derived here and is not published elsewhere.
 //!
 //! | file | what it holds |
 //! |---|---|
 //! | `tip` | profiles, and their F |
-//! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, and their linear system |
-//! | `parts`, `point`, `density` | the two solutions of one radius; states, pressure, displacement |
+//! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, their linear system and its two solutions |
+//! | `point`, `density` | states, pressure, displacement |
 //! | `adhesion`, `zone`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
 //! | `change` | derivatives |
 //! | `curve` | whole curves by interpolation |
@@ -27,9 +27,14 @@ mod change;
 mod cohesion;
 mod curve;
 mod density;
-mod equation;
+mod equation {
+    pub(super) mod basis;
+    pub(super) mod root;
+    pub(super) mod stack;
+    pub(super) mod system;
+    pub(super) mod waves;
+}
 mod indenter;
-mod parts;
 mod point;
 mod pull_off;
 mod tip;

@@ -5,11 +5,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::law::Law;
-use super::newton::{Effort, Problem};
-use super::operator::{Direction, Operator};
+use super::linear::Operator;
+use super::newton::{Effort, TractionProblem};
+use super::step::RollingDirection;
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
@@ -22,7 +23,7 @@ use crate::numerics::parallel::Threads;
 ///
 /// for the tractions on the body, ξ, η and φ being the creepages and the spin of the counterbody over it. Kalker,
 /// Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990), §2.2.3 and table E3,
-/// doi:10.1007/978-94-015-7889-9; coefficients of coated bodies are nacre's own.
+/// doi:10.1007/978-94-015-7889-9; those of coated bodies are derived here; not published elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CreepCoefficients {
     /// C11, of the longitudinal creepage.
@@ -41,6 +42,9 @@ pub struct CreepCoefficients {
     pub semi_axes: [f64; 2],
 }
 
+/// Callback that says whether to continue.
+pub type CreepWatch<'a> = dyn FnMut() -> ControlFlow<()> + Send + 'a;
+
 /// Cells along each axis of the ellipse, by default.
 const CELLS: usize = 64;
 
@@ -55,14 +59,17 @@ const MOST: usize = 2000;
 /// force without creepage, is not part of them. `cells` across the ellipse (default: 64) and half as many are
 /// extrapolated, as errors fall in proportion to the size of the cells.
 ///
+/// `watch` is asked with each convolution whether to continue.
+///
 /// # Errors
-/// Semi-axes that are not above 0, fewer than 8 cells, bodies without layers and substrate, two rigid bodies.
+/// Semi-axes that are not above 0, fewer than 8 cells, bodies without layers and substrate, two rigid bodies;
+/// [`Error::Stopped`] where `watch` breaks.
 ///
 /// ```
 /// use nacre::friction::creep_coefficients;
 /// use nacre::Elastic;
 /// let steel = Elastic::new(210e9, 0.25)?;
-/// let creep = creep_coefficients(steel, Some(steel.into()), [1e-3, 1e-3], Some(32))?;
+/// let creep = creep_coefficients(steel, Some(steel.into()), [1e-3, 1e-3], Some(32), None)?;
 /// // Kalker's table E3: 4.12, 3.67, 1.47
 /// assert!((creep.c11 / 4.12 - 1.0).abs() < 0.01 && (creep.c23 / 1.47 - 1.0).abs() < 0.01);
 /// # Ok::<(), nacre::Error>(())
@@ -72,37 +79,14 @@ pub fn creep_coefficients(
     counterbody: Option<Body>,
     semi_axes: [f64; 2],
     cells: Option<usize>,
+    mut watch: Option<&mut CreepWatch>,
 ) -> Result<CreepCoefficients> {
-    let never = &mut || ControlFlow::Continue(());
-    let found = creep_coefficients_watched(body, counterbody, semi_axes, cells, never)?;
-    found.ok_or(Error::Inconsistent(
-        "the coefficients were stopped before they were complete",
-    ))
-}
-
-/// [`creep_coefficients`] that asks `watch` with each convolution whether to go on; `None` where it breaks.
-///
-/// # Errors
-/// As [`creep_coefficients`].
-pub fn creep_coefficients_watched(
-    body: impl Into<Body>,
-    counterbody: Option<Body>,
-    semi_axes: [f64; 2],
-    cells: Option<usize>,
-    watch: &mut (dyn FnMut() -> ControlFlow<()> + Send),
-) -> Result<Option<CreepCoefficients>> {
     let body = body.into();
     let cells = cells.unwrap_or(CELLS);
     for length in semi_axes {
         positive("semi_axes", length)?;
     }
-    if cells < 8 {
-        return Err(Error::Parameter {
-            name: "cells",
-            requirement: "at least 8",
-            value: cells as f64,
-        });
-    }
+    require("cells", cells as f64, cells >= 8, "at least 8")?;
     for body in std::iter::once(&body).chain(&counterbody) {
         if body
             .half_space()
@@ -113,17 +97,20 @@ pub fn creep_coefficients_watched(
     }
     let shear = shear(&body, counterbody.as_ref())?;
     let threads = Arc::new(Threads::new(None)?);
+    let mut ask = || {
+        watch
+            .as_mut()
+            .map_or(ControlFlow::Continue(()), |watch| watch())
+    };
     let mut on = |cells: usize| {
-        let on = Ellipse::plan(&body, counterbody.as_ref(), semi_axes, cells, &threads)?;
-        threads.run(|| on.coefficients(shear, &mut *watch))
+        let on = EllipticContact::plan(&body, counterbody.as_ref(), semi_axes, cells, &threads)?;
+        threads.run(|| on.coefficients(shear, &mut ask))
     };
-    let (Some(coarse), Some(fine)) = (on(cells / 2)?, on(cells)?) else {
-        return Ok(None);
-    };
+    let (coarse, fine) = (on(cells / 2)?, on(cells)?);
     let share = cells as f64 / (cells / 2) as f64 - 1.0;
     let changes: [f64; 4] = std::array::from_fn(|k| (fine[k] - coarse[k]) / share);
     let [c11, c22, c23, c33] = std::array::from_fn(|k| fine[k] + changes[k]);
-    Ok(Some(CreepCoefficients {
+    Ok(CreepCoefficients {
         c11,
         c22,
         c23,
@@ -132,7 +119,7 @@ pub fn creep_coefficients_watched(
         errors: changes.map(|change| 0.2 * change.abs()),
         shear,
         semi_axes,
-    }))
+    })
 }
 
 /// The combined shear modulus.
@@ -151,7 +138,7 @@ fn shear(body: &Body, counterbody: Option<&Body>) -> Result<f64> {
 }
 
 /// An elliptic contact on a grid.
-struct Ellipse {
+struct EllipticContact {
     grid: Grid,
     tangential: Tangential,
     law: Law,
@@ -161,7 +148,7 @@ struct Ellipse {
 /// A bound that no traction reaches.
 const UNBOUNDED: f64 = 1e200;
 
-impl Ellipse {
+impl EllipticContact {
     fn plan(
         body: &Body,
         counterbody: Option<&Body>,
@@ -190,73 +177,72 @@ impl Ellipse {
         })
     }
 
-    /// C11, C22, C23, C33 for the modulus `shear`; none where `watch` stops.
-    fn coefficients(
-        &self,
-        shear: f64,
-        watch: &mut (dyn FnMut() -> ControlFlow<()> + Send),
-    ) -> Result<Option<[f64; 4]>> {
-        let window = self.tangential.window(self.grid.shape());
-        let cells = window.cells();
-        let operator = Operator {
-            window: &window,
-            rolling: Some(Direction {
-                axis: 0,
-                forward: true,
-            }),
-        };
-        let (x, y) = (self.grid.x(), self.grid.y());
-        let place = |at: usize| [x[at / y.len()], y[at % y.len()]];
-        let d = self.grid.spacing()[0];
+    /// C11, C22, C23, C33 for the modulus `shear`.
+    fn coefficients(&self, shear: f64, watch: &mut CreepWatch) -> Result<[f64; 4]> {
         let motions: [&dyn Fn([f64; 2]) -> [f64; 2]; 3] =
             [&|_| [1.0, 0.0], &|_| [0.0, 1.0], &|[x, y]| [-y, x]];
         let mut results = [[0.0; 3]; 3];
         for (motion, result) in motions.into_iter().zip(&mut results) {
-            let mut given = vec![0.0; 2 * cells];
-            for at in 0..cells {
-                let [along, across] = motion(place(at));
-                (given[at], given[cells + at]) = (along * d, across * d);
-            }
-            let problem = Problem {
-                operator,
-                law: &self.law,
-                given,
-                columns: Vec::new(),
-                forces: Vec::new(),
-            };
-            let effort = Effort {
-                tolerance: TOLERANCE,
-                most: MOST,
-            };
-            let outcome = problem.solve(vec![0.0; 2 * cells], effort, &mut |_, _| {
-                watch().is_continue()
-            });
-            if outcome.stopped {
-                return Ok(None);
-            }
-            if outcome.quality.worst() > TOLERANCE {
-                return Err(Error::NotConverged {
-                    iterations: outcome.convolutions,
-                    residual: outcome.quality.worst(),
-                    overlap: 0.0,
-                    balance: 0.0,
-                    tolerance: TOLERANCE,
-                    limit: "cells",
-                });
-            }
-            let (qx, qy) = outcome.q.split_at(cells);
-            let area = self.grid.cell_area();
-            let torque = (0..cells).map(|at| place(at)[0] * qy[at] - place(at)[1] * qx[at]);
-            *result = [qx.iter().sum::<f64>(), qy.iter().sum(), torque.sum()].map(|sum| sum * area);
+            *result = self.forces(motion, watch)?;
         }
         let [a, b] = self.semi_axes;
         let unit = shear * a * b;
         let c = (a * b).sqrt();
-        Ok(Some([
+        Ok([
             results[0][0] / unit,
             results[1][1] / unit,
             results[2][1] / (unit * c),
             results[2][2] / (unit * c * c),
-        ]))
+        ])
+    }
+
+    /// Forces along x and y and torque of rolling with full adhesion under unit creepages or spin, given by `motion` at (x, y).
+    fn forces(
+        &self,
+        motion: &dyn Fn([f64; 2]) -> [f64; 2],
+        watch: &mut CreepWatch,
+    ) -> Result<[f64; 3]> {
+        let window = self.tangential.window(self.grid.shape());
+        let cells = window.cells();
+        let (x, y) = (self.grid.x(), self.grid.y());
+        let place = |at: usize| [x[at / y.len()], y[at % y.len()]];
+        let d = self.grid.spacing()[0];
+        let mut given = vec![0.0; 2 * cells];
+        for at in 0..cells {
+            let [along, across] = motion(place(at));
+            (given[at], given[cells + at]) = (along * d, across * d);
+        }
+        let problem = TractionProblem {
+            operator: Operator {
+                window: &window,
+                rolling: Some(RollingDirection::PlusX),
+            },
+            law: &self.law,
+            given,
+            columns: Vec::new(),
+            forces: Vec::new(),
+        };
+        let effort = Effort {
+            tolerance: TOLERANCE,
+            most: MOST,
+        };
+        let found = problem.solve(vec![0.0; 2 * cells], effort, &mut |_, _| watch());
+        if found.stopped {
+            return Err(Error::Stopped);
+        }
+        if found.misfit.worst() > TOLERANCE {
+            return Err(Error::NotConverged {
+                iterations: found.convolutions,
+                residual: found.misfit.worst(),
+                overlap: 0.0,
+                balance: 0.0,
+                tolerance: TOLERANCE,
+                limit: "cells",
+            });
+        }
+        let (qx, qy) = found.q.split_at(cells);
+        let area = self.grid.cell_area();
+        let torque = (0..cells).map(|at| place(at)[0] * qy[at] - place(at)[1] * qx[at]);
+        Ok([qx.iter().sum::<f64>(), qy.iter().sum(), torque.sum()].map(|sum| sum * area))
     }
 }

@@ -5,12 +5,134 @@
 //! ```
 //!
 //! M approximates A⁻¹. With S = Cᵀ M C, the operator G = M − M C S⁻¹ Cᵀ M makes nothing that has a force, Cᵀ G = 0, and
-//! G C = 0: GMRES on G A d = G b leaves C δ free and keeps Cᵀ d. Saad, Iterative Methods for Sparse Linear Systems,
-//! 2nd ed., SIAM (2003), §6.5 and §14; the preconditioner for rolling is nacre's own.
+//! G C = 0: GMRES on G A d = G b leaves C δ free and keeps Cᵀ d. Saad, Iterative Methods for Sparse NewtonSystem Systems,
+//! 2nd ed., SIAM (2003), §6.5 and §14; the preconditioner for rolling is derived here.
 
-use super::law::{State, restrict};
-use super::operator::Operator;
+use std::ops::ControlFlow;
+
+use super::law::{CellState, restrict};
+use super::step::RollingDirection;
+use crate::compliance::traction::TangentialWindow;
 use crate::numerics::parallel::dot;
+
+/// From tractions to what must be given: displacements, or in rolling the change of displacement over a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Operator<'a> {
+    pub(super) window: &'a TangentialWindow,
+    pub(super) rolling: Option<RollingDirection>,
+}
+
+impl Operator<'_> {
+    /// K q, or in rolling u(x) − u(x + d), with u = K q; ahead of the window's last cells it is 0. Returns the largest
+    /// component of K q.
+    pub(super) fn apply(&self, q: &[f64], out: &mut [f64]) -> f64 {
+        self.window.displace(q, out);
+        let largest = out.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        if let Some(direction) = self.rolling {
+            self.difference(direction, out);
+        }
+        largest
+    }
+
+    /// Replaces u by u(x) − u(x + d), d to the cell ahead.
+    pub(super) fn difference(&self, direction: RollingDirection, u: &mut [f64]) {
+        for line in self.lines(direction) {
+            let mut ahead = line.clone().skip(1);
+            for here in line {
+                u[here] -= ahead.next().map_or(u[here], |ahead| u[ahead]);
+            }
+        }
+    }
+
+    /// Sums from the leading edge on, which turn differences back into u.
+    fn sums(&self, direction: RollingDirection, u: &mut [f64]) {
+        for line in self.lines(direction) {
+            let mut sum = 0.0;
+            for here in line.rev() {
+                sum += u[here];
+                u[here] = sum;
+            }
+        }
+    }
+
+    /// Places in a field of the cells of each line along the direction of rolling, from the trailing edge on.
+    fn lines(
+        &self,
+        direction: RollingDirection,
+    ) -> impl Iterator<Item = impl DoubleEndedIterator<Item = usize> + Clone> {
+        let [nx, ny] = self.window.shape;
+        let (lines, length, between, along) = match direction.axis() {
+            0 => (ny, nx, 1, ny),
+            _ => (nx, ny, ny, 1),
+        };
+        let is_forward = direction.is_forward();
+        (0..2 * lines).map(move |line| {
+            let first = line / lines * nx * ny + line % lines * between;
+            (0..length).map(move |k| {
+                let k = if is_forward { k } else { length - 1 - k };
+                first + k * along
+            })
+        })
+    }
+
+    /// Diagonal for tractions along x and along y.
+    fn diagonal(&self) -> [f64; 2] {
+        match self.rolling {
+            None => self.window.own,
+            Some(direction) => self.window.ahead[direction.axis()],
+        }
+    }
+
+    /// Π (A + weights) Π d, for d within the range of Π.
+    pub(super) fn linearised(&self, states: &[CellState], d: &[f64], out: &mut [f64]) {
+        self.apply(d, out);
+        let cells = states.len();
+        for (i, state) in states.iter().enumerate() {
+            if let CellState::Slip { weight, .. } = state {
+                out[i] += weight * d[i];
+                out[cells + i] += weight * d[cells + i];
+            }
+        }
+        restrict(states, out);
+    }
+
+    /// An approximate inverse of [`Operator::linearised`]: that of the whole plane on sticking cells, in rolling after
+    /// sums from the leading edge, and the diagonal's on slipping ones.
+    pub(super) fn precondition(
+        &self,
+        states: &[CellState],
+        r: &[f64],
+        memory: &mut [f64],
+        z: &mut [f64],
+    ) {
+        let cells = states.len();
+        memory.copy_from_slice(r);
+        let only_stick = |field: &mut [f64]| {
+            for (i, state) in states.iter().enumerate() {
+                if *state != CellState::Stick {
+                    field[i] = 0.0;
+                    field[cells + i] = 0.0;
+                }
+            }
+        };
+        only_stick(memory);
+        if let Some(direction) = self.rolling {
+            self.sums(direction, memory);
+            only_stick(memory);
+        }
+        self.window.precondition(memory, z);
+        only_stick(z);
+        let own = self.diagonal();
+        for (i, state) in states.iter().enumerate() {
+            if let CellState::Slip { n, weight } = state {
+                let along = own[0] * n[1] * n[1] + own[1] * n[0] * n[0];
+                let factor = 1.0 / (along + weight);
+                z[i] = factor * r[i];
+                z[cells + i] = factor * r[cells + i];
+            }
+        }
+    }
+}
 
 /// Vectors between restarts.
 const RESTART: usize = 40;
@@ -23,16 +145,20 @@ pub(super) struct Constraints {
 }
 
 /// One linear system.
-pub(super) struct Linear<'a> {
+pub(super) struct NewtonSystem<'a> {
     pub(super) operator: Operator<'a>,
-    pub(super) states: &'a [State],
+    pub(super) states: &'a [CellState],
     pub(super) constraints: Constraints,
     memory: Vec<f64>,
 }
 
-impl<'a> Linear<'a> {
+impl<'a> NewtonSystem<'a> {
     /// The system for `columns` that are restricted here.
-    pub(super) fn new(operator: Operator<'a>, states: &'a [State], columns: Vec<Vec<f64>>) -> Self {
+    pub(super) fn new(
+        operator: Operator<'a>,
+        states: &'a [CellState],
+        columns: Vec<Vec<f64>>,
+    ) -> Self {
         let size = 2 * states.len();
         let mut linear = Self {
             operator,
@@ -100,7 +226,7 @@ impl<'a> Linear<'a> {
         c: &[f64],
         tolerance: f64,
         most: usize,
-        watch: &mut dyn FnMut() -> bool,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> (Vec<f64>, usize) {
         let size = b.len();
         let mut d = vec![0.0; size];
@@ -145,7 +271,7 @@ impl<'a> Linear<'a> {
                 }
                 let rest = dot(&z, &z).sqrt();
                 column.push(rest);
-                stop = !watch();
+                stop = watch().is_break();
                 let residual = least.add(column);
                 if residual <= goal || rest <= 1e-300 {
                     break;

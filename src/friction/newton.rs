@@ -3,15 +3,16 @@
 //! In sliding, the tractions minimise ½ qᵀKq − qᵀg over the discs |q| ≤ μp, under the forces that are given: one
 //! solution. A slipping cell keeps |q| = μp; along it, the curvature λ/μp of its disc adds to K. The method is that of
 //! Zhao, Vollebregt & Oosterlee, J. Comput. Phys. 288 (2015) 86, doi:10.1016/j.jcp.2015.02.005 (TangCG), with Newton's
-//! equations, forces and preconditioner of nacre's own.
+//! equations, forces and preconditioner derived here.
 
-use super::law::{Law, State, restrict};
-use super::linear::{Linear, small_system};
-use super::operator::Operator;
+use std::ops::ControlFlow;
+
+use super::law::{CellState, Law, restrict};
+use super::linear::{NewtonSystem, Operator, small_system};
 use crate::numerics::parallel::dot;
 
 /// What is asked for: A q = g + C δ where cells stick, Cᵀ q = forces.
-pub(super) struct Problem<'a> {
+pub(super) struct TractionProblem<'a> {
     pub(super) operator: Operator<'a>,
     pub(super) law: &'a Law,
     /// g
@@ -30,66 +31,66 @@ pub(super) struct Effort {
 }
 
 /// Where an iteration ended.
-pub(super) struct Outcome {
+pub(super) struct TractionResult {
     pub(super) q: Vec<f64>,
     /// δ of the loaded degrees of freedom.
     pub(super) multipliers: Vec<f64>,
-    pub(super) states: Vec<State>,
-    pub(super) quality: Quality,
+    pub(super) states: Vec<CellState>,
+    pub(super) misfit: Misfit,
     pub(super) convolutions: usize,
     pub(super) stopped: bool,
 }
 
 /// How well the laws hold.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Quality {
+pub(super) struct Misfit {
     /// Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
     pub(super) violation: f64,
     /// Largest error of a force or torque, over the largest that friction bears.
     pub(super) imbalance: f64,
 }
 
-impl Quality {
+impl Misfit {
     pub(super) fn worst(self) -> f64 {
         self.violation.max(self.imbalance)
     }
 }
 
-/// Called with each convolution: their number and the quality at the last outer iteration; false stops.
-pub(super) type Watch<'a> = dyn FnMut(usize, Quality) -> bool + 'a;
+/// Called with each convolution: their number and the misfit at the last outer iteration; a break stops.
+pub(super) type ConvolutionWatch<'a> = dyn FnMut(usize, Misfit) -> ControlFlow<()> + 'a;
 
-/// Inner residuals relative to their start: at most the first; the second times the quality; and no less than the third
+/// Inner residuals relative to their start: at most the first; the second times the misfit; and no less than the third
 /// of what is still missing to the tolerance. Chosen by trial.
 const INNER: [f64; 3] = [0.1, 30.0, 0.2];
 
 /// Iterations of one linear system.
 const MOST_INNER: usize = 200;
 
-/// Steps without a better quality before they are halved.
+/// Steps without a better misfit before they are halved.
 const PATIENCE: i32 = 5;
 
 /// Tractions, and how they stand to the laws.
 struct Standing {
-    states: Vec<State>,
+    states: Vec<CellState>,
     /// δ
     multipliers: Vec<f64>,
     /// A q − g − C δ
     residual: Vec<f64>,
-    quality: Quality,
+    misfit: Misfit,
 }
 
-impl Problem<'_> {
+impl TractionProblem<'_> {
     /// How well the laws hold for the tractions `q`, within their bounds. It takes a convolution.
-    pub(super) fn quality_of(&self, mut q: Vec<f64>) -> Quality {
+    pub(super) fn misfit_of(&self, mut q: Vec<f64>) -> Misfit {
         self.law.project(&self.law.at_bound(&q), &mut q);
         let mut response = vec![0.0; q.len()];
-        self.stand(&q, &mut response, &self.columns).quality
+        self.stand(&q, &mut response, &self.columns).misfit
     }
 
     /// Computes `response` = A q, and what cells do. `weights` weigh the residuals of sticking cells for δ, one field
     /// for each column.
     fn stand(&self, q: &[f64], response: &mut [f64], weights: &[Vec<f64>]) -> Standing {
-        let largest = self.operator.apply_measured(q, response);
+        let largest = self.operator.apply(q, response);
         let given = response.iter().zip(&self.given);
         let rest: Vec<f64> = given.map(|(u, g)| u - g).collect();
         // Cells at their bound slip, or at the δ of all others would slip along the traction and stick.
@@ -100,24 +101,24 @@ impl Problem<'_> {
         let multipliers = self.multipliers(weights, &states, &rest);
         residual = rest;
         self.release(&mut residual, &multipliers);
-        let quality = self.quality(q, &residual, largest, &states);
+        let misfit = self.misfit(q, &residual, largest, &states);
         Standing {
             states,
             multipliers,
             residual,
-            quality,
+            misfit,
         }
     }
 
     /// δ with which the residuals `r` − C δ vanish in the mean: those of sticking cells, and those across the tractions of
     /// slipping ones.
     /// In rolling M is not symmetric, and M C is no weight: M weighs the residuals themselves.
-    fn multipliers(&self, weights: &[Vec<f64>], states: &[State], r: &[f64]) -> Vec<f64> {
+    fn multipliers(&self, weights: &[Vec<f64>], states: &[CellState], r: &[f64]) -> Vec<f64> {
         if self.columns.is_empty() {
             return Vec::new();
         }
         if self.operator.rolling.is_some() {
-            return Linear::new(self.operator, states, self.columns.clone()).multipliers(r);
+            return NewtonSystem::new(self.operator, states, self.columns.clone()).multipliers(r);
         }
         let mut weights = weights.to_vec();
         weights
@@ -128,7 +129,12 @@ impl Problem<'_> {
     }
 
     /// Solves from the tractions `q`.
-    pub(super) fn solve(&self, mut q: Vec<f64>, effort: Effort, watch: &mut Watch) -> Outcome {
+    pub(super) fn solve(
+        &self,
+        mut q: Vec<f64>,
+        effort: Effort,
+        watch: &mut ConvolutionWatch,
+    ) -> TractionResult {
         self.law.project(&self.law.at_bound(&q), &mut q);
         let mut response = vec![0.0; q.len()];
         let mut weights = self.columns.clone();
@@ -139,17 +145,17 @@ impl Problem<'_> {
                 states,
                 multipliers,
                 mut residual,
-                quality,
+                misfit,
             } = self.stand(&q, &mut response, &weights);
             convolutions += 1;
             let left = effort.most.saturating_sub(convolutions);
-            let good = quality.worst() <= effort.tolerance;
-            if good || left == 0 || stopped || !watch(convolutions, quality) {
-                return Outcome {
+            let good = misfit.worst() <= effort.tolerance;
+            if good || left == 0 || stopped || watch(convolutions, misfit).is_break() {
+                return TractionResult {
                     q,
                     multipliers,
                     states,
-                    quality,
+                    misfit,
                     convolutions,
                     stopped: !good && left > 0,
                 };
@@ -163,32 +169,32 @@ impl Problem<'_> {
             let [most, factor, least] = INNER;
             let sticks = !states
                 .iter()
-                .any(|state| matches!(state, State::Slip { .. }));
+                .any(|state| matches!(state, CellState::Slip { .. }));
             let sought = if sticks && outer > 0 {
                 // Nothing slipped after a first solve: the problem is linear.
                 0.0
             } else {
-                most.min(factor * quality.worst())
+                most.min(factor * misfit.worst())
             };
-            let floor = (least * effort.tolerance / quality.worst()).min(most);
+            let floor = (least * effort.tolerance / misfit.worst()).min(most);
             // Loose systems may send the sets to and fro; so may exact ones, and shorter steps then lead on.
-            stalled = if quality.worst() < 0.9 * best {
+            stalled = if misfit.worst() < 0.9 * best {
                 0
             } else {
                 stalled + 1
             };
-            best = best.min(quality.worst());
+            best = best.min(misfit.worst());
             let inner = (sought * 0.1_f64.powi(stalled)).max(floor);
             let part = if stalled > PATIENCE { 0.5 } else { 1.0 };
             outer += 1;
-            let mut linear = Linear::new(self.operator, &states, self.columns.clone());
+            let mut linear = NewtonSystem::new(self.operator, &states, self.columns.clone());
             let mut count = convolutions;
             let most = left.min(MOST_INNER);
             let (d, done) = linear.solve(&residual, &missing, inner, most, &mut || {
                 count += 1;
-                let goes_on = watch(count, quality);
-                stopped |= !goes_on;
-                goes_on
+                let answer = watch(count, misfit);
+                stopped |= answer.is_break();
+                answer
             });
             convolutions += done;
             weights = linear.into_weights();
@@ -204,7 +210,7 @@ impl Problem<'_> {
         }
     }
 
-    fn quality(&self, q: &[f64], r: &[f64], largest: f64, states: &[State]) -> Quality {
+    fn misfit(&self, q: &[f64], r: &[f64], largest: f64, states: &[CellState]) -> Misfit {
         let given = self.given.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
         let scale = if largest > 0.0 { largest } else { given };
         let (x, y) = q.split_at(states.len());
@@ -220,7 +226,7 @@ impl Problem<'_> {
             worst.max((force - dot(column, q)).abs() / (bearing * arm))
         });
         let violation = self.law.violation(r, states);
-        Quality {
+        Misfit {
             violation: if scale > 0.0 { violation / scale } else { 0.0 },
             imbalance,
         }

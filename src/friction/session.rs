@@ -10,29 +10,70 @@ use std::time::Instant;
 
 use ndarray::Array2;
 
-use super::newton::{Effort, Quality};
+use super::newton::{Effort, Misfit};
 use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
-use super::step::{Freedom, Friction, FrictionOptions, Rolling, Step};
-use super::task::{Before, Task, bounds, check_bound, check_forces};
+use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
+use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
 use crate::compliance::traction::Tangential;
 use crate::contact::{Contact, Motion, OVERFLOW, Options, Solution, Termination, Warning};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
 
-/// Callback that gets the number of the step and its report so far, and breaks to stop.
-pub type FrictionProgress<'a> = dyn FnMut(usize, &FrictionReport) -> ControlFlow<()> + Send + 'a;
-
-/// [`FrictionProgress`] of one step.
-pub(super) type Watching<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
+/// Callback that gets the report so far, and breaks to stop.
+pub type FrictionProgress<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
 
 /// Sweeps between pressure and tractions.
 const MOST_SWEEPS: usize = 60;
 
+/// Change of the pressure to which tractions are found while it changes.
+const LOOSE: f64 = 0.01;
+
+/// Tolerance of a start.
+const START: f64 = 1e-3;
+
+/// The operator of the whole grid rounds otherwise than that of the window.
+const ROUNDING: f64 = 1e-13;
+
+/// The state at which a move begins.
+#[derive(Debug, Clone, Copy)]
+pub struct Last<'a> {
+    /// The solution that is left behind.
+    pub solution: &'a FrictionSolution,
+    /// Whether it was made with the same shape, bodies and tolerance, so that its pressure is known to hold for the same load.
+    pub is_own: bool,
+}
+
+/// The course of a move, of which its caller is told.
+struct FrictionCourse<'a, 'b> {
+    begun: Instant,
+    report: FrictionReport,
+    stopped: bool,
+    progress: &'a mut FrictionProgress<'b>,
+}
+
+impl<'a, 'b> FrictionCourse<'a, 'b> {
+    fn new(session: &Session, progress: &'a mut FrictionProgress<'b>) -> Self {
+        Self {
+            begun: Instant::now(),
+            report: FrictionReport::running(session.coupled, session.options.tolerance),
+            stopped: false,
+            progress,
+        }
+    }
+
+    fn tell(&mut self) -> ControlFlow<()> {
+        self.report.seconds = self.begun.elapsed().as_secs_f64();
+        let answer = (self.progress)(&self.report);
+        self.stopped |= answer.is_break();
+        answer
+    }
+}
+
 /// One shape on one contact.
 pub(super) struct Session<'a> {
-    pub(super) contact: &'a Contact,
-    pub(super) shape: &'a dyn Surface,
+    contact: &'a Contact,
+    shape: &'a dyn Surface,
     tangential: Arc<Tangential>,
     options: FrictionOptions,
     coupled: bool,
@@ -44,13 +85,9 @@ impl<'a> Session<'a> {
         shape: &'a dyn Surface,
         options: FrictionOptions,
     ) -> Result<Self> {
-        if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
-            return Err(Error::Parameter {
-                name: "tolerance",
-                requirement: "above 0 and below 1",
-                value: options.tolerance,
-            });
-        }
+        let tolerance = options.tolerance;
+        let holds = tolerance > 0.0 && tolerance < 1.0;
+        require("tolerance", tolerance, holds, "above 0 and below 1")?;
         let tangential = contact.tangential()?;
         Ok(Self {
             contact,
@@ -61,16 +98,44 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// One step of a history after `last`.
-    pub(super) fn step(
+    /// The next move after `last`, which steady rolling does not depend on.
+    pub(super) fn solve(
         &self,
-        step: &Step,
+        next: Move,
         last: Option<Last>,
-        progress: &mut Watching,
+        progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
+        let last = last.filter(|_| !matches!(next, Move::RollSteadily(_)));
+        let solution = last.map(|last| last.solution);
+        let (motion, friction, task) = match next {
+            Move::Slide(step) => self.slide(step, solution)?,
+            Move::RollSteadily(rolling) | Move::RollOneCell(rolling) => {
+                let is_steady = matches!(next, Move::RollSteadily(_));
+                let task = self.roll(rolling, is_steady, solution)?;
+                (rolling.motion, &rolling.friction, task)
+            }
+        };
+        let earlier = solution.map(|last| &last.normal);
+        let start = Start {
+            // The pressure of bodies whose tractions do not act on it is known for the same motion.
+            known: earlier.filter(|normal| {
+                last.is_some_and(|last| last.is_own)
+                    && !self.coupled
+                    && normal.report.converged()
+                    && normal.report.motion == motion
+            }),
+            pressure: earlier.map(|normal| &normal.pressure),
+        };
+        self.settle(&task, &motion, friction, start, progress)
+    }
+
+    /// Motion, friction and problem of a step of sliding.
+    fn slide<'s>(
+        &self,
+        step: &'s Step,
+        last: Option<&'s FrictionSolution>,
+    ) -> Result<(Motion, &'s Friction, TractionTask<'s>)> {
         let grid = self.contact.grid();
-        let known = last.and_then(|last| last.pressure(self));
-        let last = last.map(|last| last.solution);
         let before = last.map(|last| last.normal.report.motion);
         let motion = match (step.motion, before) {
             (Some(motion), Some(before)) => Some(motion.after(&before)),
@@ -79,213 +144,181 @@ impl<'a> Session<'a> {
         let motion = motion.ok_or(Error::Inconsistent(
             "the first step must have a load or an approach",
         ))?;
-        let friction = step
-            .friction
-            .as_ref()
-            .or_else(|| last.map(|last| &last.friction));
+        let friction = step.friction.as_ref();
+        let friction = friction.or_else(|| last.map(|last| &last.friction));
         let friction = friction.ok_or(Error::Inconsistent(
             "the first step must have a coefficient of friction",
         ))?;
         friction.check(grid)?;
         let freedoms = step.freedoms(grid)?;
-        let before = match last {
-            Some(last) => state(last, grid)?,
-            None => Before::nothing(grid),
+        let before = before_of(last, grid)?;
+        let [x, y] = before.shift;
+        let starts = [x, y, before.twist];
+        let task = TractionTask {
+            rolling: None,
+            is_steady: false,
+            increments: [0, 1, 2].map(|k| match freedoms[k] {
+                Freedom::Kept => Freedom::Prescribed(0.0),
+                Freedom::Prescribed(value) => Freedom::Prescribed(value - starts[k]),
+                loaded => loaded,
+            }),
+            before,
         };
-        let task = Task::Slide {
-            freedoms,
-            before: &before,
-        };
-        let forces = freedoms.map(Freedom::force);
-        let start = Start {
-            normal: known.filter(|known| known.report.motion == motion),
-            pressure: last.map(|last| &last.normal.pressure),
-            traction: &before.traction,
-        };
-        self.settle(&task, &motion, friction, forces, start, progress)
+        Ok((motion, friction, task))
     }
 
-    /// Rolling: steady, or by one cell after `last`.
-    pub(super) fn roll(
+    /// The problem of rolling, steady or by one cell after `last`.
+    fn roll<'r>(
         &self,
-        rolling: &Rolling,
-        last: Option<Option<Last>>,
-        progress: &mut Watching,
-    ) -> Result<FrictionSolution> {
+        rolling: &'r Rolling,
+        is_steady: bool,
+        last: Option<&FrictionSolution>,
+    ) -> Result<TractionTask<'r>> {
         let grid = self.contact.grid();
         rolling.friction.check(grid)?;
-        let freedoms = rolling.freedoms(grid)?;
-        let nothing = Before::nothing(grid);
-        let before = match last {
-            None => None,
-            Some(Some(last)) => Some(state(last.solution, grid)?),
-            Some(None) => Some(nothing.clone()),
+        let [along, across] = rolling.freedoms(grid)?;
+        let d = grid.spacing()[rolling.direction.axis()];
+        let over_a_cell = |freedom: Freedom| match freedom {
+            Freedom::Prescribed(value) => Freedom::Prescribed(value * d),
+            other => other,
         };
-        let task = Task::Roll {
-            rolling,
-            freedoms,
-            before: before.as_ref(),
-        };
-        let [along, across] = freedoms.map(Freedom::force);
-        let last = last.flatten();
-        let known = last.and_then(|last| last.pressure(self));
-        let start = Start {
-            normal: known.filter(|known| known.report.motion == rolling.motion),
-            pressure: last.map(|last| &last.solution.normal.pressure),
-            traction: before
-                .as_ref()
-                .map_or(&nothing.traction, |before| &before.traction),
-        };
-        self.settle(
-            &task,
-            &rolling.motion,
-            &rolling.friction,
-            [along, across, 0.0],
-            start,
-            progress,
-        )
+        Ok(TractionTask {
+            rolling: Some(rolling),
+            is_steady,
+            increments: [along, across, Freedom::Prescribed(rolling.spin)].map(over_a_cell),
+            before: before_of(last, grid)?,
+        })
     }
 
+    /// Pressure and tractions in turn until neither changes the other.
     fn settle(
         &self,
-        task: &Task,
+        task: &TractionTask,
         motion: &Motion,
         friction: &Friction,
-        [x, y, torque]: [f64; 3],
         start: Start,
-        progress: &mut Watching,
+        progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
-        let (begun, forces) = (Instant::now(), [x, y]);
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
-        let mut report = FrictionReport {
-            termination: Termination::Running,
-            convolutions: 0,
-            sweeps: 0,
-            violation: 0.0,
-            imbalance: 0.0,
-            excess: 0.0,
-            pressure_change: 0.0,
-            coupled: self.coupled,
-            full_slip: false,
-            tolerance,
-            seconds: 0.0,
-        };
-        let mut traction = start.traction.clone();
+        let mut course = FrictionCourse::new(self, progress);
+        let mut traction = task.before.traction.clone();
         let mut pressure: Option<Array2<f64>> = start.pressure.cloned();
-        let mut stopped = false;
-        let (mut normal, solved) = loop {
-            let normal = match start.normal {
+        let (normal, solved) = loop {
+            let normal = match start.known {
                 Some(known) => known.clone(),
-                None => {
-                    let mut watch = |_: &crate::contact::Report| {
-                        report.seconds = begun.elapsed().as_secs_f64();
-                        let answer = progress(&report);
-                        stopped |= answer.is_break();
-                        answer
-                    };
-                    self.press(motion, &traction, pressure.as_ref(), &mut watch)?
-                }
+                None => self.press(motion, &traction, pressure.as_ref(), &mut course)?,
             };
-            report.sweeps += 1;
-            let change = pressure.as_ref().map_or(f64::INFINITY, |before| {
-                let peak = normal.peak_pressure();
-                let moved = normal
-                    .pressure
-                    .iter()
-                    .zip(before)
-                    .map(|(a, b)| (a - b).abs());
-                let moved = moved.fold(0.0, f64::max);
-                if moved > 0.0 { moved / peak } else { 0.0 }
-            });
-            report.pressure_change = if self.coupled && report.sweeps > 1 {
-                change
-            } else {
-                0.0
+            course.report.sweeps += 1;
+            let is_first = course.report.sweeps == 1;
+            let change = change(&normal, pressure.as_ref());
+            course.report.pressure_change = match self.coupled && !is_first {
+                true => change,
+                false => 0.0,
             };
-            let bound = bounds(&normal.pressure, friction);
-            check_bound(&bound)?;
-            let bears = bound.sum() * grid.cell_area();
-            let force = forces[0].hypot(forces[1]);
-            if stopped {
+            let bound = bounds(&normal.pressure, friction)?;
+            if course.stopped {
                 break (normal, None);
             }
-            check_forces(grid, &bound, forces, torque, tolerance)?;
-            if task.leaves_the_grid(&bound) {
-                return Err(Error::Inconsistent(
-                    "in rolling, the contact must end a cell or more before the edge of the grid: give a wider grid",
-                ));
-            }
+            task.check(grid, &bound, tolerance)?;
+            let is_settled = !self.coupled || !is_first && change <= tolerance;
             // While the pressure still changes, tractions need not be exact.
-            let settled = !self.coupled || report.sweeps > 1 && change <= tolerance;
-            let goal = if settled {
-                tolerance
-            } else {
-                tolerance.max(LOOSE * change.min(1.0))
+            let goal = match is_settled {
+                true => tolerance,
+                false => tolerance.max(LOOSE * change.min(1.0)),
             };
-            let effort = Effort {
-                tolerance: goal,
-                most: self
-                    .options
-                    .max_convolutions
-                    .saturating_sub(report.convolutions),
+            let [x, y, _] = task.increments.map(Freedom::force);
+            let starts = match is_first && x.hypot(y) > 0.0 && task.slides() {
+                true => self.starts(motion, &normal, [x, y], friction, &traction)?,
+                false => vec![traction.clone()],
             };
-            let mut starts = vec![traction.clone()];
-            if report.sweeps == 1 && force > 0.0 && task.slides() {
-                starts = self.starts(motion, &normal, (forces, bears), friction, &traction)?;
-            }
-            let counted = report.convolutions;
-            let mut watch = |convolutions: usize, quality: Quality| {
-                report.convolutions = counted + convolutions;
-                (report.violation, report.imbalance) = (quality.violation, quality.imbalance);
-                report.seconds = begun.elapsed().as_secs_f64();
-                let answer = progress(&report);
-                stopped |= answer.is_break();
-                !stopped
+            let pressed = PressedCells {
+                grid,
+                bound: &bound,
+                spreading: &self.spreading(&normal.pressure),
             };
-            let given = (grid, &bound, &*self.spreading(&normal.pressure));
-            let solved = task.solve(&self.tangential, given, &starts, effort, &mut watch);
+            let solved = self.tractions(task, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
-                report.convolutions = counted + solved.outcome.convolutions;
-                report.imbalance = solved.outcome.quality.imbalance;
                 traction = solved.tractions(grid.shape());
             }
-            let spent = report.convolutions >= self.options.max_convolutions;
-            let failed = !normal.report.converged();
-            if settled || stopped || spent || failed || report.sweeps >= MOST_SWEEPS {
+            let report = &course.report;
+            let is_spent = report.convolutions >= self.options.max_convolutions
+                || report.sweeps >= MOST_SWEEPS;
+            if is_settled || course.stopped || is_spent || !normal.report.converged() {
                 break (normal, solved);
             }
             pressure = Some(normal.pressure);
         };
-        let bound = bounds(&normal.pressure, friction);
-        let mut fields = task.fields(
-            &self.tangential,
-            (grid, &bound, &*self.spreading(&normal.pressure)),
-            solved.as_ref(),
-        );
-        report.violation = fields.violation;
-        report.excess = fields.excess;
-        report.full_slip = fields.full_slip;
+        self.finish(task, friction, normal, solved, course)
+    }
+
+    /// Tractions for a pressure, with what is left of the convolutions.
+    fn tractions(
+        &self,
+        task: &TractionTask,
+        pressed: PressedCells,
+        starts: &[[Array2<f64>; 2]],
+        tolerance: f64,
+        course: &mut FrictionCourse,
+    ) -> Option<SolvedTask> {
+        let counted = course.report.convolutions;
+        let effort = Effort {
+            tolerance,
+            most: self.options.max_convolutions.saturating_sub(counted),
+        };
+        let mut watch = |convolutions: usize, misfit: Misfit| {
+            course.report.convolutions = counted + convolutions;
+            course.report.violation = misfit.violation;
+            course.report.imbalance = misfit.imbalance;
+            course.tell()
+        };
+        let solved = task.solve(&self.tangential, pressed, starts, effort, &mut watch)?;
+        course.report.convolutions = counted + solved.found.convolutions;
+        course.report.imbalance = solved.found.misfit.imbalance;
+        Some(solved)
+    }
+
+    /// The solution with its errors on the whole grid.
+    fn finish(
+        &self,
+        task: &TractionTask,
+        friction: &Friction,
+        mut normal: Solution,
+        solved: Option<SolvedTask>,
+        course: FrictionCourse,
+    ) -> Result<FrictionSolution> {
+        let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
+        let pressed = PressedCells {
+            grid,
+            bound: &bounds(&normal.pressure, friction)?,
+            spreading: &self.spreading(&normal.pressure),
+        };
+        let mut fields = task.fields(&self.tangential, pressed, solved.as_ref());
         if !fields.are_finite() {
             return Err(OVERFLOW);
         }
-        if stopped {
+        if course.stopped {
             fields.restore(task);
         }
-        // The operator of the whole grid rounds otherwise than that of the window.
-        let rounding = 1e-13;
-        let good = fields.violation <= tolerance + rounding
-            && report.imbalance <= tolerance + rounding
-            && report.pressure_change <= tolerance
+        let is_good = fields.violation <= tolerance + ROUNDING
+            && course.report.imbalance <= tolerance + ROUNDING
+            && course.report.pressure_change <= tolerance
             && normal.report.converged();
-        report.termination = match (stopped, good) {
-            (true, _) => Termination::Stopped,
-            (_, true) => Termination::Converged,
-            _ => Termination::IterationLimit,
+        let report = FrictionReport {
+            violation: fields.violation,
+            excess: fields.excess,
+            full_slip: fields.full_slip,
+            termination: match (course.stopped, is_good) {
+                (true, _) => Termination::Stopped,
+                (_, true) => Termination::Converged,
+                _ => Termination::IterationLimit,
+            },
+            seconds: course.begun.elapsed().as_secs_f64(),
+            ..course.report
         };
-        report.seconds = begun.elapsed().as_secs_f64();
+        let warning = fields.warning(task, grid, &normal.pressure);
         let warnings = &mut normal.report.warnings;
         warnings.retain(|warning| !matches!(warning, Warning::LargeMotion { .. }));
-        warnings.extend(fields.warning(task, grid, &normal.pressure));
+        warnings.extend(warning);
         Ok(FrictionSolution {
             normal,
             friction: friction.clone(),
@@ -299,10 +332,9 @@ impl<'a> Session<'a> {
 
     /// The pressure that displaces the surfaces along each other: all of it, or none without coupling.
     fn spreading<'p>(&self, pressure: &'p Array2<f64>) -> Cow<'p, Array2<f64>> {
-        if self.coupled {
-            Cow::Borrowed(pressure)
-        } else {
-            Cow::Owned(Array2::zeros(pressure.dim()))
+        match self.coupled {
+            true => Cow::Borrowed(pressure),
+            false => Cow::Owned(Array2::zeros(pressure.dim())),
         }
     }
 
@@ -312,60 +344,120 @@ impl<'a> Session<'a> {
         motion: &Motion,
         traction: &[Array2<f64>; 2],
         pressure: Option<&Array2<f64>>,
-        watch: &mut (dyn FnMut(&crate::contact::Report) -> ControlFlow<()> + Send),
+        course: &mut FrictionCourse,
     ) -> Result<Solution> {
         let mut options = Options {
             tolerance: self.options.tolerance,
             ..Options::default()
         };
-        let grid = self.contact.grid();
+        let mut watch = |_: &crate::contact::Report| course.tell();
+        let (contact, grid) = (self.contact, self.contact.grid());
         if !self.coupled {
-            return self
-                .contact
-                .solve_watched(self.shape, motion, &options, watch);
+            return contact.solve_watched(self.shape, motion, &options, &mut watch);
         }
         options.initial = pressure.filter(|p| p.iter().any(|p| *p > 0.0)).cloned();
         let q: Vec<f64> = traction.iter().flatten().copied().collect();
         let lift = self.tangential.window(grid.shape()).lift(&q);
         let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
         let lifted = Lifted::new(self.shape, grid, lift);
-        self.contact.solve_watched(&lifted, motion, &options, watch)
+        contact.solve_watched(&lifted, motion, &options, &mut watch)
+    }
+
+    /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
+    /// and those before with the change of the force by superposition, as after a reversal.
+    fn starts(
+        &self,
+        motion: &Motion,
+        normal: &Solution,
+        forces: [f64; 2],
+        friction: &Friction,
+        traction: &[Array2<f64>; 2],
+    ) -> Result<Vec<[Array2<f64>; 2]>> {
+        let area = normal.grid().cell_area();
+        let bears = friction.times(&normal.pressure).sum() * area;
+        let before = traction.each_ref().map(|q| q.sum() * area);
+        let superposed = |forces| self.superposed(motion, normal, forces, bears, friction);
+        let whole = superposed(forces)?;
+        if before[0].hypot(before[1]) <= 0.0 {
+            return Ok(vec![whole]);
+        }
+        let mut starts = vec![traction.clone(), whole];
+        let half = [0, 1].map(|axis| 0.5 * (forces[axis] - before[axis]));
+        if half[0].hypot(half[1]) < bears {
+            let mut changed = superposed(half)?;
+            for (changed, before) in changed.iter_mut().zip(traction) {
+                changed.zip_mut_with(before, |q, before| *q = 2.0 * *q + before);
+            }
+            starts.push(changed);
+        }
+        Ok(starts)
+    }
+
+    /// Tractions after Cattaneo, Mindlin, Jäger and Ciavarella: μ times the pressure less that of the load less
+    /// |Q|/μ. They are exact for equal bodies with ν = 0, and a good start elsewhere. Ciavarella, J. Appl. Mech. 65
+    /// (1998) 998, doi:10.1115/1.2791936.
+    fn superposed(
+        &self,
+        motion: &Motion,
+        normal: &Solution,
+        forces: [f64; 2],
+        bears: f64,
+        friction: &Friction,
+    ) -> Result<[Array2<f64>; 2]> {
+        let force = forces[0].hypot(forces[1]);
+        let mut tractions = zeros(normal.grid().shape());
+        if force <= 0.0 {
+            return Ok(tractions);
+        }
+        let less = Motion {
+            load: Some(normal.load() * (1.0 - force / bears)),
+            approach: None,
+            ..*motion
+        };
+        let options = Options {
+            tolerance: START,
+            ..Options::default()
+        };
+        let sticking = self.contact.solve(self.shape, &less, &options)?;
+        for ((i, j), p) in normal.pressure.indexed_iter() {
+            let q = friction.at([i, j]) * (p - sticking.pressure[[i, j]]).max(0.0);
+            for (traction, component) in tractions.iter_mut().zip(forces) {
+                traction[[i, j]] = q * component / force;
+            }
+        }
+        Ok(tractions)
     }
 }
 
-/// Change of the pressure to which tractions are found while it changes.
-const LOOSE: f64 = 0.01;
-
-/// The state that a step goes on from.
-#[derive(Clone, Copy)]
-pub(super) struct Last<'a> {
-    pub(super) solution: &'a FrictionSolution,
-    /// Whether it is a step of the same call, with the same shape and bodies, to the same tolerance.
-    pub(super) own: bool,
-}
-
-impl<'a> Last<'a> {
-    /// The pressure, where it is known for the same motion: that of bodies whose tractions do not act on it.
-    fn pressure(self, session: &Session) -> Option<&'a Solution> {
-        let normal = &self.solution.normal;
-        (self.own && !session.coupled && normal.report.converged()).then_some(normal)
-    }
-}
-
-/// What a step starts from.
-#[derive(Clone, Copy)]
+/// From what the pressure is found.
 struct Start<'a> {
     /// The pressure's solution, where it is known.
-    normal: Option<&'a Solution>,
+    known: Option<&'a Solution>,
+    /// The pressure before.
     pressure: Option<&'a Array2<f64>>,
-    traction: &'a [Array2<f64>; 2],
 }
 
-/// The state that a solution leaves.
+/// Largest change of the pressure over its peak; infinite where there was none before.
+fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
+    let Some(before) = before else {
+        return f64::INFINITY;
+    };
+    let pairs = normal.pressure.iter().zip(before);
+    let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    match moved > 0.0 {
+        true => moved / normal.peak_pressure(),
+        false => 0.0,
+    }
+}
+
+/// The state that a solution leaves, or that of bodies that have not touched.
 ///
 /// # Errors
-/// Where it is on another grid.
-fn state(last: &FrictionSolution, grid: &Grid) -> Result<Before> {
+/// Where the solution is on another grid.
+fn before_of(last: Option<&FrictionSolution>, grid: &Grid) -> Result<Before> {
+    let Some(last) = last else {
+        return Ok(Before::nothing(grid));
+    };
     grid.check_initial(Some(last.grid()))?;
     let (shift, twist) = match last.motion {
         TangentialMotion::Slide { shift, twist } => (shift, twist),

@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, same_shape};
 use crate::model::grid::Grid;
 use crate::stress::{Member, Stress, StressOptions, StressPlan, StressProgress};
 
@@ -60,6 +60,23 @@ pub struct FrictionReport {
 }
 
 impl FrictionReport {
+    /// The report of a step that begins.
+    pub(super) fn running(coupled: bool, tolerance: f64) -> Self {
+        Self {
+            termination: Termination::Running,
+            convolutions: 0,
+            sweeps: 0,
+            violation: 0.0,
+            imbalance: 0.0,
+            excess: 0.0,
+            pressure_change: 0.0,
+            coupled,
+            full_slip: false,
+            tolerance,
+            seconds: 0.0,
+        }
+    }
+
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged
@@ -127,8 +144,7 @@ impl FrictionSolution {
     ) -> Result<Stress> {
         let mut progress = |_| ControlFlow::Continue(());
         let plan = self.stress_plan(member, options.threads, &mut progress)?;
-        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
-        plan.ok_or(stopped)?.stress(depths, options)
+        plan.ok_or(Error::Stopped)?.stress(depths, options)
     }
 
     /// A plan of the stress in one of the bodies under the pressure and the tractions, evaluated any number of times,
@@ -163,14 +179,7 @@ impl FrictionSolution {
             .into_iter()
             .flat_map(|(name, [x, y])| [(name, x), (name, y)])
         {
-            let found = [field.nrows(), field.ncols()];
-            if found != expected {
-                return Err(Error::Shape {
-                    name,
-                    expected,
-                    found,
-                });
-            }
+            same_shape(name, field, expected)?;
             if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
                 return Err(Error::NonFinite {
                     name,
@@ -197,16 +206,15 @@ impl FrictionSolution {
 
     /// Bound μp of the traction \[Pa\].
     pub fn bound(&self) -> Array2<f64> {
-        let mut bound = self.normal.pressure.clone();
-        for ((i, j), p) in bound.indexed_iter_mut() {
-            *p *= self.friction.at([i, j]);
-        }
-        bound
+        self.friction.times(&self.normal.pressure)
     }
 
     /// Size |q| of the traction \[Pa\].
     pub fn traction_size(&self) -> Array2<f64> {
-        size(&self.traction)
+        let [x, y] = &self.traction;
+        let mut size = x.clone();
+        size.zip_mut_with(y, |x, y| *x = x.hypot(*y));
+        size
     }
 
     /// Cells in contact that stick: their traction is below the bound.
@@ -214,8 +222,9 @@ impl FrictionSolution {
         let (bound, size) = (self.bound(), self.traction_size());
         let sticks =
             |(index, p): ((usize, usize), &f64)| *p > 0.0 && size[index] < AT_BOUND * bound[index];
-        let cells: Vec<bool> = self.normal.pressure.indexed_iter().map(sticks).collect();
-        Array2::from_shape_fn(bound.dim(), |(i, j)| cells[i * bound.ncols() + j])
+        Array2::from_shape_fn(bound.dim(), |cell| {
+            sticks((cell, &self.normal.pressure[cell]))
+        })
     }
 
     /// Energy that friction dissipates in the step, by area: q · s \[J/m²\]; in rolling, over the distance rolled
@@ -240,10 +249,3 @@ impl FrictionSolution {
 
 /// Traction relative to its bound from which on a cell slips, but for rounding.
 const AT_BOUND: f64 = 1.0 - 1e-9;
-
-/// Lengths of vectors.
-pub(super) fn size([x, y]: &[Array2<f64>; 2]) -> Array2<f64> {
-    let mut size = x.clone();
-    size.zip_mut_with(y, |x, y| *x = x.hypot(*y));
-    size
-}

@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use crate::contact::Motion;
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, require, same_shape};
 use crate::model::grid::Grid;
 
 /// Coefficient of friction μ ≥ 0.
@@ -36,28 +36,23 @@ impl Friction {
         }
     }
 
+    /// μp in each cell.
+    pub(super) fn times(&self, pressure: &Array2<f64>) -> Array2<f64> {
+        match self {
+            Self::Uniform(coefficient) => pressure * *coefficient,
+            Self::Cells(coefficients) => pressure * coefficients,
+        }
+    }
+
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
         let check = |value: f64| {
-            if value >= 0.0 && value.is_finite() {
-                return Ok(());
-            }
-            Err(Error::Parameter {
-                name: "friction",
-                requirement: "finite and at least 0",
-                value,
-            })
+            let holds = value >= 0.0 && value.is_finite();
+            require("friction", value, holds, "finite and at least 0").map(|_| ())
         };
         match self {
             Self::Uniform(coefficient) => check(*coefficient),
             Self::Cells(coefficients) => {
-                let found = [coefficients.nrows(), coefficients.ncols()];
-                if found != grid.shape() {
-                    return Err(Error::Shape {
-                        name: "friction",
-                        expected: grid.shape(),
-                        found,
-                    });
-                }
+                same_shape("friction", coefficients, grid.shape())?;
                 coefficients.iter().try_for_each(|value| check(*value))
             }
         }
@@ -93,19 +88,13 @@ pub struct Step {
 
 /// A motion of any size but one at which numbers overflow.
 fn bounded(name: &'static str, value: f64, unit: f64) -> Result<f64> {
-    if finite(name, value)?.abs() <= 1e6 * unit {
-        return Ok(value);
-    }
     let requirement = match name {
         "shift" => "at most a million times the width of the grid",
         "spin" => "at most a million over the width of the grid",
         _ => "at most a million",
     };
-    Err(Error::Parameter {
-        name,
-        requirement,
-        value,
-    })
+    let holds = finite(name, value)?.abs() <= 1e6 * unit;
+    require(name, value, holds, requirement)
 }
 
 impl Step {
@@ -118,7 +107,8 @@ impl Step {
         }
     }
 
-    pub(super) fn freedoms(&self, grid: &Grid) -> Result<Freedoms> {
+    /// Degrees of freedom along x, along y, and about z.
+    pub(super) fn freedoms(&self, grid: &Grid) -> Result<[Freedom; 3]> {
         let given = [
             (self.shift[0], self.force[0]),
             (self.shift[1], self.force[1]),
@@ -175,9 +165,6 @@ impl Freedom {
     }
 }
 
-/// Along x, along y, and about z.
-pub(super) type Freedoms = [Freedom; 3];
-
 /// Direction in which the contact moves over the bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RollingDirection {
@@ -200,6 +187,16 @@ impl RollingDirection {
             Self::PlusY => [0.0, 1.0],
             Self::MinusY => [0.0, -1.0],
         }
+    }
+
+    /// The axis along which it points.
+    pub(super) fn axis(self) -> usize {
+        usize::from(matches!(self, Self::PlusY | Self::MinusY))
+    }
+
+    /// Whether it points along its axis, and not against it.
+    pub(super) fn is_forward(self) -> bool {
+        matches!(self, Self::PlusX | Self::PlusY)
     }
 }
 
@@ -262,6 +259,17 @@ impl Rolling {
         }
         Ok(freedoms)
     }
+}
+
+/// What the counterbody does next.
+#[derive(Debug, Clone, Copy)]
+pub enum Move<'a> {
+    /// A step of sliding.
+    Slide(&'a Step),
+    /// Rolling at constant speed, in the steady state.
+    RollSteadily(&'a Rolling),
+    /// Rolling by the length of one cell.
+    RollOneCell(&'a Rolling),
 }
 
 /// How tangential problems are solved.

@@ -1,35 +1,36 @@
 //! One tangential problem on the window of a contact: sliding in one step, rolling at constant speed, or rolling by one
-//! cell.
+//! cell. Its fields on the whole grid, and how well the laws hold there.
 
 use std::sync::Arc;
 
 use ndarray::{Array2, Axis};
 
-use super::law::Law;
-use super::newton::{Effort, Outcome, Problem, Watch};
-use super::operator::{Direction, Operator};
-use super::step::{Freedom, Freedoms, Friction, Rolling, RollingDirection};
+use super::law::{CellState, Law};
+use super::linear::Operator;
+use super::newton::{ConvolutionWatch, Effort, TractionProblem, TractionResult};
+use super::solution::TangentialMotion;
+use super::step::{Freedom, Friction, Rolling, RollingDirection};
 use crate::compliance::traction::{Tangential, TangentialWindow};
-use crate::error::{Error, Result};
+use crate::contact::Warning;
+use crate::error::{Error, Result, require};
 use crate::model::grid::{Grid, Window};
 
 /// What is asked of the tangential motion.
-#[derive(Debug, Clone)]
-pub(super) enum Task<'a> {
-    Slide {
-        freedoms: Freedoms,
-        before: &'a Before,
-    },
-    Roll {
-        rolling: &'a Rolling,
-        freedoms: [Freedom; 2],
-        /// The state one cell earlier; none for the steady state.
-        before: Option<&'a Before>,
-    },
+#[derive(Debug)]
+pub(super) struct TractionTask<'a> {
+    /// Rolling; `None` in sliding.
+    pub(super) rolling: Option<&'a Rolling>,
+    /// Whether rolling is steady, so that no state comes before.
+    pub(super) is_steady: bool,
+    /// Degrees of freedom along both axes (of the grid, or along and across rolling) and about z: in sliding less what was
+    /// before, in rolling over a cell.
+    pub(super) increments: [Freedom; 3],
+    /// The state before the step, or one cell earlier.
+    pub(super) before: Before,
 }
 
 /// The state before a step.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Before {
     pub(super) traction: [Array2<f64>; 2],
     pub(super) displacement: [Array2<f64>; 2],
@@ -40,342 +41,455 @@ pub(super) struct Before {
 impl Before {
     /// Bodies that have not touched.
     pub(super) fn nothing(grid: &Grid) -> Self {
-        let zeros = || [(); 2].map(|()| Array2::zeros(grid.shape()));
         Self {
-            traction: zeros(),
-            displacement: zeros(),
+            traction: zeros(grid.shape()),
+            displacement: zeros(grid.shape()),
             shift: [0.0; 2],
             twist: 0.0,
         }
     }
 }
 
-impl RollingDirection {
-    pub(super) fn direction(self) -> Direction {
-        Direction {
-            axis: usize::from(matches!(self, Self::PlusY | Self::MinusY)),
-            forward: matches!(self, Self::PlusX | Self::PlusY),
-        }
-    }
-
-    /// z × e
-    fn across(self) -> [f64; 2] {
-        let [x, y] = self.vector();
-        [-y, x]
-    }
+/// A field of two components.
+pub(super) fn zeros(shape: [usize; 2]) -> [Array2<f64>; 2] {
+    [(); 2].map(|()| Array2::zeros(shape))
 }
 
-impl Task<'_> {
-    fn direction(&self) -> Option<Direction> {
-        match self {
-            Self::Slide { .. } => None,
-            Self::Roll { rolling, .. } => Some(rolling.direction.direction()),
-        }
-    }
+/// What the tractions belong to.
+#[derive(Clone, Copy)]
+pub(super) struct PressedCells<'a> {
+    pub(super) grid: &'a Grid,
+    /// μp of each cell.
+    pub(super) bound: &'a Array2<f64>,
+    /// The pressure that displaces the surfaces along each other.
+    pub(super) spreading: &'a Array2<f64>,
+}
 
-    /// Whether rolling needs the displacement ahead of the grid.
-    pub(super) fn leaves_the_grid(&self, bound: &Array2<f64>) -> bool {
-        self.direction().is_some_and(|Direction { axis, forward }| {
-            let edge = if forward {
-                bound.len_of(Axis(axis)) - 1
-            } else {
-                0
-            };
-            bound
-                .index_axis(Axis(axis), edge)
-                .iter()
-                .any(|bound| *bound > 0.0)
-        })
-    }
-
+impl TractionTask<'_> {
     pub(super) fn slides(&self) -> bool {
-        matches!(self, Self::Slide { .. })
+        self.rolling.is_none()
+    }
+
+    fn direction(&self) -> Option<RollingDirection> {
+        self.rolling.map(|rolling| rolling.direction)
     }
 
     /// Direction of a steady state.
-    pub(super) fn steady(&self) -> Option<Direction> {
-        match self {
-            Self::Roll { before: None, .. } => self.direction(),
-            _ => None,
-        }
+    fn steady(&self) -> Option<RollingDirection> {
+        self.direction().filter(|_| self.is_steady)
     }
 
-    /// The smallest window that holds all cells with friction or pressure, and in rolling a cell more on both sides; none
-    /// where no cell has friction.
-    pub(super) fn window(&self, bound: &Array2<f64>, pressure: &Array2<f64>) -> Option<Window> {
-        if bound.iter().all(|bound| *bound <= 0.0) {
-            return None;
-        }
-        let mut window: Option<[[usize; 2]; 2]> = None;
-        // Pressure spreads the surfaces also where there is no friction.
-        let cells = bound.indexed_iter().zip(pressure);
-        let used = cells.filter(|((_, bound), p)| **bound > 0.0 || **p > 0.0);
-        for (((i, j), _), _) in used {
-            let [[x0, x1], [y0, y1]] = window.unwrap_or([[i, i], [j, j]]);
-            window = Some([[x0.min(i), x1.max(i)], [y0.min(j), y1.max(j)]]);
-        }
-        let margin = |axis: usize| usize::from(self.steady().is_some_and(|d| d.axis == axis));
-        window.map(|ends| {
-            [0, 1].map(|axis| {
-                let [first, last] = ends[axis];
-                let most = [bound.nrows(), bound.ncols()][axis];
-                first.saturating_sub(margin(axis))..(last + 1 + margin(axis)).min(most)
-            })
+    /// Increments that are prescribed; 0 elsewhere.
+    fn prescribed(&self) -> [f64; 3] {
+        self.increments.map(|freedom| match freedom {
+            Freedom::Prescribed(value) => value,
+            _ => 0.0,
         })
     }
 
-    /// The unit motions along both axes (of the grid, or along and across rolling), and about the origin, at the cell
-    /// with its centre at (x, y). Rolling compares a cell with that ahead; with the spin's arm in the middle between
-    /// them, the condition would lie half a cell ahead of the traction.
-    pub(super) fn unit_motions(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 3] {
-        match self {
-            Self::Slide { .. } => [[1.0, 0.0], [0.0, 1.0], [-y, x]],
-            Self::Roll { rolling, .. } => {
-                let direction = rolling.direction;
-                [direction.vector(), direction.across(), [-y, x]]
+    /// An error where friction does not bear a force or a torque, where one is so small that its tractions vanish, and where
+    /// rolling needs the displacement ahead of the grid.
+    pub(super) fn check(&self, grid: &Grid, bound: &Array2<f64>, tolerance: f64) -> Result<()> {
+        let [x, y, torque] = self.increments.map(Freedom::force);
+        let (force, area) = (x.hypot(y), grid.cell_area());
+        for (name, value, bears) in [
+            ("force", force, bound.sum() * area),
+            ("torque", torque.abs(), largest_torque(grid, bound)),
+        ] {
+            if value > 0.0 && value >= (1.0 - tolerance) * bears {
+                return Err(Error::FullSlip { name, value, bears });
             }
+            let counts = value <= 0.0 || value >= 1e-100 * bears;
+            let requirement = "0, or at least 1e-100 of what friction bears";
+            require(name, value, counts, requirement)?;
+        }
+        let leaves = |direction: RollingDirection| {
+            let axis = Axis(direction.axis());
+            let edge = match direction.is_forward() {
+                true => bound.len_of(axis) - 1,
+                false => 0,
+            };
+            bound
+                .index_axis(axis, edge)
+                .iter()
+                .any(|bound| *bound > 0.0)
+        };
+        match self.direction().is_some_and(leaves) {
+            false => Ok(()),
+            true => Err(Error::RollsOffGrid),
         }
     }
 
-    /// The degrees of freedom: in sliding less what was before, in rolling over a cell.
-    pub(super) fn increments(&self, spacing: [f64; 2]) -> Freedoms {
-        match self {
-            Self::Slide { freedoms, before } => {
-                let start = [before.shift[0], before.shift[1], before.twist];
-                let mut increments = *freedoms;
-                for (freedom, start) in increments.iter_mut().zip(start) {
-                    *freedom = match freedom {
-                        Freedom::Kept => Freedom::Prescribed(0.0),
-                        Freedom::Prescribed(value) => Freedom::Prescribed(*value - start),
-                        Freedom::Loaded(force) => Freedom::Loaded(*force),
-                    };
-                }
-                increments
-            }
-            Self::Roll {
-                rolling, freedoms, ..
-            } => {
-                let d = spacing[rolling.direction.direction().axis];
-                let over = |freedom: Freedom| match freedom {
-                    Freedom::Prescribed(value) => Freedom::Prescribed(value * d),
-                    other => other,
-                };
-                [
-                    over(freedoms[0]),
-                    over(freedoms[1]),
-                    Freedom::Prescribed(rolling.spin * d),
-                ]
-            }
+    /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;
+    /// `None` where no cell has friction.
+    fn window(&self, pressed: PressedCells) -> Option<Window> {
+        let PressedCells {
+            bound, spreading, ..
+        } = pressed;
+        if bound.iter().all(|bound| *bound <= 0.0) {
+            return None;
         }
+        // Pressure spreads the surfaces also where there is no friction.
+        let used = |(i, j): (usize, usize)| bound[[i, j]] > 0.0 || spreading[[i, j]] > 0.0;
+        let cells = bound.indexed_iter().map(|(cell, _)| cell);
+        let mut cells = cells.filter(|cell| used(*cell));
+        let (i, j) = cells.next()?;
+        let [rows, columns] = cells.fold([[i, i], [j, j]], |[[x0, x1], [y0, y1]], (i, j)| {
+            [[x0.min(i), x1.max(i)], [y0.min(j), y1.max(j)]]
+        });
+        let wider = |axis: usize, [first, last]: [usize; 2]| {
+            let margin = usize::from(self.steady().is_some_and(|d| d.axis() == axis));
+            let most = bound.len_of(Axis(axis));
+            first.saturating_sub(margin)..(last + 1 + margin).min(most)
+        };
+        Some([wider(0, rows), wider(1, columns)])
+    }
+
+    /// The unit motions of the degrees of freedom at the cell with its centre at (x, y). Rolling compares a cell with that
+    /// ahead; with the spin's arm in the middle between them, the condition would lie half a cell ahead of the traction.
+    fn unit_motions(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 3] {
+        let [along, across] = match self.direction() {
+            None => [[1.0, 0.0], [0.0, 1.0]],
+            Some(direction) => {
+                let [x, y] = direction.vector();
+                [[x, y], [-y, x]]
+            }
+        };
+        [along, across, [-y, x]]
     }
 
     /// Displacements before, at the cell itself or in rolling at that ahead.
-    pub(super) fn earlier(&self, [i, j]: [usize; 2]) -> [f64; 2] {
-        let (before, [k, l]) = match self {
-            Self::Slide { before, .. } => (before, [i, j]),
-            Self::Roll { before: None, .. } => return [0.0; 2],
-            Self::Roll {
-                before: Some(before),
-                rolling,
-                ..
-            } => (
-                before,
-                ahead(
-                    rolling.direction.direction(),
-                    [i, j],
-                    &before.displacement[0],
-                ),
-            ),
+    fn earlier(&self, cell: [usize; 2]) -> [f64; 2] {
+        let field = &self.before.displacement;
+        let cell = match self.direction() {
+            None => cell,
+            Some(direction) => ahead(direction, cell, &field[0]),
         };
-        before.displacement.each_ref().map(|u| u[[k, l]])
+        field.each_ref().map(|u| u[cell])
     }
 
-    /// Tractions for a `pressure`, starting from the best of `starts`.
+    /// Tractions for a pressure, starting from the best of `starts`; `None` where no cell has friction.
     pub(super) fn solve(
         &self,
         tangential: &Tangential,
-        (grid, bound, pressure): (&Grid, &Array2<f64>, &Array2<f64>),
+        pressed: PressedCells,
         starts: &[[Array2<f64>; 2]],
         effort: Effort,
-        watch: &mut Watch,
-    ) -> Option<Solved> {
-        let window = self.window(bound, pressure)?;
+        watch: &mut ConvolutionWatch,
+    ) -> Option<SolvedTask> {
+        let window = self.window(pressed)?;
         let operators = tangential.window([window[0].len(), window[1].len()]);
         let law = Law {
-            bound: cut(bound, &window),
+            bound: cut(pressed.bound, &window),
         };
+        let problem = self.problem(&operators, &law, pressed, &window);
+        let mut starts: Vec<Vec<f64>> = (starts.iter())
+            .map(|start| start.each_ref().map(|q| cut(q, &window)).concat())
+            .collect();
+        let compared = if starts.len() > 1 { starts.len() } else { 0 };
+        if compared > 0 {
+            let worst = |q: &Vec<f64>| problem.misfit_of(q.clone()).worst();
+            let worst: Vec<f64> = starts.iter().map(worst).collect();
+            let best = (0..compared).min_by(|a, b| worst[*a].total_cmp(&worst[*b]));
+            starts.swap(0, best.unwrap_or(0));
+        }
+        let best = starts.into_iter().next()?;
+        let mut found = problem.solve(best, effort, watch);
+        found.convolutions += compared;
+        let mut moved = self.prescribed();
+        let mut loaded = found.multipliers.iter();
+        for (moved, freedom) in moved.iter_mut().zip(self.increments) {
+            if matches!(freedom, Freedom::Loaded(_)) {
+                *moved = *loaded.next()?;
+            }
+        }
+        Some(SolvedTask {
+            window,
+            cells: operators.cells(),
+            found,
+            moved,
+        })
+    }
+
+    /// The problem on a window: what the displacements must be, and the columns and forces of the loaded degrees of freedom.
+    fn problem<'p>(
+        &self,
+        operators: &'p Arc<TangentialWindow>,
+        law: &'p Law,
+        pressed: PressedCells,
+        window: &Window,
+    ) -> TractionProblem<'p> {
         let operator = Operator {
-            window: &operators,
+            window: operators,
             rolling: self.steady(),
         };
-        let mut given = operators.spread(&cut(pressure, &window));
+        let mut given = operators.spread(&cut(pressed.spreading, window));
         if let Some(direction) = operator.rolling {
             operator.difference(direction, &mut given);
         }
         given.iter_mut().for_each(|g| *g = -*g);
-        let cells = operators.cells();
-        let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
-        let mut columns = vec![vec![0.0; 2 * cells]; 3];
-        for (at, (i, j)) in each(&window).enumerate() {
+        let (grid, cells) = (pressed.grid, operators.cells());
+        let (x, y) = (grid.x(), grid.y());
+        let mut units = vec![vec![0.0; 2 * cells]; 3];
+        for (at, (i, j)) in each(window).enumerate() {
             let earlier = self.earlier([i, j]);
             let motions = self.unit_motions([x[i], y[j]]);
             for (axis, earlier) in earlier.into_iter().enumerate() {
                 given[axis * cells + at] += earlier;
-                for (column, motion) in columns.iter_mut().zip(motions) {
-                    column[axis * cells + at] = motion[axis];
+                for (unit, motion) in units.iter_mut().zip(motions) {
+                    unit[axis * cells + at] = motion[axis];
                 }
             }
         }
-        let (mut loaded, mut forces, mut which) = (Vec::new(), Vec::new(), Vec::new());
-        let increments = self.increments(spacing);
-        for (number, (freedom, column)) in increments.into_iter().zip(columns).enumerate() {
+        let (mut columns, mut forces) = (Vec::new(), Vec::new());
+        for (freedom, unit) in self.increments.into_iter().zip(units) {
             match freedom {
                 Freedom::Loaded(force) => {
                     forces.push(force / grid.cell_area());
-                    loaded.push(column);
-                    which.push(number);
+                    columns.push(unit);
                 }
                 Freedom::Prescribed(value) if value != 0.0 => {
-                    given
-                        .iter_mut()
-                        .zip(column)
-                        .for_each(|(g, c)| *g += value * c);
+                    let pairs = given.iter_mut().zip(unit);
+                    pairs.for_each(|(g, unit)| *g += value * unit);
                 }
                 _ => {}
             }
         }
-        let problem = Problem {
+        TractionProblem {
             operator,
-            law: &law,
+            law,
             given,
-            columns: loaded,
+            columns,
             forces,
-        };
-        let starts = starts
-            .iter()
-            .map(|start| start.each_ref().map(|q| cut(q, &window)).concat());
-        let mut starts: Vec<Vec<f64>> = starts.collect();
-        let compared = if starts.len() > 1 { starts.len() } else { 0 };
-        if compared > 0 {
-            let worst = |q: &Vec<f64>| problem.quality_of(q.clone()).worst();
-            let quality: Vec<f64> = starts.iter().map(worst).collect();
-            let best = (0..compared).min_by(|a, b| quality[*a].total_cmp(&quality[*b]));
-            starts.swap(0, best.unwrap_or(0));
         }
-        let best = starts.into_iter().next()?;
-        let mut outcome = problem.solve(best, effort, watch);
-        outcome.convolutions += compared;
-        let mut moved = increments.map(|freedom| match freedom {
-            Freedom::Prescribed(value) => value,
-            _ => 0.0,
+    }
+
+    /// Fields on the whole grid, with the operator of the whole grid.
+    pub(super) fn fields(
+        &self,
+        tangential: &Tangential,
+        pressed: PressedCells,
+        solved: Option<&SolvedTask>,
+    ) -> FrictionFields {
+        let grid = pressed.grid;
+        let shape = grid.shape();
+        let traction = solved.map_or_else(|| zeros(shape), |solved| solved.tractions(shape));
+        let moved = solved.map_or_else(|| self.prescribed(), |solved| solved.moved);
+        let whole = tangential.window(shape);
+        let q: Vec<f64> = traction.iter().flatten().copied().collect();
+        let mut own = vec![0.0; q.len()];
+        whole.displace(&q, &mut own);
+        let p: Vec<f64> = pressed.spreading.iter().copied().collect();
+        let spread = whole.spread(&p);
+        let (cells, columns) = (whole.cells(), shape[1]);
+        let place = |axis: usize, [i, j]: [usize; 2]| axis * cells + i * columns + j;
+        let displacement = [0, 1].map(|axis| {
+            Array2::from_shape_fn(shape, |(i, j)| {
+                let at = place(axis, [i, j]);
+                own[at] + spread[at]
+            })
         });
-        for (number, delta) in which.into_iter().zip(&outcome.multipliers) {
-            moved[number] = *delta;
+        // The change of displacement that slip makes up for.
+        let change = |axis: usize, cell: [usize; 2]| {
+            let u: &Array2<f64> = &displacement[axis];
+            match self.steady() {
+                None => u[cell],
+                Some(direction) => u[cell] - u[ahead(direction, cell, u)],
+            }
+        };
+        let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
+        let unit = self.direction().map_or(1.0, |d| 1.0 / spacing[d.axis()]);
+        let mut slip = zeros(shape);
+        let (mut violation, mut scale, mut excess, mut most) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut full_slip = solved.is_some();
+        for (cell, state) in solved.into_iter().flat_map(SolvedTask::states) {
+            if *state == CellState::Free {
+                continue;
+            }
+            let motions = self.unit_motions([x[cell[0]], y[cell[1]]]);
+            let earlier = self.earlier(cell);
+            let s = [0, 1].map(|axis| {
+                let parts = moved.iter().zip(motions);
+                let rigid: f64 = parts.map(|(by, motion)| by * motion[axis]).sum();
+                rigid + earlier[axis] - change(axis, cell)
+            });
+            scale = scale.max(own[place(0, cell)].hypot(own[place(1, cell)]));
+            let bound = pressed.bound[cell];
+            excess = excess.max(traction[0][cell].hypot(traction[1][cell]) - bound);
+            most = most.max(bound);
+            violation = violation.max(match state {
+                CellState::Slip { n, .. } => (s[1] * n[0] - s[0] * n[1]).abs(),
+                _ => s[0].hypot(s[1]),
+            });
+            full_slip &= matches!(state, CellState::Slip { .. });
+            for (field, s) in slip.iter_mut().zip(s) {
+                field[cell] = s * unit;
+            }
         }
-        Some(Solved {
-            window,
-            operators,
-            outcome,
-            moved,
-        })
+        let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        FrictionFields {
+            traction,
+            displacement,
+            slip,
+            motion: self.motion(moved, unit),
+            violation: over(violation, scale),
+            excess: over(excess.max(0.0), most),
+            full_slip,
+        }
+    }
+
+    /// The tangential motion after increments of the degrees of freedom.
+    fn motion(&self, moved: [f64; 3], unit: f64) -> TangentialMotion {
+        let Before { shift, twist, .. } = self.before;
+        match self.rolling {
+            None => TangentialMotion::Slide {
+                shift: [shift[0] + moved[0], shift[1] + moved[1]],
+                twist: twist + moved[2],
+            },
+            Some(rolling) => TangentialMotion::Roll {
+                creepage: [moved[0] * unit, moved[1] * unit],
+                spin: rolling.spin,
+                direction: rolling.direction,
+            },
+        }
     }
 }
 
 /// A solved problem on its window.
-pub(super) struct Solved {
-    pub(super) window: Window,
-    pub(super) operators: Arc<TangentialWindow>,
-    pub(super) outcome: Outcome,
+pub(super) struct SolvedTask {
+    window: Window,
+    cells: usize,
+    pub(super) found: TractionResult,
     /// Increments of the three degrees of freedom; in rolling over a cell.
-    pub(super) moved: [f64; 3],
+    moved: [f64; 3],
 }
 
-impl Solved {
-    /// Displacement along z that the tractions cause, on the window; 0 elsewhere.
+impl SolvedTask {
+    /// Cells of the window, and what they do.
+    fn states(&self) -> impl Iterator<Item = ([usize; 2], &CellState)> {
+        each(&self.window)
+            .map(|(i, j)| [i, j])
+            .zip(&self.found.states)
+    }
+
+    /// Tractions on the whole grid, 0 outside of the window.
     pub(super) fn tractions(&self, shape: [usize; 2]) -> [Array2<f64>; 2] {
-        let mut traction = [(); 2].map(|()| Array2::<f64>::zeros(shape));
-        let cells = self.operators.cells();
+        let mut traction = zeros(shape);
         for (at, (i, j)) in each(&self.window).enumerate() {
             for (axis, q) in traction.iter_mut().enumerate() {
-                q[[i, j]] = self.outcome.q[axis * cells + at];
+                q[[i, j]] = self.found.q[axis * self.cells + at];
             }
         }
         traction
     }
 }
 
+/// Tractions, displacements and slip of the whole grid.
+pub(super) struct FrictionFields {
+    pub(super) traction: [Array2<f64>; 2],
+    pub(super) displacement: [Array2<f64>; 2],
+    pub(super) slip: [Array2<f64>; 2],
+    pub(super) motion: TangentialMotion,
+    pub(super) violation: f64,
+    pub(super) excess: f64,
+    pub(super) full_slip: bool,
+}
+
+/// Creepage or twist from which on their squares, of which half is left out, are 5 % of them.
+const LARGE: f64 = 0.1;
+
+impl FrictionFields {
+    pub(super) fn are_finite(&self) -> bool {
+        let fields = [&self.traction, &self.displacement, &self.slip];
+        let (TangentialMotion::Slide {
+            shift: [x, y],
+            twist: z,
+        }
+        | TangentialMotion::Roll {
+            creepage: [x, y],
+            spin: z,
+            ..
+        }) = &self.motion;
+        let mut values = fields.into_iter().flatten().flatten().chain([x, y, z]);
+        values.all(|value| value.is_finite())
+    }
+
+    /// The warning of creepages or a twist that are not small, where `pressure` is.
+    pub(super) fn warning(
+        &self,
+        task: &TractionTask,
+        grid: &Grid,
+        pressure: &Array2<f64>,
+    ) -> Option<Warning> {
+        let size = match self.motion {
+            TangentialMotion::Slide { twist, .. } => twist.abs(),
+            TangentialMotion::Roll { creepage, spin, .. } => {
+                let (x, y) = (grid.x(), grid.y());
+                let touching = pressure.indexed_iter().filter(|(_, p)| **p > 0.0);
+                touching.fold(0.0_f64, |most, ((i, j), _)| {
+                    let unit = task.unit_motions([x[i], y[j]]);
+                    let along = |axis: usize| {
+                        creepage[0] * unit[0][axis]
+                            + creepage[1] * unit[1][axis]
+                            + spin * unit[2][axis]
+                    };
+                    most.max(along(0).hypot(along(1)))
+                })
+            }
+        };
+        (size > LARGE).then_some(Warning::LargeMotion { size })
+    }
+
+    /// Brings back the state before the step, where there was one: the history can continue from there.
+    pub(super) fn restore(&mut self, task: &TractionTask) {
+        if task.is_steady {
+            return;
+        }
+        let before = &task.before;
+        self.traction.clone_from(&before.traction);
+        self.displacement.clone_from(&before.displacement);
+        self.slip.iter_mut().for_each(|s| s.fill(0.0));
+        if let TangentialMotion::Slide { shift, twist } = &mut self.motion {
+            (*shift, *twist) = (before.shift, before.twist);
+        }
+    }
+}
+
 /// Bounds μp.
-pub(super) fn bounds(pressure: &Array2<f64>, friction: &Friction) -> Array2<f64> {
-    let mut bound = pressure.clone();
-    for ((i, j), p) in bound.indexed_iter_mut() {
-        *p *= friction.at([i, j]);
-    }
-    bound
-}
-
-/// An error where products of tractions would overflow or vanish.
-pub(super) fn check_bound(bound: &Array2<f64>) -> Result<()> {
+///
+/// # Errors
+/// Where products of tractions would overflow or vanish.
+pub(super) fn bounds(pressure: &Array2<f64>, friction: &Friction) -> Result<Array2<f64>> {
+    let bound = friction.times(pressure);
     let most = bound.iter().fold(0.0_f64, |most, bound| most.max(*bound));
-    match most <= 0.0 || (1e-150..=1e150).contains(&most) {
-        true => Ok(()),
-        false => Err(Error::Parameter {
-            name: "friction times the largest pressure",
-            requirement: "0, or between 1e-150 and 1e150",
-            value: most,
-        }),
-    }
-}
-
-/// An error where friction does not bear a force or a torque, or where one is so small that its tractions vanish.
-pub(super) fn check_forces(
-    grid: &Grid,
-    bound: &Array2<f64>,
-    [x, y]: [f64; 2],
-    torque: f64,
-    tolerance: f64,
-) -> Result<()> {
-    let bears = bound.sum() * grid.cell_area();
-    for (name, value, bears) in [
-        ("force", x.hypot(y), bears),
-        ("torque", torque.abs(), largest_torque(grid, bound)),
-    ] {
-        if value > 0.0 && value >= (1.0 - tolerance) * bears {
-            return Err(Error::FullSlip { name, value, bears });
-        }
-        if value > 0.0 && value < 1e-100 * bears {
-            let requirement = "0, or at least 1e-100 of what friction bears";
-            return Err(Error::Parameter {
-                name,
-                requirement,
-                value,
-            });
-        }
-    }
-    Ok(())
+    require(
+        "friction times the largest pressure",
+        most,
+        most <= 0.0 || (1e-150..=1e150).contains(&most),
+        "0, or between 1e-150 and 1e150",
+    )?;
+    Ok(bound)
 }
 
 /// Σ μp r dA: the largest torque about the origin.
 fn largest_torque(grid: &Grid, bound: &Array2<f64>) -> f64 {
     let (x, y) = (grid.x(), grid.y());
-    let each = bound
-        .indexed_iter()
-        .map(|((i, j), bound)| bound * x[i].hypot(y[j]));
+    let each = bound.indexed_iter();
+    let each = each.map(|((i, j), bound)| bound * x[i].hypot(y[j]));
     each.sum::<f64>() * grid.cell_area()
 }
 
 /// The cell ahead, or the last one.
-pub(super) fn ahead(direction: Direction, [i, j]: [usize; 2], field: &Array2<f64>) -> [usize; 2] {
-    let step = |k: usize, n: usize| match direction.forward {
-        true => (k + 1).min(n - 1),
-        false => k.saturating_sub(1),
+fn ahead(direction: RollingDirection, mut cell: [usize; 2], field: &Array2<f64>) -> [usize; 2] {
+    let axis = direction.axis();
+    cell[axis] = match direction.is_forward() {
+        true => (cell[axis] + 1).min(field.len_of(Axis(axis)) - 1),
+        false => cell[axis].saturating_sub(1),
     };
-    match direction.axis {
-        0 => [step(i, field.nrows()), j],
-        _ => [i, step(j, field.ncols())],
-    }
+    cell
 }
 
-pub(super) fn each(window: &Window) -> impl Iterator<Item = (usize, usize)> + use<> {
+fn each(window: &Window) -> impl Iterator<Item = (usize, usize)> + use<> {
     let [rows, columns] = window.clone();
     rows.flat_map(move |i| columns.clone().map(move |j| (i, j)))
 }

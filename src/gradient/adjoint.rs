@@ -4,15 +4,13 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::output::Output;
-use super::parameter::{Parameter, all, named};
-use super::result::{Direction, Gradient};
+use super::output::{Direction, Gradient, Output};
+use super::parameter::{Parameter, Slope, all, named};
 use super::seed::{Seed, offsets};
-use super::slopes::Slope;
-use super::state::{Saddle, State};
+use super::state::{Linearised, Saddle};
 use super::stress::StressSeed;
 use crate::contact::Solution;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require, same_shape};
 use crate::model::surface::Surface;
 use crate::numerics::parallel::dot;
 
@@ -20,28 +18,45 @@ use crate::numerics::parallel::dot;
 const MARGIN: f64 = 1e-10;
 
 /// How linear systems are solved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinearOptions {
+#[derive(Clone, Copy)]
+pub struct LinearOptions<'a> {
     /// Residual of the linear systems, relative to their right sides. Default: 1e-9.
     pub tolerance: f64,
+    /// Asked before each iteration whether to continue; a break ends the work with [`Error::Stopped`]. Default: `None`.
+    pub watch: Option<&'a dyn Fn() -> ControlFlow<()>>,
 }
 
-impl Default for LinearOptions {
+impl Default for LinearOptions<'_> {
     fn default() -> Self {
-        Self { tolerance: 1e-9 }
+        Self {
+            tolerance: 1e-9,
+            watch: None,
+        }
     }
 }
 
-/// Asked before each iteration of a linear solve whether to go on.
-type Watch<'a> = dyn FnMut() -> ControlFlow<()> + 'a;
+impl std::fmt::Debug for LinearOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "LinearOptions(tolerance {:e})", self.tolerance)
+    }
+}
+
+impl LinearOptions<'_> {
+    fn go_on(&self) -> Result<()> {
+        match self.watch.is_some_and(|watch| watch().is_break()) {
+            true => Err(Error::Stopped),
+            false => Ok(()),
+        }
+    }
+}
 
 /// A contact linearised at its solution: what all outputs and parameters share.
 pub struct Linearisation<'a> {
     pub(super) solution: &'a Solution,
     pub(super) shape: Option<&'a dyn Surface>,
-    pub(super) state: State,
+    pub(super) state: Linearised,
     parameters: Vec<Parameter>,
-    tolerance: f64,
+    options: LinearOptions<'a>,
     margin: f64,
 }
 
@@ -58,14 +73,9 @@ impl Solution {
     /// # Errors
     /// [`Error::NotDifferentiable`] for an output or a solution without a derivative.
     pub fn gradient(&self, output: &Output, shape: Option<&dyn Surface>) -> Result<Gradient> {
-        let linearisation = Linearisation::plan(self, shape, &LinearOptions::default())?;
-        let mut found = linearisation.gradients(std::slice::from_ref(output), None)?;
-        found.pop().ok_or(STOPPED)
+        Linearisation::plan(self, shape, &LinearOptions::default())?.gradient(output, None)
     }
 }
-
-/// The error of a solve that was stopped though nobody asked.
-const STOPPED: Error = Error::Inconsistent("the linear solve was stopped before it was complete");
 
 impl<'a> Linearisation<'a> {
     /// Linearises `solution`. Parameters of the shape need the `shape` that it was solved with.
@@ -75,40 +85,20 @@ impl<'a> Linearisation<'a> {
     pub fn plan(
         solution: &'a Solution,
         shape: Option<&'a dyn Surface>,
-        options: &LinearOptions,
+        options: &LinearOptions<'a>,
     ) -> Result<Self> {
-        let never = &mut || ControlFlow::Continue(());
-        Self::plan_watched(solution, shape, options, never)?.ok_or(STOPPED)
-    }
-
-    /// [`Linearisation::plan`] that asks `watch` before each iteration whether to go on; `None` where it breaks.
-    ///
-    /// # Errors
-    /// As [`Linearisation::plan`].
-    pub fn plan_watched(
-        solution: &'a Solution,
-        shape: Option<&'a dyn Surface>,
-        options: &LinearOptions,
-        watch: &mut Watch,
-    ) -> Result<Option<Self>> {
-        if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
-            return Err(Error::Parameter {
-                name: "tolerance",
-                requirement: "above 0 and below 1",
-                value: options.tolerance,
-            });
-        }
-        let Some(state) = State::new(solution, watch)? else {
-            return Ok(None);
-        };
-        Ok(Some(Self {
+        let tolerance = options.tolerance;
+        let holds = tolerance > 0.0 && tolerance < 1.0;
+        require("tolerance", tolerance, holds, "above 0 and below 1")?;
+        let state = Linearised::new(solution, options.watch)?;
+        Ok(Self {
             parameters: all(solution, shape),
             margin: state.margin(),
-            tolerance: options.tolerance,
+            options: *options,
             solution,
             shape,
             state,
-        }))
+        })
     }
 
     /// All parameters with respect to which outputs have derivatives.
@@ -126,20 +116,6 @@ impl<'a> Linearisation<'a> {
     /// # Errors
     /// [`Error::NotDifferentiable`] for outputs and parameters without a derivative; bad points.
     pub fn gradients(&self, outputs: &[Output], wrt: Option<&[&str]>) -> Result<Vec<Gradient>> {
-        let never = &mut || ControlFlow::Continue(());
-        self.gradients_watched(outputs, wrt, never)?.ok_or(STOPPED)
-    }
-
-    /// [`Linearisation::gradients`] that asks `watch` before each iteration whether to go on; `None` where it breaks.
-    ///
-    /// # Errors
-    /// As [`Linearisation::gradients`].
-    pub fn gradients_watched(
-        &self,
-        outputs: &[Output],
-        wrt: Option<&[&str]>,
-        watch: &mut Watch,
-    ) -> Result<Option<Vec<Gradient>>> {
         let parameters = match wrt {
             None => self.parameters.clone(),
             Some(paths) => {
@@ -154,42 +130,25 @@ impl<'a> Linearisation<'a> {
         let mut seeds = Vec::new();
         let mut stresses = Vec::new();
         for output in outputs {
-            if watch().is_break() {
-                return Ok(None);
-            }
+            self.options.go_on()?;
             let (seed, stress) = self.seed(output)?;
             seeds.push(seed);
             stresses.push(stress);
         }
-        let mut adjoints = Vec::new();
-        for seed in &seeds {
-            let state = &self.state;
-            match state.saddle(&seed.pressure, seed.motion, self.tolerance, watch)? {
-                Some(adjoint) => adjoints.push(adjoint),
-                None => return Ok(None),
-            }
-        }
+        let adjoint = |seed: &Seed| self.saddle(&seed.pressure, seed.motion);
+        let adjoints: Vec<Saddle> = seeds.iter().map(adjoint).collect::<Result<_>>()?;
         let mut found: Vec<Gradient> = (outputs.iter().zip(&seeds).zip(&adjoints))
             .map(|((output, seed), adjoint)| self.gradient_of(output, seed, adjoint))
             .collect();
-        let cells: Vec<_> = seeds
-            .iter()
-            .flat_map(|seed| &seed.displaced)
-            .copied()
-            .collect();
-        let reach = offsets(self.state.tangent.window(), &cells);
-        let contact = (self.solution, self.shape);
+        let cells = seeds.iter().flat_map(|seed| &seed.displaced);
+        let cells: Vec<_> = cells.copied().collect();
         for parameter in &parameters {
-            let Some(slope) = Slope::new(contact, &self.state, parameter, reach, watch)? else {
-                return Ok(None);
-            };
+            let slope = self.slope(parameter, &cells)?;
             let parts = seeds.iter().zip(&adjoints).zip(&stresses);
             for (gradient, ((seed, adjoint), stress)) in found.iter_mut().zip(parts) {
                 let mut value = self.derivative(seed, adjoint, &slope, parameter);
                 if let Some(stress) = stress {
-                    if watch().is_break() {
-                        return Ok(None);
-                    }
+                    self.options.go_on()?;
                     value += stress.direct(self.solution, parameter)?;
                 }
                 gradient.values.push((parameter.clone(), value));
@@ -204,7 +163,28 @@ impl<'a> Linearisation<'a> {
                 gradient.values.push((Parameter::Friction, value));
             }
         }
-        Ok(Some(found))
+        Ok(found)
+    }
+
+    /// [`Linearisation::gradients`] of one output.
+    ///
+    /// # Errors
+    /// As [`Linearisation::gradients`].
+    pub fn gradient(&self, output: &Output, wrt: Option<&[&str]>) -> Result<Gradient> {
+        let mut found = self.gradients(std::slice::from_ref(output), wrt)?;
+        Ok(found.remove(0))
+    }
+
+    fn saddle(&self, right: &[f64], balance: [f64; 3]) -> Result<Saddle> {
+        let LinearOptions { tolerance, watch } = self.options;
+        self.state.saddle(right, balance, tolerance, watch)
+    }
+
+    /// How the equations depend on `parameter`, also at `cells` outside of the window.
+    fn slope(&self, parameter: &Parameter, cells: &[([usize; 2], f64)]) -> Result<Slope> {
+        self.options.go_on()?;
+        let reach = offsets(self.state.tangent.window(), cells);
+        Slope::new(self.solution, self.shape, &self.state, parameter, reach)
     }
 
     /// The seed of an output, and what a stress needs beside.
@@ -276,20 +256,6 @@ impl<'a> Linearisation<'a> {
         direction: &[(&str, f64)],
         gap: Option<&ArrayRef2<f64>>,
     ) -> Result<Direction> {
-        let never = &mut || ControlFlow::Continue(());
-        self.jvp_watched(direction, gap, never)?.ok_or(STOPPED)
-    }
-
-    /// [`Linearisation::jvp`] that asks `watch` before each iteration whether to go on; `None` where it breaks.
-    ///
-    /// # Errors
-    /// As [`Linearisation::jvp`].
-    pub fn jvp_watched(
-        &self,
-        direction: &[(&str, f64)],
-        gap: Option<&ArrayRef2<f64>>,
-        watch: &mut Watch,
-    ) -> Result<Option<Direction>> {
         let state = &self.state;
         let mut field = vec![0.0; state.pressure.len()];
         let mut target = [0.0; 3];
@@ -305,11 +271,7 @@ impl<'a> Linearisation<'a> {
         let paths: Vec<&str> = direction.iter().map(|(path, _)| *path).collect();
         let parameters = named(&self.parameters, &paths)?;
         for (parameter, (_, rate)) in parameters.iter().zip(direction) {
-            let contact = (self.solution, self.shape);
-            let reach = offsets(state.tangent.window(), &[]);
-            let Some(slope) = Slope::new(contact, state, parameter, reach, watch)? else {
-                return Ok(None);
-            };
+            let slope = self.slope(parameter, &[])?;
             add(&slope, *rate);
             match parameter {
                 Parameter::Approach => prescribed[0] += rate,
@@ -318,31 +280,22 @@ impl<'a> Linearisation<'a> {
             }
         }
         if let Some(gap) = gap {
-            let found = [gap.nrows(), gap.ncols()];
-            if found != self.solution.grid().shape() {
-                return Err(Error::Shape {
-                    name: "gap",
-                    expected: self.solution.grid().shape(),
-                    found,
-                });
-            }
+            same_shape("gap", gap, self.solution.grid().shape())?;
             // Cells that cannot touch have no gap to change.
             let finite = gap.mapv(|g| if g.is_finite() { g } else { 0.0 });
-            add(&Slope::of_gap(state, &finite), 1.0);
+            add(&Slope::of_gap(state, finite), 1.0);
         }
         let right: Vec<f64> = state.masked(&field).iter().map(|b| -b).collect();
         let balance = target.map(|f| -f);
-        let Some(tangent) = state.saddle(&right, balance, self.tolerance, watch)? else {
-            return Ok(None);
-        };
+        let tangent = self.saddle(&right, balance)?;
         let valid_step = self.valid(&tangent, &field);
         let motion = [0, 1, 2].map(|k| tangent.chi[k] + prescribed[k]);
-        Ok(Some(Direction {
+        Ok(Direction {
             pressure: self.spread(&tangent.psi),
             approach: motion[0],
             tilt: [motion[1], motion[2]],
             valid_step,
-        }))
+        })
     }
 
     /// Largest change of the parameter `path`, of either sign, for which the contact stays to first order: no pressure in it,
@@ -359,9 +312,7 @@ impl<'a> Linearisation<'a> {
     /// # Errors
     /// A cotangent of another shape than the grid's, and those of [`Linearisation::gradients`].
     pub fn vjp(&self, cotangent: &Array2<f64>, wrt: Option<&[&str]>) -> Result<Gradient> {
-        let output = Output::Weighted(cotangent.clone());
-        let mut found = self.gradients(&[output], wrt)?;
-        found.pop().ok_or(STOPPED)
+        self.gradient(&Output::Weighted(cotangent.clone()), wrt)
     }
 
     /// The largest step along a tangent for which pressures and gaps keep their signs; `field` is b.

@@ -2,10 +2,15 @@
 
 use std::fmt;
 
-use crate::compliance::response::Body;
-use crate::contact::Solution;
+use ndarray::Array2;
+
+use super::state::Linearised;
+use crate::compliance::influence::unchecked_coefficients;
+use crate::compliance::response::{Body, ResponseSlope};
+use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
 use crate::model::body::{BodyParameter, HalfSpace};
+use crate::model::grid::{full_window, repeating};
 use crate::model::surface::Surface;
 use crate::stress::Member;
 
@@ -54,14 +59,8 @@ const ENDS: &str = "the correction for free ends is tabulated for the body as it
                     differences of solves";
 
 /// The half-space of a body whose numbers have derivatives.
-///
-/// # Errors
-/// A body that is a response alone, or has free ends.
-pub(super) fn layered(body: &Body, path: &str) -> Result<HalfSpace> {
-    let refused = |reason| Error::NotDifferentiable {
-        what: path.to_owned(),
-        reason,
-    };
+fn layered(body: &Body, path: &str) -> Result<HalfSpace> {
+    let refused = |reason| Error::no_derivative(path, reason);
     let body = body.half_space().ok_or_else(|| {
         refused("the body is a response alone, whose numbers are not known; give a HalfSpace")
     })?;
@@ -110,9 +109,6 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
 }
 
 /// The parameters among `known` with these paths.
-///
-/// # Errors
-/// A path that is not among them.
 pub(super) fn named(known: &[Parameter], paths: &[&str]) -> Result<Vec<Parameter>> {
     let find = |path: &&str| {
         let found = known.iter().find(|one| one.to_string() == **path);
@@ -138,8 +134,159 @@ fn refusal(path: &str, known: &[Parameter]) -> Error {
         }
         _ => "it is not a number of this contact",
     };
-    Error::NotDifferentiable {
-        what: path.to_owned(),
-        reason,
+    Error::no_derivative(path, reason)
+}
+
+/// b = K̇ p + ḣ − B_q ṡ_q and Ḟ/dA of one parameter.
+pub(super) struct Slope {
+    /// b in the window.
+    pub(super) field: Vec<f64>,
+    /// Ḟ/dA of the three freedoms; 0 where they are prescribed.
+    pub(super) target: [f64; 3],
+    source: SlopeSource,
+}
+
+/// What b is made of outside of the window.
+enum SlopeSource {
+    /// Coefficients of K̇.
+    Coefficients(Array2<f64>),
+    /// ḣ on the whole grid.
+    Gap(Array2<f64>),
+    /// ṡ
+    Motion([f64; 3]),
+}
+
+impl Slope {
+    /// The slope with respect to `parameter`, for [`Slope::at`] at cells within `reach` offsets.
+    pub(super) fn new(
+        solution: &Solution,
+        shape: Option<&dyn Surface>,
+        state: &Linearised,
+        parameter: &Parameter,
+        reach: [usize; 2],
+    ) -> Result<Self> {
+        let report = &solution.report;
+        let grid = solution.grid();
+        let load = report.motion.load.unwrap_or(0.0);
+        let area = grid.cell_area();
+        Ok(match parameter {
+            Parameter::Body(member, one, _) => {
+                let body = match member {
+                    Member::Body => Some(&report.body),
+                    Member::Counterbody => report.counterbody.as_ref(),
+                };
+                let body = layered(
+                    body.ok_or_else(|| unknown(parameter))?,
+                    &parameter.to_string(),
+                )?;
+                Self::of_body(solution, state, &ResponseSlope::new(&body, *one), reach)?
+            }
+            Parameter::Shape(name) => {
+                let shape = shape.ok_or_else(|| unknown(parameter))?;
+                Self::of_gap(state, shape.gap_derivative(name, grid)?)
+            }
+            Parameter::Load => {
+                let mut target = [1.0 / area, 0.0, 0.0];
+                for (target, e) in target[1..].iter_mut().zip(report.motion.eccentricity) {
+                    *target = e.unwrap_or(0.0) / area;
+                }
+                Self::of_target(state, target)
+            }
+            Parameter::Eccentricity(axis) | Parameter::Moment(axis) => {
+                let moment = match parameter {
+                    Parameter::Moment(_) => 1.0,
+                    _ => load,
+                };
+                Self::of_target(state, unit(axis + 1).map(|of| of * moment / area))
+            }
+            Parameter::Approach => Self::of_motion(state, unit(0)),
+            Parameter::Tilt(axis) => Self::of_motion(state, unit(axis + 1)),
+            Parameter::Friction => Self::of_motion(state, [0.0; 3]),
+        })
     }
+
+    /// K̇ p.
+    fn of_body(
+        solution: &Solution,
+        state: &Linearised,
+        slope: &ResponseSlope,
+        reach: [usize; 2],
+    ) -> Result<Self> {
+        let (grid, window) = (solution.grid(), state.tangent.window());
+        let convolution = state.tangent.convolution();
+        let method = solution.report.method;
+        let coefficients = unchecked_coefficients(
+            slope,
+            &grid.of_offsets(reach),
+            method,
+            convolution.own_threads(),
+        )?;
+        let shape = [window[0].len(), window[1].len()];
+        let corner = block(&coefficients, &full_window(shape)).to_owned();
+        let companion = convolution.companion(&corner, repeating(grid, window));
+        let mut field = vec![0.0; state.pressure.len()];
+        companion.apply_slices(&state.pressure, &mut field, &mut companion.workspace());
+        Ok(Self {
+            field,
+            target: [0.0; 3],
+            source: SlopeSource::Coefficients(coefficients),
+        })
+    }
+
+    fn of_target(state: &Linearised, target: [f64; 3]) -> Self {
+        Self {
+            field: vec![0.0; state.pressure.len()],
+            target,
+            source: SlopeSource::Motion([0.0; 3]),
+        }
+    }
+
+    fn of_motion(state: &Linearised, motion: [f64; 3]) -> Self {
+        let field = state.moved(motion).iter().map(|moved| -moved).collect();
+        Self {
+            field,
+            target: [0.0; 3],
+            source: SlopeSource::Motion(motion),
+        }
+    }
+
+    /// b of a parameter that moves the gap by `slopes` (nx, ny) per unit.
+    pub(super) fn of_gap(state: &Linearised, slopes: Array2<f64>) -> Self {
+        let field = block(&slopes, state.tangent.window());
+        Self {
+            field: field.iter().copied().collect(),
+            target: [0.0; 3],
+            source: SlopeSource::Gap(slopes),
+        }
+    }
+
+    /// K̇ p and b at a cell of the grid, which may lie outside of the window.
+    pub(super) fn at(&self, solution: &Solution, state: &Linearised, cell: [usize; 2]) -> [f64; 2] {
+        match &self.source {
+            SlopeSource::Coefficients(coefficients) => {
+                let entry = |other: [usize; 2]| {
+                    let [i, j] = [0, 1].map(|axis| cell[axis].abs_diff(other[axis]));
+                    coefficients[[i, j]]
+                };
+                let sum = state.sum_over_contact(entry);
+                [sum, sum]
+            }
+            SlopeSource::Gap(slopes) => [0.0, slopes[cell]],
+            SlopeSource::Motion([delta, sx, sy]) => {
+                let (x, y) = (solution.grid().x()[cell[0]], solution.grid().y()[cell[1]]);
+                [0.0, -(delta + sx * x + sy * y)]
+            }
+        }
+    }
+}
+
+/// A unit of one of the three degrees of freedom.
+fn unit(freedom: usize) -> [f64; 3] {
+    let mut unit = [0.0; 3];
+    unit[freedom] = 1.0;
+    unit
+}
+
+fn unknown(parameter: &Parameter) -> Error {
+    Error::no_derivative(parameter.to_string(), "it is not a number of this contact")
 }

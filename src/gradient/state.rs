@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::compliance::influence::Method;
 use crate::contact::{Solution, Tangent, block, bounds};
 use crate::error::{Error, Result};
 use crate::model::grid::{Window, full_window};
@@ -26,8 +27,11 @@ const ROUNDING: f64 = 1e-13;
 /// Difference between the displacement of a solution and that of its pressure, relative to the largest.
 const OTHER_DISPLACEMENT: f64 = 1e-5;
 
+/// Asked before each iteration of a linear solve whether to continue.
+pub(super) type Asked<'a> = Option<&'a dyn Fn() -> ControlFlow<()>>;
+
 /// A contact linearised at its solution. Arrays are those of the tangent's window, in C order.
-pub(super) struct State {
+pub(super) struct Linearised {
     pub(super) tangent: Tangent,
     pub(super) pressure: Vec<f64>,
     /// Gap, 0 in contact.
@@ -38,7 +42,7 @@ pub(super) struct State {
     /// F/dA: right sides of the balance of loaded freedoms.
     target: [f64; 3],
     /// Columns of the loaded freedoms.
-    columns: Vec<Column>,
+    columns: Vec<LoadedColumn>,
     /// Smallest gap outside of the window.
     outside: f64,
 }
@@ -47,7 +51,7 @@ pub(super) struct State {
 const SINGULAR: f64 = 1e-10;
 
 /// One loaded freedom: the column of Q, and that of R, in B_f = Q R.
-struct Column {
+struct LoadedColumn {
     freedom: usize,
     values: Vec<f64>,
     factors: Vec<f64>,
@@ -59,15 +63,9 @@ pub(super) struct Saddle {
     pub(super) chi: [f64; 3],
 }
 
-impl State {
-    /// Polishes `solution`; `None` where `watch` breaks.
-    ///
-    /// # Errors
-    /// A solution that has no derivative, and failing solves.
-    pub(super) fn new(
-        solution: &Solution,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Self>> {
+impl Linearised {
+    /// Polishes `solution`.
+    pub(super) fn new(solution: &Solution, watch: Asked) -> Result<Self> {
         check(solution)?;
         let grid = solution.grid();
         let shape = grid.shape();
@@ -128,10 +126,8 @@ impl State {
                 "its displacement is not that of its pressure alone, as under friction between unlike bodies",
             ));
         }
-        if state.polish(&undeformed, watch)?.is_none() {
-            return Ok(None);
-        }
-        Ok(Some(state))
+        state.polish(&undeformed, watch)?;
+        Ok(state)
     }
 
     /// δ + s_x x + s_y y of a `motion` in each cell.
@@ -167,11 +163,7 @@ impl State {
     }
 
     /// Makes pressure and motion exact on the contact, from which cells may leave, and which they may join.
-    fn polish(
-        &mut self,
-        undeformed: &[f64],
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<()>> {
+    fn polish(&mut self, undeformed: &[f64], watch: Asked) -> Result<()> {
         for _ in 0..ROUNDS {
             self.plan_columns()?;
             for _ in 0..PASSES {
@@ -179,9 +171,7 @@ impl State {
                 let right: Vec<f64> = self.masked(&self.gap).iter().map(|g| -g).collect();
                 let carried = self.moments(&self.pressure);
                 let missing = [0, 1, 2].map(|k| carried[k] - self.target[k]);
-                let Some(change) = self.saddle(&right, missing, POLISH, watch)? else {
-                    return Ok(None);
-                };
+                let change = self.saddle(&right, missing, POLISH, watch)?;
                 let (largest, changed) = (peak(&self.pressure), peak(&change.psi));
                 for (p, change) in self.pressure.iter_mut().zip(&change.psi) {
                     *p += change;
@@ -212,7 +202,7 @@ impl State {
                         *g = 0.0;
                     }
                 }
-                return Ok(Some(()));
+                return Ok(());
             }
         }
         Err(refused(
@@ -252,11 +242,8 @@ impl State {
     }
 
     /// Makes the columns of loaded freedoms orthonormal on the contact.
-    ///
-    /// # Errors
-    /// A contact of too few cells for them.
     fn plan_columns(&mut self) -> Result<()> {
-        let mut columns: Vec<Column> = Vec::new();
+        let mut columns: Vec<LoadedColumn> = Vec::new();
         for freedom in (0..3).filter(|&k| self.loaded[k]) {
             let mut values = self.tangent.column(freedom);
             let size = dot(&values, &values).sqrt();
@@ -276,7 +263,7 @@ impl State {
             }
             values.iter_mut().for_each(|v| *v /= rest);
             factors.push(rest);
-            columns.push(Column {
+            columns.push(LoadedColumn {
                 freedom,
                 values,
                 factors,
@@ -286,20 +273,17 @@ impl State {
         Ok(())
     }
 
-    /// Solves K ψ − B_f χ = `right` on the contact, −B_fᵀ ψ = `balance`, to `tolerance`; `None` where `watch` breaks.
+    /// Solves K ψ − B_f χ = `right` on the contact, −B_fᵀ ψ = `balance`, to `tolerance`.
     ///
     /// With B_f = Q R on the contact, ψ is −Q R⁻ᵀ `balance` and a part without any sum Qᵀψ, which conjugate gradients find
     /// among such fields; χ = R⁻¹ Qᵀ (K ψ − `right`).
-    ///
-    /// # Errors
-    /// Errors of the linear solve.
     pub(super) fn saddle(
         &self,
         right: &[f64],
         balance: [f64; 3],
         tolerance: f64,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Saddle>> {
+        watch: Asked,
+    ) -> Result<Saddle> {
         let balance = self.tangent.to_scaled(balance);
         let mut psi = vec![0.0; right.len()];
         let mut sums: Vec<f64> = Vec::new();
@@ -324,9 +308,11 @@ impl State {
                 .for_each(|(r, image)| *r -= image);
         }
         let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
-        let Some(found) = self.tangent.solve_beside(&rest, &span, tolerance, watch)? else {
-            return Ok(None);
-        };
+        let mut ask = || watch.map_or(ControlFlow::Continue(()), |watch| watch());
+        let found = self
+            .tangent
+            .solve_beside(&rest, &span, tolerance, &mut ask)?;
+        let found = found.ok_or(Error::Stopped)?;
         psi.iter_mut().zip(found).for_each(|(psi, y)| *psi += y);
         self.tangent.apply(&psi, &mut image);
         image
@@ -344,7 +330,7 @@ impl State {
         // The operator is K + s 1ᵀ1 where the datum of a line contact lies farther away.
         let mut chi = self.tangent.unscaled(scaled);
         chi[0] -= self.tangent.raise * psi.iter().sum::<f64>();
-        Ok(Some(Saddle { psi, chi }))
+        Ok(Saddle { psi, chi })
     }
 
     /// Smaller of the least pressure in contact over the largest, and the least gap outside over the deepest displacement.
@@ -378,12 +364,7 @@ fn check(solution: &Solution) -> Result<()> {
             "surfaces that yield depend on the history of loads: leave out hardness and indentation",
         ));
     }
-    if solution.report.method != crate::compliance::influence::Method::Exact
-        && !matches!(
-            solution.report.method,
-            crate::compliance::influence::Method::Spectral
-        )
-    {
+    if !matches!(solution.report.method, Method::Exact | Method::Spectral) {
         return Err(refused(
             "its coefficients are conversions: take the method \"exact\"",
         ));
@@ -392,9 +373,6 @@ fn check(solution: &Solution) -> Result<()> {
 }
 
 /// The error for a solution without a derivative.
-pub(super) fn refused(reason: &'static str) -> Error {
-    Error::NotDifferentiable {
-        what: "the solution".to_owned(),
-        reason,
-    }
+fn refused(reason: &'static str) -> Error {
+    Error::no_derivative("the solution", reason)
 }

@@ -2,16 +2,14 @@
 
 use ndarray::Array2;
 
-use super::output::{StressOutput, StressPlace};
+use super::output::{Measure, StressOutput, StressPlace};
 use super::parameter::Parameter;
-use super::point::bilinear;
-use super::seed::{Seed, refused};
-use super::state::State;
-use super::tensor::measured;
+use super::seed::{Seed, bilinear};
+use super::state::Linearised;
 use crate::contact::{Solution, block};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::model::body::{BodyParameter, HalfSpace, Interface};
-use crate::stress::{Section, Side, StressOptions, Weights};
+use crate::stress::{Section, Side, StressOptions, Tensor, Weights};
 
 /// Step of differences with respect to a number of the body, relative to it. By Richardson's extrapolation they are in error
 /// by its fourth power, and by the error of kernels, 1e-9, over it: 1e-7 of the stress.
@@ -39,7 +37,7 @@ fn body_of(solution: &Solution, output: &StressOutput) -> Result<HalfSpace> {
     let body = solution.member(output.member)?;
     match body.ends() {
         [None, None] => Ok(body.clone()),
-        _ => Err(refused(
+        _ => Err(Error::no_derivative(
             "the stress",
             "the body has free ends, whose stress is tabulated for the body as it is; leave the ends out",
         )),
@@ -62,21 +60,13 @@ fn depths(body: &HalfSpace, place: &StressPlace) -> Result<Vec<(f64, Side)>> {
             interface, side, ..
         } => vec![(find(interface)?, side)],
         StressPlace::Layer { layer, depths, .. } => {
-            if depths < 2 {
-                return Err(Error::Parameter {
-                    name: "number of depths",
-                    requirement: "at least 2",
-                    value: depths as f64,
-                });
-            }
-            let (bottom, top) = (
-                find(layer)?,
-                if layer > 0 {
-                    interfaces[layer - 1]
-                } else {
-                    0.0
-                },
-            );
+            require("number of depths", depths as f64, depths >= 2, "at least 2")?;
+            let bottom = find(layer)?;
+            let top = if layer > 0 {
+                interfaces[layer - 1]
+            } else {
+                0.0
+            };
             let along = |k: usize| {
                 let part = k as f64 / (depths - 1) as f64;
                 match k + 1 == depths {
@@ -103,35 +93,30 @@ fn options(solution: &Solution, output: &StressOutput, friction: f64, side: Side
 fn planes(
     solution: &Solution,
     output: &StressOutput,
-    (body, pressure): (&HalfSpace, &Array2<f64>),
+    body: &HalfSpace,
+    pressure: &Array2<f64>,
     friction: f64,
 ) -> Result<Vec<Weights>> {
     let plan = solution.uniform_stress_plan(output.member, body, pressure)?;
     let mut found = Vec::new();
     for (z, side) in depths(body, &output.place)? {
         let field = plan.stress(&[z], &options(solution, output, friction, side))?;
-        found.push(
-            field
-                .components
-                .map(|component| component.iter().copied().collect()),
-        );
+        let flat = |component: ndarray::Array3<f64>| component.iter().copied().collect();
+        found.push(field.components.map(flat));
     }
     Ok(found)
 }
 
 impl StressSeed {
     /// The seed of a stress under `pressure`, the polished one on the whole grid.
-    ///
-    /// # Errors
-    /// A stress without a derivative; bad options.
     pub(super) fn new(
         solution: &Solution,
-        state: &State,
+        state: &Linearised,
         output: &StressOutput,
         pressure: Array2<f64>,
     ) -> Result<(Seed, Self)> {
         let body = body_of(solution, output)?;
-        let fields = planes(solution, output, (&body, &pressure), output.friction)?;
+        let fields = planes(solution, output, &body, &pressure, output.friction)?;
         let at = depths(&body, &output.place)?;
         let (value, weights, warning) = match &output.place {
             StressPlace::Point([x, y, _], _) => {
@@ -153,10 +138,8 @@ impl StressSeed {
             let options = options(solution, output, output.friction, side);
             slopes += &plan.transposed(z, &plane.weights, &options)?;
         }
-        let window = block(&slopes, state.tangent.window())
-            .iter()
-            .copied()
-            .collect::<Vec<_>>();
+        let window = block(&slopes, state.tangent.window());
+        let window: Vec<f64> = window.iter().copied().collect();
         let mut seed = Seed::linear(state, value, state.masked(&window));
         seed.warning = warning;
         let source = Self {
@@ -170,7 +153,7 @@ impl StressSeed {
 
     /// Σ w σ of planes of another body or friction.
     fn weighted(&self, solution: &Solution, body: &HalfSpace, friction: f64) -> Result<f64> {
-        let found = planes(solution, &self.output, (body, &self.pressure), friction)?;
+        let found = planes(solution, &self.output, body, &self.pressure, friction)?;
         let mut sum = 0.0;
         for (plane, fields) in self.planes.iter().zip(&found) {
             for (weights, field) in plane.weights.iter().zip(fields) {
@@ -244,7 +227,7 @@ fn at_point(
     }
     let found = measured(output.measure, stress);
     if found.is_repeated {
-        return Err(refused(
+        return Err(Error::no_derivative(
             "the principal stress",
             "it is repeated there, where its directions are undetermined; take von Mises' stress or a component",
         ));
@@ -269,7 +252,7 @@ const ORDER: i32 = 32;
 /// ∂J/∂σ_k = w_k + (J − Σ w σ)/s · ∂s/∂σ_k      w = e^{βσ}/Σ e^{βσ}      ∂s/∂σ_k = |σ_k/s|^{q−1} sgn σ_k / N
 /// ```
 ///
-/// κ is the `sharpness`, and q = [`ORDER`]; s, unlike the largest stress, is smooth. The choice of s is nacre's own.
+/// κ is the `sharpness`, and q = [`ORDER`]; s, unlike the largest stress, is smooth. The choice of s is made here; not published elsewhere.
 fn soft_mean(values: &[f64], sharpness: f64) -> (f64, Vec<f64>) {
     let count = values.len() as f64;
     let largest = values.iter().fold(f64::NEG_INFINITY, |a, v| a.max(*v));
@@ -299,13 +282,12 @@ fn soft_maximum(
     sharpness: f64,
     planes: &[Weights],
 ) -> Result<(f64, Vec<Weights>, Option<String>)> {
-    if !(sharpness > 0.0 && sharpness.is_finite()) {
-        return Err(Error::Parameter {
-            name: "sharpness",
-            requirement: "finite and above 0",
-            value: sharpness,
-        });
-    }
+    require(
+        "sharpness",
+        sharpness,
+        sharpness > 0.0 && sharpness.is_finite(),
+        "finite and above 0",
+    )?;
     let cells = planes[0][0].len();
     let stress = |plane: &Weights, k: usize| std::array::from_fn(|c| plane[c][k]);
     let values: Vec<f64> = planes
@@ -339,6 +321,97 @@ fn soft_maximum(
             .to_owned()
     });
     Ok((value, weights, warning))
+}
+
+/// Distance of principal stresses, relative to the largest, below which they are repeated.
+const REPEATED: f64 = 1e-9;
+
+/// A measure, its derivatives with respect to σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz, and whether a principal stress that it
+/// takes is repeated.
+pub(super) struct Measured {
+    pub(super) value: f64,
+    pub(super) slopes: [f64; 6],
+    pub(super) is_repeated: bool,
+}
+
+impl Measured {
+    fn smooth(value: f64, slopes: [f64; 6]) -> Self {
+        Self {
+            value,
+            slopes,
+            is_repeated: false,
+        }
+    }
+}
+
+/// The measure of a stress with these components.
+pub(super) fn measured(measure: Measure, s: [f64; 6]) -> Measured {
+    let [xx, yy, zz, xy, yz, xz] = s;
+    match measure {
+        Measure::Component(k) => {
+            let mut slopes = [0.0; 6];
+            slopes[k] = 1.0;
+            Measured::smooth(s[k], slopes)
+        }
+        Measure::PlaneShear => {
+            let value = yz.hypot(xz);
+            let over = |t: f64| if value > 0.0 { t / value } else { 0.0 };
+            Measured::smooth(value, [0.0, 0.0, 0.0, 0.0, over(yz), over(xz)])
+        }
+        Measure::VonMises => {
+            let mean = (xx + yy + zz) / 3.0;
+            let deviator = [xx - mean, yy - mean, zz - mean];
+            let square: f64 =
+                deviator.iter().map(|d| d * d).sum::<f64>() + 2.0 * (xy * xy + yz * yz + xz * xz);
+            let value = (1.5 * square).sqrt();
+            let over = |t: f64| if value > 0.0 { 1.5 * t / value } else { 0.0 };
+            let [a, b, c] = deviator.map(over);
+            Measured::smooth(
+                value,
+                [a, b, c, over(2.0 * xy), over(2.0 * yz), over(2.0 * xz)],
+            )
+        }
+        Measure::Principal(k) => {
+            let values = Tensor::new(s).principal();
+            let near = (0..3).filter(|&j| j != k).any(|j| are_equal(values, k, j));
+            Measured {
+                value: values[k],
+                slopes: dyad(s, values, k),
+                is_repeated: near,
+            }
+        }
+        Measure::MaxShear => {
+            let values = Tensor::new(s).principal();
+            let (first, last) = (dyad(s, values, 0), dyad(s, values, 2));
+            Measured {
+                value: 0.5 * (values[0] - values[2]),
+                slopes: std::array::from_fn(|k| 0.5 * (first[k] - last[k])),
+                is_repeated: are_equal(values, 0, 1) || are_equal(values, 1, 2),
+            }
+        }
+    }
+}
+
+fn are_equal(values: [f64; 3], i: usize, j: usize) -> bool {
+    let size = values.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+    (values[i] - values[j]).abs() <= REPEATED * size
+}
+
+/// ∂σ_k/∂σ = n nᵀ of the direction n, from the adjugate of σ − σ_k; shear components count twice.
+fn dyad([xx, yy, zz, xy, yz, xz]: [f64; 6], values: [f64; 3], k: usize) -> [f64; 6] {
+    let [a, b, c] = [xx, yy, zz].map(|s| s - values[k]);
+    let adjugate = [
+        b * c - yz * yz,
+        a * c - xz * xz,
+        a * b - xy * xy,
+        xz * yz - xy * c,
+        xy * xz - a * yz,
+        xy * yz - b * xz,
+    ];
+    let trace = adjugate[0] + adjugate[1] + adjugate[2];
+    let over = |t: f64| if trace == 0.0 { 0.0 } else { t / trace };
+    let [a, b, c, d, e, f] = adjugate.map(over);
+    [a, b, c, 2.0 * d, 2.0 * e, 2.0 * f]
 }
 
 #[cfg(test)]

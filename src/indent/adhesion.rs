@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::equation::stack::Parameter;
 use super::tip::{Tip, TipParameter};
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 
 /// How the surfaces adhere.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,6 +42,23 @@ pub enum Control {
     Approach,
 }
 
+impl Control {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Load => "load",
+            Self::Approach => "approach",
+        }
+    }
+
+    /// That of approach and load which is given.
+    pub(super) fn of(self, [approach, load]: [f64; 2]) -> f64 {
+        match self {
+            Self::Load => load,
+            Self::Approach => approach,
+        }
+    }
+}
+
 /// Part of the curve on which a state lies, where two have the same load or approach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Branch {
@@ -63,13 +80,12 @@ impl Adhesion {
         }
         if let Self::Maugis { work, strength } = self {
             positive("strength", strength)?;
-            if !(1e-100..=1e100).contains(&(work / strength)) {
-                return Err(Error::Parameter {
-                    name: "work/strength",
-                    requirement: "a length between 1e-100 and 1e100",
-                    value: work / strength,
-                });
-            }
+            require(
+                "work/strength",
+                work / strength,
+                (1e-100..=1e100).contains(&(work / strength)),
+                "a length between 1e-100 and 1e100",
+            )?;
         }
         Ok(self)
     }

@@ -7,19 +7,29 @@
 //! ```
 //!
 //! What is given (radius, load or approach) is held by a change of the radius along the curve; the outer radius of a cohesive zone
-//! follows everything. Derived for nacre.
-
-mod along;
+//! follows everything. Derived here; not published elsewhere.
+//!
+//! Derivatives along the states of one adhesion, on which the outer radius of a cohesive zone follows everything else.
+//!
+//! At fixed contact radius a, the edge condition D = φ(a) − ψ(a) = 0 and the gap G = g(c) + u(c) − δ − w/σ₀ = 0 at the outer radius
+//! depend on δ and c; a change of a at fixed δ and c changes neither the load nor G, since the density has no step at a:
+//!
+//! ```text
+//! dD = φ₁(a) dδ + D_c dc + (φ' − ψ')(a) da      dG = (u₁(c) − 1) dδ + G_c dc = 0      dP = S dδ + P_c dc
+//! ```
+//!
+//! Derived here; not published elsewhere. The energy of the stress between the surfaces makes P_c = 2πcσ₀ (u₁(c) − 1), which a test confirms.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use super::adhesion::Adhesion;
 use super::density::{Density, bessel_sum};
-use super::equation::stack::{Level, Parameter};
-use super::equation::system::times;
-use super::point::{Point, distance};
+use super::equation::stack::{Parameter, StackLevel};
+use super::equation::system::{add, times};
+use super::point::{Point, check_distances};
 use super::tip::TipParameter;
-use super::zone::Rate;
+use super::zone::{Answer, Rate, Zone};
 use crate::error::{Error, Result};
 use crate::numerics::parallel::dot;
 
@@ -57,15 +67,40 @@ pub struct Change<'a> {
     /// Derivative of the outer radius of a cohesive zone.
     pub outer_radius: Option<f64>,
     point: &'a Point,
-    /// Derivative of lim α û/p̂, relative to it.
-    short: f64,
-    number: Option<usize>,
-    rate: Option<TipParameter>,
+    effect: Effect,
     /// Change of the cohesive zone.
     zone: Rate,
     /// φ at fixed place, in the basis.
     values: Vec<f64>,
     density: Density<'a>,
+}
+
+/// How a variable enters the equations, per unit of it.
+#[derive(Debug, Default)]
+struct Effect {
+    /// Its number among the parameters of the bodies.
+    number: Option<usize>,
+    /// The number of the tip that it is.
+    rate: Option<TipParameter>,
+    /// Derivative of lim α û/p̂, relative to it.
+    short: f64,
+    /// Derivative of the radius of a flat punch.
+    widening: f64,
+    /// Derivative of φ at the edge.
+    edge: f64,
+    /// Derivative of w/σ₀.
+    opening: f64,
+    /// Derivative of σ₀, relative to it.
+    stress: f64,
+    /// Derivative of the force outside of the contact.
+    outside: f64,
+}
+
+/// Derivatives at fixed radius and approach: of φ(a) − e(a), of the load, and of the outer radius.
+struct Fixed {
+    edge: f64,
+    load: f64,
+    outer: f64,
 }
 
 impl Point {
@@ -75,127 +110,179 @@ impl Point {
     /// A number that this state does not depend on, and a radius held of a flat punch, whose load it does not give.
     pub fn derivative(&self, variable: Variable, held: Held) -> Result<Change<'_>> {
         let parts = &*self.parts;
-        let (stack, tip, system) = (&parts.stack, &parts.tip, &parts.system);
-        let (f, edge) = (parts.f(), self.step());
-        let is_flat = tip.fixed_radius().is_some();
+        let (system, f) = (&parts.system, parts.f());
+        let effect = self.effect(variable)?;
+        let (f_rate, free) = (-effect.short * f, self.free());
+        let excess_rate = self.excess_rate(effect.number);
+        let g = excess_rate.map_or_else(
+            || vec![0.0; system.waves()],
+            |excess_rate| times(excess_rate, &self.hat()),
+        );
+        // What oscillates in a density whose transform changes by `hat`.
+        let with_excess = |hat: &[f64]| -> Vec<f64> {
+            let own = times(system.excess(), hat);
+            g.iter().zip(own).map(|(g, own)| g + own).collect()
+        };
+        let mut change = self.at_fixed(&effect, excess_rate.map(|_| &g[..]));
+        let [depth, ..] = parts.tip.transform(self.radius);
+        let known = [f_rate * self.approach, f_rate];
+        let known_at_edge = f_rate * (self.approach - depth);
+        let own = self.moved(known, known_at_edge, &effect, with_excess(&change.hat));
+        let fixed = self.fixed(&effect, &free, &change, own)?;
+        let given = f64::from(variable == Variable::Held);
+        let [approach, radius, load] = self.rates(&effect, &free, &fixed, held, given)?;
+        // Along the curve: a punch, what the wider contact adds, and the outer radius.
+        add(&mut change.values, approach, &parts.values[0]);
+        add(&mut change.hat, approach, &parts.hats[0]);
+        let edge = self.step();
+        if edge.abs() > 0.0 && radius.abs() > 0.0 {
+            change.add(radius, &self.widening(edge));
+        }
+        let outer_radius = free.outer.as_ref().map(|outer| {
+            let outer_rate = fixed.outer + approach * outer.following(outer.gap_of_approach);
+            change.add(outer_rate, &outer.answer);
+            outer_rate
+        });
+        let mut stiffness = -effect.short * self.stiffness + self.stiffness_slope * radius;
+        if let Some(excess_rate) = excess_rate {
+            let [punch, _] = &parts.hats;
+            stiffness -= 4.0 / f * dot(&times(excess_rate, punch), punch);
+        }
+        let known = [f_rate * self.approach + f * approach, f_rate];
+        let known_at_edge = known[0] - known[1] * depth;
+        let density = self.moved(known, known_at_edge, &effect, with_excess(&change.hat));
+        Ok(Change {
+            radius,
+            load,
+            approach,
+            stiffness,
+            outer_radius,
+            point: self,
+            zone: [effect.stress, outer_radius.unwrap_or(0.0)],
+            effect,
+            values: change.values,
+            density,
+        })
+    }
+
+    /// How `variable` enters the equations.
+    fn effect(&self, variable: Variable) -> Result<Effect> {
+        let Variable::Parameter(parameter) = variable else {
+            return Ok(Effect::default());
+        };
+        let (stack, tip) = (&self.parts.stack, &self.parts.tip);
+        let mut effect = Effect {
+            outside: self.adhesion.outside_rate(tip, parameter),
+            ..Effect::default()
+        };
         let unknown = Error::Inconsistent(
             "the state does not depend on this parameter: take one of the bodies, the tip or the adhesion",
         );
-        let (mut number, mut rate, mut short) = (None, None, 0.0);
-        let (mut widening, mut of_edge) = (0.0, 0.0);
-        // Of w/σ₀, and of the stress relative to it.
-        let (mut of_opening, mut of_stress) = (0.0, 0.0);
-        let outside = match variable {
-            Variable::Parameter(parameter) => self.adhesion.outside_rate(tip, parameter),
-            Variable::Held => 0.0,
-        };
-        match variable {
-            Variable::Held => {}
-            Variable::Parameter(Parameter::Work) => match self.adhesion {
-                Adhesion::Jkr { work } => of_edge = edge / (2.0 * work),
-                Adhesion::Dmt { .. } => {}
-                Adhesion::Maugis { strength, .. } => of_opening = 1.0 / strength,
-                Adhesion::None => return Err(unknown),
-            },
-            Variable::Parameter(Parameter::Strength) => match (self.adhesion, &self.zone) {
-                (Adhesion::Maugis { work, strength }, Some(zone)) => {
-                    of_stress = 1.0 / strength;
-                    of_opening = -work / (strength * strength);
-                    of_edge = of_stress * zone.density();
-                }
-                _ => return Err(unknown),
-            },
-            Variable::Parameter(Parameter::Tip(own)) => {
-                if let TipParameter::Number(k) = own
-                    && k >= tip.numbers().len()
-                {
-                    return Err(unknown);
-                }
-                rate = Some(own);
-                if let Some(a) = tip.fixed_radius() {
-                    widening = match own {
-                        TipParameter::Area => 0.5 * a,
-                        TipParameter::Number(_) => 1.0,
-                    };
-                }
+        match (parameter, self.adhesion) {
+            (Parameter::Work, Adhesion::Jkr { work }) => effect.edge = self.step() / (2.0 * work),
+            (Parameter::Work, Adhesion::Dmt { .. }) => {}
+            (Parameter::Work, Adhesion::Maugis { strength, .. }) => {
+                effect.opening = 1.0 / strength;
             }
-            Variable::Parameter(parameter) => {
+            (Parameter::Strength, Adhesion::Maugis { work, strength }) => {
+                let zone = self.zone.as_ref().ok_or(unknown)?;
+                effect.stress = 1.0 / strength;
+                effect.opening = -work / (strength * strength);
+                effect.edge = effect.stress * zone.density();
+            }
+            (Parameter::Work | Parameter::Strength, _) => return Err(unknown),
+            (Parameter::Tip(TipParameter::Number(k)), _) if k >= tip.numbers().len() => {
+                return Err(unknown);
+            }
+            (Parameter::Tip(own), _) => {
+                effect.rate = Some(own);
+                effect.widening = tip.fixed_radius().map_or(0.0, |a| match own {
+                    TipParameter::Area => 0.5 * a,
+                    TipParameter::Number(_) => 1.0,
+                });
+            }
+            (Parameter::Body(..), adhesion) => {
                 let found = stack.parameters().iter().position(|own| *own == parameter);
                 let found = found.ok_or(unknown)?;
-                number = Some(found);
-                short = -stack.modulus_rate(found);
-                if matches!(self.adhesion, Adhesion::Jkr { .. }) && !is_flat {
-                    of_edge = -0.5 * edge * short;
+                effect.number = Some(found);
+                effect.short = -stack.modulus_rate(found);
+                if matches!(adhesion, Adhesion::Jkr { .. }) && tip.fixed_radius().is_none() {
+                    effect.edge = -0.5 * self.step() * effect.short;
                 }
             }
         }
-        let f_rate = -short * f;
-        let excess_rate = number.zip(system.level.as_ref());
-        let excess_rate = excess_rate.map(|(number, level)| stack.excess_rate(level, number));
-        let hat = self.hat();
-        // At fixed radius and approach.
+        Ok(effect)
+    }
+
+    /// Weights times the derivative of M with respect to this parameter of the bodies, where there are layers.
+    fn excess_rate(&self, number: Option<usize>) -> Option<&[f64]> {
+        let level = self.parts.system.level.as_ref()?;
+        Some(self.parts.stack.excess_rate(level, number?))
+    }
+
+    /// φ_θ at fixed radius and approach; `g` is what M_θ adds to what oscillates.
+    fn at_fixed(&self, effect: &Effect, g: Option<&[f64]>) -> Answer {
+        let parts = &*self.parts;
+        let (tip, system, f) = (&parts.tip, &parts.system, parts.f());
         let places = system.basis.places();
-        let rates = rate.map(|rate| tip.rate(rate, &places));
-        let known = |k: usize, s: f64| {
+        let rates = effect.rate.map(|rate| tip.rate(rate, &places));
+        let known = |(k, s): (usize, &f64)| {
             let shape = rates.as_ref().map_or(0.0, |rates| f * rates[k][0]);
-            f_rate * (self.approach - tip.transform(s)[0]) - shape
+            -effect.short * f * (self.approach - tip.transform(*s)[0]) - shape
         };
-        let known: Vec<f64> = places
-            .iter()
-            .enumerate()
-            .map(|(k, s)| known(k, *s))
-            .collect();
+        let known: Vec<f64> = places.iter().enumerate().map(known).collect();
         let mut right = system.basis.project(&known);
-        let mut g = vec![0.0; hat.len()];
-        if let Some(excess_rate) = excess_rate {
-            g = times(excess_rate, &hat);
-            let coupled = system.couple(&g);
-            right
-                .iter_mut()
-                .zip(coupled)
-                .for_each(|(right, c)| *right -= c);
+        if let Some(g) = g {
+            add(&mut right, -1.0, &system.couple(g));
         }
-        let mut values = system.solve(right);
-        let mut change = system.transform(&values);
-        let add = |sum: &mut [f64], factor: f64, more: &[f64]| {
-            let pairs = sum.iter_mut().zip(more);
-            pairs.for_each(|(sum, more)| *sum += factor * more);
+        let values = system.solve(right);
+        let mut change = Answer {
+            hat: system.transform(&values),
+            values,
+            edge: 0.0,
         };
         if let Some(zone) = &self.zone {
-            add(&mut values, of_stress, &zone.answer.values);
-            add(&mut change, of_stress, &zone.answer.hat);
+            change.add(effect.stress, &zone.answer);
         }
-        let a = self.radius;
-        let with_excess = |change: &[f64]| -> Vec<f64> {
-            let own = times(system.excess(), change);
-            g.iter().zip(own).map(|(g, own)| g + own).collect()
+        change
+    }
+
+    /// What φ_θ at fixed radius and approach does; `own` is its density.
+    fn fixed(&self, effect: &Effect, free: &Free, change: &Answer, own: Density) -> Result<Fixed> {
+        let parts = &*self.parts;
+        let mut fixed = Fixed {
+            edge: own.edge - effect.edge,
+            load: 2.0 * PI * dot(&change.values, &parts.system.ones) - effect.outside,
+            outer: 0.0,
         };
-        let shape = rate.map_or(0.0, |rate| f * tip.rate(rate, &[a])[0][0]);
-        let at_edge = f_rate * (self.approach - tip.transform(a)[0])
-            - shape
-            - system.couple_edge(&with_excess(&change));
-        let free = self.free();
-        // Approach, load and outer radius at fixed radius, and their slopes along the curve.
-        let mut fixed_edge = at_edge - of_edge;
-        let mut fixed_load = 2.0 * PI * dot(&values, &system.ones) - outside;
-        let mut fixed_outer = 0.0;
         if let (Some(zone), Some(outer)) = (&self.zone, &free.outer) {
-            let rate_known = [f_rate * self.approach, f_rate];
-            let own = self.moved(rate_known, rate, with_excess(&change), at_edge);
-            let displaced = own.displaced(zone.outer) + of_stress * zone.abel(zone.outer);
-            let gap = self.displacement(&[zone.outer])?[0] * short
-                + stack.short() * displaced
-                + rate.map_or(0.0, |rate| tip.gap_rate(rate, zone.outer))
-                - of_opening;
-            fixed_outer = outer.following(gap);
-            fixed_edge += outer.edge * fixed_outer;
-            fixed_load += of_stress * zone.load() + outer.load * fixed_outer;
+            let displaced = own.displaced(zone.outer) + effect.stress * zone.abel(zone.outer);
+            let shape = effect
+                .rate
+                .map_or(0.0, |rate| parts.tip.gap_rate(rate, zone.outer));
+            let gap = self.displacement(&[zone.outer])?[0] * effect.short
+                + parts.stack.short() * displaced
+                + shape
+                - effect.opening;
+            fixed.outer = outer.following(gap);
+            fixed.edge += outer.answer.edge * fixed.outer;
+            fixed.load += effect.stress * zone.load() + outer.load * fixed.outer;
         }
-        let given = if variable == Variable::Held { 1.0 } else { 0.0 };
-        let (approach_rate, radius_rate, load);
-        if is_flat {
-            let own = fixed_load + self.stiffness_slope * self.approach * widening;
-            approach_rate = match held {
+        Ok(fixed)
+    }
+
+    /// Derivatives of approach, radius and load where `held` changes by `given`.
+    fn rates(
+        &self,
+        effect: &Effect,
+        free: &Free,
+        fixed: &Fixed,
+        held: Held,
+        given: f64,
+    ) -> Result<[f64; 3]> {
+        if self.parts.tip.fixed_radius().is_some() {
+            let own = fixed.load + self.stiffness_slope * self.approach * effect.widening;
+            let approach = match held {
                 Held::Approach => given,
                 Held::Load => (given - own) / free.load,
                 Held::Radius => {
@@ -204,75 +291,41 @@ impl Point {
                     ));
                 }
             };
-            radius_rate = widening;
-            load = own + free.load * approach_rate;
-        } else {
-            let fixed = -fixed_edge / free.edge;
-            let own = fixed_load + free.load * fixed;
-            let [approach_slope, load_slope] = self.along_with(&free);
-            radius_rate = match held {
-                Held::Radius => given,
-                Held::Load => (given - own) / load_slope,
-                Held::Approach => (given - fixed) / approach_slope,
-            };
-            approach_rate = fixed + approach_slope * radius_rate;
-            load = own + load_slope * radius_rate;
+            return Ok([approach, effect.widening, own + free.load * approach]);
         }
-        // Along the curve: a punch, what the wider contact adds, and the outer radius.
-        add(&mut values, approach_rate, &parts.values[0]);
-        add(&mut change, approach_rate, &parts.hats[0]);
-        if edge.abs() > 0.0 && radius_rate.abs() > 0.0 {
-            let (more, hat, _) = self.widening(edge);
-            add(&mut values, radius_rate, &more);
-            add(&mut change, radius_rate, &hat);
-        }
-        let outer_radius = free
-            .outer
-            .as_ref()
-            .map(|outer| fixed_outer + approach_rate * outer.following(outer.gap_of_approach));
-        let zone: Rate = [of_stress, outer_radius.unwrap_or(0.0)];
-        if let Some(outer) = &free.outer {
-            add(&mut values, zone[1], &outer.values);
-            add(&mut change, zone[1], &outer.hat);
-        }
-        let mut of_stiffness = -short * self.stiffness + self.stiffness_slope * radius_rate;
-        if let Some(excess_rate) = excess_rate {
-            let [punch, _] = &parts.hats;
-            of_stiffness -= 4.0 / f * dot(&times(excess_rate, punch), punch);
-        }
-        let known = [f_rate * self.approach + f * approach_rate, f_rate];
-        let g = with_excess(&change);
-        let at_edge = known[0] - known[1] * tip.transform(a)[0] - shape - system.couple_edge(&g);
-        Ok(Change {
-            radius: radius_rate,
-            load,
-            approach: approach_rate,
-            stiffness: of_stiffness,
-            outer_radius,
-            point: self,
-            short,
-            number,
-            rate,
-            zone,
-            values,
-            density: self.moved(known, rate, g, at_edge),
-        })
+        let approach = -fixed.edge / free.edge;
+        let load = fixed.load + free.load * approach;
+        let [approach_slope, load_slope] = self.along_with(free);
+        let radius = match held {
+            Held::Radius => given,
+            Held::Load => (given - load) / load_slope,
+            Held::Approach => (given - approach) / approach_slope,
+        };
+        Ok([
+            approach + approach_slope * radius,
+            radius,
+            load + load_slope * radius,
+        ])
     }
 
-    /// A change of the density.
+    /// A change of the density at fixed place, of which `g` oscillates.
     fn moved(
         &self,
         known: [f64; 2],
-        rate: Option<TipParameter>,
+        known_at_edge: f64,
+        effect: &Effect,
         g: Vec<f64>,
-        edge: f64,
     ) -> Density<'_> {
+        let (parts, a) = (&*self.parts, self.radius);
+        let shape = effect
+            .rate
+            .map_or(0.0, |rate| parts.f() * parts.tip.rate(rate, &[a])[0][0]);
         Density {
-            parts: &self.parts,
+            parts,
             known,
-            rate,
+            rate: effect.rate,
+            edge: known_at_edge - shape - parts.system.couple_edge(&g),
             g,
-            edge,
         }
     }
 }
@@ -284,7 +337,7 @@ impl Change<'_> {
     /// # Errors
     /// As [`Point::pressure`].
     pub fn pressure(&self, r: &[f64]) -> Result<Vec<f64>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         let (a, edge) = (self.point.radius, self.point.step());
         let zone = self.point.zone.as_ref();
         let density = Density {
@@ -311,77 +364,217 @@ impl Change<'_> {
     /// # Errors
     /// As [`Point::displacement`].
     pub fn displacement(&self, r: &[f64]) -> Result<Vec<f64>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         let point = self.point;
         let (a, edge) = (point.radius, point.step());
         let zone = point.zone.as_ref();
         let stack = &point.parts.stack;
         let displaced = point.displacement(r)?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
-        let waves = stack.level(a + far).map(|level| (self.wider(level), level));
+        let waves = stack.level(a + far);
+        let waves = waves.map(|level| (self.wider(level), &level.waves.alpha));
         let at = |(r, u): (&f64, f64)| -> f64 {
             if *r <= a {
-                let shape = self
-                    .rate
-                    .map_or(0.0, |rate| point.parts.tip.gap_rate(rate, *r));
+                let tip = &point.parts.tip;
+                let shape = self.effect.rate.map_or(0.0, |rate| tip.gap_rate(rate, *r));
                 return self.approach - shape;
             }
             let moved = match edge.abs() > 0.0 {
                 true => edge * self.radius / ((r - a) * (r + a)).sqrt(),
                 false => 0.0,
             };
-            let layers = waves
-                .as_ref()
-                .map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
+            let layers = waves.as_ref();
+            let layers = layers.map_or(0.0, |(g, alpha)| bessel_sum(g, alpha, *r));
             let from_zone = zone.map_or(0.0, |zone| zone.abel_rate(self.zone, *r));
-            self.short * u + stack.short() * (self.density.abel(*r) + moved + from_zone + layers)
+            self.effect.short * u
+                + stack.short() * (self.density.abel(*r) + moved + from_zone + layers)
         };
         Ok(r.iter().zip(displaced).map(at).collect())
     }
 
     /// What oscillates in the density, at the waves of `level`.
-    fn wider(&self, level: &Level) -> Vec<f64> {
-        let point = self.point;
+    fn wider(&self, level: &Arc<StackLevel>) -> Vec<f64> {
+        let (point, waves) = (self.point, &level.waves);
         let system = &point.parts.system;
         if system
             .level
             .as_ref()
-            .is_some_and(|own| std::ptr::eq(&**own, level))
+            .is_some_and(|own| Arc::ptr_eq(own, level))
         {
             return self.density.g.clone();
         }
-        let rows = system.basis.transforms(&level.waves);
-        let sum = |values: &[f64]| {
-            let mut sums = vec![0.0; level.waves.len()];
-            for (row, value) in rows.iter().zip(values) {
-                sums.iter_mut()
-                    .zip(row)
-                    .for_each(|(sum, b)| *sum += value * b);
-            }
-            sums
-        };
-        let mut change = sum(&self.values);
-        let moved = point.step() * self.radius;
+        let values = point.values();
+        let [mut change, mut hat] = system.transforms_at(waves, [&self.values, &values]);
         let (mut cos, mut sin) = (change.clone(), change.clone());
-        level.waves.circular(point.radius, &mut cos, &mut sin);
-        change
-            .iter_mut()
-            .zip(&cos)
-            .for_each(|(sum, cos)| *sum += moved * cos);
-        let mut hat = sum(&point.values());
+        waves.circular(point.radius, &mut cos, &mut sin);
+        add(&mut change, point.step() * self.radius, &cos);
         if let Some(zone) = &point.zone {
-            let pairs = change
-                .iter_mut()
-                .zip(zone.transform_rate(self.zone, &level.waves));
-            pairs.for_each(|(sum, more)| *sum += more);
-            let pairs = hat.iter_mut().zip(zone.transform(&level.waves));
-            pairs.for_each(|(sum, more)| *sum += more);
+            add(&mut change, 1.0, &zone.transform_rate(self.zone, waves));
+            add(&mut hat, 1.0, &zone.transform(waves));
         }
         let mut g = times(&level.excess, &change);
-        if let Some(number) = self.number {
-            let own = times(point.parts.stack.excess_rate(level, number), &hat);
-            g.iter_mut().zip(own).for_each(|(g, own)| *g += own);
+        if let Some(number) = self.effect.number {
+            let rate = point.parts.stack.excess_rate(level, number);
+            add(&mut g, 1.0, &times(rate, &hat));
         }
         g
+    }
+}
+
+/// What a unit of approach does at fixed contact radius: to φ(a) − ψ(a) and to the load, with the outer radius that follows.
+#[derive(Debug)]
+struct Free {
+    edge: f64,
+    load: f64,
+    outer: Option<Outer>,
+}
+
+/// What a unit of the outer radius does at fixed contact radius and approach.
+#[derive(Debug)]
+struct Outer {
+    /// φ_c, the transform of φ_c and of ψ_c, and D_c.
+    answer: Answer,
+    /// P_c and G_c.
+    load: f64,
+    gap: f64,
+    /// u₁(c) − 1.
+    gap_of_approach: f64,
+}
+
+impl Outer {
+    /// Change of the outer radius that keeps the gap there, where all else at fixed outer radius changes it by `gap`.
+    fn following(&self, gap: f64) -> f64 {
+        -gap / self.gap
+    }
+}
+
+impl Point {
+    /// What a unit of approach does at fixed contact radius.
+    fn free(&self) -> Free {
+        let outer = self.zone.as_ref().map(|zone| self.outer(zone));
+        let mut free = Free {
+            edge: self.parts.edge[0],
+            load: self.stiffness,
+            outer: None,
+        };
+        if let Some(outer) = &outer {
+            let following = outer.following(outer.gap_of_approach);
+            free.edge += outer.answer.edge * following;
+            free.load += outer.load * following;
+        }
+        Free { outer, ..free }
+    }
+
+    /// Derivatives of approach and load with respect to the contact radius, along the states of the same adhesion.
+    pub(super) fn along(&self) -> [f64; 2] {
+        self.along_with(&self.free())
+    }
+
+    /// Derivatives of approach and load along the curve, where `free` is known.
+    ///
+    /// φ(a) = e(a), and φ changes at fixed t by that of a punch and, where the density has a step at the edge, by what the wider
+    /// contact adds. Around it there may be a cohesive zone, with e = ψ:
+    ///
+    /// ```text
+    /// B φ_a = −2/π φ(a) ∫ M b̂ cos αa dα      δ' φ₁(a) = e' − φ'(a) − φ_a(a)      P' = S δ' + 2π [∫ φ_a + φ(a)]
+    /// ```
+    fn along_with(&self, free: &Free) -> [f64; 2] {
+        let edge = self.step();
+        let system = &self.parts.system;
+        let around = self.zone.as_ref().map_or(0.0, Zone::slope);
+        let mut needed = edge / (2.0 * self.radius) + around - self.density().edge_slope();
+        let mut more = edge;
+        if edge.abs() > 0.0 {
+            let wider = self.widening(edge);
+            needed -= wider.edge;
+            more += dot(&wider.values, &system.ones);
+        }
+        let approach = needed / free.edge;
+        [approach, free.load * approach + 2.0 * PI * more]
+    }
+
+    /// φ_a of a density that is `edge` at the edge: in the basis, its transform with that of the wider contact, and at the edge.
+    fn widening(&self, edge: f64) -> Answer {
+        let system = &self.parts.system;
+        let outer = times(system.excess(), &system.edge[0]);
+        let right = system.couple(&outer).iter().map(|c| -edge * c).collect();
+        let values = system.solve(right);
+        let mut hat = system.transform(&values);
+        add(&mut hat, edge, &system.edge[0]);
+        let edge = -system.couple_edge(&times(system.excess(), &hat));
+        Answer { values, hat, edge }
+    }
+
+    fn outer(&self, zone: &Zone) -> Outer {
+        let parts = &*self.parts;
+        let (c, short) = (zone.outer, parts.stack.short());
+        let answer = zone.answer(parts, [0.0, 1.0]);
+        let system = &parts.system;
+        let excess = system.excess();
+        let density = |known: f64, hat: &[f64], edge: f64| Density {
+            parts,
+            known: [known, 0.0],
+            rate: None,
+            g: times(excess, hat),
+            edge,
+        };
+        // u/A1 at c of a unit of approach, and of a unit of c.
+        let [punch, _] = &parts.hats;
+        let of_approach = density(parts.f(), punch, parts.edge[0]);
+        let of_approach = of_approach.displaced(c);
+        let of_outer = density(0.0, &answer.hat, answer.edge);
+        let of_outer = of_outer.displaced(c);
+        // The place itself moves; ∫ ψ/√(c²−t²) is in proportion to c − a.
+        let own = Density {
+            edge: self.edge(),
+            ..self.density()
+        };
+        let moved = own.displaced_slope(c) + zone.abel(c) / (c - zone.inner);
+        Outer {
+            load: 2.0 * PI * dot(&answer.values, &system.ones) + zone.load_rate([0.0, 1.0]),
+            gap: parts.tip.slope(c) + short * (moved + of_outer),
+            gap_of_approach: short * of_approach - 1.0,
+            answer: Answer {
+                edge: answer.edge - zone.density_rate([0.0, 1.0]),
+                ..answer
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use crate::indent::{Adhesion, Indent, Stack, Tip};
+    use crate::{Elastic, HalfSpace, Layer, Result};
+
+    /// P_c = 2πcσ₀ (u₁(c) − 1), the reciprocity of approach and outer radius, on a bare and a coated body, and with zones from a
+    /// hundredth of the contact to its size.
+    #[test]
+    fn reciprocity_of_approach_and_outer_radius() -> Result<()> {
+        let base = Elastic::new(1.0, 0.3)?;
+        let coated = HalfSpace::new(base, [Layer::new(Elastic::new(5.0, 0.2)?, 0.3)?])?;
+        for body in [base.into(), coated.into()] {
+            let stack = Stack::plan(&[body])?;
+            for strength in [0.02, 0.1, 0.5] {
+                let adhesion = Adhesion::Maugis {
+                    work: 0.02,
+                    strength,
+                };
+                let indent = Indent::new(&stack, &Tip::paraboloid(2.0)?).with_adhesion(adhesion)?;
+                let point = indent.at_radius(0.4)?;
+                let free = point.free();
+                let outer = free.outer.as_ref().expect("a cohesive zone");
+                let c = point.outer_radius.expect("a cohesive zone");
+                let due = 2.0 * PI * c * strength * outer.gap_of_approach;
+                assert!(
+                    (outer.load / due - 1.0).abs() < 1e-9,
+                    "{c}: {} {due}",
+                    outer.load
+                );
+            }
+        }
+        Ok(())
     }
 }

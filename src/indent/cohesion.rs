@@ -8,7 +8,7 @@
 //!
 //! so that φ on the contact satisfies its equation with −2/π ∫ M cos αs ψ̂ dα more on the right. φ(a) = ψ(a) fixes δ, since the
 //! stress has no infinity, and the gap fixes c. Before the tip touches, ψ acts on 0 < t < c alone: the surfaces are apart, the
-//! load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived for nacre; on a bare body they are Maugis's closed form
+//! load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived here; on a bare body they are Maugis's closed form
 //! (J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T).
 
 use std::f64::consts::PI;
@@ -20,8 +20,8 @@ use super::adhesion::Adhesion;
 use super::density::bessel_sum;
 use super::equation::root::bracketed;
 use super::equation::stack::Stack;
+use super::equation::system::Parts;
 use super::equation::system::times;
-use super::parts::Parts;
 use super::point::Point;
 use super::tip::Tip;
 use super::zone::Zone;
@@ -30,9 +30,6 @@ use crate::numerics::parallel::dot;
 
 /// The contact of radius `a` with a cohesive zone, whose width c − a is looked for from e^`start` on; at the end its
 /// logarithm is in `start`.
-///
-/// # Errors
-/// As [`Parts::new`], and no zone within the radii that can be computed.
 pub(super) fn contact(
     stack: &Stack,
     tip: &Tip,
@@ -80,7 +77,7 @@ pub(super) fn contact(
     Ok(excess(*start)?.1)
 }
 
-const NO_ZONE: Error = Error::Inconsistent(
+const NO_ZONE: Error = Error::NoState(
     "no cohesive zone of this contact radius exists: the strength is too small or too large for the layers",
 );
 
@@ -104,14 +101,12 @@ impl Apart {
         // u/A1 at c and on the axis.
         let (mut edge, mut axis) = (-2.0 / PI * strength * c, -strength * c);
         if let Some(level) = stack.level(2.0 * c) {
-            let hat = level
-                .waves
-                .alpha
+            let alpha = &level.waves.alpha;
+            let hat = alpha
                 .iter()
                 .map(|alpha| -strength * c * j1(alpha * c) / alpha);
-            let hat: Vec<f64> = hat.collect();
-            let g = times(&level.excess, &hat);
-            edge += bessel_sum(&g, &level.waves.alpha, c);
+            let g = times(&level.excess, &hat.collect::<Vec<f64>>());
+            edge += bessel_sum(&g, alpha, c);
             axis += g.iter().sum::<f64>();
         }
         let approach = tip.gap(c) + stack.short() * edge - work / strength;
@@ -124,9 +119,6 @@ impl Apart {
     }
 
     /// The state in which the tip begins to touch.
-    ///
-    /// # Errors
-    /// None within the radii that can be computed.
     pub(super) fn touching(stack: &Stack, tip: &Tip, numbers: [f64; 2]) -> Result<Self> {
         let gap = |log: f64| Self::new(stack, tip, log.exp(), numbers).gap;
         // From the radius at which the profile itself has opened by w/σ₀, which is too large or too small by the deformation.

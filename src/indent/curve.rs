@@ -1,5 +1,5 @@
 //! Whole curves of load over approach with their derivatives, by interpolation in the contact radius. The interpolation is
-//! nacre's own choice.
+//! derived here; it is not published elsewhere.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ const SHALLOW: f64 = 1e-3;
 const FEW: usize = 6;
 
 /// Load over approach. Where nothing touches, all but the approach is 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curve {
     /// Loads \[N\].
     pub load: Vec<f64>,
@@ -44,20 +44,20 @@ pub struct Curve {
 
 /// What is tabulated at a radius: the logarithms of S, P_F, δ_H, and for adhesion within the contact δ_H − δ, each with its
 /// slope over ln a; then the derivatives of all S, P_F, δ_H and δ_H − δ with respect to each parameter, relative to them.
-type Row = Vec<f64>;
+type CurveRow = Vec<f64>;
 
 /// A table on a range of radii, which does not pass a kink of the tip.
 #[derive(Debug)]
-struct Table {
+struct CurveTable {
     low: f64,
     high: f64,
     /// Whether there are roots of the distance from the lower end: nodes are the squares of Chebyshev's then.
     has_root: bool,
     /// Rows at Chebyshev's points cos(πk/n).
-    rows: Vec<Row>,
+    rows: Vec<CurveRow>,
 }
 
-impl Table {
+impl CurveTable {
     /// ln a at the position from −1 to 1.
     fn place(&self, position: f64) -> f64 {
         let part = 0.5 * (1.0 + position);
@@ -70,7 +70,7 @@ impl Table {
         [low, high]: [f64; 2],
         has_root: bool,
         logs: usize,
-        row: impl Fn(f64) -> Result<Row>,
+        row: impl Fn(f64) -> Result<CurveRow>,
     ) -> Result<Option<Self>> {
         let mut table = Self {
             low,
@@ -78,27 +78,25 @@ impl Table {
             has_root,
             rows: Vec::new(),
         };
-        let mut n = FIRST;
-        let position = |k: usize, n: usize| (PI * k as f64 / n as f64).cos();
-        for k in 0..=n {
-            table.rows.push(row(table.place(position(k, n)))?);
+        for k in 0..=FIRST {
+            table.rows.push(row(table.place(chebyshev(k, FIRST)))?);
         }
         loop {
             if (0..logs).all(|column| table.tail(2 * column) < RESOLVED) {
                 return Ok(Some(table));
             }
-            if 2 * n > MOST {
+            let n = 2 * (table.rows.len() - 1);
+            if n > MOST {
                 return Ok(None);
             }
-            let mut rows = Vec::with_capacity(2 * n + 1);
+            let mut rows = Vec::with_capacity(n + 1);
             for (k, old) in std::mem::take(&mut table.rows).into_iter().enumerate() {
                 if k > 0 {
-                    rows.push(row(table.place(position(2 * k - 1, 2 * n)))?);
+                    rows.push(row(table.place(chebyshev(2 * k - 1, n)))?);
                 }
                 rows.push(old);
             }
             table.rows = rows;
-            n *= 2;
         }
     }
 
@@ -106,7 +104,7 @@ impl Table {
     fn tail(&self, column: usize) -> f64 {
         let n = self.rows.len() - 1;
         let coefficient = |j: usize| {
-            let term = |(k, row): (usize, &Row)| {
+            let term = |(k, row): (usize, &CurveRow)| {
                 let end = if k == 0 || k == n { 0.5 } else { 1.0 };
                 end * row[column] * (PI * (j * k) as f64 / n as f64).cos()
             };
@@ -124,7 +122,7 @@ impl Table {
         let (x, n) = (2.0 * part - 1.0, self.rows.len() - 1);
         let mut weights = Vec::with_capacity(n + 1);
         for k in 0..=n {
-            let distance = x - (PI * k as f64 / n as f64).cos();
+            let distance = x - chebyshev(k, n);
             if distance.abs() < 1e-15 {
                 let one = |j| if j == k { 1.0 } else { 0.0 };
                 return (0..=n).map(one).collect();
@@ -147,8 +145,13 @@ impl Table {
     }
 }
 
+/// Chebyshev's point k of 0 … n, from 1 down to −1.
+fn chebyshev(k: usize, n: usize) -> f64 {
+    (PI * k as f64 / n as f64).cos()
+}
+
 /// One point of a curve: load, radius, slope, derivatives.
-type Entry = (f64, f64, f64, Vec<f64>);
+type CurvePoint = (f64, f64, f64, Vec<f64>);
 
 impl Indent {
     /// Load at each of the approaches \[m\], with its derivative with respect to each of `parameters`. A table of the radius serves
@@ -158,14 +161,14 @@ impl Indent {
     /// As [`Indent::at_approach`] for the largest approach, approaches that are not finite, and the adhesion of Maugis and Dugdale.
     pub fn curve(&self, approaches: &[f64], parameters: &[Parameter]) -> Result<Curve> {
         if matches!(self.adhesion(), Adhesion::Maugis { .. }) {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "curves of the adhesion of Maugis and Dugdale are not tabulated: take states by radius",
             ));
         }
         for approach in approaches {
             finite("approach", *approach)?;
         }
-        let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
+        let is_adhering = self.adheres_within();
         let least = match is_adhering {
             true => self.pull_off(Control::Approach)?.approach,
             // Smaller contacts than those that are computed bear nothing that is seen beside the others.
@@ -179,7 +182,7 @@ impl Indent {
             false => approach > least,
         };
         let most = approaches.iter().fold(f64::NEG_INFINITY, |m, a| m.max(*a));
-        let nothing: Entry = (0.0, 0.0, 0.0, vec![0.0; parameters.len()]);
+        let nothing: CurvePoint = (0.0, 0.0, 0.0, vec![0.0; parameters.len()]);
         let mut entries = vec![nothing; approaches.len()];
         let is_shallow = |approach: f64| !is_adhering && approach < SHALLOW * most;
         let deep: Vec<f64> = approaches
@@ -202,13 +205,7 @@ impl Indent {
                 _ => self.solved(*approach, parameters)?,
             };
         }
-        let mut curve = Curve {
-            load: Vec::new(),
-            radius: Vec::new(),
-            slope: Vec::new(),
-            derivatives: Vec::new(),
-            warnings: Vec::new(),
-        };
+        let mut curve = Curve::default();
         for (load, radius, slope, derivatives) in entries {
             curve.load.push(load);
             curve.radius.push(radius);
@@ -222,8 +219,13 @@ impl Indent {
         Ok(curve)
     }
 
+    /// Whether adhesion acts within the contact.
+    fn adheres_within(&self) -> bool {
+        matches!(self.adhesion(), Adhesion::Jkr { .. })
+    }
+
     /// A point that is solved for.
-    fn solved(&self, approach: f64, parameters: &[Parameter]) -> Result<Entry> {
+    fn solved(&self, approach: f64, parameters: &[Parameter]) -> Result<CurvePoint> {
         let point = self.at_approach(approach)?;
         let rate = |parameter: &Parameter| {
             let variable = Variable::Parameter(*parameter);
@@ -241,13 +243,14 @@ impl Indent {
     }
 
     /// Tables for approaches in ascending radius; none where they are not resolved.
-    fn tables(&self, approaches: &[f64], parameters: &[Parameter]) -> Result<Option<Vec<Table>>> {
-        let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
-        let (low, high) = approaches
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(low, high), a| {
-                (low.min(*a), high.max(*a))
-            });
+    fn tables(
+        &self,
+        approaches: &[f64],
+        parameters: &[Parameter],
+    ) -> Result<Option<Vec<CurveTable>>> {
+        let is_adhering = self.adheres_within();
+        let low = approaches.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = approaches.iter().copied().fold(0.0, f64::max);
         let low = match is_adhering {
             true => self.pull_off(Control::Approach)?.radius,
             false => self.at_approach(low)?.radius,
@@ -270,22 +273,22 @@ impl Indent {
         for (pair, has_root) in ends.windows(2).zip(roots) {
             let row = |log: f64| self.row(log.exp(), parameters);
             let logs = if is_adhering { 4 } else { 3 };
-            match Table::new([pair[0], pair[1]], has_root, logs, row) {
+            match CurveTable::new([pair[0], pair[1]], has_root, logs, row) {
                 Ok(Some(table)) => tables.push(table),
                 // A contact of the table is no disc: each approach is then solved for, and has its own contact or error.
-                Ok(None) | Err(Error::Inconsistent(_)) => return Ok(None),
+                Ok(None) | Err(Error::Ring | Error::Inconsistent(_)) => return Ok(None),
                 Err(error) => return Err(error),
             }
         }
         Ok(Some(tables))
     }
 
-    /// Row of a table at the radius `a`: per quantity its logarithm, the derivative of that with respect to ln a, and one with respect
+    /// CurveRow of a table at the radius `a`: per quantity its logarithm, the derivative of that with respect to ln a, and one with respect
     /// to each parameter.
-    fn row(&self, a: f64, parameters: &[Parameter]) -> Result<Row> {
+    fn row(&self, a: f64, parameters: &[Parameter]) -> Result<CurveRow> {
         let bare = Self::new(self.stack(), self.tip());
         let point = bare.state(a)?;
-        let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
+        let is_adhering = self.adheres_within();
         if !is_adhering {
             point.check_disc()?;
         }
@@ -331,7 +334,7 @@ impl Indent {
                 row.push((rates[2] * point.approach - change.approach) / apart);
             }
         }
-        let mut ordered: Row = logs.into_flattened();
+        let mut ordered: CurveRow = logs.into_flattened();
         ordered.extend(row);
         Ok(ordered)
     }
@@ -339,11 +342,11 @@ impl Indent {
     /// A point from the tables.
     fn interpolated(
         &self,
-        tables: &[Table],
+        tables: &[CurveTable],
         approach: f64,
         parameters: &[Parameter],
-    ) -> Result<Entry> {
-        let is_adhering = matches!(self.adhesion(), Adhesion::Jkr { .. });
+    ) -> Result<CurvePoint> {
+        let is_adhering = self.adheres_within();
         let logs = if is_adhering { 4 } else { 3 };
         let table_at = |log: f64| {
             let found = tables.iter().find(|table| log <= table.high);

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use spec_math::cephes64::{j0, j1};
 
 use super::equation::basis::{Break, Panel, rule};
+use super::equation::system::Parts;
 use super::equation::waves::Waves;
-use super::parts::Parts;
 use super::tip::{FEW_KINKS, TipParameter};
 
 /// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.

@@ -6,10 +6,10 @@ use super::adhesion::{Adhesion, Branch, Control};
 use super::cohesion;
 use super::equation::root::{bracketed, newton};
 use super::equation::stack::Stack;
-use super::parts::Parts;
+use super::equation::system::Parts;
 use super::point::{Point, PullOff};
 use super::tip::Tip;
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, require};
 
 /// Smallest contact radius, in end radii or thicknesses, at which a contact is looked for.
 const SMALLEST: f64 = 1e-9;
@@ -17,7 +17,7 @@ const SMALLEST: f64 = 1e-9;
 /// Smallest contact radius, in any unit, where nothing has a length; its cube is a number of the machine.
 const TINY: f64 = 1e-60;
 
-/// Largest approach of a flat punch, in its radii, whose pressures are numbers of the machine.
+/// Largest approach of a flat punch, in its radii, whose pressures are floating-point numbers.
 const DEEPEST: f64 = 1e100;
 
 /// Smallest contact radius beyond a flat end, relative to it.
@@ -61,13 +61,13 @@ impl Indent {
     /// Numbers that are not above 0, and Derjaguin, Muller and Toporov's for a tip without an end radius.
     pub fn with_adhesion(self, adhesion: Adhesion) -> Result<Self> {
         if matches!(adhesion, Adhesion::Dmt { .. }) && self.tip.end_radius().is_none() {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "the adhesion of Derjaguin, Muller and Toporov needs a tip with an end radius: a paraboloid, a sphere or a \
                  rounded cone",
             ));
         }
         if matches!(adhesion, Adhesion::Maugis { .. }) && self.tip.fixed_radius().is_some() {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "the adhesion of Maugis and Dugdale is for tips whose contact grows: a flat punch has that of Johnson, \
                  Kendall and Roberts",
             ));
@@ -163,55 +163,42 @@ impl Indent {
     /// # Errors
     /// As [`Indent::at_load`], and no state on this branch.
     pub fn at(&self, control: Control, value: f64, branch: Branch) -> Result<Point> {
-        let name = match control {
-            Control::Load => "load",
-            Control::Approach => "approach",
-        };
+        let name = control.name();
         finite(name, value)?;
         let floor = match (self.adhesion, control) {
             (Adhesion::None, _) | (Adhesion::Dmt { .. }, Control::Approach) => Some(0.0),
             (Adhesion::Dmt { .. }, Control::Load) => Some(self.pull_off(control)?.load),
             _ => None,
         };
-        if let Some(floor) = floor
-            && value <= floor
-        {
-            return Err(Error::Parameter {
-                name,
-                requirement: match floor < 0.0 {
-                    true => "above that of pull-off, or nothing touches",
-                    false => "above 0, or nothing touches",
-                },
-                value,
-            });
+        if let Some(floor) = floor {
+            let requirement = match floor < 0.0 {
+                true => "above that of pull-off, or nothing touches",
+                false => "above 0, or nothing touches",
+            };
+            require(name, value, value > floor, requirement)?;
         }
         if let Some(a) = self.tip.fixed_radius() {
             return self.punch(a, control, value);
         }
-        let of = |point: &Point| match control {
-            Control::Load => point.load,
-            Control::Approach => point.approach,
-        };
         let [mut low, high] = self.range();
         if floor.is_none() {
             let last = self.pull_off(control)?;
-            let least = match control {
-                Control::Load => last.load,
-                Control::Approach => last.approach,
+            let least = control.of([last.approach, last.load]);
+            // Where the tip lets go before it touches, no contact has the least value itself.
+            let is_open = branch == Branch::Stable && last.radius <= 0.0;
+            let touches = if is_open {
+                value > least
+            } else {
+                value >= least
             };
-            if value < least || branch == Branch::Stable && value <= least && last.radius <= 0.0 {
-                return Err(Error::Parameter {
-                    name,
-                    requirement: "at least that of pull-off, or nothing touches",
-                    value,
-                });
-            }
+            let requirement = "at least that of pull-off, or nothing touches";
+            require(name, value, touches, requirement)?;
             if branch == Branch::Unstable {
-                return self.unstable(of, value, [low, last.radius]);
+                return self.unstable(control, value, [low, last.radius]);
             }
             low = low.max(last.radius);
         } else if branch == Branch::Unstable {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "only adhesion within the contact has an unstable branch",
             ));
         }
@@ -229,7 +216,9 @@ impl Indent {
             Err(error) => Err(error),
         };
         match found {
-            Err(error @ Error::Inconsistent(_)) => self.other(&of, value, range)?.ok_or(error),
+            Err(error @ (Error::Ring | Error::NoState(_) | Error::Inconsistent(_))) => {
+                self.other(control, value, range)?.ok_or(error)
+            }
             found => found,
         }
     }
@@ -243,10 +232,6 @@ impl Indent {
         floor: Option<f64>,
         [mut low, high]: [f64; 2],
     ) -> Result<Option<Point>> {
-        let of = |point: &Point| match control {
-            Control::Load => point.load,
-            Control::Approach => point.approach,
-        };
         if low >= high {
             return Ok(None);
         }
@@ -254,7 +239,7 @@ impl Indent {
         let smallest = low;
         let guess = self.guess(control, value).clamp(low, high);
         let mut top = guess;
-        while of(&self.state(top)?) < value {
+        while self.value(control, top)? < value {
             if top >= high {
                 return Ok(None);
             }
@@ -264,14 +249,10 @@ impl Indent {
         let mut last = None;
         let error = |log: f64| {
             let point = self.state(log.exp().max(smallest))?;
-            let [approach, load] = point.along();
-            let slope = match control {
-                Control::Load => load,
-                Control::Approach => approach,
-            };
-            let found = [of(&point) - value, slope * point.radius];
+            let found = point.given(control) - value;
+            let slope = control.of(point.along()) * point.radius;
             last = Some(point);
-            Ok(found)
+            Ok([found, slope])
         };
         let log = newton(error, [low.ln(), top.ln()], top.ln())?;
         let point = match last {
@@ -280,44 +261,34 @@ impl Indent {
         };
         let is_flat = self.tip.range()[0] > 0.0;
         if let Some(floor) = floor
-            && (of(&point) - value).abs() > MISSED * value.abs().max(floor.abs())
             && !is_flat
         {
-            return Err(Error::Parameter {
-                name: match control {
-                    Control::Load => "load",
-                    Control::Approach => "approach",
-                },
-                requirement: "at least that of a contact of 1e-9 of the end radius or of the top layer",
-                value,
-            });
+            let missed = (point.given(control) - value).abs();
+            let requirement =
+                "at least that of a contact of 1e-9 of the end radius or of the top layer";
+            let is_met = missed <= MISSED * value.abs().max(floor.abs());
+            require(control.name(), value, is_met, requirement)?;
         }
         if self.adhesion == Adhesion::None && is_flat {
             // At a given approach the load is stationary at the contact radius, whose rounding is coarse next to a flat end; below
             // the smallest radius the contact is that of the end.
             let [stiffness, profile] = point.parts.loads;
-            let approach = match control {
-                Control::Load => (value + profile) / stiffness,
-                Control::Approach => value,
-            };
-            return Ok(Some(Point::new(
-                Arc::clone(&point.parts),
-                self.adhesion,
-                approach,
-            )));
+            let approach = control.of([value, (value + profile) / stiffness]);
+            let parts = Arc::clone(&point.parts);
+            return Ok(Some(Point::new(parts, self.adhesion, approach)));
         }
         Ok(Some(point))
     }
 
+    /// What is given of the contact of radius `a`.
+    fn value(&self, control: Control, a: f64) -> Result<f64> {
+        Ok(self.state(a)?.given(control))
+    }
+
     /// The contact at a `value` that is a disc, where load and approach are no monotone functions of its radius: the smallest one,
     /// and the only one without adhesion, whose solution is unique.
-    fn other(
-        &self,
-        of: &impl Fn(&Point) -> f64,
-        value: f64,
-        [low, high]: [f64; 2],
-    ) -> Result<Option<Point>> {
-        let error = |log: f64| Ok(of(&self.state(log.exp())?) - value);
+    fn other(&self, control: Control, value: f64, [low, high]: [f64; 2]) -> Result<Option<Point>> {
+        let error = |log: f64| Ok(self.value(control, log.exp())? - value);
         // Small contacts are those on a bare body, and wide ones those on the base: both monotone.
         let smallest = self.stack.thickness().map_or(low, |h| SMALL * h);
         let [low, high] = [low.max(smallest).min(high), high].map(f64::ln);
@@ -341,13 +312,8 @@ impl Indent {
     }
 
     /// The contact of smaller radius at a `value`.
-    fn unstable(
-        &self,
-        of: impl Fn(&Point) -> f64,
-        value: f64,
-        [low, high]: [f64; 2],
-    ) -> Result<Point> {
-        let error = |log: f64| Ok(of(&self.state(log.exp())?) - value);
+    fn unstable(&self, control: Control, value: f64, [low, high]: [f64; 2]) -> Result<Point> {
+        let error = |log: f64| Ok(self.value(control, log.exp())? - value);
         let mut start = high;
         while start > low.max(1e-6 * high) {
             start = (0.5 * start).max(low);
@@ -357,7 +323,7 @@ impl Indent {
                 return Ok(point);
             }
         }
-        Err(Error::Inconsistent(
+        Err(Error::NoState(
             "no state of the unstable branch has this load or approach",
         ))
     }
@@ -365,31 +331,20 @@ impl Indent {
     /// The contact of a flat punch.
     fn punch(&self, a: f64, control: Control, value: f64) -> Result<Point> {
         let parts = self.parts(a)?;
-        let approach = match control {
-            Control::Approach => value,
-            Control::Load => value / parts.loads[0],
-        };
+        let approach = control.of([value, value / parts.loads[0]]);
         let least = match self.adhesion.work() {
             Some(_) => self.adhesion.edge(self.stack.surface_modulus(), a) / parts.edge[0],
             None => 0.0,
         };
-        let requirement = match approach {
-            approach if approach < least => "at least that of pull-off, or nothing touches",
-            approach if approach > DEEPEST * a => "one whose approach is at most 1e100 radii",
-            _ => {
-                let point = Point::new(parts, self.adhesion, approach);
-                point.check_disc()?;
-                return Ok(point);
-            }
+        let requirement = match approach < least {
+            true => "at least that of pull-off, or nothing touches",
+            false => "one whose approach is at most 1e100 radii",
         };
-        Err(Error::Parameter {
-            name: match control {
-                Control::Load => "load",
-                Control::Approach => "approach",
-            },
-            requirement,
-            value,
-        })
+        let holds = (least..=DEEPEST * a).contains(&approach);
+        require(control.name(), value, holds, requirement)?;
+        let point = Point::new(parts, self.adhesion, approach);
+        point.check_disc()?;
+        Ok(point)
     }
 
     /// Contact radius \[m\] of the same tip on a bare body of the surface's modulus, to start from.
@@ -399,10 +354,7 @@ impl Indent {
         let mut a = low;
         let reached = |a: f64| {
             let [depth, ..] = self.tip.transform(a);
-            match control {
-                Control::Approach => depth >= value,
-                Control::Load => modulus * a * depth >= value,
-            }
+            control.of([depth, modulus * a * depth]) >= value
         };
         while !reached(a) && a < high {
             a *= 1.3;
@@ -425,14 +377,12 @@ impl Indent {
             Some(_) => Point::new(parts, self.adhesion, point.approach),
             None => finer.state(point.radius)?,
         };
-        let pairs = [
+        let errors = [
             (point.load, again.load),
             (point.approach, again.approach),
             (point.stiffness, again.stiffness),
-        ];
-        Ok(pairs
-            .iter()
-            .map(|(a, b)| ((a - b) / b.abs().max(f64::MIN_POSITIVE)).abs())
-            .fold(0.0, f64::max))
+        ]
+        .map(|(a, b)| ((a - b) / b.abs().max(f64::MIN_POSITIVE)).abs());
+        Ok(errors.into_iter().fold(0.0, f64::max))
     }
 }

@@ -1,21 +1,20 @@
 //! States of an indentation.
 
-mod disc;
-mod interior;
-mod warning;
-
+use std::fmt;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
 use super::density::{Density, bessel_sum};
-use super::equation::stack::Level;
-use super::equation::system::times;
-use super::parts::Parts;
+use super::equation::stack::StackLevel;
+use super::equation::system::{Parts, add, times};
+use super::tip::Tip;
 use super::zone::{Answer, Zone};
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
+
+mod disc;
+mod interior;
 
 pub use interior::InteriorStress;
-pub use warning::Warning;
 
 /// One state of an indentation.
 #[derive(Debug, Clone)]
@@ -54,6 +53,11 @@ impl Point {
         }
     }
 
+    /// What was given of load and approach.
+    pub(super) fn given(&self, control: Control) -> f64 {
+        control.of([self.approach, self.load])
+    }
+
     /// φ in the basis.
     pub(super) fn values(&self) -> Vec<f64> {
         self.combined(|parts| &parts.values, |answer| &answer.values)
@@ -73,9 +77,7 @@ impl Point {
         let pairs = punch.iter().zip(profile);
         let mut all: Vec<f64> = pairs.map(|(a, b)| self.approach * a - b).collect();
         if let Some(zone) = &self.zone {
-            for (value, more) in all.iter_mut().zip(more(&zone.answer)) {
-                *value += more;
-            }
+            add(&mut all, 1.0, more(&zone.answer));
         }
         all
     }
@@ -117,14 +119,14 @@ impl Point {
     /// # Errors
     /// A distance that is negative or not finite.
     pub fn pressure(&self, r: &[f64]) -> Result<Vec<f64>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         let (density, a) = (self.density(), self.radius);
         let at = |r: &f64| -> f64 {
             if *r > a {
                 return self.zone.as_ref().map_or(0.0, |zone| zone.outside(*r));
             }
             if let Some(zone) = &self.zone {
-                // φ goes on into the zone, so that no edge is singular.
+                // φ continues into the zone, so that no edge is singular.
                 let from_contact = match *r < a {
                     true => Density {
                         edge: 0.0,
@@ -155,7 +157,7 @@ impl Point {
     /// # Errors
     /// A distance that is negative or not finite.
     pub fn displacement(&self, r: &[f64]) -> Result<Vec<f64>> {
-        r.iter().try_for_each(|r| distance(*r))?;
+        check_distances(r)?;
         let density = self.density();
         let short = self.parts.stack.short();
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
@@ -189,7 +191,7 @@ impl Point {
     }
 
     /// Weights times M p̂ at the waves of a level that resolves J₀(αr) up to `far`; none of bare bodies.
-    pub(super) fn wider(&self, far: f64) -> Option<(Vec<f64>, &Arc<Level>)> {
+    pub(super) fn wider(&self, far: f64) -> Option<(Vec<f64>, &Arc<StackLevel>)> {
         let own = self.parts.system.level.as_ref()?;
         // The level of a cohesive zone may already be wider.
         let level = self.parts.stack.level(self.radius + far)?;
@@ -201,17 +203,10 @@ impl Point {
         let hat = match Arc::ptr_eq(level, own) {
             true => self.hat(),
             false => {
-                let rows = self.parts.system.basis.transforms(&level.waves);
-                let values = self.values();
-                let mut hat = vec![0.0; level.waves.len()];
-                for (row, value) in rows.iter().zip(&values) {
-                    hat.iter_mut()
-                        .zip(row)
-                        .for_each(|(sum, b)| *sum += value * b);
-                }
+                let system = &self.parts.system;
+                let [mut hat] = system.transforms_at(&level.waves, [&self.values()]);
                 if let Some(zone) = &self.zone {
-                    let own = zone.transform(&level.waves);
-                    hat.iter_mut().zip(own).for_each(|(sum, more)| *sum += more);
+                    add(&mut hat, 1.0, &zone.transform(&level.waves));
                 }
                 hat
             }
@@ -219,11 +214,75 @@ impl Point {
         Some((times(&level.excess, &hat), level))
     }
 
-    /// Step of the density at the edge: φ there, but for a cohesive zone, into which φ goes on.
+    /// Step of the density at the edge: φ there, but for a cohesive zone, into which φ continues.
     pub(super) fn step(&self) -> f64 {
         match self.zone {
             Some(_) => 0.0,
             None => self.exact_edge(),
+        }
+    }
+
+    /// What makes the state doubtful; empty as a rule.
+    ///
+    /// ```
+    /// use nacre::indent::{Indent, Stack, Tip};
+    /// use nacre::{Elastic, HalfSpace};
+    /// let stack = Stack::plan(&[HalfSpace::new(Elastic::new(1.0, 0.3)?, [])?.into()])?;
+    /// let indent = Indent::new(&stack, &Tip::sphere(5.0)?);
+    /// assert!(indent.at_approach(0.5)?.warnings().is_empty());
+    /// assert_eq!(indent.at_approach(10.0)?.warnings()[0].kind(), "steep");
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn warnings(&self) -> Vec<Warning> {
+        Warning::of(&self.parts.tip, self.radius, self.approach)
+    }
+}
+
+/// Slope above which a contact is warned of. The theory leaves out the square of the slope, a quarter here; the cone of Berkovich's
+/// pyramid has 0.36.
+const STEEP: f64 = 0.5;
+
+/// What makes a state of an indentation doubtful.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// The tip is steep within the contact, or the surface at the edge of a flat punch.
+    Steep {
+        /// Largest slope of the tip within the contact; of a flat punch 2/π of its approach over its radius, the slope of a
+        /// cone of the same approach and radius.
+        slope: f64,
+    },
+}
+
+impl Warning {
+    /// Warnings of a contact.
+    pub(super) fn of(tip: &Tip, radius: f64, approach: f64) -> Vec<Self> {
+        let slope = match tip.fixed_radius() {
+            Some(a) => approach.abs() / a * std::f64::consts::FRAC_2_PI,
+            None => tip.steepest(radius),
+        };
+        match slope > STEEP {
+            true => vec![Self::Steep { slope }],
+            false => vec![],
+        }
+    }
+
+    /// Name of the kind of warning, without numbers.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Steep { .. } => "steep",
+        }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Steep { slope } => write!(
+                f,
+                "the contact is too deep for its radius: its slope against the surface is up to {slope:.2}, and the theory \
+                 of small slopes errs by about its square; above {STEEP} it is not to be trusted"
+            ),
         }
     }
 }
@@ -245,14 +304,8 @@ pub struct PullOff {
     pub point: Option<Point>,
 }
 
-/// An error unless `r` is a distance from the axis.
-pub(super) fn distance(r: f64) -> Result<()> {
-    match r.is_finite() && r >= 0.0 {
-        true => Ok(()),
-        false => Err(Error::Parameter {
-            name: "r",
-            requirement: "finite and at least 0",
-            value: r,
-        }),
-    }
+/// An error unless each of `r` is a distance from the axis.
+pub(super) fn check_distances(r: &[f64]) -> Result<()> {
+    let check = |r: &f64| require("r", *r, r.is_finite() && *r >= 0.0, "finite and at least 0");
+    r.iter().try_for_each(|r| check(r).map(|_| ()))
 }

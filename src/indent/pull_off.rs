@@ -7,7 +7,7 @@ use super::cohesion::Apart;
 use super::equation::root::bracketed;
 use super::indenter::Indent;
 use super::point::{Point, PullOff};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 
 /// Radii in each factor of e at which the end of an adhering contact is looked for.
 const SCAN: f64 = 4.0;
@@ -22,6 +22,9 @@ const DEEPEST: f64 = 3.0;
 /// Rise from the least load or approach, relative to it, after which no other one is looked for on a stack that is softest at its
 /// surface.
 const RISEN: f64 = 0.2;
+
+/// Step of differences with respect to the logarithm of the radius.
+const DIFFERENCE: f64 = 1e-4;
 
 impl Indent {
     /// The state in which the tip is pulled off: of the smallest load or approach, the deepest minimum where there are more.
@@ -53,7 +56,7 @@ impl Indent {
             return Ok(touching(Point::new(parts, self.adhesion, approach)));
         }
         match self.adhesion {
-            Adhesion::None => Err(Error::Inconsistent(
+            Adhesion::None => Err(Error::Adhesion(
                 "a tip without adhesion is not pulled off: give an adhesion",
             )),
             // The force outside stays until the last point parts.
@@ -67,18 +70,10 @@ impl Indent {
             }),
             Adhesion::Jkr { .. } => Ok(touching(self.least(control)?)),
             Adhesion::Maugis { work, strength } => {
-                let numbers = [work, strength];
-                let apart = self.least_apart(control, numbers)?;
-                let of = |load: f64, approach: f64| match control {
-                    Control::Load => load,
-                    Control::Approach => approach,
-                };
+                let apart = self.least_apart(control, [work, strength])?;
+                let least = control.of([apart.approach, apart.load]);
                 match self.least(control) {
-                    Ok(point)
-                        if of(point.load, point.approach) < of(apart.load, apart.approach) =>
-                    {
-                        Ok(touching(point))
-                    }
+                    Ok(point) if point.given(control) < least => Ok(touching(point)),
                     _ => Ok(PullOff {
                         control,
                         load: apart.load,
@@ -100,12 +95,8 @@ impl Indent {
         }
         // δ(c) falls from −w/σ₀ and may rise again before the tip touches.
         let at = |part: f64| {
-            Apart::new(
-                &self.stack,
-                &self.tip,
-                part * touching.outer_radius,
-                numbers,
-            )
+            let outer = part * touching.outer_radius;
+            Apart::new(&self.stack, &self.tip, outer, numbers)
         };
         let approach = |part: f64| at(part).approach;
         let slope = |part: f64| Ok(approach(part * (1.0 + 1e-5)) - approach(part * (1.0 - 1e-5)));
@@ -121,10 +112,6 @@ impl Indent {
     /// The contact of least load or approach.
     fn least(&self, control: Control) -> Result<Point> {
         let [low, high] = self.range();
-        let of = |point: &Point| match control {
-            Control::Load => point.load,
-            Control::Approach => point.approach,
-        };
         // Depth F(a) of a bare body, in the depth that adhesion takes away from it.
         let work = self.adhesion.work().unwrap_or(0.0);
         let depth = |a: f64, modulus: f64| {
@@ -139,7 +126,7 @@ impl Indent {
         let (mut start, mut least) = (log - 3.0, f64::INFINITY);
         while log.exp() < high {
             let state = self.state_from(log.exp(), &mut start);
-            let value = state.map_or(f64::INFINITY, |point| of(&point));
+            let value = state.map_or(f64::INFINITY, |point| point.given(control));
             places.push(log);
             values.push(value);
             least = least.min(value);
@@ -155,7 +142,7 @@ impl Indent {
             .filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1])
             .collect();
         minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let mut found = Err(Error::Inconsistent(
+        let mut found = Err(Error::NoState(
             "the load and the approach have no minimum within the radii that can be computed",
         ));
         // A minimum at which the contact is no disc is no state.
@@ -171,31 +158,16 @@ impl Indent {
 
     /// The contact of least load or approach between two logarithms of the radius.
     fn minimum(&self, control: Control, bracket: [f64; 2], start: &mut f64) -> Result<Point> {
-        let log = match self.adhesion {
-            Adhesion::Maugis { .. } => {
-                // A central difference, whose error moves a minimum by 1e-6 of its width and its value by the square.
-                let h = 1e-4;
-                let slope = |log: f64| {
-                    let low = self.state_from((log - h).exp(), start)?;
-                    let high = self.state_from((log + h).exp(), start)?;
-                    Ok(match control {
-                        Control::Load => high.load - low.load,
-                        Control::Approach => high.approach - low.approach,
-                    })
-                };
-                bracketed(slope, bracket)?
+        let slope = |log: f64| {
+            if !matches!(self.adhesion, Adhesion::Maugis { .. }) {
+                return Ok(control.of(self.state(log.exp())?.along()));
             }
-            _ => {
-                let slope = |log: f64| {
-                    let [approach, load] = self.state(log.exp())?.along();
-                    Ok(match control {
-                        Control::Load => load,
-                        Control::Approach => approach,
-                    })
-                };
-                bracketed(slope, bracket)?
-            }
+            // A central difference, whose error moves a minimum by 1e-6 of its width and its value by the square.
+            let low = self.state_from((log - DIFFERENCE).exp(), start)?;
+            let high = self.state_from((log + DIFFERENCE).exp(), start)?;
+            Ok(high.given(control) - low.given(control))
         };
+        let log = bracketed(slope, bracket)?;
         let point = self.state(log.exp())?;
         point.check_disc()?;
         Ok(point)
@@ -210,7 +182,7 @@ impl Indent {
         let approach = match self.adhesion {
             Adhesion::Maugis { work, strength } => -work / strength,
             Adhesion::None => {
-                return Err(Error::Inconsistent(
+                return Err(Error::Adhesion(
                     "a tip without adhesion does not jump into contact: give an adhesion",
                 ));
             }
@@ -218,7 +190,7 @@ impl Indent {
         };
         match (control, self.adhesion) {
             (Control::Load, _) => self.at_load(0.0),
-            (Control::Approach, Adhesion::Dmt { .. }) => Err(Error::Inconsistent(
+            (Control::Approach, Adhesion::Dmt { .. }) => Err(Error::Adhesion(
                 "with the adhesion of Derjaguin, Muller and Toporov the approach is continuous at first touch",
             )),
             (Control::Approach, _) => self.at_approach(approach),
@@ -231,20 +203,15 @@ impl Indent {
     /// Another adhesion, and a radius that is not above 0 or at which they touch.
     pub fn apart(&self, outer: f64) -> Result<Apart> {
         let Adhesion::Maugis { work, strength } = self.adhesion else {
-            return Err(Error::Inconsistent(
+            return Err(Error::Adhesion(
                 "only the adhesion of Maugis and Dugdale acts between surfaces that do not touch",
             ));
         };
         positive("outer radius", outer)?;
         let found = Apart::new(&self.stack, &self.tip, outer, [work, strength]);
-        match found.gap >= 0.0 {
-            true => Ok(found),
-            false => Err(Error::Parameter {
-                name: "outer radius",
-                requirement: "at most that at which the tip begins to touch",
-                value: outer,
-            }),
-        }
+        let requirement = "at most that at which the tip begins to touch";
+        require("outer radius", outer, found.gap >= 0.0, requirement)?;
+        Ok(found)
     }
 
     /// Work of adhesion \[J/m²\] of which this tip is pulled off by a `force` \[N\], the largest one or that under a given approach;

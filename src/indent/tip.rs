@@ -2,15 +2,12 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::error::{Error, Result, positive};
+use super::equation::basis::Break;
+use crate::error::{Result, positive, require};
 
-mod breaks;
-mod form;
-mod sampled;
 mod term;
 
-pub use form::{Form, STEEPEST};
-use term::Term;
+use term::ProfileTerm;
 
 /// An axisymmetric tip.
 ///
@@ -23,7 +20,7 @@ use term::Term;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tip {
     form: Form,
-    terms: Vec<Term>,
+    terms: Vec<ProfileTerm>,
     kinks: Vec<f64>,
 }
 
@@ -52,29 +49,29 @@ impl Tip {
         form.check()?;
         let terms = match &form {
             Form::FlatPunch { .. } => vec![],
-            Form::Paraboloid { radius } => vec![Term::paraboloid(1.0 / radius)],
-            Form::Sphere { radius } => vec![Term::Sphere { radius: *radius }],
-            Form::Cone { slope } => vec![Term::power(*slope, 1.0)],
-            Form::Power { factor, exponent } => vec![Term::power(*factor, *exponent)],
-            Form::RoundedCone { slope, radius } => vec![Term::Rounded {
+            Form::Paraboloid { radius } => vec![ProfileTerm::paraboloid(1.0 / radius)],
+            Form::Sphere { radius } => vec![ProfileTerm::Sphere { radius: *radius }],
+            Form::Cone { slope } => vec![ProfileTerm::power(*slope, 1.0)],
+            Form::Power { factor, exponent } => vec![ProfileTerm::power(*factor, *exponent)],
+            Form::RoundedCone { slope, radius } => vec![ProfileTerm::Rounded {
                 at: slope * radius,
                 curvature: 1.0 / radius,
             }],
-            Form::RoundedPunch { flat, radius } => vec![Term::Hinge {
+            Form::RoundedPunch { flat, radius } => vec![ProfileTerm::Hinge {
                 at: *flat,
                 curvature: 1.0 / radius,
             }],
-            Form::FlatCone { flat, slope } => vec![Term::Step {
+            Form::FlatCone { flat, slope } => vec![ProfileTerm::Step {
                 at: *flat,
                 slope: *slope,
             }],
-            Form::Profile { radii, heights } => sampled::profile(radii, heights)?,
+            Form::Profile { radii, heights } => term::profile(radii, heights)?,
             Form::Area {
                 coefficients,
                 depth,
-            } => sampled::area_function(coefficients, *depth)?,
+            } => term::area_function(coefficients, *depth)?,
         };
-        let mut kinks: Vec<f64> = terms.iter().filter_map(Term::kink).collect();
+        let mut kinks: Vec<f64> = terms.iter().filter_map(ProfileTerm::kink).collect();
         kinks.sort_by(f64::total_cmp);
         if kinks.len() > FEW_KINKS {
             kinks.clear();
@@ -167,7 +164,7 @@ impl Tip {
             Form::Area {
                 coefficients,
                 depth,
-            } => [0.0, sampled::radius(coefficients, *depth)],
+            } => [0.0, term::radius(coefficients, *depth)],
             _ => [0.0, f64::INFINITY],
         }
     }
@@ -196,8 +193,8 @@ impl Tip {
     /// Whether the slope of the profile nowhere falls, so that the contact is a disc at every load.
     pub(super) fn is_convex(&self) -> bool {
         self.terms.iter().all(|term| match term {
-            Term::Hinge { curvature, .. } => *curvature >= 0.0,
-            Term::Power {
+            ProfileTerm::Hinge { curvature, .. } => *curvature >= 0.0,
+            ProfileTerm::Power {
                 factor, exponent, ..
             } => *factor >= 0.0 && *exponent >= 1.0,
             _ => true,
@@ -216,7 +213,7 @@ impl Tip {
         } else {
             &[]
         };
-        terms.iter().filter_map(Term::kink)
+        terms.iter().filter_map(ProfileTerm::kink)
     }
 
     /// Whether the pressure has no limit on the axis: a cone's.
@@ -231,52 +228,52 @@ impl Tip {
     }
 
     /// Derivatives of the terms with respect to a number of the form.
-    fn rates(&self, number: usize) -> Vec<Term> {
+    fn rates(&self, number: usize) -> Vec<ProfileTerm> {
         match (&self.form, number) {
-            (Form::Paraboloid { radius }, _) => vec![Term::paraboloid(-radius.powi(-2))],
-            (Form::Sphere { radius }, _) => vec![Term::SphereRate { radius: *radius }],
-            (Form::Cone { .. }, _) => vec![Term::power(1.0, 1.0)],
-            (Form::Power { exponent, .. }, 0) => vec![Term::power(1.0, *exponent)],
+            (Form::Paraboloid { radius }, _) => vec![ProfileTerm::paraboloid(-radius.powi(-2))],
+            (Form::Sphere { radius }, _) => vec![ProfileTerm::SphereRate { radius: *radius }],
+            (Form::Cone { .. }, _) => vec![ProfileTerm::power(1.0, 1.0)],
+            (Form::Power { exponent, .. }, 0) => vec![ProfileTerm::power(1.0, *exponent)],
             (Form::Power { factor, exponent }, _) => {
-                let Term::Power { rate, .. } = Term::power(*factor, *exponent) else {
+                let ProfileTerm::Power { rate, .. } = ProfileTerm::power(*factor, *exponent) else {
                     return vec![];
                 };
-                vec![Term::ExponentRate {
+                vec![ProfileTerm::ExponentRate {
                     exponent: *exponent,
                     rate,
                 }]
             }
             // b = m R; ∂Rounded/∂b is a step of its curvature.
-            (Form::RoundedCone { slope, radius }, 0) => vec![Term::Step {
+            (Form::RoundedCone { slope, radius }, 0) => vec![ProfileTerm::Step {
                 at: slope * radius,
                 slope: 1.0,
             }],
             (Form::RoundedCone { slope, radius }, _) => {
                 let (at, rate) = (slope * radius, -radius.powi(-2));
                 vec![
-                    Term::Rounded {
+                    ProfileTerm::Rounded {
                         at,
                         curvature: rate,
                     },
-                    Term::Step {
+                    ProfileTerm::Step {
                         at,
                         slope: slope / radius,
                     },
                 ]
             }
-            (Form::RoundedPunch { flat, radius }, 0) => vec![Term::Step {
+            (Form::RoundedPunch { flat, radius }, 0) => vec![ProfileTerm::Step {
                 at: *flat,
                 slope: -1.0 / radius,
             }],
-            (Form::RoundedPunch { flat, radius }, _) => vec![Term::Hinge {
+            (Form::RoundedPunch { flat, radius }, _) => vec![ProfileTerm::Hinge {
                 at: *flat,
                 curvature: -radius.powi(-2),
             }],
-            (Form::FlatCone { flat, slope }, 0) => vec![Term::PlaceRate {
+            (Form::FlatCone { flat, slope }, 0) => vec![ProfileTerm::PlaceRate {
                 at: *flat,
                 slope: *slope,
             }],
-            (Form::FlatCone { flat, .. }, _) => vec![Term::Step {
+            (Form::FlatCone { flat, .. }, _) => vec![ProfileTerm::Step {
                 at: *flat,
                 slope: 1.0,
             }],
@@ -288,24 +285,22 @@ impl Tip {
     pub(super) fn rate(&self, parameter: TipParameter, places: &[f64]) -> Vec<[f64; 2]> {
         match parameter {
             // F of g(r/√κ) is F(s/√κ).
-            TipParameter::Area => places
-                .iter()
-                .map(|s| {
+            TipParameter::Area => {
+                let rate = |s: &f64| {
                     let [_, slope, bend] = self.transform(*s);
                     // The product vanishes at s = 0 with the curvature of a sharp end.
                     let bend = if *s > 0.0 { s * bend } else { 0.0 };
                     [-0.5 * s * slope, -0.5 * (slope + bend)]
-                })
-                .collect(),
+                };
+                places.iter().map(rate).collect()
+            }
             TipParameter::Number(number) => {
                 let terms = self.rates(number);
-                places
-                    .iter()
-                    .map(|s| {
-                        let [value, slope, _] = sum(&terms, *s);
-                        [value, slope]
-                    })
-                    .collect()
+                let rate = |s: &f64| {
+                    let [value, slope, _] = sum(&terms, *s);
+                    [value, slope]
+                };
+                places.iter().map(rate).collect()
             }
         }
     }
@@ -313,14 +308,9 @@ impl Tip {
     /// Derivative of the profile g(r) with respect to `parameter`.
     pub(super) fn gap_rate(&self, parameter: TipParameter, r: f64) -> f64 {
         match parameter {
-            TipParameter::Area => {
-                // Where the slope has no limit on the axis, the product vanishes.
-                if r > 0.0 {
-                    -0.5 * r * self.slope(r)
-                } else {
-                    0.0
-                }
-            }
+            // Where the slope has no limit on the axis, the product vanishes.
+            TipParameter::Area if r > 0.0 => -0.5 * r * self.slope(r),
+            TipParameter::Area => 0.0,
             TipParameter::Number(number) => self.rates(number).iter().map(|term| term.gap(r)).sum(),
         }
     }
@@ -341,19 +331,12 @@ impl Tip {
             Form::FlatPunch { radius } => (a - radius).abs() <= 1e-12 * radius,
             _ => a > low && a < high,
         };
-        match inside {
-            true => Ok(a),
-            false => Err(Error::Parameter {
-                name: "radius",
-                requirement,
-                value: a,
-            }),
-        }
+        require("radius", a, inside, requirement)
     }
 }
 
 /// Σ of the terms at s; F = (π/2) m s of a cone is among them.
-fn sum(terms: &[Term], s: f64) -> [f64; 3] {
+fn sum(terms: &[ProfileTerm], s: f64) -> [f64; 3] {
     let mut total = [0.0; 3];
     for term in terms {
         for (total, value) in total.iter_mut().zip(term.transform(s)) {
@@ -368,13 +351,188 @@ fn sum(terms: &[Term], s: f64) -> [f64; 3] {
 /// # Errors
 /// Unless the angle lies between 0 and π/2.
 pub fn slope_of(angle: f64) -> Result<f64> {
-    match angle > 0.0 && angle < FRAC_PI_2 {
-        true => Ok(angle.tan().recip()),
-        false => Err(Error::Parameter {
-            name: "half_angle",
-            requirement: "between 0 and pi/2, in radians; np.deg2rad makes them of degrees",
-            value: angle,
-        }),
+    let requirement = "between 0 and pi/2, in radians; np.deg2rad makes them of degrees";
+    let holds = angle > 0.0 && angle < FRAC_PI_2;
+    require("half_angle", angle, holds, requirement)?;
+    Ok(angle.tan().recip())
+}
+
+/// Steepest slope of a cone, of a half angle of 11°. The theory is that of small slopes, and errs by their square: there is no such tip
+/// above, and the number is a half angle, in degrees or radians.
+pub const STEEPEST: f64 = 5.0;
+
+/// Form of a tip: its profile g(r) is the gap of the undeformed bodies, and g(0) = 0. Lengths in \[m\].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Form {
+    /// A flat end of this radius, with a sharp edge.
+    FlatPunch {
+        /// Radius of the end, which is that of the contact.
+        radius: f64,
+    },
+    /// g = r²/2R.
+    Paraboloid {
+        /// Radius of curvature R.
+        radius: f64,
+    },
+    /// g = R − √(R² − r²).
+    Sphere {
+        /// Radius R.
+        radius: f64,
+    },
+    /// g = m r.
+    Cone {
+        /// Slope m of the flanks against the surface: cot of the half angle.
+        slope: f64,
+    },
+    /// g = b rⁿ.
+    Power {
+        /// Factor b \[m^(1−n)\].
+        factor: f64,
+        /// Exponent n.
+        exponent: f64,
+    },
+    /// A cone with a spherical end: a paraboloid up to where both have the same slope.
+    RoundedCone {
+        /// Slope of the flanks.
+        slope: f64,
+        /// Radius of curvature of the end.
+        radius: f64,
+    },
+    /// A flat end with a rounded edge: g = (r − b)²/2R beyond b.
+    RoundedPunch {
+        /// Radius b of the flat end.
+        flat: f64,
+        /// Radius of curvature R of the edge.
+        radius: f64,
+    },
+    /// A cone whose end is cut off: g = m (r − b) beyond b.
+    FlatCone {
+        /// Radius b of the flat end.
+        flat: f64,
+        /// Slope m of the flanks.
+        slope: f64,
+    },
+    /// Samples g(r), from the axis on.
+    Profile {
+        /// Distances from the axis, ascending from 0.
+        radii: Vec<f64>,
+        /// Heights g, from 0 on.
+        heights: Vec<f64>,
+    },
+    /// A tip whose section at the distance d from its end has the area Σ C_k d^(2^(1−k)).
+    Area {
+        /// Coefficients C_0, C_1, …
+        coefficients: Vec<f64>,
+        /// Deepest distance from the end up to which the function holds.
+        depth: f64,
+    },
+}
+
+impl Form {
+    /// Names and values of the numbers, in the order in which they are written.
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::FlatPunch { radius } | Self::Paraboloid { radius } | Self::Sphere { radius } => {
+                vec![("radius", *radius)]
+            }
+            Self::Cone { slope } => vec![("slope", *slope)],
+            Self::Power { factor, exponent } => {
+                vec![("factor", *factor), ("exponent", *exponent)]
+            }
+            Self::RoundedCone { slope, radius } => vec![("slope", *slope), ("radius", *radius)],
+            Self::RoundedPunch { flat, radius } => vec![("flat", *flat), ("radius", *radius)],
+            Self::FlatCone { flat, slope } => vec![("flat", *flat), ("slope", *slope)],
+            Self::Profile { .. } => vec![],
+            Self::Area { depth, .. } => vec![("depth", *depth)],
+        }
+    }
+
+    /// An error unless the numbers are those of a tip, in any unit.
+    fn check(&self) -> Result<()> {
+        for (name, value) in self.numbers() {
+            let (range, requirement) = match name {
+                "slope" => (
+                    0.0..=STEEPEST,
+                    "above 0 and at most 5, a half angle of 11 degrees; half_angle= takes an angle in radians",
+                ),
+                "exponent" => (0.01..=100.0, "between 0.01 and 100"),
+                "factor" => (0.0..=f64::MAX, "finite and above 0"),
+                _ => (1e-100..=1e100, "between 1e-100 and 1e100"),
+            };
+            positive(name, value)?;
+            require(name, value, range.contains(&value), requirement)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ratio of the distances of successive breaks from a singularity: 24 nodes on a panel between them leave 3⁻⁴⁸.
+const RATIO: f64 = 4.0;
+
+/// Radius over that of a sphere up to which the eight nodes of smooth profiles leave 1e-14 of its logarithm at R.
+const ROUND: f64 = 0.4;
+
+/// Breaks towards the axis of powers of s, the first panel of which counts nothing: 4⁻¹² = 6e-8 of 1e-6.
+const TO_AXIS: f64 = 12.0;
+
+impl Tip {
+    /// Places up to the contact radius `a` at which panels end, ascending, where the profile has `most` kinks there at most; none
+    /// where F is smooth from the axis to `a`.
+    pub(super) fn breaks(&self, a: f64, most: usize) -> Option<Vec<Break>> {
+        let smooth = |at: f64| Break {
+            at,
+            has_root: false,
+        };
+        let root = |at: f64| Break { at, has_root: true };
+        let mut breaks = Vec::new();
+        match self.form {
+            Form::FlatPunch { .. } | Form::Paraboloid { .. } | Form::Cone { .. } => return None,
+            Form::Sphere { radius } if a <= ROUND * radius => return None,
+            // A logarithm at R.
+            Form::Sphere { radius } => {
+                let mut distance = RATIO * (radius - a);
+                while RATIO * distance < radius {
+                    breaks.insert(0, smooth(radius - distance));
+                    distance *= RATIO;
+                }
+            }
+            // A root on the axis, or s ln s in the derivative, and a steep rise within a/n of the edge.
+            Form::Power { exponent, .. } => {
+                breaks.push(root(0.0));
+                let count = (TO_AXIS / (1.0 + exponent)).ceil();
+                let mut at = a * RATIO.powf(-count);
+                while at < 0.5 * a {
+                    breaks.push(smooth(at));
+                    at *= RATIO;
+                }
+                if exponent > 16.0 {
+                    breaks.push(smooth(a * (1.0 - 8.0 / exponent)));
+                }
+            }
+            _ => {
+                let mut kinks: Vec<f64> = self.terms.iter().filter_map(ProfileTerm::kink).collect();
+                kinks.retain(|b| *b < a);
+                kinks.sort_by(f64::total_cmp);
+                if kinks.len() > most {
+                    let steps = [-3, -2, -1].map(|k| smooth(a * RATIO.powi(k)));
+                    return Some(steps.into());
+                }
+                let ends = kinks.iter().skip(1).chain(std::iter::once(&a));
+                let mut before = 0.0;
+                for (kink, end) in kinks.iter().zip(ends) {
+                    breaks.push(root(*kink));
+                    // The singularity before this one, or its image at −b.
+                    let mut distance = kink - before;
+                    while distance > 0.0 && kink + 2.0 * distance < *end {
+                        breaks.push(smooth(kink + distance));
+                        distance *= RATIO;
+                    }
+                    before = *kink;
+                }
+            }
+        }
+        Some(breaks)
     }
 }
 

@@ -11,9 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use spec_math::cephes64::{j0, j1};
 
 use super::equation::basis::rule;
-use super::equation::system::times;
+use super::equation::system::{Parts, add, times};
 use super::equation::waves::Waves;
-use super::parts::Parts;
 
 /// Nodes of the integral over a panel of a zone, beside half of the phase of the shortest wave over it.
 const NODES: usize = 24;
@@ -50,6 +49,14 @@ pub(super) struct Answer {
     pub(super) edge: f64,
 }
 
+impl Answer {
+    /// Adds `factor` times `more`, but for its edge.
+    pub(super) fn add(&mut self, factor: f64, more: &Self) {
+        add(&mut self.values, factor, &more.values);
+        add(&mut self.hat, factor, &more.hat);
+    }
+}
+
 impl Zone {
     /// The zone from `inner` to `outer` without an answer.
     fn alone(inner: f64, outer: f64, strength: f64) -> Self {
@@ -81,7 +88,7 @@ impl Zone {
         let right = system.couple(&times(&level.excess, &own));
         let values = system.solve(right.iter().map(|c| -c).collect());
         let mut hat = system.transform(&values);
-        hat.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        add(&mut hat, 1.0, &own);
         let edge = -system.couple_edge(&times(&level.excess, &hat));
         Answer { values, hat, edge }
     }
@@ -171,8 +178,7 @@ impl Zone {
                 waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
                 let rate = stress * (self.outer * angle.sin()).powi(2) + outer * self.outer;
                 let weight = -2.0 / PI * self.strength * w * rate;
-                let pairs = sums.iter_mut().zip(&cos);
-                pairs.for_each(|(sum, cos)| *sum += weight * cos);
+                add(&mut sums, weight, &cos);
             }
         }
         sums

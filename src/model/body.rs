@@ -1,10 +1,6 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
-mod parameter;
-
-pub use parameter::BodyParameter;
-
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, finite, positive, require};
 use crate::model::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
@@ -156,10 +152,10 @@ impl HalfSpace {
     }
 
     /// This body with free ends at these coordinates x \[m\]: it is cut off there, across the axis of a roller,
-    /// and nothing holds the end face. `None` where the body goes on.
+    /// and nothing holds the end face. `None` where the body extends further.
     ///
     /// Contacts count both ends ([`crate::compliance::ends`]), and stresses do but for those of friction; frequency response and
-    /// influence coefficients are those of the body that goes on.
+    /// influence coefficients are those of the body without ends.
     ///
     /// ```
     /// use nacre::{Elastic, HalfSpace};
@@ -175,14 +171,9 @@ impl HalfSpace {
         for end in ends.into_iter().flatten() {
             finite("ends", end)?;
         }
-        if let [Some(low), Some(high)] = ends
-            && low >= high
-        {
-            return Err(Error::Parameter {
-                name: "ends",
-                requirement: "in ascending order: the body lies between them",
-                value: high,
-            });
+        if let [Some(low), Some(high)] = ends {
+            let requirement = "in ascending order: the body lies between them";
+            require("ends", high, low < high, requirement)?;
         }
         if ends != [None; 2] && self.substrate == Substrate::Rigid {
             return Err(Error::Inconsistent(
@@ -195,7 +186,7 @@ impl HalfSpace {
         })
     }
 
-    /// Coordinates x \[m\] of the free ends; `None` where the body goes on.
+    /// Coordinates x \[m\] of the free ends; `None` where the body extends further.
     pub fn ends(&self) -> [Option<f64>; 2] {
         self.ends
     }
@@ -243,6 +234,111 @@ impl From<Elastic> for HalfSpace {
             substrate: material.into(),
             layers: Vec::new(),
             ends: [None; 2],
+        }
+    }
+}
+
+/// One number of a half-space; layers are counted from the surface down.
+///
+/// ```
+/// use nacre::{BodyParameter, Elastic, HalfSpace, Layer};
+///
+/// let steel = Elastic::new(210e9, 0.3)?;
+/// let body = HalfSpace::new(steel, [Layer::new(Elastic::new(420e9, 0.2)?, 2e-6)?])?;
+/// let names: Vec<String> = body.parameters().iter().map(|one| one.path(&body)).collect();
+/// assert_eq!(names[..2], ["layers[0].material.young", "layers[0].material.poisson"]);
+/// assert_eq!(names[2..], ["layers[0].thickness", "substrate.young", "substrate.poisson"]);
+/// assert_eq!(body.value(BodyParameter::Thickness(0)), Some(2e-6));
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BodyParameter {
+    /// Young's modulus of this layer; the number of layers stands for the substrate.
+    Young(usize),
+    /// Poisson's ratio of this layer, at fixed Young's modulus; the number of layers stands for the substrate.
+    Poisson(usize),
+    /// Thickness of this layer.
+    Thickness(usize),
+}
+
+impl BodyParameter {
+    /// The name in case files below the body's: `layers[0].thickness`, `substrate.young`.
+    pub fn path(&self, body: &HalfSpace) -> String {
+        let (Self::Young(layer) | Self::Poisson(layer) | Self::Thickness(layer)) = *self;
+        let (place, inner) = match layer < body.layers().len() {
+            true => (format!("layers[{layer}]"), ".material"),
+            false => ("substrate".to_owned(), ""),
+        };
+        match self {
+            Self::Young(_) => format!("{place}{inner}.young"),
+            Self::Poisson(_) => format!("{place}{inner}.poisson"),
+            Self::Thickness(_) => format!("{place}.thickness"),
+        }
+    }
+}
+
+impl HalfSpace {
+    /// All numbers of the body: Young's modulus, Poisson's ratio and thickness of each layer, then Young's modulus and
+    /// Poisson's ratio of the substrate, unless that is rigid.
+    pub fn parameters(&self) -> Vec<BodyParameter> {
+        use BodyParameter::{Poisson, Thickness, Young};
+        let layers = self.layers.len();
+        let of_layers = (0..layers).flat_map(|k| [Young(k), Poisson(k), Thickness(k)]);
+        let of_substrate = match self.substrate {
+            Substrate::Elastic(_) => vec![Young(layers), Poisson(layers)],
+            Substrate::Rigid => vec![],
+        };
+        of_layers.chain(of_substrate).collect()
+    }
+
+    /// Value of a parameter; `None` for one that the body does not have.
+    pub fn value(&self, parameter: BodyParameter) -> Option<f64> {
+        match parameter {
+            BodyParameter::Young(place) => self.material(place).map(|material| material.young()),
+            BodyParameter::Poisson(place) => {
+                self.material(place).map(|material| material.poisson())
+            }
+            BodyParameter::Thickness(place) => self.layers.get(place).map(Layer::thickness),
+        }
+    }
+
+    /// This body with another value of a parameter.
+    ///
+    /// # Errors
+    /// A parameter that the body does not have, and a value that it cannot have.
+    pub fn with_value(&self, parameter: BodyParameter, value: f64) -> Result<Self> {
+        const ABSENT: Error = Error::Inconsistent(
+            "parameter must be one that the body has, as parameters() lists them",
+        );
+        let mut body = self.clone();
+        let (place, material) = match parameter {
+            BodyParameter::Thickness(place) => {
+                let layer = body.layers.get_mut(place).ok_or(ABSENT)?;
+                layer.thickness = Layer::new(layer.material, value)?.thickness;
+                return Ok(body);
+            }
+            BodyParameter::Young(place) => {
+                let material = self.material(place).ok_or(ABSENT)?;
+                (place, Elastic::new(value, material.poisson())?)
+            }
+            BodyParameter::Poisson(place) => {
+                let material = self.material(place).ok_or(ABSENT)?;
+                (place, Elastic::new(material.young(), value)?)
+            }
+        };
+        match body.layers.get_mut(place) {
+            Some(layer) => layer.material = material,
+            None => body.substrate = Substrate::Elastic(material),
+        }
+        Ok(body)
+    }
+
+    /// Material of a layer, or of the substrate, which has the number of layers.
+    fn material(&self, place: usize) -> Option<Elastic> {
+        match (self.layers.get(place), self.substrate) {
+            (Some(layer), _) => Some(layer.material),
+            (None, Substrate::Elastic(material)) if place == self.layers.len() => Some(material),
+            _ => None,
         }
     }
 }

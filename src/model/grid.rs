@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ndarray::Array1;
 
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, finite, positive, require};
 use crate::numerics::parallel::check_memory;
 
 /// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
@@ -36,38 +36,28 @@ impl Grid {
     /// and the sides are finite and above 0.
     pub fn new(shape: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for n in shape {
-            if n < 2 {
-                return Err(Error::Parameter {
-                    name: "shape",
-                    requirement: "at least 2 cells in each direction",
-                    value: n as f64,
-                });
-            }
+            let requirement = "at least 2 cells in each direction";
+            require("shape", n as f64, n >= 2, requirement)?;
         }
         // A padded mesh has up to (2·9/8)² ≈ 5 times as many points of 16 bytes each, together below
         // 128 bytes a cell. This number of bytes must not overflow.
-        if shape[0]
-            .checked_mul(shape[1])
-            .and_then(|n| n.checked_mul(128))
-            .is_none()
-        {
-            return Err(Error::Parameter {
-                name: "shape",
-                requirement: "a number of cells that this machine can count",
-                value: shape[0] as f64 * shape[1] as f64,
-            });
-        }
+        let cells = shape[0].checked_mul(shape[1]);
+        require(
+            "shape",
+            shape[0] as f64 * shape[1] as f64,
+            cells.and_then(|cells| cells.checked_mul(128)).is_some(),
+            "a number of cells that this machine can count",
+        )?;
         // At least one array of f64 must fit.
         check_memory(shape, 8 * shape[0] as u64 * shape[1] as u64)?;
         for length in size {
             positive("size", length)?;
-            if !(1e-100..=1e100).contains(&length) {
-                return Err(Error::Parameter {
-                    name: "size",
-                    requirement: "between 1e-100 and 1e100, so that products of lengths do not overflow",
-                    value: length,
-                });
-            }
+            require(
+                "size",
+                length,
+                (1e-100..=1e100).contains(&length),
+                "between 1e-100 and 1e100, so that products of lengths do not overflow",
+            )?;
         }
         Ok(Self {
             shape,
@@ -150,9 +140,6 @@ impl Grid {
     }
 
     /// An error unless a solution to start from, if there is one, is on this grid.
-    ///
-    /// # Errors
-    /// [`Error::OtherGrid`].
     pub(crate) fn check_initial(&self, found: Option<&Self>) -> Result<()> {
         match found {
             None => Ok(()),

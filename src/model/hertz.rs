@@ -5,14 +5,8 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, finite, positive, require};
 use crate::model::material::Elastic;
-
-mod ellipse;
-mod shear;
-
-pub use ellipse::Ellipse;
-pub use shear::Shear;
 
 /// Equivalent radius R \[m\] of two surfaces in contact, in one direction.
 ///
@@ -35,14 +29,10 @@ pub use shear::Shear;
 /// ```
 pub fn equivalent_radius(radius: Option<f64>, counter_radius: Option<f64>) -> Result<f64> {
     for (name, given) in [("radius", radius), ("counter_radius", counter_radius)] {
-        if let Some(value) = given
-            && finite(name, value)?.abs() <= 0.0
-        {
-            return Err(Error::Parameter {
-                name,
-                requirement: "other than 0 (None for a straight surface)",
-                value,
-            });
+        if let Some(value) = given {
+            let is_curved = finite(name, value)?.abs() > 0.0;
+            let requirement = "other than 0 (None for a straight surface)";
+            require(name, value, is_curved, requirement)?;
         }
     }
     let equivalent = match (radius, counter_radius) {
@@ -125,7 +115,7 @@ impl Point {
     /// # Errors
     /// Unless −1 < `poisson` ≤ 0.5.
     pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
-        shear::below_ellipse([self.radius; 2], self.peak_pressure, poisson)
+        below_ellipse([self.radius; 2], self.peak_pressure, poisson)
     }
 }
 
@@ -175,7 +165,7 @@ impl Line {
     /// # Errors
     /// Unless −1 < `poisson` ≤ 0.5.
     pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
-        shear::below_line(self.half_width, self.peak_pressure, poisson)
+        below_line(self.half_width, self.peak_pressure, poisson)
     }
 }
 
@@ -197,4 +187,314 @@ pub fn flat_punch(radius: f64, contact_modulus: f64, load: f64, moment: f64) -> 
     positive("load", load)?;
     let approach = load / (2.0 * contact_modulus * radius);
     Ok((approach, 0.75 * moment / (contact_modulus * radius.powi(3))))
+}
+
+/// Iterations for the ratio of the semi-axes, each of which divides its error by four at least; 27 give
+/// all digits.
+const RATIO_ITERATIONS: usize = 60;
+
+/// Contact of two bodies that are curved differently along x and y: a ball in a groove, a barrel on a
+/// ring, crossed cylinders. Johnson (1985), eqs (4.25)–(4.32).
+///
+/// ```text
+/// p = p0 √(1 − x²/a² − y²/b²)          p0 = 3W / 2πab
+/// 1/2R_x = p0 a b R_D(0, b², a²) / 3E*    1/2R_y = p0 a b R_D(0, a², b²) / 3E*
+/// δ = p0 a b R_F(0, a², b²) / E*
+/// ```
+///
+/// R_F and R_D are Carlson's elliptic integrals (doi:10.1007/BF02198293), which are symmetric: either
+/// semi-axis may be the longer one. R_F is computed by the arithmetic-geometric mean.
+///
+/// ```
+/// use nacre::hertz::{Ellipse, equivalent_radius};
+/// // A ball of 5 mm in the groove of an inner ring, 5.2 mm across and 20 mm along.
+/// let across = equivalent_radius(Some(5e-3), Some(-5.2e-3))?;
+/// let along = equivalent_radius(Some(5e-3), Some(20e-3))?;
+/// let contact = Ellipse::new([across, along], 115.4e9, 1e3)?;
+/// assert!(contact.semi_axes[0] > 9.0 * contact.semi_axes[1]);
+/// let load = 2.0 / 3.0 * std::f64::consts::PI * contact.semi_axes[0] * contact.semi_axes[1];
+/// assert!((load * contact.peak_pressure / 1e3 - 1.0).abs() < 1e-14);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Ellipse {
+    /// Semi-axes a along x and b along y \[m\].
+    pub semi_axes: [f64; 2],
+    /// Peak pressure p0 = 3W/2πab \[Pa\].
+    pub peak_pressure: f64,
+    /// Approach δ \[m\].
+    pub approach: f64,
+}
+
+impl Ellipse {
+    /// The contact for equivalent radii along x and y \[m\], a `contact_modulus` E* \[Pa\] and a `load`
+    /// \[N\].
+    ///
+    /// # Errors
+    /// Unless all are finite and above 0, and semi-axes and pressure are floating-point numbers.
+    pub fn new(radii: [f64; 2], contact_modulus: f64, load: f64) -> Result<Self> {
+        positive("radius_x", radii[0])?;
+        positive("radius_y", radii[1])?;
+        positive("contact_modulus", contact_modulus)?;
+        positive("load", load)?;
+        let [longer, shorter] = [radii[0].max(radii[1]), radii[0].min(radii[1])];
+        let k = axis_ratio(longer / shorter);
+        // 1/2R = p0 a b R_D(0, b², a²)/3E* of the longer radius, with p0 = 3W/2πab and b = k a.
+        let rd = carlson_rd([0.0, k * k, 1.0]);
+        let a = (load / contact_modulus * longer * rd / PI).cbrt();
+        let b = k * a;
+        let peak_pressure = 1.5 * load / (PI * a * b);
+        let approach = 0.75 * load / (contact_modulus * mean(1.0, k) * a);
+        let made = [a, b, peak_pressure, approach];
+        if !made.iter().all(|value| value.is_finite() && *value > 0.0) {
+            return Err(Error::Inconsistent(
+                "radii, contact_modulus and load must be such that semi-axes, pressure and approach are \
+                 numbers of the machine: they are too different in size",
+            ));
+        }
+        Ok(Self {
+            semi_axes: if radii[0] >= radii[1] { [a, b] } else { [b, a] },
+            peak_pressure,
+            approach,
+        })
+    }
+
+    /// Pressure at (x, y) from the middle \[Pa\]: p0 √(1 − x²/a² − y²/b²), 0 outside.
+    pub fn pressure(&self, x: f64, y: f64) -> f64 {
+        let [a, b] = self.semi_axes;
+        let inside = 1.0 - (x / a).powi(2) - (y / b).powi(2);
+        self.peak_pressure * inside.max(0.0).sqrt()
+    }
+
+    /// Largest shear stress below the middle, in a body of Poisson's ratio `poisson`.
+    ///
+    /// # Errors
+    /// Unless −1 < `poisson` ≤ 0.5.
+    pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
+        below_ellipse(self.semi_axes, self.peak_pressure, poisson)
+    }
+}
+
+/// Ratio k = b/a ≤ 1 of the semi-axes for a ratio λ ≥ 1 of the equivalent radii, by the iteration
+///
+/// ```text
+/// k² = [k² R_D(0, 1, k²)] / [λ R_D(0, k², 1)]
+/// ```
+///
+/// whose right side varies slowly: like the square root of k near 1, like a logarithm for small k.
+fn axis_ratio(radii: f64) -> f64 {
+    let mut k = radii.powf(-2.0 / 3.0);
+    for _ in 0..RATIO_ITERATIONS {
+        let square = k * k;
+        let next = square * carlson_rd([0.0, 1.0, square]) / carlson_rd([0.0, square, 1.0]);
+        let next = (next / radii).sqrt();
+        if (next - k).abs() <= f64::EPSILON * k {
+            return next;
+        }
+        k = next;
+    }
+    k
+}
+
+/// Arithmetic-geometric mean of two numbers above 0.
+fn mean(mut a: f64, mut g: f64) -> f64 {
+    // The number of digits doubles with each step; the first steps halve the exponent of a/g.
+    for _ in 0..64 {
+        if (a - g).abs() <= f64::EPSILON * a {
+            break;
+        }
+        (a, g) = (0.5 * (a + g), (a * g).sqrt());
+    }
+    a
+}
+
+/// Largest shear stress, and the depth at which it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Shear {
+    /// Half the difference of the largest and the smallest principal stress \[Pa\].
+    pub stress: f64,
+    /// Depth below the surface \[m\].
+    pub depth: f64,
+}
+
+/// Carlson's integral of the second kind, for x + y > 0 and z > 0:
+///
+/// ```text
+/// R_D(x, y, z) = 3/2 ∫_0^∞ dt / [(t + x)^{1/2} (t + y)^{1/2} (t + z)^{3/2}]
+/// ```
+///
+/// By duplication, until the arguments differ by so little that a series of the fifth order has all
+/// digits. Carlson, Numer. Algorithms 10 (1995) 13, doi:10.1007/BF02198293, algorithm 4.
+pub(super) fn carlson_rd(arguments: [f64; 3]) -> f64 {
+    let [mut x, mut y, mut z] = arguments;
+    let (mut sum, mut factor) = (0.0, 1.0);
+    // The largest relative difference is divided by four each time, after as many steps as the arguments'
+    // ratio has powers of four.
+    for _ in 0..600 {
+        let mean = 0.2 * (x + y + 3.0 * z);
+        let spread = (mean - x).abs().max((mean - y).abs()).max((mean - z).abs());
+        if spread <= 1.5e-3 * mean {
+            break;
+        }
+        let [rx, ry, rz] = [x.sqrt(), y.sqrt(), z.sqrt()];
+        let lambda = rx * ry + ry * rz + rz * rx;
+        sum += factor / (rz * (z + lambda));
+        factor *= 0.25;
+        (x, y, z) = (
+            0.25 * (x + lambda),
+            0.25 * (y + lambda),
+            0.25 * (z + lambda),
+        );
+    }
+    let mean = 0.2 * (x + y + 3.0 * z);
+    let [dx, dy] = [(mean - x) / mean, (mean - y) / mean];
+    let dz = -(dx + dy) / 3.0;
+    let e2 = dx * dy - 6.0 * dz * dz;
+    let e3 = (3.0 * dx * dy - 8.0 * dz * dz) * dz;
+    let e4 = 3.0 * (dx * dy - dz * dz) * dz * dz;
+    let e5 = dx * dy * dz * dz * dz;
+    let series = 1.0 - 3.0 / 14.0 * e2 + e3 / 6.0 + 9.0 / 88.0 * e2 * e2
+        - 3.0 / 22.0 * e4
+        - 9.0 / 52.0 * e2 * e3
+        + 3.0 / 26.0 * e5;
+    3.0 * sum + factor * series / (mean * mean.sqrt())
+}
+
+/// Largest shear stress on the axis of an ellipse of pressure, in a body of Poisson's ratio `poisson`.
+///
+/// With T_x = √(a² + z²), T_y = √(b² + z²), from the potentials of Boussinesq, integrated by parts:
+///
+/// ```text
+/// σ_z = −p0 a b / T_x T_y
+/// σ_x = p0 a b [(1−ν) z J_x − ν z J − (1−2ν) / T_x (T_x + T_y)]
+/// z J_x = 2/3 z R_D(z², T_y², T_x²)      z J = 2 / T_x T_y − z J_x − z J_y
+/// ```
+///
+/// Derived for nacre; for a = b they are Johnson (1985), eqs (3.45).
+pub(super) fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<Shear> {
+    let [a, b] = axes;
+    // In units of the shorter axis.
+    let scale = a.min(b);
+    let [a, b] = [a / scale, b / scale];
+    let stresses = |z: f64| {
+        let (sx, sy) = (a * a + z * z, b * b + z * z);
+        let (tx, ty) = (sx.sqrt(), sy.sqrt());
+        let whole = 2.0 / (tx * ty);
+        // z J_x, of which the limit at the surface is 0.
+        let along = |y: f64, z2: f64| match z > 0.0 {
+            true => 2.0 / 3.0 * z * carlson_rd([z * z, y, z2]),
+            false => 0.0,
+        };
+        let (jx, jy) = (along(sy, sx), along(sx, sy));
+        let j = whole - jx - jy;
+        let lateral = |own: f64, t: f64| {
+            a * b * ((1.0 - poisson) * own - poisson * j - (1.0 - 2.0 * poisson) / (t * (tx + ty)))
+        };
+        [lateral(jx, tx), lateral(jy, ty), -a * b / (tx * ty)]
+    };
+    largest(stresses, poisson, peak, scale)
+}
+
+/// Largest shear stress below the middle of a strip of pressure, in plane strain. Johnson (1985), eq.
+/// (4.46), and σ_axial = ν (σ_y + σ_z).
+pub(super) fn below_line(half_width: f64, peak: f64, poisson: f64) -> Result<Shear> {
+    let stresses = |z: f64| {
+        let t = (1.0 + z * z).sqrt();
+        // −[(1 + 2z²)/t − 2z], without cancellation.
+        let across = -1.0 / (t * (1.0 + 2.0 * z * (z + t)));
+        let down = -1.0 / t;
+        [poisson * (across + down), across, down]
+    };
+    largest(stresses, poisson, peak, half_width)
+}
+
+/// Points of the search for the depth, up to two half-widths, below which shear only falls.
+const SEARCH: usize = 64;
+
+/// Largest shear of principal stresses that depend on the depth in units of `scale`, per peak pressure.
+fn largest(
+    stresses: impl Fn(f64) -> [f64; 3],
+    poisson: f64,
+    peak: f64,
+    scale: f64,
+) -> Result<Shear> {
+    require(
+        "poisson",
+        poisson,
+        poisson > -1.0 && poisson <= 0.5,
+        "above -1 and at most 0.5",
+    )?;
+    let shear = |z: f64| {
+        let [x, y, z] = stresses(z);
+        0.5 * (x.max(y).max(z) - x.min(y).min(z))
+    };
+    let step = 2.0 / SEARCH as f64;
+    let points = (0..=SEARCH).map(|k| k as f64 * step);
+    let best = points.fold(0.0, |best, z| if shear(z) > shear(best) { z } else { best });
+    // Golden section between the neighbours of the best point.
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = ((best - step).max(0.0), best + step);
+    while high - low > 1e-9 {
+        let width = golden * (high - low);
+        if shear(high - width) > shear(low + width) {
+            high = low + width;
+        } else {
+            low = high - width;
+        }
+    }
+    let middle = 0.5 * (low + high);
+    // At the surface itself, the section ends beside it.
+    let z = if shear(best) >= shear(middle) {
+        best
+    } else {
+        middle
+    };
+    Ok(Shear {
+        stress: peak * shear(z),
+        depth: scale * z,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of sums, divisions and roots.
+    const ROUNDING: f64 = 1e-14;
+
+    /// K(e) = π / 2 agm(1, k) against the values of Abramowitz & Stegun, table 17.1, for the parameters
+    /// m = 1 − k² = 0, 0.5 and 0.9.
+    #[test]
+    fn mean_gives_the_complete_integral_of_the_first_kind() {
+        for (m, exact) in [
+            (0.0, 0.5 * PI),
+            (0.5, 1.854_074_677_301_372),
+            (0.9, 2.578_092_113_348_173),
+        ] {
+            let k = 0.5 * PI / mean(1.0, f64::sqrt(1.0 - m));
+            assert!((k / exact - 1.0).abs() < ROUNDING, "{m}: {k}");
+        }
+    }
+
+    /// R_D(0, 1 − m, 1) = 3 (K − E)/m, with E(0.5) = 1.3506438810476755 (the same table).
+    #[test]
+    fn carlsons_integral_is_that_of_legendre() {
+        let exact = 3.0 * (1.854_074_677_301_372 - 1.350_643_881_047_675_5) / 0.5;
+        assert!((carlson_rd([0.0, 0.5, 1.0]) / exact - 1.0).abs() < 10.0 * ROUNDING);
+        // R_D(x, x, x) = x^{−3/2}.
+        assert!((carlson_rd([4.0, 4.0, 4.0]) * 8.0 - 1.0).abs() < ROUNDING);
+    }
+
+    #[test]
+    fn ratio_of_the_axes_solves_its_equation_for_any_ratio_of_radii() {
+        for exponent in 0..=24 {
+            let radii = 10.0_f64.powf(0.5 * f64::from(exponent));
+            let k = axis_ratio(radii);
+            let square = k * k;
+            let found = carlson_rd([0.0, 1.0, square]) / carlson_rd([0.0, square, 1.0]);
+            assert!((found / radii - 1.0).abs() < 1e-12, "{radii:e}: {found:e}");
+        }
+    }
 }

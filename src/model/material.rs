@@ -1,6 +1,6 @@
 //! Isotropic linear elastic materials.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 
 /// An isotropic linear elastic material.
 ///
@@ -23,13 +23,12 @@ impl Elastic {
     /// Unless `young` > 0 and −1 < `poisson` ≤ 0.5.
     pub fn new(young: f64, poisson: f64) -> Result<Self> {
         positive("young", young)?;
-        if !(poisson > -1.0 && poisson <= 0.5) {
-            return Err(Error::Parameter {
-                name: "poisson",
-                requirement: "above -1 and at most 0.5",
-                value: poisson,
-            });
-        }
+        require(
+            "poisson",
+            poisson,
+            poisson > -1.0 && poisson <= 0.5,
+            "above -1 and at most 0.5",
+        )?;
         // Adding 0.0 turns −0.0 into 0.0: equal values then print alike.
         Ok(Self {
             young,

@@ -3,33 +3,26 @@
 //! A gap of +∞ means "cannot touch". The approach is measured from the plane h = 0.
 
 use std::fmt;
-use std::sync::Arc;
+use std::ops::Deref;
 
 use ndarray::Array2;
 
-use crate::error::{Result, finite};
+use crate::error::{Error, Result, finite};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::each_row;
 
-mod counterpart;
-mod extent;
+mod combined;
 mod height_map;
-mod lifted;
-mod limited;
 mod profile;
 mod quadric;
 mod roller;
-mod slope;
-mod superposition;
 
-pub use extent::Extent;
+pub(crate) use combined::{Lifted, Limited};
+pub use combined::{Shifted, Superposition};
 pub use height_map::HeightMap;
-pub(crate) use lifted::Lifted;
-pub(crate) use limited::Limited;
 pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
 pub use roller::Roller;
-pub use superposition::Superposition;
 
 /// Array of `value(i, j)` at the cells of a grid.
 fn sampled(grid: &Grid, value: impl Fn(usize, usize) -> f64 + Sync) -> Array2<f64> {
@@ -61,9 +54,15 @@ pub trait Surface: fmt::Debug + Send + Sync {
         Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))
     }
 
+    /// Shape that this one changes: what this one does not define itself, apart from gaps and parameters, is that of
+    /// the base. `None` by default.
+    fn base(&self) -> Option<&dyn Surface> {
+        None
+    }
+
     /// Extents along x and along y.
     fn extent(&self) -> [Extent; 2] {
-        [Extent::Rising; 2]
+        self.base().map_or([Extent::Rising; 2], Surface::extent)
     }
 
     /// Coordinates along x and along y \[m\] through which the search for a grid looks at the shape,
@@ -71,24 +70,24 @@ pub trait Surface: fmt::Debug + Send + Sync {
     /// the ends of lands. Between neighbouring coordinates the gap along the axis should have one
     /// lowest place at most. None by default; a shape whose contact has several parts should have them.
     fn marks(&self) -> [Vec<f64>; 2] {
-        [Vec::new(), Vec::new()]
+        self.base().map_or_else(Default::default, Surface::marks)
     }
 
     /// Smallest radii of curvature along x and along y \[m\]. nacre warns where the contact is not
     /// small compared with them. ∞ means that there is no such limit.
     fn radii(&self) -> [f64; 2] {
-        [f64::INFINITY; 2]
+        self.base().map_or([f64::INFINITY; 2], Surface::radii)
     }
 
     /// The grid of a measured surface; `None` for other shapes.
     fn grid(&self) -> Option<Grid> {
-        None
+        self.base()?.grid()
     }
 
     /// Unit vector along which the shape rolls: across the axis of a roller. Friction acts along it
     /// where no other direction is given. `None` for shapes that roll in any direction, or in none.
     fn rolling_direction(&self) -> Option<[f64; 2]> {
-        None
+        self.base()?.rolling_direction()
     }
 
     /// Numbers of the shape on which its gaps depend smoothly, by name, with their values. None by default. Lengths at
@@ -113,12 +112,12 @@ pub trait Surface: fmt::Debug + Send + Sync {
     /// ```
     fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
         let _ = grid;
-        Err(slope::absent(name))
+        Err(absent(name))
     }
 
     /// Whether gaps depend smoothly on where the shape lies. Default: yes.
     fn is_smooth(&self) -> bool {
-        true
+        self.base().is_none_or(Surface::is_smooth)
     }
 
     /// This shape, moved by (x, y) \[m\].
@@ -135,220 +134,183 @@ pub trait Surface: fmt::Debug + Send + Sync {
         ))
     }
 
-    /// The sum of this shape and `other`, for example of a sphere and a rough surface. Sums within sums
-    /// are evaluated one within the other: for a long list of shapes, make a [`Superposition`].
-    fn plus<S: Surface>(self, other: S) -> Sum<Self, S>
+    /// The sum of this shape and `other`, for example of a sphere and a rough surface. For a long list of shapes,
+    /// make a [`Superposition`].
+    fn plus<'a, S: Surface + 'a>(self, other: S) -> Superposition<Box<dyn Surface + 'a>>
     where
-        Self: Sized,
+        Self: Sized + 'a,
     {
-        Sum(self, other)
+        Superposition::of_two(Box::new(self), Box::new(other))
     }
 }
 
-macro_rules! forward_surface {
-    ($pointer:ty) => {
-        impl<S: Surface + ?Sized> Surface for $pointer {
-            fn gap(&self, x: f64, y: f64) -> f64 {
-                (**self).gap(x, y)
-            }
-            fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
-                (**self).gaps(grid)
-            }
-            fn extent(&self) -> [Extent; 2] {
-                (**self).extent()
-            }
-            fn marks(&self) -> [Vec<f64>; 2] {
-                (**self).marks()
-            }
-            fn radii(&self) -> [f64; 2] {
-                (**self).radii()
-            }
-            fn grid(&self) -> Option<Grid> {
-                (**self).grid()
-            }
-            fn rolling_direction(&self) -> Option<[f64; 2]> {
-                (**self).rolling_direction()
-            }
-            fn parameters(&self) -> Vec<(String, f64)> {
-                (**self).parameters()
-            }
-            fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
-                (**self).gap_derivative(name, grid)
-            }
-            fn is_smooth(&self) -> bool {
-                (**self).is_smooth()
-            }
-        }
-    };
-}
-forward_surface!(&S);
-forward_surface!(Box<S>);
-forward_surface!(Arc<S>);
-
-/// Names of the shifts.
-const SHIFTS: [&str; 2] = ["shift[0]", "shift[1]"];
-/// Step of differences with respect to a shift, in cells.
-const SHIFT_STEP: f64 = 0.02;
-
-/// A shape that is moved in the plane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shifted<S> {
-    shape: S,
-    by: [f64; 2],
-}
-
-impl<S> Shifted<S> {
-    /// A shape that is moved by `by` \[m\].
-    pub(crate) fn by(shape: S, by: [f64; 2]) -> Self {
-        Self { shape, by }
-    }
-
-    /// The shape, not moved.
-    pub fn shape(&self) -> &S {
-        &self.shape
-    }
-
-    /// Distances along x and y by which it is moved \[m\].
-    pub fn shift(&self) -> [f64; 2] {
-        self.by
-    }
-}
-
-impl<S: Surface> Surface for Shifted<S> {
+impl<P> Surface for P
+where
+    P: Deref<Target: Surface> + fmt::Debug + Send + Sync,
+{
     fn gap(&self, x: f64, y: f64) -> f64 {
-        self.shape.gap(x - self.by[0], y - self.by[1])
+        (**self).gap(x, y)
     }
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
-        let [x, y] = grid.center();
-        self.shape
-            .gaps(&grid.centered_at([x - self.by[0], y - self.by[1]])?)
+        (**self).gaps(grid)
     }
 
     fn extent(&self) -> [Extent; 2] {
-        let [x, y] = self.shape.extent();
-        [x.shifted(self.by[0]), y.shifted(self.by[1])]
+        (**self).extent()
     }
 
     fn marks(&self) -> [Vec<f64>; 2] {
-        let mut marks = self.shape.marks();
-        for (marks, by) in marks.iter_mut().zip(self.by) {
-            marks.iter_mut().for_each(|mark| *mark += by);
-        }
-        marks
+        (**self).marks()
     }
 
     fn radii(&self) -> [f64; 2] {
-        self.shape.radii()
+        (**self).radii()
     }
 
     fn grid(&self) -> Option<Grid> {
-        let grid = self.shape.grid()?;
-        let [x, y] = grid.center();
-        grid.centered_at([x + self.by[0], y + self.by[1]]).ok()
+        (**self).grid()
     }
 
     fn rolling_direction(&self) -> Option<[f64; 2]> {
-        self.shape.rolling_direction()
+        (**self).rolling_direction()
     }
 
-    /// The parameters of the shape, and its shifts where no end is cut off.
     fn parameters(&self) -> Vec<(String, f64)> {
-        let mut parameters = self.shape.parameters();
-        let extents = self.shape.extent();
-        for (axis, name) in SHIFTS.into_iter().enumerate() {
-            let moves = !matches!(extents[axis], Extent::CutOff(_) | Extent::Endless);
-            if moves && self.shape.is_smooth() {
-                parameters.push((name.to_owned(), self.by[axis]));
-            }
-        }
-        parameters
+        (**self).parameters()
     }
 
     fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
-        let [x, y] = grid.center();
-        let listed = self.parameters().iter().any(|(one, _)| one == name);
-        match SHIFTS.iter().position(|shift| *shift == name) {
-            Some(axis) if listed => {
-                // A small part of a cell, over which the slope of the shape hardly changes.
-                let step = SHIFT_STEP * grid.spacing()[axis];
-                slope::difference(self.by[axis], step, |by| {
-                    let mut moved = self.by;
-                    moved[axis] = by;
-                    Shifted::by(&self.shape, moved).gaps(grid)
-                })
-            }
-            _ => {
-                let moved = grid.centered_at([x - self.by[0], y - self.by[1]])?;
-                self.shape.gap_derivative(name, &moved)
-            }
-        }
+        (**self).gap_derivative(name, grid)
     }
 
     fn is_smooth(&self) -> bool {
-        self.shape.is_smooth()
+        (**self).is_smooth()
     }
 }
 
-/// A shape whose gap is the sum of the gaps of two shapes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sum<A, B>(A, B);
+/// The extent of a shape along one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Extent {
+    /// A shape whose gap increases without limit in both directions.
+    Rising,
+    /// A shape whose gap is constant along the axis, so that the contact has no end.
+    Endless,
+    /// A shape whose gap repeats along the axis with this period \[m\].
+    Repeating(f64),
+    /// A shape that ends smoothly at these coordinates \[m\], as a sphere; the gap is +∞ beyond.
+    Within([f64; 2]),
+    /// A shape that is cut off at these coordinates \[m\], as a roller by its faces or a height map
+    /// by its rim. The gap is +∞ beyond, and a contact that reaches an end has a sharp edge there.
+    CutOff([f64; 2]),
+}
 
-impl<A: Surface, B: Surface> Surface for Sum<A, B> {
-    fn gap(&self, x: f64, y: f64) -> f64 {
-        self.0.gap(x, y) + self.1.gap(x, y)
-    }
-
-    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
-        Ok(self.0.gaps(grid)? + self.1.gaps(grid)?)
-    }
-
-    fn extent(&self) -> [Extent; 2] {
-        let ([ax, ay], [bx, by]) = (self.0.extent(), self.1.extent());
-        [ax.and(bx), ay.and(by)]
-    }
-
-    fn marks(&self) -> [Vec<f64>; 2] {
-        let ([ax, ay], [bx, by]) = (self.0.marks(), self.1.marks());
-        [[ax, bx].concat(), [ay, by].concat()]
-    }
-
-    fn radii(&self) -> [f64; 2] {
-        let ([ax, ay], [bx, by]) = (self.0.radii(), self.1.radii());
-        [ax.min(bx), ay.min(by)]
-    }
-
-    fn grid(&self) -> Option<Grid> {
-        self.0.grid().or_else(|| self.1.grid())
-    }
-
-    /// Numbers of the first shape, as `parts[0].…`, and of the second, as `parts[1].…`.
-    fn parameters(&self) -> Vec<(String, f64)> {
-        let mut parameters = slope::of_part(0, self.0.parameters());
-        parameters.extend(slope::of_part(1, self.1.parameters()));
-        parameters
-    }
-
-    fn gap_derivative(&self, name: &str, grid: &Grid) -> Result<Array2<f64>> {
-        match slope::part(name) {
-            Some((0, name)) => self.0.gap_derivative(name, grid),
-            Some((1, name)) => self.1.gap_derivative(name, grid),
-            _ => Err(slope::absent(name)),
+impl Extent {
+    /// Range of coordinates in which the gap can be finite.
+    pub fn range(&self) -> [f64; 2] {
+        match *self {
+            Self::Rising | Self::Endless | Self::Repeating(_) => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Within(range) | Self::CutOff(range) => range,
         }
     }
 
-    fn is_smooth(&self) -> bool {
-        self.0.is_smooth() && self.1.is_smooth()
+    /// An error unless a grid with this period along `axis` repeats as the shape does.
+    pub(crate) fn check_period(&self, axis: usize, grid: Option<f64>) -> Result<()> {
+        let Self::Repeating(period) = *self else {
+            return Ok(());
+        };
+        let times = grid.map_or(0.0, |size| size / period);
+        // Rounding of sides that are products of spacings.
+        match times >= 0.5 && (times - times.round()).abs() <= 1e-9 * times {
+            true => Ok(()),
+            false => Err(Error::Period {
+                axis: ["x", "y"][axis],
+                period,
+                grid,
+            }),
+        }
     }
 
-    /// Direction of the part that has one, as that of a roller with roughness; `None` where two differ.
-    fn rolling_direction(&self) -> Option<[f64; 2]> {
-        match (self.0.rolling_direction(), self.1.rolling_direction()) {
-            (Some([x, y]), Some(other)) => {
-                let [dx, dy] = [x - other[0], y - other[1]];
-                (dx.hypot(dy) < f64::EPSILON).then_some(other)
+    pub(super) fn shifted(self, by: f64) -> Self {
+        match self {
+            Self::Within([a, b]) => Self::Within([a + by, b + by]),
+            Self::CutOff([a, b]) => Self::CutOff([a + by, b + by]),
+            other => other,
+        }
+    }
+
+    /// Extent of the sum of two shapes, and of a shape within a range.
+    pub(super) fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Endless, other) | (other, Self::Endless) => other,
+            // The period of the sum, where one is a multiple of the other.
+            (Self::Repeating(a), Self::Repeating(b)) => Self::Repeating(a.max(b)),
+            (a, b) => {
+                let ([a0, a1], [b0, b1]) = (a.range(), b.range());
+                let range = [a0.max(b0), a1.min(b1)];
+                match (a, b) {
+                    (Self::CutOff(_), _) | (_, Self::CutOff(_)) => Self::CutOff(range),
+                    (Self::Within(_), _) | (_, Self::Within(_)) => Self::Within(range),
+                    _ => Self::Rising,
+                }
             }
-            (one, other) => one.or(other),
         }
+    }
+}
+
+/// Step of differences, relative to the number: gaps are analytic in it, so that the sixth-order formula leaves some
+/// 1e-18 of the derivative, and rounding 1e-13.
+const STEP: f64 = 1e-3;
+
+/// Weights of the central difference of sixth order at one, two and three steps, per step.
+const WEIGHTS: [f64; 3] = [0.75, -0.15, 1.0 / 60.0];
+
+/// Derivative of `values(θ)` at θ = `value` by central differences of sixth order, for values that are analytic.
+pub(super) fn difference(
+    value: f64,
+    step: f64,
+    values: impl Fn(f64) -> Result<Array2<f64>>,
+) -> Result<Array2<f64>> {
+    let mut sum: Option<Array2<f64>> = None;
+    for (k, weight) in (1..=3).zip(WEIGHTS) {
+        let away = f64::from(k) * step;
+        let mut change = values(value + away)?;
+        // +∞ at both places leaves no number: such cells never touch.
+        change.zip_mut_with(&values(value - away)?, |a, b| {
+            let d = (*a - b) * (weight / step);
+            *a = if d.is_finite() { d } else { 0.0 };
+        });
+        sum = Some(match sum {
+            None => change,
+            Some(sum) => sum + change,
+        });
+    }
+    Ok(sum.unwrap_or_default())
+}
+
+/// [`difference`] with a step for numbers other than 0.
+pub(super) fn by_difference(
+    value: f64,
+    values: impl Fn(f64) -> Result<Array2<f64>>,
+) -> Result<Array2<f64>> {
+    difference(value, STEP * value.abs(), values)
+}
+
+/// ∂(R − √(R² − s))/∂R = 1 − R/√(R² − s), without cancellation; 0 where s ≥ R².
+pub(super) fn sagitta_slope(radius: f64, s: f64) -> f64 {
+    let under = radius * radius - s;
+    if under <= 0.0 {
+        return 0.0;
+    }
+    let root = under.sqrt();
+    -s / (root * (radius + root))
+}
+
+/// The error for a name that is not among a shape's parameters.
+pub(super) fn absent(name: &str) -> Error {
+    Error::Choice {
+        name: "parameter of the shape",
+        requirement: "one of those that its parameters() lists: numbers on which the gap depends smoothly",
+        value: name.to_owned(),
     }
 }

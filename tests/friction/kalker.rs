@@ -9,7 +9,7 @@ use crate::support::reference::{cases, list, number, read};
 /// Coefficients of two equal bodies without layers.
 fn bare(poisson: f64, semi_axes: [f64; 2], cells: usize) -> Result<CreepCoefficients> {
     let steel = material(poisson)?;
-    creep_coefficients(steel, Some(steel.into()), semi_axes, Some(cells))
+    creep_coefficients(steel, Some(steel.into()), semi_axes, Some(cells), None)
 }
 
 /// Kalker's table E3 with three digits, as CONTACT has it, for ν = ¼; the last digit of slender ellipses is in doubt.
@@ -54,7 +54,7 @@ fn of_coated_bodies() -> Result<()> {
     let without = bare(0.3, [1.0, 1.0], 64)?;
     for case in cases("friction/kalker_coated.json") {
         let body = coated(number(&case, "E1_over_E2"), number(&case, "h_over_a"))?;
-        let with = creep_coefficients(body.clone(), Some(body.into()), [1.0, 1.0], Some(64))?;
+        let with = creep_coefficients(body.clone(), Some(body.into()), [1.0, 1.0], Some(64), None)?;
         let ratios = [
             ("C11", with.c11 / without.c11),
             ("C22", with.c22 / without.c22),

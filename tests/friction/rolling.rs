@@ -152,8 +152,7 @@ fn transient_rolling_tends_to_the_steady_state() -> Result<()> {
     };
     let end = |contact: &Contact, shape: &dyn nacre::Surface, rolling: &Rolling, cells: usize| {
         let all = vec![rolling.clone(); cells];
-        let on = &mut |_: usize, _: &_| std::ops::ControlFlow::Continue(());
-        let mut solutions = contact.roll_transient(shape, &all, &options, None, on)?;
+        let mut solutions = contact.roll_transient(shape, &all, &options, None)?;
         Ok::<FrictionSolution, nacre::Error>(solutions.pop().expect("steps"))
     };
     let (contact, shape, line_load) = carter(30)?;
@@ -226,8 +225,7 @@ fn rolling_begins_where_sliding_ended() -> Result<()> {
         force: [Some(force), None],
         ..Rolling::new(Motion::load(load(0.3)), 0.3, RollingDirection::PlusX)
     };
-    let on = &mut |_: usize, _: &_| std::ops::ControlFlow::Continue(());
-    let rolled = contact.roll_transient(&ball()?, &[rolling], &options, solutions.last(), on)?;
+    let rolled = contact.roll_transient(&ball()?, &[rolling], &options, solutions.last())?;
     let (first, next) = (&solutions[0], &rolled[0]);
     assert!(next.report.converged());
     assert!((next.force()[0] / force - 1.0).abs() < 1e-7);

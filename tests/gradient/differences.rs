@@ -72,7 +72,14 @@ impl nacre::Surface for Shared {
 
 fn values(case: &Case, outputs: &[Output]) -> Result<(Vec<f64>, usize)> {
     let solution = case.solve(1e-11)?;
-    let plan = Linearisation::plan(&solution, None, &LinearOptions { tolerance: 1e-12 })?;
+    let plan = Linearisation::plan(
+        &solution,
+        None,
+        &LinearOptions {
+            tolerance: 1e-12,
+            watch: None,
+        },
+    )?;
     let found = plan.gradients(outputs, Some(&[]))?;
     let cells = plan.pressure().iter().filter(|p| **p > 0.0).count();
     Ok((found.iter().map(|one| one.value).collect(), cells))
@@ -86,7 +93,14 @@ fn derivatives_equal_differences_of_solves() -> Result<()> {
         let Ok(solution) = case.solve(1e-11) else {
             continue;
         };
-        let plan = Linearisation::plan(&solution, None, &LinearOptions { tolerance: 1e-12 })?;
+        let plan = Linearisation::plan(
+            &solution,
+            None,
+            &LinearOptions {
+                tolerance: 1e-12,
+                watch: None,
+            },
+        )?;
         let outputs = outputs(&case);
         let gradients = plan.gradients(&outputs, None)?;
         for (k, parameter) in plan.parameters().iter().enumerate() {
@@ -206,7 +220,14 @@ fn derivatives_on_periodic_grids_equal_differences() -> Result<()> {
             motion: Motion::load(0.02),
         };
         let solution = case.solve(1e-11)?;
-        let plan = Linearisation::plan(&solution, None, &LinearOptions { tolerance: 1e-12 })?;
+        let plan = Linearisation::plan(
+            &solution,
+            None,
+            &LinearOptions {
+                tolerance: 1e-12,
+                watch: None,
+            },
+        )?;
         let outputs = [
             Output::Approach,
             Output::PressureNorm(8.0),

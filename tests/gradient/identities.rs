@@ -9,7 +9,10 @@ use super::cases::{Case, Numbers};
 /// Linear solves to 1e-12, and sums of some hundred terms.
 const EXACT: f64 = 1e-9;
 
-const TIGHT: LinearOptions = LinearOptions { tolerance: 1e-12 };
+const TIGHT: LinearOptions = LinearOptions {
+    tolerance: 1e-12,
+    watch: None,
+};
 
 /// Σ w ṗ of the tangent equals the derivative of Σ w p of the adjoint, for every parameter.
 #[test]

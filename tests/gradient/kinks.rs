@@ -8,7 +8,10 @@ use nacre::{
 
 use super::cases::{Case, Numbers};
 
-const OPTIONS: LinearOptions = LinearOptions { tolerance: 1e-9 };
+const OPTIONS: LinearOptions = LinearOptions {
+    tolerance: 1e-9,
+    watch: None,
+};
 
 fn cells(solution: &Solution) -> Result<usize> {
     let plan = Linearisation::plan(solution, None, &OPTIONS)?;

@@ -47,7 +47,14 @@ fn options(side: Side, section: Section, friction: f64) -> StressOptions {
 
 fn field(body: &HalfSpace, load: f64, depth: f64, options: &StressOptions) -> Result<Stress> {
     let solution = solve(body, load)?;
-    let plan = Linearisation::plan(&solution, None, &LinearOptions { tolerance: 1e-12 })?;
+    let plan = Linearisation::plan(
+        &solution,
+        None,
+        &LinearOptions {
+            tolerance: 1e-12,
+            watch: None,
+        },
+    )?;
     stress(body, solution.grid(), &plan.pressure(), &[depth], options)
 }
 
@@ -59,7 +66,14 @@ fn richardson(step: f64, at: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 
 fn gradient(output: StressOutput) -> Result<nacre::gradient::Gradient> {
     let solution = solve(&body()?, LOAD)?;
-    let plan = Linearisation::plan(&solution, None, &LinearOptions { tolerance: 1e-12 })?;
+    let plan = Linearisation::plan(
+        &solution,
+        None,
+        &LinearOptions {
+            tolerance: 1e-12,
+            watch: None,
+        },
+    )?;
     let mut found = plan.gradients(&[Output::Stress(output)], None)?;
     Ok(found.remove(0))
 }

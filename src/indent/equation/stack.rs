@@ -32,7 +32,7 @@ pub enum Parameter {
 
 /// The response at the wavenumbers of one quadrature.
 #[derive(Debug)]
-pub(in crate::indent) struct Level {
+pub(in crate::indent) struct StackLevel {
     /// Longest oscillation over α that the waves resolve \[m\].
     pub(in crate::indent) length: f64,
     pub(in crate::indent) waves: Waves,
@@ -67,7 +67,7 @@ struct Shared {
     thickness: Option<f64>,
     /// Factor by which all resolutions are raised; 1 but for estimates of the error.
     finer: f64,
-    levels: [OnceLock<Arc<Level>>; LEVELS],
+    levels: [OnceLock<Arc<StackLevel>>; LEVELS],
 }
 
 impl Stack {
@@ -181,7 +181,7 @@ impl Stack {
 
     /// Response for functions that oscillate over lengths up to `length` in α; none where it is that of bare bodies. The
     /// longest level serves beyond.
-    pub(in crate::indent) fn level(&self, length: f64) -> Option<&Arc<Level>> {
+    pub(in crate::indent) fn level(&self, length: f64) -> Option<&Arc<StackLevel>> {
         let h = self.0.thickness?;
         let doublings = (length / (FIRST_LENGTH * h)).log2().ceil().max(0.0) as usize;
         let number = doublings.min(LEVELS - 1);
@@ -194,7 +194,7 @@ impl Stack {
             let waves = Waves::plan(h, length, self.0.finer, excess);
             let pairs = waves.alpha.iter().zip(&waves.weight);
             let excess = pairs.map(|(alpha, w)| w * excess(*alpha)).collect();
-            Arc::new(Level {
+            Arc::new(StackLevel {
                 length,
                 waves,
                 excess,
@@ -204,7 +204,11 @@ impl Stack {
     }
 
     /// Weights times the derivative of M with respect to the `number`th parameter, at the waves of `level`.
-    pub(in crate::indent) fn excess_rate<'a>(&self, level: &'a Level, number: usize) -> &'a [f64] {
+    pub(in crate::indent) fn excess_rate<'a>(
+        &self,
+        level: &'a StackLevel,
+        number: usize,
+    ) -> &'a [f64] {
         let rates = level.rates.get_or_init(|| {
             let shared = &self.0;
             let mut all = vec![vec![0.0; level.waves.len()]; shared.parameters.len()];

@@ -5,19 +5,20 @@ use std::sync::Arc;
 
 use super::super::tip::{MOST_KINKS, Tip};
 use super::basis::Basis;
-use super::stack::{Level, Stack};
-use crate::error::{Error, Result};
+use super::stack::{Stack, StackLevel};
+use super::waves::Waves;
+use crate::error::{Error, Result, require};
 use crate::numerics::dense::{backward, cholesky, forward};
 use crate::numerics::parallel::{Lanes, dot};
 
 /// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.
 #[derive(Debug)]
-pub(in crate::indent) struct System {
+pub(in crate::indent) struct ContactSystem {
     /// Contact radius a \[m\].
     pub(in crate::indent) radius: f64,
     pub(in crate::indent) basis: Basis,
     /// Response at the waves; none of bare bodies.
-    pub(in crate::indent) level: Option<Arc<Level>>,
+    pub(in crate::indent) level: Option<Arc<StackLevel>>,
     /// Transforms of the functions at the waves.
     rows: Vec<Vec<f64>>,
     factor: Vec<Vec<f64>>,
@@ -27,20 +28,12 @@ pub(in crate::indent) struct System {
     pub(in crate::indent) edge: [Vec<f64>; 2],
 }
 
-impl System {
+impl ContactSystem {
     /// The system of the contact radius `a` \[m\], with waves that resolve oscillations over `length` \[m\], at least 2a.
-    ///
-    /// # Errors
-    /// A radius beyond those that are computed, and a response that is not positive.
     pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
         tip.check_radius(a)?;
-        if a > stack.largest_radius() {
-            return Err(Error::Parameter {
-                name: "radius",
-                requirement: "at most 1024 times the thickness of the top layer",
-                value: a,
-            });
-        }
+        let requirement = "at most 1024 times the thickness of the top layer";
+        require("radius", a, a <= stack.largest_radius(), requirement)?;
         let breaks = tip.breaks(a, MOST_KINKS);
         let basis = Basis::new(a, stack.thickness(), breaks.as_deref(), stack.finer());
         let ones = basis.project(&vec![1.0; basis.places().len()]);
@@ -80,13 +73,17 @@ impl System {
 
     /// p̂(α) = ∫ φ cos αt dt at the waves, of a φ in the basis.
     pub(in crate::indent) fn transform(&self, values: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; self.waves()];
-        for (row, value) in self.rows.iter().zip(values) {
-            for (sum, b) in sums.iter_mut().zip(row) {
-                *sum += value * b;
-            }
-        }
-        sums
+        combined(&self.rows, values, self.waves())
+    }
+
+    /// [`ContactSystem::transform`] of each of several φ at other waves.
+    pub(in crate::indent) fn transforms_at<const N: usize>(
+        &self,
+        waves: &Waves,
+        values: [&[f64]; N],
+    ) -> [Vec<f64>; N] {
+        let rows = self.basis.transforms(waves);
+        values.map(|values| combined(&rows, values, waves.len()))
     }
 
     /// 2/π Σ g b̂ᵢ over the waves, for each function.
@@ -152,7 +149,94 @@ fn four_dots(left: [&[f64]; 2], right: [&[f64]; 2]) -> [[f64; 2]; 2] {
     sums.map(|pair| pair.map(Lanes::reduce_add))
 }
 
+/// Adds `factor` times `more` to `sum`.
+pub(in crate::indent) fn add(sum: &mut [f64], factor: f64, more: &[f64]) {
+    let pairs = sum.iter_mut().zip(more);
+    pairs.for_each(|(sum, more)| *sum += factor * more);
+}
+
+/// Σ of `rows`, each times its value.
+fn combined(rows: &[Vec<f64>], values: &[f64], length: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; length];
+    for (row, value) in rows.iter().zip(values) {
+        add(&mut sums, *value, row);
+    }
+    sums
+}
+
 /// Products of the elements.
 pub(in crate::indent) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
+}
+
+/// φ₁ of a flat punch at unit approach and φ_F of the profile, with what follows from them.
+#[derive(Debug)]
+pub(in crate::indent) struct Parts {
+    pub(in crate::indent) stack: Stack,
+    pub(in crate::indent) tip: Tip,
+    pub(in crate::indent) system: ContactSystem,
+    /// φ₁ and φ_F in the basis.
+    pub(in crate::indent) values: [Vec<f64>; 2],
+    /// Their transforms at the waves.
+    pub(in crate::indent) hats: [Vec<f64>; 2],
+    /// Their values at the edge.
+    pub(in crate::indent) edge: [f64; 2],
+    /// S = 2π ∫ φ₁ \[N/m\], and P_F = 2π ∫ φ_F \[N\].
+    pub(in crate::indent) loads: [f64; 2],
+}
+
+impl Parts {
+    /// The parts at the contact radius `a` \[m\]; `length` as in [`ContactSystem::new`].
+    pub(in crate::indent) fn new(stack: &Stack, tip: &Tip, a: f64, length: f64) -> Result<Self> {
+        let system = ContactSystem::new(stack, tip, a, length)?;
+        let f = stack.surface_modulus() / PI;
+        let places = system.basis.places();
+        let profile: Vec<f64> = places.iter().map(|s| f * tip.transform(*s)[0]).collect();
+        let punch = system.ones.iter().map(|one| f * one).collect();
+        let rights = [
+            (punch, f),
+            (system.basis.project(&profile), f * tip.transform(a)[0]),
+        ];
+        let mut loads = [0.0; 2];
+        let mut edge = [0.0; 2];
+        let mut hats = [Vec::new(), Vec::new()];
+        let mut k = 0;
+        let values = rights.map(|(right, at_edge)| {
+            let values = system.solve(right);
+            hats[k] = system.transform(&values);
+            let weighted = times(system.excess(), &hats[k]);
+            edge[k] = at_edge - system.couple_edge(&weighted);
+            loads[k] = 2.0 * PI * dot(&values, &system.ones);
+            k += 1;
+            values
+        });
+        let are_finite = edge.iter().chain(&loads).all(|value| value.is_finite());
+        let requirement = "one whose load and stiffness are numbers of the machine";
+        let holds = are_finite && edge[0] > 0.0 && loads[0] > 0.0;
+        require("radius", a, holds, requirement)?;
+        Ok(Self {
+            stack: stack.clone(),
+            tip: tip.clone(),
+            system,
+            values,
+            hats,
+            edge,
+            loads,
+        })
+    }
+
+    /// f = E*/π.
+    pub(in crate::indent) fn f(&self) -> f64 {
+        self.stack.surface_modulus() / PI
+    }
+
+    /// Approach \[m\] without adhesion: φ vanishes at the edge.
+    pub(in crate::indent) fn hertzian(&self) -> f64 {
+        self.edge[1] / self.edge[0]
+    }
+
+    /// S' = 2π² φ₁(a)²/E* \[N/m²\].
+    pub(in crate::indent) fn stiffness_slope(&self) -> f64 {
+        2.0 * (PI * self.edge[0]).powi(2) / self.stack.surface_modulus()
+    }
 }

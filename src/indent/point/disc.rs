@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Where Φ falls within the contact, and is below 0 outside of it, all is well, and no integral is needed. The second formula
-//! follows from that of the displacement with J₀(αr) = 2/π ∫₀^r cos αt/√(r²−t²) dt; both tests were derived for nacre.
+//! follows from that of the displacement with J₀(αr) = 2/π ∫₀^r cos αt/√(r²−t²) dt; both tests were derived here.
 
 use std::f64::consts::PI;
 
@@ -33,11 +33,6 @@ const GOLDEN: usize = 14;
 
 /// Knots of a sampled tip at most at which the surfaces are looked at.
 const MOST_KNOTS: usize = 64;
-
-const NO_DISC: Error = Error::Inconsistent(
-    "the contact of this tip is no disc but a ring here: the pressure of a disc would be negative or the surfaces would overlap; \
-     use nacre.solve",
-);
 
 /// What oscillates in Φ, interpolated on panels.
 struct Layers {
@@ -144,7 +139,7 @@ impl Point {
             && (far <= a || self.is_apart(&Layers::new(self.panels([a, far]), waves))?)
         {
             true => Ok(()),
-            false => Err(NO_DISC),
+            false => Err(Error::Ring),
         }
     }
 

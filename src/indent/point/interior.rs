@@ -2,10 +2,11 @@
 
 use spec_math::cephes64::{j0, j1};
 
-use super::{Point, distance};
+use super::{Point, check_distances};
 use crate::compliance::response::interior::{Column, Place};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::indent::equation::basis::{Panel, rule};
+use crate::indent::equation::system::add;
 use crate::indent::equation::waves::Waves;
 use crate::indent::tip::FEW_KINKS;
 
@@ -60,22 +61,21 @@ impl Point {
     /// A distance that is negative or not finite, a depth below 1e-2 of the contact radius or above 1e6 of it, a distance above
     /// 1e4 of both, and no such half-space.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
-        r.iter().try_for_each(|r| distance(*r))?;
-        if !(SHALLOWEST..=DEEPEST).contains(&(z / self.radius)) {
-            return Err(Error::Parameter {
-                name: "z",
-                requirement: "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
-                value: z,
-            });
-        }
+        check_distances(r)?;
+        require(
+            "z",
+            z,
+            (SHALLOWEST..=DEEPEST).contains(&(z / self.radius)),
+            "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
+        )?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
-        if far > FARTHEST * z.max(self.radius) {
-            return Err(Error::Parameter {
-                name: "r",
-                requirement: "at most 1e4 of the depth or of the contact radius",
-                value: far,
-            });
-        }
+        let is_near = far <= FARTHEST * z.max(self.radius);
+        require(
+            "r",
+            far,
+            is_near,
+            "at most 1e4 of the depth or of the contact radius",
+        )?;
         let bodies = self.parts.stack.bodies();
         let body = bodies.get(body).and_then(|body| body.half_space());
         let body = body.ok_or(Error::Inconsistent(
@@ -170,13 +170,10 @@ impl Point {
         for (place, (weight, [value, _])) in places.iter().zip(weights.iter().zip(density)) {
             waves.circular(*place, &mut cos, &mut sin);
             let weight = weight * value;
-            hat.iter_mut()
-                .zip(&cos)
-                .for_each(|(hat, cos)| *hat += weight * cos);
+            add(&mut hat, weight, &cos);
         }
         if let Some(zone) = &self.zone {
-            let pairs = hat.iter_mut().zip(zone.transform(waves));
-            pairs.for_each(|(sum, more)| *sum += more);
+            add(&mut hat, 1.0, &zone.transform(waves));
         }
         hat
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ndarray::{Array2, ArrayRef2};
 
 use super::{Extent, Surface, sampled};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::model::grid::Grid;
 
 /// A measured surface: heights at the centres of a grid's cells, positive towards the other body.
@@ -45,12 +45,9 @@ impl HeightMap {
             });
         }
         let shape = [heights.nrows(), heights.ncols()];
-        if let Some(&few) = shape.iter().find(|&&n| n < 2) {
-            return Err(Error::Parameter {
-                name: "number of heights along x and along y",
-                requirement: "at least 2",
-                value: few as f64,
-            });
+        for n in shape {
+            let name = "number of heights along x and along y";
+            require(name, n as f64, n >= 2, "at least 2")?;
         }
         for d in spacing {
             crate::error::positive("spacing", d)?;
@@ -111,14 +108,11 @@ impl HeightMap {
 /// whose centre lies on the rim of the map.
 const ROUNDING: f64 = 1e-9;
 
-/// Indices of the samples below and above `coordinate`, and the weight of the latter; `None` outside the map.
-fn locate(
-    coordinate: f64,
-    center: f64,
-    (n, spacing, periodic): (usize, f64, bool),
-) -> Option<([usize; 2], f64)> {
-    let position = (coordinate - center) / spacing + 0.5 * (n - 1) as f64;
-    if periodic {
+/// Indices along an axis of the samples below and above `coordinate`, and the weight of the latter; `None` outside the map.
+fn locate(grid: &Grid, axis: usize, coordinate: f64) -> Option<([usize; 2], f64)> {
+    let (n, spacing) = (grid.shape()[axis], grid.spacing()[axis]);
+    let position = (coordinate - grid.center()[axis]) / spacing + 0.5 * (n - 1) as f64;
+    if grid.is_periodic()[axis] {
         let below = position.floor();
         let index = below.rem_euclid(n as f64) as usize % n;
         return Some(([index, (index + 1) % n], position - below));
@@ -134,9 +128,7 @@ fn locate(
 
 impl Surface for HeightMap {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        let (shape, spacing, center) = (self.grid.shape(), self.grid.spacing(), self.grid.center());
-        let periodic = self.grid.is_periodic();
-        let along = |k: usize, at: f64| locate(at, center[k], (shape[k], spacing[k], periodic[k]));
+        let along = |axis: usize, at: f64| locate(&self.grid, axis, at);
         let (Some(([a, b], s)), Some(([c, d], t))) = (along(0, x), along(1, y)) else {
             return f64::INFINITY;
         };
@@ -156,13 +148,9 @@ impl Surface for HeightMap {
             }
         }
         for (cell, sample) in grid.spacing().into_iter().zip(self.grid.spacing()) {
-            if cell > 2.0 * sample * (1.0 + ROUNDING) {
-                return Err(Error::Parameter {
-                    name: "grid spacing",
-                    requirement: "at most twice the spacing of the height map",
-                    value: cell,
-                });
-            }
+            let is_fine = cell <= 2.0 * sample * (1.0 + ROUNDING);
+            let requirement = "at most twice the spacing of the height map";
+            require("grid spacing", cell, is_fine, requirement)?;
         }
         let (x, y) = (grid.x(), grid.y());
         Ok(sampled(grid, |i, j| self.gap(x[i], y[j])))

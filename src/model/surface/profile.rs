@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::counterpart::sagitta;
-use super::slope::sagitta_slope;
-use crate::error::{Error, Result, positive};
+use super::quadric::sagitta;
+use super::sagitta_slope;
+use crate::error::{Error, Result, positive, require};
 
 mod logarithmic;
 
@@ -167,13 +167,12 @@ impl CrownedProfile {
     /// # Errors
     /// Unless `crown_radius` is finite and above 0, and `flat_length` finite and at least 0.
     pub fn new(flat_length: f64, crown_radius: f64) -> Result<Self> {
-        if !(flat_length >= 0.0 && flat_length.is_finite()) {
-            return Err(Error::Parameter {
-                name: "flat_length",
-                requirement: "finite and at least 0",
-                value: flat_length,
-            });
-        }
+        require(
+            "flat_length",
+            flat_length,
+            flat_length >= 0.0 && flat_length.is_finite(),
+            "finite and at least 0",
+        )?;
         Ok(Self {
             flat_length: flat_length + 0.0,
             crown_radius: positive("crown_radius", crown_radius)?,
@@ -244,11 +243,7 @@ impl SampledProfile {
             }
         }
         if let Some(pair) = x.windows(2).find(|pair| pair[1] <= pair[0]) {
-            return Err(Error::Parameter {
-                name: "profile positions",
-                requirement: "increasing",
-                value: pair[1],
-            });
+            require("profile positions", pair[1], false, "increasing")?;
         }
         let samples = x.iter().zip(drop).map(|(x, drop)| [*x, *drop]);
         Ok(Self {

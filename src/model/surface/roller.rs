@@ -2,12 +2,10 @@
 
 use ndarray::{Array1, Array2};
 
-use super::counterpart::{Counterpart, sagitta};
 use super::profile::{CrownedProfile, Profile};
-use super::quadric::{ACROSS, convex};
-use super::slope::{absent, by_difference, sagitta_slope};
-use super::{Extent, Surface, sampled};
-use crate::error::{Error, Result, positive};
+use super::quadric::{ACROSS, Counterpart, convex, sagitta};
+use super::{Extent, Surface, absent, by_difference, sagitta_slope, sampled};
+use crate::error::{Result, positive, require};
 use crate::model::grid::Grid;
 
 /// A roller of radius R with its axis along x and an axial profile d(x).
@@ -90,14 +88,9 @@ impl Roller {
     /// Unless `length` is finite, above 0 and at least the flat length of a crowned profile.
     pub fn with_length(self, length: f64) -> Result<Self> {
         positive("length", length)?;
-        if let Profile::Crowned(crowned) = &self.profile
-            && length < crowned.flat_length()
-        {
-            return Err(Error::Parameter {
-                name: "length",
-                requirement: "at least flat_length",
-                value: length,
-            });
+        if let Profile::Crowned(crowned) = &self.profile {
+            let holds = length >= crowned.flat_length();
+            require("length", length, holds, "at least flat_length")?;
         }
         Ok(Self {
             length: Some(length),

@@ -7,6 +7,7 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 
 use super::linear::{Linear, Made};
 use super::output::{name, output};
+use crate::error::Result;
 use crate::gradient::{Gradient, Output};
 use crate::python::arguments::{read_only, real_matrix};
 
@@ -41,11 +42,11 @@ impl Linear {
         wrt: Option<Vec<String>>,
     ) -> PyResult<Vec<PyGradient>> {
         let asked = wrt.clone();
-        let found = self.run(py, move |plan, caller| {
+        let found = self.run(py, move |plan| {
             let wrt: Option<Vec<&str>> = wrt
                 .as_ref()
                 .map(|paths| paths.iter().map(String::as_str).collect());
-            plan.gradients_watched(&outputs, wrt.as_deref(), &mut || caller.go_on())
+            plan.gradients(&outputs, wrt.as_deref())
         })?;
         let made = |(gradient, object): (Gradient, Bound<'_, PyAny>)| {
             let arguments = (object, asked.clone()).into_pyobject(py)?;
@@ -147,18 +148,12 @@ impl PyGradient {
             .into_iter()
             .filter(|path| path != "friction")
             .collect();
-        let steps = self.linear.run(py, move |plan, caller| {
-            let mut steps = Vec::new();
-            for path in paths {
-                match plan.jvp_watched(&[(&path, 1.0)], None, &mut || caller.go_on())? {
-                    Some(found) => steps.push((path, found.valid_step)),
-                    None => return Ok(None),
-                }
-            }
-            Ok(Some(steps))
+        let steps = self.linear.run(py, move |plan| {
+            let step = |path: String| Ok((plan.valid_step(&path)?, path));
+            paths.into_iter().map(step).collect::<Result<Vec<_>>>()
         })?;
         let found = PyDict::new(py);
-        for (path, step) in steps {
+        for (step, path) in steps {
             found.set_item(path, step)?;
         }
         Ok(found)

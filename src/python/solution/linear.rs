@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -39,7 +38,7 @@ impl Made {
 pub(super) struct Linear {
     pub(super) solution: Arc<Solution>,
     pub(super) shape: Option<Shape>,
-    pub(super) options: LinearOptions,
+    tolerance: f64,
     /// The solution as an object of Python.
     object: Arc<Py<PyAny>>,
 }
@@ -58,7 +57,7 @@ impl Linear {
         Ok(Self {
             solution: Arc::clone(solution),
             shape: given.or_else(|| known.cloned()),
-            options: LinearOptions { tolerance },
+            tolerance,
             object: Arc::new(object.clone().unbind()),
         })
     }
@@ -67,23 +66,23 @@ impl Linear {
     pub(super) fn run<T: Send + 'static>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&Linearisation, &mut Caller<()>) -> Result<Option<T>> + Send + 'static,
+        work: impl FnOnce(&Linearisation) -> Result<T> + Send + 'static,
     ) -> PyResult<T> {
         let Self {
             solution,
             shape,
-            options,
+            tolerance,
             ..
         } = self.clone();
         let found = background::run(py, None, move |caller: &mut Caller<()>| {
             let shape = shape.as_ref().map(|shape| shape as &dyn Surface);
-            let watch = &mut || caller.go_on();
-            match Linearisation::plan_watched(&solution, shape, &options, watch)? {
-                Some(plan) => work(&plan, caller),
-                None => Ok(None),
-            }
+            let options = LinearOptions {
+                tolerance,
+                watch: Some(&|| caller.go_on()),
+            };
+            work(&Linearisation::plan(&solution, shape, &options)?)
         })?;
-        found?.ok_or_else(|| PyValueError::new_err("the linear solve was stopped"))
+        Ok(found?)
     }
 
     /// The call of `method` with `arguments` that makes a value.
@@ -99,7 +98,7 @@ impl Linear {
             .as_ref()
             .map(|shape| Py::new(py, PyShape(shape.clone())));
         keywords.set_item("shape", shape.transpose()?)?;
-        keywords.set_item("tolerance", self.options.tolerance)?;
+        keywords.set_item("tolerance", self.tolerance)?;
         Ok(Made {
             solution: self.object.clone_ref(py),
             method,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, positive, require};
 use crate::model::hertz::Line;
 
 /// A logarithmic profile, which has a straight middle where `flat_length` > 0.
@@ -43,20 +43,18 @@ impl LogarithmicProfile {
     pub fn new(amplitude: f64, length: f64, flat_length: f64, end_factor: f64) -> Result<Self> {
         positive("amplitude", amplitude)?;
         positive("length", length)?;
-        if !(0.0..length).contains(&flat_length) {
-            return Err(Error::Parameter {
-                name: "flat_length",
-                requirement: "at least 0 and below the length",
-                value: flat_length,
-            });
-        }
-        if !(end_factor > 0.0 && end_factor <= 1.0) {
-            return Err(Error::Parameter {
-                name: "end_factor",
-                requirement: "above 0 and at most 1",
-                value: end_factor,
-            });
-        }
+        require(
+            "flat_length",
+            flat_length,
+            (0.0..length).contains(&flat_length),
+            "at least 0 and below the length",
+        )?;
+        require(
+            "end_factor",
+            end_factor,
+            end_factor > 0.0 && end_factor <= 1.0,
+            "above 0 and at most 1",
+        )?;
         Ok(Self {
             amplitude,
             length,
@@ -123,13 +121,12 @@ impl LogarithmicProfile {
         let amplitude =
             positive("k1", crown.k1)? * Self::lundberg(length, load, contact_modulus)?.amplitude;
         positive("z_m", crown.z_m)?;
-        if !(crown.k2 > 0.0 && crown.k2 <= 1.0) {
-            return Err(Error::Parameter {
-                name: "k2",
-                requirement: "above 0 and at most 1",
-                value: crown.k2,
-            });
-        }
+        require(
+            "k2",
+            crown.k2,
+            crown.k2 > 0.0 && crown.k2 <= 1.0,
+            "above 0 and at most 1",
+        )?;
         let end_factor = -(-crown.z_m / amplitude).exp_m1();
         Self::new(amplitude, length, length * (1.0 - crown.k2), end_factor)
     }

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::compliance::response::Body;
-use crate::friction::{CreepCoefficients, creep_coefficients_watched};
+use crate::friction::{self, CreepCoefficients};
 use crate::model::body::HalfSpace;
 use crate::python::arguments::{Pair, count};
 use crate::python::background::{self, Caller};
@@ -185,8 +185,7 @@ pub(in crate::python) fn creep_coefficients(
     let Pair(axes) = semi_axes;
     let found = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());
-        creep_coefficients_watched(body, counterbody, axes, Some(cells), &mut watch)
+        friction::creep_coefficients(body, counterbody, axes, Some(cells), Some(&mut watch))
     })??;
-    let stopped = crate::Error::Inconsistent("the coefficients were stopped");
-    Ok(PyCreepCoefficients(found.ok_or(stopped)?))
+    Ok(PyCreepCoefficients(found))
 }

@@ -7,12 +7,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::keywords::{Found, found, friction};
-use super::sliding::{Telling, planned, series};
+use super::sliding::{planned, series};
 use super::solution::PyFrictionSolution;
 use super::{found_docs, found_signature, roll_docs, roll_signature, rolled_docs};
 use crate::compliance::response::Body;
 use crate::contact::Contact;
-use crate::friction::{FrictionReport, FrictionSolution, Rolling, RollingDirection};
+use crate::friction::{FrictionProgress, Last, Move, Rolling, RollingDirection};
 use crate::model::body::HalfSpace;
 use crate::model::surface::Surface;
 use crate::python::arguments::keywords::{
@@ -95,12 +95,12 @@ impl Rolled {
         let steps = (0..cells.unwrap_or(1)).map(|_| {
             let (contact, shape) = (Arc::clone(contact), Arc::clone(&shape));
             let rolling = Arc::clone(&rolling);
-            move |last: Option<(&FrictionSolution, bool)>, tell: &mut Telling| {
-                if transient {
-                    return contact.roll_step(&*shape, &rolling, &options, last, tell);
-                }
-                let mut tell = |_, report: &FrictionReport| tell(report);
-                contact.roll_watched(&*shape, &rolling, &options, &mut tell)
+            move |last: Option<Last>, progress: &mut FrictionProgress| {
+                let next = match transient {
+                    true => Move::RollOneCell(&rolling),
+                    false => Move::RollSteadily(&rolling),
+                };
+                contact.friction_step(&*shape, next, &options, last, progress)
             }
         });
         series(py, steps, last, &found, transient)

@@ -1,6 +1,5 @@
 //! `nacre.slide`, and the arguments that it shares with `Contact.slide`.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -13,7 +12,7 @@ use super::solution::PyFrictionSolution;
 use super::{found_docs, found_signature, slid_docs, slide_docs, slide_signature};
 use crate::compliance::response::Body;
 use crate::contact::{Contact, Motion, Options, choose_grid};
-use crate::friction::{FrictionReport, FrictionSolution, Step};
+use crate::friction::{FrictionProgress, FrictionReport, FrictionSolution, Last, Move, Step};
 use crate::model::body::HalfSpace;
 use crate::python::arguments::Repr;
 use crate::python::arguments::keywords::{
@@ -146,16 +145,13 @@ impl Sliding {
         let last = initial.map(|solution| Arc::clone(solution.get().inner()));
         let steps = steps.into_iter().map(|step| {
             let (contact, shape) = (Arc::clone(contact), Arc::clone(&shape));
-            move |last: Option<(&FrictionSolution, bool)>, tell: &mut Telling| {
-                contact.slide_step(&*shape, &step, &options, last, tell)
+            move |last: Option<Last>, progress: &mut FrictionProgress| {
+                contact.friction_step(&*shape, Move::Slide(&step), &options, last, progress)
             }
         });
         series(py, steps, last, &found, history)
     }
 }
-
-/// Receiver of reports.
-pub(super) type Telling<'a> = dyn FnMut(&FrictionReport) -> ControlFlow<()> + Send + 'a;
 
 /// Solves one step after another, each in the background; Ctrl-C and the callback can stop it. Steps get the solution
 /// before, and whether it is one of these steps. An exception carries the finished solutions.
@@ -167,7 +163,7 @@ pub(super) fn series<'py, S>(
     history: bool,
 ) -> PyResult<Bound<'py, PyAny>>
 where
-    S: FnOnce(Option<(&FrictionSolution, bool)>, &mut Telling) -> crate::Result<FrictionSolution>
+    S: FnOnce(Option<Last>, &mut FrictionProgress) -> crate::Result<FrictionSolution>
         + Send
         + 'static,
 {
@@ -183,7 +179,10 @@ where
                 let mut tell = |report: &FrictionReport| {
                     caller.ask(|| (number, PyFrictionReport(report.clone())))
                 };
-                let before = before.as_deref().map(|before| (before, number > 0));
+                let before = before.as_deref().map(|solution| Last {
+                    solution,
+                    is_own: number > 0,
+                });
                 step(before, &mut tell)
             })?;
             let solved = solved.map_err(|error| {
