@@ -1,7 +1,6 @@
 """Finished cases of a study, one line of JSON each, on the disk before the next one begins.
 
-A line names the format and the version that wrote it; a line without them is of format 0. Its last
-entry is a checksum of the others, which lines of format 0 lack.
+A line names the format and the version that wrote it. Its last entry is a checksum of the others.
 """
 
 from __future__ import annotations
@@ -18,12 +17,12 @@ from typing import IO, Any, Self
 import numpy as np
 
 from nacre._core import __version__
-from nacre.values import FORMAT
+from nacre.values import FORMAT, check_format
 
 Record = dict[str, Any]
 
-BEGINNINGS = b'{"format": ', b'{"key": '
-"""How lines of format 1 and of format 0 begin."""
+BEGINNING = b'{"format": '
+"""How each line begins."""
 
 
 class Journal:
@@ -87,17 +86,12 @@ class Journal:
         with open(file.fileno(), "rb", closefd=False) as lines:
             for number, line in enumerate(lines, start=1):
                 try:
-                    record, written, version = _record(line)
+                    record = _record(line)
                 except (ArithmeticError, ValueError, RecursionError) as error:
                     if _is_cut(line, error):
                         break
                     message = f"{str(self.path)!r} is no journal of a study: line {number}"
                     raise ValueError(f"{message}: {error}") from error
-                if written > FORMAT:
-                    raise ValueError(
-                        f"{str(self.path)!r} has format {written}, written by nacre {version}; "
-                        f"nacre {__version__} reads formats up to {FORMAT}: install a newer version"
-                    )
                 if not line.endswith(b"\n"):
                     break  # its end may be missing
                 self.records[record["key"]] = record
@@ -111,7 +105,7 @@ def _is_cut(line: bytes, error: Exception) -> bool:
     return (
         isinstance(error, json.JSONDecodeError | UnicodeDecodeError)
         and not line.endswith(b"\n")
-        and any(line[: len(begin)] == begin[: len(line)] for begin in BEGINNINGS)
+        and line[: len(BEGINNING)] == BEGINNING[: len(line)]
     )
 
 
@@ -124,21 +118,15 @@ def _checksum(line: str) -> str:
     return hashlib.sha256(line.encode()).hexdigest()[:16]
 
 
-def _record(line: bytes) -> tuple[Record, int, Any]:
-    """Return the record of a line, its format and its version; a line of none is a `ValueError`."""
+def _record(line: bytes) -> Record:
+    """Return the record of a line; a line of none, or of an unknown format, is a `ValueError`."""
     record = json.loads(line)
     if not isinstance(record, dict):
         raise ValueError("it must hold an object of JSON")
-    written, version = record.get("format", 0), record.get("nacre")
-    if type(written) is not int:
-        raise ValueError(f"format must be an integer, got {written!r}")
-    if written > FORMAT:
-        return record, written, version
-    checksum = record.pop("checksum", None)
-    if (written or checksum is not None) and checksum != _checksum(_text(record)):
+    check_format(record.get("format"), record.get("nacre"), "it")
+    if record.pop("checksum", None) != _checksum(_text(record)):
         raise ValueError("it was changed after nacre wrote it")
-    record.pop("format", None)
-    record.pop("nacre", None)
+    del record["format"], record["nacre"]
     texts, values, kinds = (
         record.get(name, empty) for name, empty in (("warnings", []), ("values", {}), ("kinds", []))
     )
@@ -153,7 +141,7 @@ def _record(line: bytes) -> tuple[Record, int, Any]:
         and ("values" in record or "error" in record)
     ):
         raise ValueError("it must hold a key, and values or an error")
-    return record, written, version
+    return record
 
 
 def _is_numbers(value: Any) -> bool:
