@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from nacre import hertz as hertz
     from nacre import indent as indent
     from nacre import jax as jax
-    from nacre import paper as paper
     from nacre import plot as plot
     from nacre import rough as rough
     from nacre import torch as torch
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["display_units", "load", "sweep"]
 __all__ += _core.__all__
 
-LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "paper", "plot", "rough", "torch")
+LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 import nacre
-from nacre.paper.cases import CROWN_RADIUS, HALF_FLAT, ROLLER_LOAD, ROLLER_RADIUS, SUBSTRATE, Array
-from nacre.paper.figures import Drawing, Row, finish, rows_of
 from nacre.plot.style import WIDTH, styled
+from paper.cases import CROWN_RADIUS, HALF_FLAT, ROLLER_LOAD, ROLLER_RADIUS, SUBSTRATE, Array
+from paper.figures import Drawing, Row, finish, rows_of
 
 LENGTH = 2 * HALF_FLAT
 MODULUS = SUBSTRATE.plane_strain_modulus / 2
