@@ -84,9 +84,9 @@ def link_pages(app: Any, name: str, source: list[str]) -> None:
 def insert_reference(app: Any, name: str, source: list[str]) -> None:
     """Insert the reference of case files, which is made from their schema."""
     if name == "cases":
-        from nacre._reference import markdown
+        from nacre._reference import text
 
-        source[0] = source[0].replace("CASE-REFERENCE", markdown())
+        source[0] = source[0].replace("CASE-REFERENCE", text())
 
 
 def setup(app: Any) -> None:

@@ -21,8 +21,6 @@ from nacre._case_tables import (
     Numbers,
     Pair,
     Table,
-    Text,
-    Words,
     described,
     table_of,
 )
@@ -58,7 +56,6 @@ PROFILE_TABLES = {
 AnyProfile: Any = Annotated[
     Union[tuple(PROFILE_TABLES.values())],  # noqa: UP007
     Field(discriminator="kind"),
-    Words("a table with the key kind"),
 ]
 
 
@@ -95,18 +92,14 @@ class HeightMap(Shape):
     """A measured surface in a file."""
 
     kind: Literal["height_map"] = Field(description="Kind, which decides on the other keys.")
-    path: Text = Field(description="File, relative to the folder of the case. " + READ["path"])
+    path: str = Field(description="File, relative to the folder of the case. " + READ["path"])
     spacing: Number | Pair | None = Field(None, description=READ["spacing"])
-    unit: Text | None = Field(None, description=READ["unit"])
+    unit: str | None = Field(None, description=READ["unit"])
     detrend: Literal["none", "mean", "plane", "quadratic"] = Field(
         "plane", description=READ["detrend"]
     )
-    transpose: Annotated[bool, Words("true or false")] = Field(
-        False, description=READ.get("transpose")
-    )
-    channel: Text | Annotated[int, Words("an integer")] | None = Field(
-        None, description=READ["channel"]
-    )
+    transpose: bool = Field(False, description=READ.get("transpose"))
+    channel: str | int | None = Field(None, description=READ["channel"])
     periodic: Flags | None = Field(None, description=READ["periodic"])
 
     def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
@@ -148,9 +141,9 @@ class Sum(Shape):
     """A sum of shapes: their gaps are added."""
 
     kind: Literal["sum"] = Field(description="Kind, which decides on the other keys.")
-    parts: Annotated[
-        list[AnyShape], Field(min_length=1), Words("a list of tables of shapes, at least one")
-    ] = Field(description="Shapes that are added.")
+    parts: Annotated[list[AnyShape], Field(min_length=1)] = Field(
+        description="Shapes that are added, one at least."
+    )
 
     def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
         """Return the shape without its shift."""
@@ -178,7 +171,6 @@ else:
     AnyShape = Annotated[
         Union[tuple(TABLES.values())],  # noqa: UP007
         Field(discriminator="kind"),
-        Words("a table with the key kind"),
     ]
 
 Sum.model_rebuild()

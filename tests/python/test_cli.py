@@ -72,7 +72,7 @@ def test_bad_input_leaves_no_traceback_in_a_process() -> None:
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
-@pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("rich", "cli")])
+@pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("pydantic", "cli")])
 def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
     code = (
         f"import sys; sys.modules[{missing!r}] = None; import nacre.cli; nacre.cli.main(['info'])"
