@@ -63,7 +63,7 @@ class FiniteResult:
 
 
 def solve(
-    *, quick: bool = False, progress: Callable[[nacre.Report], object] | None = None
+    *, quick: bool = False, progress: Callable[[nacre.types.Report], object] | None = None
 ) -> list[FiniteResult]:
     """Solve the paper's roller with three profiles, centred and off centre, with and without ends.
 

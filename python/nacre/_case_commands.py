@@ -150,7 +150,7 @@ def schema(
     print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
 
 
-def _tangential(solution: nacre.FrictionSolution) -> dict[str, Any]:
+def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
     """Return the main numbers of friction and the named state of its report."""
     numbers = {name: getattr(solution, name) for name in FRICTION}
     return {name: value for name, value in numbers.items() if value is not None} | {
@@ -160,7 +160,7 @@ def _tangential(solution: nacre.FrictionSolution) -> dict[str, Any]:
     }
 
 
-def _history(steps: list[nacre.FrictionSolution]) -> str:
+def _history(steps: list[nacre.types.FrictionSolution]) -> str:
     """Return a table of the steps of a history."""
     line, rolls = steps[0].grid.is_line, steps[0].shift is None
     force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
@@ -181,9 +181,9 @@ def _history(steps: list[nacre.FrictionSolution]) -> str:
     )
 
 
-def _numbers(solution: nacre.Solution | nacre.FrictionSolution) -> dict[str, Any]:
+def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:
     """Return the main numbers and the named state of the report, with its warnings in words."""
-    if isinstance(solution, nacre.FrictionSolution):
+    if isinstance(solution, nacre.types.FrictionSolution):
         return _numbers(solution.normal) | _tangential(solution)
     state = solution.report.to_dict()
     state["units"] = system().name

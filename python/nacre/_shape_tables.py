@@ -64,12 +64,12 @@ class Shape(Table):
 
     shift: Pair | None = Field(None, description="Distances by which the shape is moved [m].")
 
-    def make(self, folder: Path, metres: float) -> nacre.Shape:
+    def make(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape; files are in `folder`, and the unit of length has so many metres."""
         shape = self.unmoved(folder, metres)
         return shape if self.shift is None else shape.shifted(*self.shift)
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
         if "profile" in given:
@@ -81,7 +81,9 @@ class Shape(Table):
 SHAPES: dict[str, Any] = {
     re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower(): made
     for made in vars(nacre._core).values()
-    if isinstance(made, type) and issubclass(made, nacre.Shape) and made is not nacre.Shape
+    if isinstance(made, type)
+    and issubclass(made, nacre.types.Shape)
+    and made is not nacre.types.Shape
 }
 """Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
 
@@ -102,7 +104,7 @@ class HeightMap(Shape):
     channel: str | int | None = Field(None, description=READ["channel"])
     periodic: Flags | None = Field(None, description=READ["periodic"])
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift, in the unit of length of the case."""
         given = self.model_dump(exclude={"kind", "shift", "path"}, exclude_none=True)
         if self.spacing is not None:
@@ -131,7 +133,7 @@ class RandomSurface(Shape):
     rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
     seed: Count = Field(description=RANDOM["seed"])
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
         return rough.random_surface(**given)
@@ -145,7 +147,7 @@ class Sum(Shape):
         description="Shapes that are added, one at least."
     )
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         first, *others = (part.make(folder, metres) for part in self.parts)
         for other in others:

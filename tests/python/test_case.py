@@ -499,7 +499,7 @@ def base(**tables: Any) -> dict[str, Any]:
     ids=lambda value: value["kind"] if isinstance(value, dict) else None,
 )
 def test_every_shape_can_be_described(
-    table: dict[str, Any], shape: nacre.Shape, tmp_path: Path
+    table: dict[str, Any], shape: nacre.types.Shape, tmp_path: Path
 ) -> None:
     np.save(tmp_path / "a.npy", np.arange(4.0).reshape(2, 2))
     assert Case(base(shape=table), folder=tmp_path).arguments()["shape"] == shape

@@ -96,7 +96,7 @@ def test_a_gap_alone_is_a_whole_shape() -> None:
     ],
 )
 def test_lines_and_periodic_grids_have_gaps(
-    grid: nacre.Grid, shape: nacre.Shape | None, load: float
+    grid: nacre.Grid, shape: nacre.types.Shape | None, load: float
 ) -> None:
     made = Differentiable(
         {"shape": shape, "body": STEEL, "grid": grid, "load": load, "tolerance": 1e-13},

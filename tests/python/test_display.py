@@ -142,7 +142,7 @@ def test_a_peak_without_limit_has_no_estimate(tmp_path: Path) -> None:
     assert solution.report.warning_kinds == ["sharp edge"]
     assert table(solution)["peak pressure"].endswith("(error not known: see the warning)")
     assert "±" in table(solution)["approach"]
-    assert nacre.Report.from_dict(solution.report.to_dict()) == solution.report
+    assert nacre.types.Report.from_dict(solution.report.to_dict()) == solution.report
     saved = nacre.load(solution.save(tmp_path / "punch.nc"))
     assert saved.report == solution.report
     assert '"peak_pressure": null' in solution.to_xarray().attrs["discretisation"]

@@ -164,7 +164,7 @@ TYPE_ERRORS = {
     "nacre.plot.creep_curve(None, axes=3)": r"axes must be axes of Matplotlib, got 3",
     "nacre.plot.friction(3)": r"solution must be a FrictionSolution, got 3",
     "curve(creepages=[1e-3], colour=3)": r"Contact\.roll must be among .*'colour'",
-    "nacre.FrictionSolution()": r"FrictionSolution",
+    "nacre.types.FrictionSolution()": r"FrictionSolution",
 }
 
 OTHER = nacre.Contact(STEEL, nacre.Grid((16, 20), (2e-4, 1.8e-4)), STEEL)

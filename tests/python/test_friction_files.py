@@ -31,7 +31,7 @@ HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
 FIELDS = ("traction", "displacement", "slip", "stick", "bound", "dissipation", "pressure")
 
 
-def solutions() -> dict[str, nacre.FrictionSolution]:
+def solutions() -> dict[str, nacre.types.FrictionSolution]:
     coated = nacre.Contact(COATED, GRID, STEEL)
     cells = np.linspace(0.1, 0.5, 40 * 36).reshape(40, 36)
     return {
@@ -55,7 +55,7 @@ ROLLED = ("rolled", "line rolled")
 every = pytest.mark.parametrize("kind", SOLVED)
 
 
-def same(found: Any, expected: nacre.FrictionSolution) -> None:
+def same(found: Any, expected: nacre.types.FrictionSolution) -> None:
     assert found == expected  # every field and the whole report
     for name in FIELDS:
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes()
@@ -63,7 +63,7 @@ def same(found: Any, expected: nacre.FrictionSolution) -> None:
         assert getattr(found, name) == getattr(expected, name)
 
 
-def shift_of(solution: nacre.FrictionSolution) -> tuple[float, float]:
+def shift_of(solution: nacre.types.FrictionSolution) -> tuple[float, float]:
     assert solution.shift is not None
     return solution.shift
 
@@ -77,12 +77,12 @@ def test_copies_are_the_same(kind: str) -> None:
     for found in (
         pickle.loads(pickle.dumps(solution)),
         copy.deepcopy(solution),
-        nacre.FrictionSolution.from_dict(solution.to_dict()),
+        nacre.types.FrictionSolution.from_dict(solution.to_dict()),
         values.decode(json.loads(json.dumps(values.encode(solution)))),
     ):
         same(found, solution)
     assert pickle.loads(pickle.dumps(solution.report)) == solution.report
-    assert nacre.FrictionReport.from_dict(solution.report.to_dict()) == solution.report
+    assert nacre.types.FrictionReport.from_dict(solution.report.to_dict()) == solution.report
 
 
 def test_a_history_goes_on_from_a_copy_to_the_bit() -> None:
@@ -101,7 +101,7 @@ def test_a_state_says_its_version_and_refuses_what_is_wrong(kind: str) -> None:
         nacre.__version__,
         "FrictionSolution",
     )
-    restore = nacre.FrictionSolution.from_dict
+    restore = nacre.types.FrictionSolution.from_dict
     with pytest.raises(ValueError, match=r"has format 2, written by nacre 7\.3\.1"):
         restore(state | {"format": values.FORMAT + 1, "nacre": "7.3.1"})
     for key in state:

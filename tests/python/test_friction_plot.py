@@ -21,7 +21,7 @@ GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4), (1e-6, -2e-6))
 CONTACT = nacre.Contact(STEEL, GRID, STEEL)
 LINE = nacre.Contact(STEEL, nacre.Grid.line(64, 2e-4), STEEL)
 HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
-SOLVED: dict[str, nacre.FrictionSolution] = {
+SOLVED: dict[str, nacre.types.FrictionSolution] = {
     "slid": CONTACT.slide(BALL, **HELD, force=(2.0, 1.0), torque=1e-5),
     "rolled": CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
     "line": LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),

@@ -53,12 +53,12 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[type, ...], Callable[..., A
         lambda **k: SOLUTION.stress_summary(**k),
     ),
     "StressPlan.stress": (
-        nacre.StressPlan.stress,
+        nacre.types.StressPlan.stress,
         (_keywords.Section,),
         lambda **k: PLAN.stress(0.0, **k),
     ),
     "StressPlan.summary": (
-        nacre.StressPlan.summary,
+        nacre.types.StressPlan.summary,
         (_keywords.Strengths,),
         lambda **k: PLAN.summary(**k),
     ),
@@ -100,13 +100,8 @@ def test_case_files_know_the_keywords_of_a_solve() -> None:
     assert set(_schema.Solve.model_fields) == keywords(nacre.solve) - OBJECTS
 
 
-def shapes() -> dict[str, type[nacre.Shape]]:
-    found = {name: getattr(nacre, name) for name in nacre.__all__}
-    return {
-        name: kind
-        for name, kind in found.items()
-        if isinstance(kind, type) and issubclass(kind, nacre.Shape) and kind is not nacre.Shape
-    }
+def shapes() -> dict[str, type[nacre.types.Shape]]:
+    return {kind.__name__: kind for kind in nacre.types.Shape.__subclasses__()}
 
 
 KINDS = {kind.__name__: kind for kind in values.FIELDS}

@@ -236,4 +236,4 @@ def test_a_newer_journal_is_refused_by_the_version_that_wrote_it(tmp_path: Path)
 )
 def test_a_stress_with_wrong_axes_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        nacre.Stress.from_dict(RESULTS["Stress"].to_dict() | changes)
+        nacre.types.Stress.from_dict(RESULTS["Stress"].to_dict() | changes)
