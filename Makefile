@@ -50,6 +50,7 @@ check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation l
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest nacre._core
 	$(BIN)/python tests/house.py
+	$(BIN)/lint-imports
 
 bench: ## time the Rust benchmarks, print the change since the last run, append to benches/history.csv
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true

@@ -106,6 +106,8 @@ _LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough"
 def _imported(name: str) -> object:
     if name in _LAZY:
         return import_module(f"nacre.{name}")
+    if name in types.__all__:  # as the docstrings of the compiled module name them
+        return getattr(types, name)
     raise AttributeError(f"module 'nacre' has no attribute {name!r}")
 
 

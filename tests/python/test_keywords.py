@@ -135,7 +135,8 @@ def test_a_study_knows_every_argument_of_an_indentation() -> None:
 
 
 def test_the_public_names_are_those_of_the_stub() -> None:
-    assert set(nacre.__all__) == {*nacre._core.__all__, "display_units", "load", "sweep"}
+    named = {*nacre.__all__, *nacre.types.__all__}
+    assert named == {*nacre._core.__all__, "display_units", "load", "sweep"}
     assert not [name for name in nacre._core.__all__ if name.startswith("_") and "__" not in name]
 
 
