@@ -28,7 +28,7 @@ help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
 
 demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under out/
-	$(BIN)/nacre paper --out out
+	PYTHONPATH=examples $(BIN)/python -m paper --out out
 
 # With PYO3_PYTHON=none, the crate that depends on nacre builds only if nacre needs no Python.
 test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre, pytest on the wheel
@@ -55,6 +55,7 @@ check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation l
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest nacre._core
 	$(BIN)/python tests/house.py
+	$(BIN)/lint-imports
 
 bench: ## time the Rust benchmarks, print the change since the last run, append to benches/history.csv
 	@find $(TARGET)/criterion -type d -name new -prune -exec rm -r {} + 2>/dev/null || true

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent / "extensions"))  # claims, drawings
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))  # paper
 
 project = "nacre"
 author = copyright = "The nacre developers"
@@ -83,12 +84,22 @@ def link_pages(app: Any, name: str, source: list[str]) -> None:
 def insert_reference(app: Any, name: str, source: list[str]) -> None:
     """Insert the reference of case files, which is made from their schema."""
     if name == "cases":
-        from nacre._reference import markdown
+        from nacre._reference import text
 
-        source[0] = source[0].replace("CASE-REFERENCE", markdown())
+        source[0] = source[0].replace("CASE-REFERENCE", text())
+
+
+def find_type(app: Any, env: Any, node: Any, text: Any) -> Any:
+    """Return a link to a class of `nacre.types`, which texts name without the module."""
+    if node.get("refdomain") != "py":
+        return None
+    name = f"nacre.types.{node['reftarget'].removeprefix('nacre.')}"
+    domain, page = env.get_domain("py"), node["refdoc"]
+    return domain.resolve_xref(env, page, app.builder, "obj", name, node, text)
 
 
 def setup(app: Any) -> None:
     """Connect the functions that Sphinx calls."""
     app.connect("source-read", link_pages)
     app.connect("source-read", insert_reference)
+    app.connect("missing-reference", find_type)

@@ -34,7 +34,7 @@ BODY: Final = nacre.HalfSpace(STEEL, layers=[COATING])
 class Case:
     """A shape pressed into the coated body on a grid."""
 
-    def __init__(self, name: str, shape: nacre.Shape, grid: nacre.Grid, load: float) -> None:
+    def __init__(self, name: str, shape: nacre.types.Shape, grid: nacre.Grid, load: float) -> None:
         self.name = name
         self.shape = shape
         self.grid = grid

@@ -59,7 +59,7 @@ class Verdict:
 def judge(
     pressure: Array, gaps: Array, body: nacre.HalfSpace, grid: nacre.Grid, load: float
 ) -> Verdict:
-    """Judge a pressure under load control without tilt, by the definitions of `nacre.Report`.
+    """Judge a pressure under load control without tilt, by the definitions of `nacre.types.Report`.
 
     With the approach that is used, the mean gap over the contact is 0.
     """

@@ -93,7 +93,7 @@ class Problem:
         """Where the force acts, if tilting is free."""
         return (0.3 * 9.565e-3, 0.0) if self.name == "roller" else None
 
-    def shape(self, gaps: Array | None = None) -> nacre.Shape:
+    def shape(self, gaps: Array | None = None) -> nacre.types.Shape:
         """Return the shape; of the rough surface, that of `gaps`."""
         match self.name:
             case "roller":

@@ -7,7 +7,7 @@ from typing import Any
 
 from sphinx_gallery.scrapers import figure_rst
 
-from nacre.paper.figures import Drawing
+from paper.figures import Drawing
 
 
 def scraper(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:

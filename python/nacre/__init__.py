@@ -17,10 +17,39 @@ Examples
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from nacre import _core
-from nacre._core import *  # noqa: F403  the public names, which _core.pyi lists
+from nacre import types as types
+from nacre._core import (
+    RIGID,
+    Contact,
+    ConvergenceError,
+    Convolution,
+    Cylinder,
+    Elastic,
+    FlatPunch,
+    Grid,
+    HalfSpace,
+    HeightMap,
+    Layer,
+    LogarithmicProfile,
+    NacreWarning,
+    Paraboloid,
+    Roller,
+    SampledProfile,
+    Solution,
+    Sphere,
+    __version__,
+    creep_coefficients,
+    frequency_response,
+    graded_layers,
+    influence_coefficients,
+    roll,
+    slide,
+    solve,
+    stress,
+    surface_compliance,
+)
 from nacre.files import load
 from nacre.studies import sweep
 from nacre.units import display_units
@@ -32,21 +61,53 @@ if TYPE_CHECKING:
     from nacre import hertz as hertz
     from nacre import indent as indent
     from nacre import jax as jax
-    from nacre import paper as paper
     from nacre import plot as plot
     from nacre import rough as rough
     from nacre import torch as torch
 
-__all__ = ["display_units", "load", "sweep"]
-__all__ += _core.__all__
+__all__ = [
+    "RIGID",
+    "Contact",
+    "ConvergenceError",
+    "Convolution",
+    "Cylinder",
+    "Elastic",
+    "FlatPunch",
+    "Grid",
+    "HalfSpace",
+    "HeightMap",
+    "Layer",
+    "LogarithmicProfile",
+    "NacreWarning",
+    "Paraboloid",
+    "Roller",
+    "SampledProfile",
+    "Solution",
+    "Sphere",
+    "__version__",
+    "creep_coefficients",
+    "display_units",
+    "frequency_response",
+    "graded_layers",
+    "influence_coefficients",
+    "load",
+    "roll",
+    "slide",
+    "solve",
+    "stress",
+    "surface_compliance",
+    "sweep",
+]
 
-LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "paper", "plot", "rough", "torch")
+_LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")
 """Modules that are imported when they are first used, as `nacre.plot`."""
 
 
-def _imported(name: str) -> Any:
-    if name in LAZY:
+def _imported(name: str) -> object:
+    if name in _LAZY:
         return import_module(f"nacre.{name}")
+    if name in types.__all__:  # as the docstrings of the compiled module name them
+        return getattr(types, name)
     raise AttributeError(f"module 'nacre' has no attribute {name!r}")
 
 
@@ -55,4 +116,4 @@ if not TYPE_CHECKING:  # a type checker would take any name
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *LAZY})
+    return sorted({*__all__, *_LAZY, "types"})

@@ -1,41 +1,53 @@
-"""Foundations of the tables of case files: types of values with their words, and descriptions."""
+"""Foundations of the tables of case files: types of values, and descriptions."""
 
 from __future__ import annotations
 
 import inspect
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveInt, create_model
 
+TWO = Field(min_length=2, max_length=2)
+Number = FiniteFloat
+Count = PositiveInt
+Numbers = list[FiniteFloat]
+Pair = Annotated[Numbers, TWO]
+Counts = Annotated[list[PositiveInt], TWO]
+Flags = Annotated[list[bool], TWO]
 
-@dataclass(frozen=True)
-class Words:
-    """Words for a type of values, in the reference and in errors."""
 
-    text: str
-
-
-Number = Annotated[FiniteFloat, Words("a finite number")]
-Count = Annotated[PositiveInt, Words("an integer above 0")]
-Text = Annotated[str, Words("a text")]
-Numbers = Annotated[list[FiniteFloat], Words("a list of finite numbers")]
-Pair = Annotated[
-    list[FiniteFloat], Field(min_length=2, max_length=2), Words("a pair of finite numbers")
-]
-Counts = Annotated[
-    list[PositiveInt], Field(min_length=2, max_length=2), Words("a pair of integers above 0")
-]
-
-Flags = Annotated[list[bool], Field(min_length=2, max_length=2), Words("a pair of true or false")]
+def said(words: str) -> Any:
+    """Return words for a type of values, in the reference and in errors."""
+    return Field(json_schema_extra={"words": words})
 
 
 class Table(BaseModel):
     """A table with the named keys and no others."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the keys that were given, as keywords."""
+        given = {name: getattr(self, name) for name in self.model_fields_set}
+        return {name: _keyword(value) for name, value in given.items()}
+
+
+class Directions(Table):
+    """Values along two directions."""
+
+    def pair(self) -> tuple[Any, ...]:
+        """Return both values."""
+        return tuple(value for _, value in self)
+
+
+def _keyword(value: Any) -> Any:
+    if isinstance(value, Directions):
+        return value.pair()
+    if isinstance(value, list):
+        return tuple(value)
+    return value
 
 
 def described(thing: Any) -> dict[str, str]:

@@ -1,32 +1,26 @@
-"""The commands of ``nacre``, with Typer and Rich."""
+"""The commands of ``nacre``, with Typer: contacts, indentations and studies in case files."""
 
 from __future__ import annotations
 
+import json
 import os
-import time
 import warnings
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich import box
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 import nacre
-from nacre.paper import (
-    PROBLEM,
-    SERIES,
-    Result,
-    claims,
-    deviations,
-    make_directory,
-    run,
-    thickness_note,
-)
-from nacre.paper.evaluation import COLUMNS
+from nacre import _reference
+from nacre._friction_display import shown
+from nacre._outputs import ERROR, FRICTION, check_direction
+from nacre._progress import alive
+from nacre.case import Case, CaseError
+from nacre.files import FIGURES, PICTURES
+from nacre.indent.solution import IndentSolution
+from nacre.indent.solution import solve as solve_indentation
+from nacre.units import system, written
 
 app = typer.Typer(
     help="Elastic contact of coated bodies.",
@@ -35,9 +29,17 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-# Width of the table, in a file as in a terminal.
-WIDTH = 80
-FRACTIONS = {0.25: "1/4", 0.5: "1/2", 1.0: "1", 2.0: "2", 4.0: "4"}
+
+CaseFile = Annotated[
+    Path, typer.Argument(metavar="CASE.toml", help="The case.", show_default=False)
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, in the units of the case.")]
+Units = Annotated[
+    str | None,
+    typer.Option(help="Units of the numbers in the case, N-mm-MPa; in place of its key units."),
+]
+ROWS = 30
+"""Largest number of cases of a study that are printed."""
 
 
 def _version(asked: bool) -> None:
@@ -65,120 +67,248 @@ def info() -> None:
 
 
 @app.command()
-def paper(
-    out: Annotated[
-        Path, typer.Option(help="Directory for figures and numbers; made if need be.")
-    ] = Path("out"),
-    threads: Annotated[
-        int | None,
-        typer.Option(min=1, max=1024, help="Threads. [default: as many as cores]"),
+def solve(
+    case: CaseFile,
+    save: Annotated[
+        list[Path] | None,
+        typer.Option(help="File to write: .nc, .vtr, .csv, or a picture. May be repeated."),
     ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Coarse grids, for a first look.")] = False,
+    initial: Annotated[
+        Path | None,
+        typer.Option(
+            help="Solution to start from, a .nc file: the surfaces keep its permanent indentation."
+        ),
+    ] = None,
+    units: Units = None,
+    as_json: Json = False,
 ) -> None:
-    """Solve the contacts of Spinu et al. and draw their figures.
-
-    A coated sphere and a coated roller of finite length, for five ratios of moduli each: a table
-    here, seven figures (PNG) and all numbers (CSV) under OUT.
-    """
+    """Solve the contact that a case file describes."""
+    described = _read_case(case, units)
+    if described.is_indentation:
+        raise CaseError(f"{case}: this case is an indentation, with [tip]: nacre indent")
+    arguments, asked = described.arguments(), described.stress()
+    if initial is not None:
+        try:
+            arguments["initial"] = nacre.load(initial)
+        except (OSError, ValueError) as error:
+            raise typer.BadParameter(str(error), param_hint="'--initial'") from error
+    for path in save or []:
+        _check_ending(path)
     try:
-        make_directory(out)
-    except OSError as error:
-        message = f"cannot write to {str(out)!r}: {error.strerror or error}"
-        raise typer.BadParameter(message, param_hint="'--out'") from error
+        check_direction(arguments, **(asked or {}))
+    except ValueError as error:
+        raise CaseError(f"{case}: stress: {error}") from error
+    with nacre.display_units(described.units):
+        _solve(case, described.friction, arguments, asked, save or [], as_json)
 
-    console = Console(width=WIDTH, highlight=False)
-    console.print(PROBLEM)
-    start = solved = time.perf_counter()
 
-    def show(done: int, total: int) -> None:
-        nonlocal solved
-        solved = time.perf_counter()
-        bar.update(task, completed=done, total=total)
+def _read_case(case: Path, units: str | None) -> Case:
+    """Return the case of a file, in other units if these are given."""
+    described = Case.read(case)
+    return described if units is None else described.in_units(units)
 
-    parts = (TextColumn("solving"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with warnings.catch_warnings(), Progress(*parts, console=console) as bar:
-        # The reports have the warnings, which are printed below.
-        warnings.simplefilter("ignore", nacre.NacreWarning)
-        task = bar.add_task("", total=None)
-        results = run(out, threads=threads, quick=quick, progress=show)
-    drawn = time.perf_counter()
-    _print_results(console, results)
-    _print_claims(console, results)
-    _print_reference(console, results)
-    grids = " on coarse grids" if quick else ""
-    console.print(
-        f"\n{len(results)} solves{grids}, all converged: {solved - start:.1f} s; "
-        f"figures: {drawn - solved:.1f} s, in {out}",
-        soft_wrap=True,
-        markup=False,
+
+def _solve(
+    case: Path,
+    friction: str | None,
+    arguments: dict[str, Any],
+    asked: dict[str, Any] | None,
+    save: list[Path],
+    as_json: bool,
+) -> None:
+    """Solve, save and print in the units that are set."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+        try:
+            with alive():
+                solved = getattr(nacre, friction or "solve")(**arguments)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: {friction or 'solve'}: {error}") from error
+        # Of a history, the last step is printed and saved.
+        solution = solved[-1] if isinstance(solved, list) else solved
+        try:
+            stress = None if asked is None else solution.stress_summary(**asked)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: stress: {error}") from error
+    for path in save:
+        solution.save(path)
+    steps = solved if isinstance(solved, list) else []
+    if as_json:
+        extremes = {} if stress is None else {"stress": stress.to_dict()}
+        history = {"steps": [_tangential(step) for step in steps]} if steps else {}
+        print(json.dumps(_plain(_numbers(solution) | history | extremes), indent=2))
+    else:
+        if steps:
+            print(f"{_history(steps)}\n\nlast step")
+        print(solution if stress is None else f"{solution}\n\n{stress}")
+
+
+@app.command()
+def sweep(
+    case: CaseFile,
+    store: Annotated[
+        Path | None, typer.Option(help="NetCDF file, in place of the one in the case.")
+    ] = None,
+    retry: Annotated[bool, typer.Option("--retry", help="Try failed cases again.")] = False,
+    units: Units = None,
+    as_json: Json = False,
+) -> None:
+    """Solve the study that a case file describes, or the rest of it after a kill."""
+    described = _read_case(case, units)
+    study = described.study(store)
+    with nacre.display_units(described.units), warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", nacre.NacreWarning)
+        try:
+            dataset = nacre.sweep(described, retry=retry, **study)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: sweep: {error}") from error
+    failed = int((dataset.error != "").sum())
+    if as_json:
+        print(json.dumps(_plain(dataset.to_dict()), indent=2))
+    else:
+        _print_study(dataset)
+        where = f"; all in {study['store']}" if "store" in study else ""
+        for text in (str(warning.message) for warning in said):
+            if " cases failed" not in text:  # the last line says that
+                print(text)
+        print(f"{dataset.error.size} cases, {failed} failed{where}")
+    if failed:
+        raise typer.Exit(1)
+
+
+@app.command()
+def indent(
+    case: CaseFile,
+    save: Annotated[
+        list[Path] | None, typer.Option(help="File to write: .nc or .csv. May be repeated.")
+    ] = None,
+    units: Units = None,
+    as_json: Json = False,
+) -> None:
+    """Solve the indentation that a case file describes: one with the tables [tip] and [indent]."""
+    described = _read_case(case, units)
+    if not described.is_indentation:
+        raise CaseError(f"{case}: this case is a contact, without [tip] and [indent]: nacre solve")
+    for path in save or []:
+        if path.suffix not in (".nc", ".csv"):
+            raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
+    arguments = described.arguments()
+    with nacre.display_units(described.units), warnings.catch_warnings():
+        warnings.simplefilter("ignore", nacre.NacreWarning)  # the printed solution has them
+        try:
+            with alive():
+                solution = solve_indentation(**arguments)
+                found = _indent_numbers(solution)
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise CaseError(f"{case}: indent: {error}") from error
+        for path in save or []:
+            solution.save(path)
+        print(json.dumps(_plain(found), indent=2) if as_json else solution)
+
+
+@app.command()
+def schema(
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON schema.")] = False,
+) -> None:
+    """Print the reference of case files: all tables and keys."""
+    print(json.dumps(_reference.schema(), indent=2) if as_json else _reference.text())
+
+
+def _tangential(solution: nacre.types.FrictionSolution) -> dict[str, Any]:
+    """Return the main numbers of friction and the named state of its report."""
+    numbers = {name: getattr(solution, name) for name in FRICTION}
+    return {name: value for name, value in numbers.items() if value is not None} | {
+        "friction_report": {
+            name: value for name, value in solution.report.to_dict().items() if name != "kind"
+        }
+    }
+
+
+def _history(steps: list[nacre.types.FrictionSolution]) -> str:
+    """Return a table of the steps of a history."""
+    line, rolls = steps[0].grid.is_line, steps[0].shift is None
+    force, moved = ("N/m" if line else "N"), ("creepage" if rolls else "shift")
+    energy = force if rolls else ("N" if line else "N m")
+    lines = [["step", "force x", "force y", f"{moved} 1" if rolls else "shift x"]]
+    lines[0] += [f"{moved} 2" if rolls else "shift y", "dissipated", "ended"]
+    for number, step in enumerate(steps):
+        motion = (step.creepage if rolls else step.shift) or (0.0, 0.0)
+        assert motion is not None
+        said = [f"{part:.4g}" if rolls else written(part, "m") for part in shown(motion)]
+        forces = [written(part, force) for part in shown(step.force)]
+        row = [str(number), *forces, *said, written(step.dissipated, energy)]
+        lines.append([*row, step.report.termination])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True))
+        for row in lines
     )
 
 
-def _print_results(console: Console, results: list[Result]) -> None:
-    """Print one table, with a heading for each series."""
-    headings = ["E₁/E₂", *(f"{c.heading}\n{c.unit}".rstrip() for c in COLUMNS)]
-    cells = [
-        [FRACTIONS[r.ratio], *(f"{c.value(r):z.{c.decimals}f}" for c in COLUMNS)] for r in results
-    ]
-    widths = [
-        max(map(len, [*heading.split("\n"), *column]))
-        for heading, column in zip(headings, zip(*cells, strict=True), strict=True)
-    ]
-    for number, series in enumerate(SERIES):
-        table = Table(
-            title=f"\n{series.title}",
-            title_justify="left",
-            title_style="bold",
-            box=box.SIMPLE_HEAD,
-            padding=0,
-            pad_edge=False,
-            show_edge=False,
-            show_header=number == 0,
-        )
-        for heading, width in zip(headings, widths, strict=True):
-            table.add_column(heading, justify="right", min_width=width, vertical="bottom")
-        for result, row in zip(results, cells, strict=True):
-            if result.series == series:
-                table.add_row(*row)
-        console.print(table)
-    for result in results:
-        for warning in result.solution.report.warnings:
-            console.print(f"{result.series.title}, E₁/E₂ = {FRACTIONS[result.ratio]}: {warning}")
-    console.print(f"\n{thickness_note(results)}")
+def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[str, Any]:
+    """Return the main numbers and the named state of the report, with its warnings in words."""
+    if isinstance(solution, nacre.types.FrictionSolution):
+        return _numbers(solution.normal) | _tangential(solution)
+    state = solution.report.to_dict()
+    state["units"] = system().name
+    state.pop("kind")
+    numbers = {name: getattr(solution, name) for name in FIGURES}
+    return state | numbers | {"warnings": solution.report.warnings}
 
 
-def _print_claims(console: Console, results: list[Result]) -> None:
-    """Print the cases in which the closing claim of Spinu et al. holds."""
-    console.print(
-        "\n[bold]The closing claim of Spinu et al.[/bold]\n"
-        "A compliant coating (E₁ < E₂) brings a smaller riser and a larger contact area than "
-        "E₁ = E₂. Changes of riser and area:"
-    )
-    table = Table(box=box.SIMPLE, padding=(0, 1), pad_edge=False)
-    for heading in ("", "E₁/E₂", "riser", "area", "claim"):
-        table.add_column(heading, justify="left" if heading in ("", "claim") else "right")
-    for series in SERIES[1:]:
-        compliant = [c for c in claims(results) if c.series == series and c.ratio < 1]
-        for number, c in enumerate(compliant):
-            table.add_row(
-                series.title if number == 0 else "",
-                FRACTIONS[c.ratio],
-                f"{c.riser:+.1%}",
-                f"{c.area:+.1%}",
-                "holds" if c.holds else "does not hold",
-            )
-    console.print(table)
+def _indent_numbers(solution: IndentSolution) -> dict[str, Any]:
+    """Return the named state of an indentation, the pull-off only with adhesion."""
+    state = solution.to_dict()
+    if solution.adhesion is None:
+        del state["pull_off"]
+    else:
+        pulled = state["pull_off"].items()
+        state["pull_off"] = {name.removeprefix("pull_off_"): value for name, value in pulled}
+    return {name: value for name, value in state.items() if name not in ("format", "kind")}
 
 
-def _print_reference(console: Console, results: list[Result]) -> None:
-    """Print the deviations of the sphere from its reference."""
-    found = deviations(results)
-    peak, approach, pressure = (
-        max((getattr(deviation, name) for deviation in found), key=abs)
-        for name in ("peak", "approach", "pressure")
-    )
-    console.print(
-        "[bold]The sphere against its reference values[/bold]\n"
-        f"Largest deviations: peak pressure {peak:+.1e}, approach {approach:+.1e}; p(r) "
-        f"{pressure:.1e} of p_H within 95 % of the contact radius."
-    )
+def _plain(data: Any) -> Any:
+    """Return data for JSON, which has neither NaN nor infinity: they become null."""
+    if isinstance(data, dict):
+        return {str(key): _plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_plain(value) for value in data]
+    if isinstance(data, float) and not np.isfinite(data):
+        return None
+    return data
+
+
+def _check_ending(path: Path) -> None:
+    endings = {".nc", ".vtr", ".csv", *PICTURES}
+    if path.suffix not in endings:
+        message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
+        raise typer.BadParameter(message, param_hint="'--save'")
+
+
+def _cell(value: Any, error: float) -> str:
+    """Return a value of a study, with its estimated error."""
+    if not isinstance(value, float | int):
+        return str(value)
+    share = 100 * abs(error / value) if value else 0.0
+    if not 0 < share < np.inf:
+        return f"{value:.5g}"
+    return f"{value:.5g} ± {share:.1g} %" if share < 9.5 else f"{value:.5g} ± {share:.0f} %"
+
+
+def _print_study(dataset: Any) -> None:
+    """Print parameters and numbers of the first cases, and the cases that failed."""
+    frame = dataset[[*(n for n in dataset.data_vars if dataset[n].dims == dataset.error.dims)]]
+    rows = frame.to_dataframe().reset_index()
+    names = [str(name) for name in rows.columns if name not in ("error", "warnings")]
+    names = [name for name in names if not name.endswith(ERROR)]
+    units = {name: dataset[name].attrs.get("units") for name in names}
+    lines = [[f"{name} [{units[name]}]" if units[name] else name for name in names]]
+    for _, row in rows.head(ROWS).iterrows():
+        lines.append([_cell(row[name], row.get(name + ERROR, 0.0)) for name in names])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        print("  ".join(f"{cell:>{width}}" for cell, width in zip(line, widths, strict=True)))
+    if len(rows) > ROWS:
+        print(f"and {len(rows) - ROWS} more cases")
+    for _, row in rows[rows["error"] != ""].iterrows():
+        print(f"failed at {', '.join(f'{n} = {row[n]}' for n in frame.coords)}: {row['error']}")

@@ -120,11 +120,10 @@ def counted(records: Sequence[Record]) -> list[str]:
         lines.append(f"{failed} of {len(records)} cases failed: see error in the Dataset")
     texts = [record["warnings"] for record in records if record.get("warnings")]
     if texts:
-        # A journal of an older version has no kinds.
         kinds = Counter(
             kind
             for record in records
-            for kind in dict.fromkeys(record.get("kinds", ["kind not recorded"]))
+            for kind in dict.fromkeys(record["kinds"])
             if record.get("warnings")
         )
         said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())

@@ -1,11 +1,10 @@
-"""Printed forms of results: a line, a table; in a notebook with a small map of the pressure."""
+"""Printed forms of results: a line, a table; in a notebook with a small map."""
 
 from __future__ import annotations
 
 import base64
 import html
-import struct
-import zlib
+import io
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -33,19 +32,6 @@ NOISE = 1e-9
 LAYER_ROWS = 4
 """Largest number of layers that get a row each."""
 UNFINISHED = "stopped before all depths were done"
-
-# Matplotlib's viridis at nine places.
-VIRIDIS = (
-    (68, 1, 84),
-    (71, 44, 122),
-    (59, 81, 139),
-    (44, 113, 142),
-    (33, 144, 141),
-    (39, 173, 129),
-    (92, 200, 99),
-    (170, 220, 50),
-    (253, 231, 37),
-)
 
 
 def numbers(solution: Solution) -> list[tuple[str, str]]:
@@ -234,17 +220,17 @@ def _named(number: int, name: str | None) -> str:
 
 
 def markup(solution: Solution) -> str:
-    """Return the table and the small map, for a notebook."""
+    """Return the table and, with Matplotlib, the small map, for a notebook."""
     rows = "".join(_cells("td", row) for row in numbers(solution))
     notes = "".join(f"<p>warning: {html.escape(text)}</p>" for text in solution.report.warnings)
-    picture = base64.b64encode(thumbnail(solution.pressure)).decode()
-    image = (
+    picture = thumbnail(solution.pressure)
+    image = picture and (
         f"<img alt='pressure, x to the right' style='border:1px solid #bbb; max-width:{WIDEST}px' "
-        f"src='data:image/png;base64,{picture}'>"
+        f"src='data:image/png;base64,{base64.b64encode(picture).decode()}'>"
     )
     return (
         f"<div style='display:flex; gap:16px; align-items:flex-start'><table>{rows}</table>"
-        f"{image}</div>{notes}"
+        f"{image or ''}</div>{notes}"
     )
 
 
@@ -269,8 +255,16 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[st
     return f"<table>{cells}</table>" + "".join(f"<p>{html.escape(note)}</p>" for note in notes)
 
 
-def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes:
-    """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches."""
+def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes | None:
+    """Return a small PNG of the contact: x to the right, y upwards, white where nothing touches.
+
+    Without Matplotlib there is none.
+    """
+    try:
+        from matplotlib import colormaps
+        from matplotlib.image import imsave
+    except ImportError:
+        return None
     parts = []
     for axis, cells in enumerate(pressure.shape):
         loaded = np.flatnonzero(pressure.any(axis=1 - axis))
@@ -280,29 +274,15 @@ def thumbnail(pressure: npt.NDArray[np.float64]) -> bytes:
     spans = [high - low + 1 for low, high in parts]
     # A narrow contact stays legible: its map is at least a quarter as high as wide.
     size = [max(WIDEST // 4, WIDEST * span // max(spans)) for span in spans]
-    rows, columns = (
+    x, y = (
         np.linspace(low, high, count).round().astype(int)
-        for (low, high), count in zip(parts[::-1], size[::-1], strict=True)
+        for (low, high), count in zip(parts, size, strict=True)
     )
-    field = pressure[np.ix_(columns, rows[::-1])].T
-    level = field / (pressure.max() or 1.0) * (len(VIRIDIS) - 1)
-    channels = [np.interp(level, range(len(VIRIDIS)), anchor) for anchor in zip(*VIRIDIS)]  # noqa: B905
-    pixels = np.where(field[..., np.newaxis] > 0, np.stack(channels, axis=-1), 255)
-    return _png(pixels.round().astype(np.uint8))
-
-
-def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
-    """Return (height, width, 3) pixels as a PNG file."""
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        check = zlib.crc32(kind + data)
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
-
-    height, width, _ = pixels.shape
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    lines = b"".join(b"\0" + line.tobytes() for line in pixels)
-    parts = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(lines, 9)), chunk(b"IEND", b"")
-    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+    field = np.ma.masked_equal(pressure[np.ix_(x, y)].T, 0.0)
+    file = io.BytesIO()
+    white = colormaps["viridis"].with_extremes(bad="white")
+    imsave(file, field, vmin=0.0, cmap=white, format="png", origin="lower")
+    return file.getvalue()
 
 
 def _estimated(solution: Solution, name: str, unit: str) -> str:

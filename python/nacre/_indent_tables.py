@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import Field, create_model, model_validator
 
-from nacre._case_tables import Number, Numbers, Table, Words
+from nacre._case_tables import Number, Numbers, Table
 from nacre._schema import Bodies, at
 from nacre.values import CALLS
 
@@ -92,17 +92,13 @@ else:
         Annotated[
             Union[tuple(tables.values())],  # noqa: UP007
             Field(discriminator="kind"),
-            Words("a table with the key kind"),
         ]
         for tables in TABLES.values()
     )
 
 MOST_CONTACTS = 10_000
 """Largest number of contacts: each takes a millisecond at least."""
-Values = Annotated[
-    Number | Annotated[Numbers, Field(max_length=MOST_CONTACTS)],
-    Words(f"a finite number, or a list of at most {MOST_CONTACTS} of them"),
-]
+Values = Number | Annotated[Numbers, Field(max_length=MOST_CONTACTS)]
 
 
 class Indent(Table):

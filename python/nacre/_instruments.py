@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
 import warnings
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +10,6 @@ import numpy as np
 
 from nacre._extras import extra
 from nacre._heights import Heights
-
-LIKELIEST = 3
-"""Readers that are named where none of them can read a file."""
-MAGIC = 512
-"""Bytes at the beginning of a file by which SurfaceTopography tells formats apart."""
 
 
 def instrument(path: Path, channel: str | int | None) -> Heights:
@@ -35,8 +28,8 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
             heights = of_topography(found.topography(**sizes))
     except CannotDetectFileFormat as error:
         raise ValueError(
-            f"{str(path)!r} has no format that SurfaceTopography reads; the likeliest are "
-            f"{', '.join(_likeliest(path))}. nacre itself reads .npy, .csv and .xyz"
+            f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
+            ".csv and .xyz"
         ) from error
     except OSError:
         raise
@@ -75,22 +68,3 @@ def _channel(reader: Any, asked: str | int | None) -> Any:
         return channels[asked]
     known = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
     raise ValueError(f"channel must be one of {known}, got {asked!r}")
-
-
-def _likeliest(path: Path) -> Iterable[str]:
-    """Return the formats that a file may be meant to have, by its ending and its first bytes."""
-    from SurfaceTopography.IO import MagicMatch, readers
-
-    ending = path.suffix.lower().removeprefix(".")
-    with path.open("rb") as file:
-        magic = file.read(MAGIC)
-
-    def score(reader: Any) -> float:
-        match = reader.can_read(magic)
-        alike = max(
-            difflib.SequenceMatcher(None, ending, e).ratio() for e in reader.file_extensions()
-        )
-        return alike + {MagicMatch.YES: 2.0, MagicMatch.NO: -1.0}.get(match, 0.0)
-
-    best = sorted(readers, key=score, reverse=True)[:LIKELIEST]
-    return [f"{reader.name()} (.{', .'.join(reader.file_extensions())})" for reader in best]

@@ -1,7 +1,7 @@
-"""Finished cases of a study, one line of JSON each, on the disk before the next one begins.
+"""Finished cases of a study, one line each, on the disk before the next one begins.
 
-A line names the format and the version that wrote it; a line without them is of format 0. Its last
-entry is a checksum of the others, which lines of format 0 lack.
+The first line names the version that began the file and its format. Each other line is a checksum
+and a record as JSON.
 """
 
 from __future__ import annotations
@@ -9,21 +9,19 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import sys
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
 
-import numpy as np
-
 from nacre._core import __version__
-from nacre.values import FORMAT
+from nacre.values import FORMAT, check_format
 
 Record = dict[str, Any]
 
-BEGINNINGS = b'{"format": ', b'{"key": '
-"""How lines of format 1 and of format 0 begin."""
+HEAD = f"nacre {__version__}, journal of format {FORMAT}\n".encode()
 
 
 class Journal:
@@ -64,102 +62,64 @@ class Journal:
     def add(self, record: Record) -> None:
         """Keep a record by its ``key``; it replaces an earlier one with the same key."""
         if self._file is not None:
-            head = {"format": FORMAT, "nacre": __version__}
-            line = _text(head | record)
-            self._write(self._file, _text(head | record | {"checksum": _checksum(line)}) + "\n")
+            text = json.dumps(record).encode()
+            _append(self._file, _checksum(text) + b" " + text + b"\n")
         self.records[record["key"]] = record
 
-    def _write(self, file: IO[bytes], line: str) -> None:
-        end = os.fstat(file.fileno()).st_size
-        rest = line.encode()
-        try:
-            while rest:
-                rest = rest[file.write(rest) :]
-            os.fsync(file.fileno())
-        except BaseException:
-            with suppress(OSError):
-                file.truncate(end)
-            raise
-
     def _read(self, file: IO[bytes]) -> None:
+        """Read all records, drop what a kill cut short, and begin a new file."""
         file.seek(0)
-        whole = 0
+        end = 0
         with open(file.fileno(), "rb", closefd=False) as lines:
             for number, line in enumerate(lines, start=1):
+                cut = not line.endswith(b"\n")
+                if cut and (number > 1 or HEAD.startswith(line)):
+                    break
                 try:
-                    record, written, version = _record(line)
-                except (ArithmeticError, ValueError, RecursionError) as error:
-                    if _is_cut(line, error):
-                        break
+                    if number == 1:
+                        _check_head(line)
+                    else:
+                        record = _record(line.removesuffix(b"\n"))
+                        self.records[record["key"]] = record
+                except ValueError as error:
                     message = f"{str(self.path)!r} is no journal of a study: line {number}"
                     raise ValueError(f"{message}: {error}") from error
-                if written > FORMAT:
-                    raise ValueError(
-                        f"{str(self.path)!r} has format {written}, written by nacre {version}; "
-                        f"nacre {__version__} reads formats up to {FORMAT}: install a newer version"
-                    )
-                if not line.endswith(b"\n"):
-                    break  # its end may be missing
-                self.records[record["key"]] = record
-                whole += len(line)
-        file.truncate(whole)
+                end += len(line)
+        file.truncate(end)
+        if end == 0:
+            _append(file, HEAD)
 
 
-def _is_cut(line: bytes, error: Exception) -> bool:
-    """Return whether a line that is no record is the beginning of one, cut short by a kill."""
-    # What is whole as JSON, or begins in another way, belongs to somebody else.
-    return (
-        isinstance(error, json.JSONDecodeError | UnicodeDecodeError)
-        and not line.endswith(b"\n")
-        and any(line[: len(begin)] == begin[: len(line)] for begin in BEGINNINGS)
-    )
+def _check_head(line: bytes) -> None:
+    found = re.fullmatch(r"nacre (\S+), journal of format (\d+)\n", line.decode("latin-1"))
+    if found is None:
+        raise ValueError("it is not the first line that nacre writes")
+    check_format(int(found[2]), found[1], "it")
 
 
-def _text(entries: Record) -> str:
-    # Names of files may hold surrogates, which no encoding has.
-    return json.dumps(entries, ensure_ascii=False).encode("utf-8", "replace").decode()
-
-
-def _checksum(line: str) -> str:
-    return hashlib.sha256(line.encode()).hexdigest()[:16]
-
-
-def _record(line: bytes) -> tuple[Record, int, Any]:
-    """Return the record of a line, its format and its version; a line of none is a `ValueError`."""
-    record = json.loads(line)
-    if not isinstance(record, dict):
-        raise ValueError("it must hold an object of JSON")
-    written, version = record.get("format", 0), record.get("nacre")
-    if type(written) is not int:
-        raise ValueError(f"format must be an integer, got {written!r}")
-    if written > FORMAT:
-        return record, written, version
-    checksum = record.pop("checksum", None)
-    if (written or checksum is not None) and checksum != _checksum(_text(record)):
+def _record(line: bytes) -> Record:
+    checksum, _, text = line.partition(b" ")
+    if checksum != _checksum(text):
         raise ValueError("it was changed after nacre wrote it")
-    record.pop("format", None)
-    record.pop("nacre", None)
-    texts, values, kinds = (
-        record.get(name, empty) for name, empty in (("warnings", []), ("values", {}), ("kinds", []))
-    )
-    if not (
-        isinstance(record.get("key"), str)
-        and isinstance(values, dict)
-        and all(_is_numbers(value) for value in values.values())
-        and isinstance(record.get("error", ""), str)
-        and isinstance(texts, list)
-        and isinstance(kinds, list)
-        and all(isinstance(text, str) for text in texts + kinds)
-        and ("values" in record or "error" in record)
-    ):
-        raise ValueError("it must hold a key, and values or an error")
-    return record, written, version
+    record: Record = json.loads(text)
+    return record
 
 
-def _is_numbers(value: Any) -> bool:
-    """Return whether a value is a number, or an array of numbers as lists."""
-    array = np.asarray(value)  # lists that are no array raise a `ValueError`
-    return array.dtype.kind in "iufb"
+def _checksum(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()
+
+
+def _append(file: IO[bytes], line: bytes) -> None:
+    """Write a line to the disk, whole or not at all."""
+    end = os.fstat(file.fileno()).st_size
+    try:
+        while line:
+            line = line[file.write(line) :]
+        os.fsync(file.fileno())
+    except BaseException:
+        with suppress(OSError):
+            file.truncate(end)
+        raise
 
 
 def _lock(file: IO[bytes]) -> None:

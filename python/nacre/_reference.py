@@ -1,78 +1,93 @@
-"""The reference of case files, made from their schema: tables, keys, values, units, defaults."""
+"""The reference of case files, made from their JSON schema; and places in a case, for errors."""
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import textwrap
-import types
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from difflib import SequenceMatcher
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Any
 
 from pydantic import TypeAdapter
 
-from nacre._case_tables import Table, Words
-from nacre._friction_tables import Along, Roll, Rolling, Slide, Step
-from nacre._indent_tables import TABLES as MADE
-from nacre._indent_tables import Indent, IndentCase
-from nacre._schema import (
-    Bodies,
-    Body,
-    CaseTable,
-    Grid,
-    Layer,
-    Material,
-    Range,
-    Solve,
-    Stress,
-    Sweep,
-)
-from nacre._shape_tables import PROFILE_TABLES, TABLES
+from nacre._indent_tables import IndentCase
+from nacre._schema import Bodies, CaseTable
+
+Node = dict[str, Any]
+"""A part of a JSON schema."""
 
 WIDTH = 88
-"""Width of the text that `nacre schema` prints."""
-UNIT = re.compile(r"\s*\[(N m|N/m|Pa|m|N)\]")
+"""Width of the text of the reference."""
+UNIT = re.compile(r"\s*(\[(?:N m|N/m|Pa|m|N)\])")
+INTRODUCTION = (
+    "A case file is TOML. Numbers are in the units that the key units names, SI by default; N, m, "
+    "Pa below stand for its force, length and stress."
+)
+ITEMS = {"number": "finite numbers", "integer": "integers above 0", "string": "texts"}
+VALUES = {
+    "boolean": "true or false",
+    "integer": "an integer",
+    "number": "a finite number",
+    "object": "a table",
+    "string": "a text",
+}
 
 
-@dataclass(frozen=True)
-class Key:
-    """A key of a table."""
-
-    name: str
-    value: str
-    unit: str
-    default: str
-    meaning: str
+@functools.cache
+def schema() -> Node:
+    """Return the JSON schema of case files, for editors too."""
+    both: Any = CaseTable | IndentCase
+    return {"title": "case file of nacre", **TypeAdapter(both).json_schema()}
 
 
-@dataclass(frozen=True)
-class Section:
-    """A table of the reference."""
+def options(node: Node) -> Iterator[Node]:
+    """Yield the alternatives of a part, itself if there are none; references are followed."""
+    if "$ref" in node:
+        yield from options(schema()["$defs"][node["$ref"].rpartition("/")[2]])
+    elif inner := node.get("anyOf", node.get("oneOf")):
+        for one in inner:
+            yield from options(one)
+    elif node.get("type") != "null":
+        yield node
 
-    title: str
-    summary: str
-    keys: Sequence[Key]
+
+def kind_of(table: Node) -> str | None:
+    """Return the kind of a table, where its kind decides on its keys."""
+    kind: str | None = table.get("properties", {}).get("kind", {}).get("const")
+    return kind
 
 
-def words(hint: Any, metadata: Iterable[Any] = ()) -> str:
-    """Return the words for a type of values."""
-    for one in metadata:
-        if isinstance(one, Words):
-            return one.text
-    origin, parts = get_origin(hint), get_args(hint)
-    if origin is Annotated:
-        return words(parts[0], parts[1:])
-    if origin is Literal:
-        return alternatives(json.dumps(part) for part in parts)
-    if origin in (Union, types.UnionType):
-        return alternatives(dict.fromkeys(words(one) for one in parts if one is not type(None)))
-    if isinstance(hint, type) and issubclass(hint, Table):
+def words(node: Node) -> str:
+    """Return the words for the values that a part allows."""
+    if "words" in node:
+        return str(node["words"])
+    if "oneOf" in node:
+        return "a table with the key kind"
+    if "anyOf" in node:
+        inner = [one for one in node["anyOf"] if one.get("type") != "null"]
+        return alternatives(dict.fromkeys(map(words, inner)))
+    if "$ref" in node:
         return "a table"
-    if hint is bool:
-        return "true or false"
-    return "any value"
+    if "enum" in node:
+        return alternatives(map(json.dumps, node["enum"]))
+    if node.get("type") == "array":
+        return _list(node)
+    if "exclusiveMinimum" in node:
+        return "an integer above 0"
+    return VALUES.get(node.get("type", ""), "any value")
+
+
+def _list(node: Node) -> str:
+    items = node["items"]
+    several = ITEMS.get(items.get("type"), "tables" if list(tables(items)) else "values")
+    if items.get("type") == "boolean":
+        return "a pair of true or false"
+    if node.get("minItems") == node.get("maxItems") == 2:
+        return f"a pair of {several}"
+    return f"a list of {several}" + (f", at most {node['maxItems']}" if "maxItems" in node else "")
 
 
 def alternatives(names: Iterable[str]) -> str:
@@ -86,105 +101,66 @@ def nearest(name: str, names: Iterable[str]) -> list[str]:
     return sorted(names, key=lambda one: -SequenceMatcher(None, name, one).ratio())
 
 
-def sections() -> Iterator[Section]:
-    """Yield the tables of the reference, the whole file first."""
-    yield _section("Whole file of a contact", CaseTable)
-    yield _section("Whole file of an indentation", IndentCase)
-    yield _section("`[materials.NAME]`", Material)
-    for kind, table in TABLES.items():
-        yield _section(f'`[shape]` with `kind = "{kind}"`', table)
-    for kind, table in PROFILE_TABLES.items():
-        yield _section(f'`[shape.profile]` with `kind = "{kind}"`', table)
-    yield _section("`[body]` and `[counterbody]`", Body)
-    yield _section("`[[body.layers]]`", Layer)
-    yield _section("`[grid]`", Grid)
-    yield _section("`[solve]`", Solve)
-    yield _section("`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", Along)
-    yield _section("`[slide]`", Slide)
-    yield _section("`[[slide.steps]]`", Step)
-    yield _section("`[slide.shift]` and `[slide.force]`", Along)
-    yield _section("`[roll]`", Roll)
-    yield _section("`[roll.creepage]` and `[roll.force]`", Rolling)
-    yield _section("`[stress]`", Stress)
-    for family, made in MADE.items():
-        for kind, one in made.items():
-            yield _section(f'`[{family.lower()}]` with `kind = "{kind}"`', one)
-    yield _section("`[indent]`", Indent)
-    yield _section("`[sweep]`", Sweep)
-    yield _section('Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', Range)
+def tables(node: Node) -> Iterator[Node]:
+    """Yield the tables that a part allows."""
+    return (one for one in options(node) if "properties" in one)
 
 
-def _section(title: str, table: type[Table]) -> Section:
-    keys = []
-    for name, field in table.model_fields.items():
-        if name == "kind":
-            continue
-        told = field.description or ""
-        unit = UNIT.search(told)
-        value = words(field.annotation, field.metadata).removeprefix("a ").removeprefix("an ")
-        if field.is_required():
-            default = "required"
-        else:
-            given = field.default
-            default = "" if given is None or given in ([], {}) else json.dumps(given)
-        meaning = UNIT.sub("", told)
-        keys.append(Key(name, value, unit[1] if unit else "", default, meaning))
-    # Keys that must be given come first, and the common ones of shapes last.
-    keys.sort(key=lambda key: (key.default != "required", key.name == "shift"))
-    summary = " ".join((table.__doc__ or "").split("\n\n")[0].split())
-    return Section(title, summary, keys)
+def sections() -> Iterator[tuple[str, Node]]:
+    """Yield title and schema of the tables of the reference, the whole files first."""
+    known = schema()["$defs"]
 
+    def kinds(table: str, key: str, title: str) -> Iterator[tuple[str, Node]]:
+        for one in tables(known[table]["properties"][key]):
+            yield f'`[{title}]` with `kind = "{kind_of(one)}"`', one
 
-INTRODUCTION = (
-    "A case file is TOML. Numbers are in the units that the key units names, SI by default; N, m, "
-    "Pa below stand for its force, length and stress."
-)
+    yield "Whole file of a contact", known["CaseTable"]
+    yield "Whole file of an indentation", known["IndentCase"]
+    yield "`[materials.NAME]`", known["Material"]
+    yield from kinds("CaseTable", "shape", "shape")
+    yield from kinds("RollerShape", "profile", "shape.profile")
+    yield "`[body]` and `[counterbody]`", known["Body"]
+    yield "`[[body.layers]]`", known["Layer"]
+    yield "`[grid]`", known["Grid"]
+    yield "`[solve]`", known["Solve"]
+    yield "`[solve.eccentricity]`, `[solve.moment]` and `[solve.tilt]`", known["Along"]
+    yield "`[slide]`", known["Slide"]
+    yield "`[[slide.steps]]`", known["Step"]
+    yield "`[slide.shift]` and `[slide.force]`", known["Along"]
+    yield "`[roll]`", known["Roll"]
+    yield "`[roll.creepage]` and `[roll.force]`", known["Rolling"]
+    yield "`[stress]`", known["Stress"]
+    yield from kinds("IndentCase", "tip", "tip")
+    yield from kinds("IndentCase", "adhesion", "adhesion")
+    yield "`[indent]`", known["Indent"]
+    yield "`[sweep]`", known["Sweep"]
+    yield 'Ranges in `[sweep]`: `parameters."solve.load" = { ... }`', known["Range"]
 
 
 def text() -> str:
-    """Return the reference as plain text."""
-    lines = [*textwrap.wrap(INTRODUCTION, WIDTH)]
-    for section in sections():
-        lines += [
-            "",
-            section.title.replace("`", ""),
-            *textwrap.wrap(section.summary.replace("`", ""), WIDTH),
-        ]
-        for key in section.keys:
-            unit = f" [{key.unit}]" if key.unit else ""
-            default = {"required": "; required", "": ""}.get(
-                key.default, f"; default {key.default}"
-            )
-            lines.append(f"  {key.name}: {key.value}{unit}{default}")
-            lines += textwrap.wrap(
-                key.meaning.replace("`", ""),
-                WIDTH,
-                initial_indent=" " * 6,
-                subsequent_indent=" " * 6,
-            )
+    """Return the reference as Markdown that can be read as it is."""
+    lines = textwrap.wrap(INTRODUCTION, WIDTH)
+    for title, table in sections():
+        summary = " ".join(table["description"].split("\n\n")[0].split()).replace("``", "`")
+        lines += ["", f"## {title}", "", *textwrap.wrap(summary, WIDTH), ""]
+        required = table.get("required", [])
+        keys = [(name, node) for name, node in table["properties"].items() if name != "kind"]
+        # Keys that must be given come first, and the common ones of shapes last.
+        for name, node in sorted(keys, key=lambda key: (key[0] not in required, key[0] == "shift")):
+            said = _key(name, node, name in required)
+            lines += textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
     return "\n".join(lines)
 
 
-def markdown() -> str:
-    """Return the reference as Markdown, a heading and a table for each table of a case file."""
-    lines = [INTRODUCTION]
-    for section in sections():
-        lines += ["", f"## {section.title}", "", section.summary.replace("``", "`"), ""]
-        if not section.keys:
-            continue
-        lines += ["| key | value | unit | default | meaning |", "|---|---|---|---|---|"]
-        for key in section.keys:
-            default = key.default if key.default in ("", "required") else f"`{key.default}`"
-            meaning = key.meaning.replace("``", "`")
-            cells = (f"`{key.name}`", key.value, key.unit, default, meaning)
-            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return "\n".join(lines) + "\n"
-
-
-def schema() -> dict[str, Any]:
-    """Return the JSON schema of case files, for editors."""
-    both: Any = CaseTable | IndentCase
-    return {"title": "case file of nacre", **TypeAdapter(both).json_schema()}
+def _key(name: str, node: Node, required: bool) -> str:
+    """Return the item of a key: its values with their unit, its default, and its meaning."""
+    told = node.get("description", "").replace("``", "`")
+    value = words(node).removeprefix("a ").removeprefix("an ")
+    unit = UNIT.search(told)
+    default = "; required" if required else ""
+    if node.get("default") not in (None, [], {}):
+        default = f"; default `{json.dumps(node['default'])}`"
+    return f"- `{name}`: {value}{f' {unit[1]}' if unit else ''}{default}. {UNIT.sub('', told)}"
 
 
 def table_for(data: Any) -> type[Bodies]:
@@ -194,11 +170,10 @@ def table_for(data: Any) -> type[Bodies]:
 
 @dataclass(frozen=True)
 class Place:
-    """A place in a case: the key of a value, the types that it may have, and the value."""
+    """A place in a case: the key of a value, what it may be, and the value."""
 
     path: tuple[int | str, ...]
-    hint: Any
-    metadata: Sequence[Any]
+    node: Node
     value: Any
 
     @property
@@ -207,23 +182,41 @@ class Place:
         said = "".join(f"[{one}]" if isinstance(one, int) else f".{one}" for one in self.path)
         return said.removeprefix(".")
 
-    def tables(self) -> list[type[Table]]:
+    def tables(self) -> list[Node]:
         """Return the tables that the value may be; by its kind, where it has one."""
-        found = list(_tables(self.hint))
+        found = list(tables(self.node))
         kind = self.value.get("kind") if isinstance(self.value, dict) else None
-        return [one for one in found if kind in _kinds(one)] or found
+        return [one for one in found if kind and kind_of(one) == kind] or found
 
     def keys(self) -> list[str]:
         """Return the keys that a table here may have."""
-        return list(dict.fromkeys(name for one in self.tables() for name in one.model_fields))
+        return list(dict.fromkeys(name for one in self.tables() for name in one["properties"]))
 
     def kinds(self) -> list[str]:
         """Return the kinds that a table here may have."""
-        return [kind for one in _tables(self.hint) for kind in _kinds(one)]
+        return [kind for one in tables(self.node) if (kind := kind_of(one))]
 
     def words(self) -> str:
         """Return the words for the values that are possible here."""
-        return words(self.hint, self.metadata)
+        return words(self.node)
+
+    def inside(self, part: int | str) -> Place | None:
+        """Return the place of an item or of a key of the value, if there is one."""
+        value, node = self.value, None
+        if isinstance(part, int) and isinstance(value, list):
+            lists = [one["items"] for one in options(self.node) if "items" in one]
+            # Numbers in a list are described with the list.
+            node = next((one for one in lists if list(tables(one))), None)
+            value = value[part]
+        elif isinstance(part, str) and isinstance(value, dict):
+            found = [one["properties"] for one in self.tables() if part in one["properties"]]
+            others = [one.get("additionalProperties") for one in options(self.node)]
+            if found:
+                node = found[0][part]
+            elif part in value:
+                node = next((one for one in others if one), None)
+            value = value.get(part)
+        return None if node is None else Place((*self.path, part), node, value)
 
 
 def place(data: Any, location: Iterable[int | str]) -> Place:
@@ -231,55 +224,7 @@ def place(data: Any, location: Iterable[int | str]) -> Place:
 
     A location may hold names of alternatives between its keys, which are passed over.
     """
-    here = Place((), table_for(data), (), data)
+    here = Place((), schema()["$defs"][table_for(data).__name__], data)
     for part in location:
-        here = _inside(here, part) or here
+        here = here.inside(part) or here
     return here
-
-
-def _inside(here: Place, part: int | str) -> Place | None:
-    value = here.value
-    if isinstance(part, int):
-        inner = next(_parts(here.hint, list), None)
-        # Numbers in a list are described with the list.
-        if inner is None or not isinstance(value, list) or not list(_tables(inner)):
-            return None
-        return Place((*here.path, part), inner, (), value[part])
-    if not isinstance(value, dict):
-        return None
-    for table in here.tables():
-        if (field := table.model_fields.get(part)) is not None:
-            inner = value.get(part)
-            return Place((*here.path, part), field.annotation, field.metadata, inner)
-    inner = next(_parts(here.hint, dict), None)
-    if inner is None or part not in value:
-        return None
-    return Place((*here.path, part), inner, (), value[part])
-
-
-def _parts(hint: Any, kind: type) -> Iterator[Any]:
-    """Yield the types of the items of lists or dictionaries that a type allows."""
-    origin, parts = get_origin(hint), get_args(hint)
-    if origin is kind:
-        yield parts[-1]
-    elif origin in (Union, types.UnionType):
-        for one in parts:
-            yield from _parts(one, kind)
-    elif origin is Annotated:
-        yield from _parts(parts[0], kind)
-
-
-def _tables(hint: Any) -> Iterator[type[Table]]:
-    """Yield the tables that a type allows."""
-    if isinstance(hint, type) and issubclass(hint, Table):
-        yield hint
-    elif get_origin(hint) in (Union, types.UnionType):
-        for one in get_args(hint):
-            yield from _tables(one)
-    elif get_origin(hint) is Annotated:
-        yield from _tables(get_args(hint)[0])
-
-
-def _kinds(table: type[Table]) -> tuple[str, ...]:
-    field = table.model_fields.get("kind")
-    return get_args(field.annotation) if field else ()

@@ -24,8 +24,8 @@ from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
 from nacre import _keywords
-from nacre._case_tables import Count, Counts, Flags, Number, Pair, Table, Text, Words, described
-from nacre._friction_tables import Along, Roll, Slide
+from nacre._case_tables import TWO, Count, Counts, Flags, Number, Pair, Table, described, said
+from nacre._friction_tables import AnyAlong, Roll, Slide
 from nacre._outputs import OUTPUTS
 from nacre._shape_tables import AnyShape
 from nacre.units import System
@@ -56,7 +56,7 @@ class Material(Table):
 
 
 AnyMaterial = Annotated[
-    str | Material, Words("the name of a material, or a table with young and poisson")
+    str | Material, said("the name of a material, or a table with young and poisson")
 ]
 
 
@@ -66,16 +66,12 @@ class Layer(Table):
     material: AnyMaterial = Field(description=LAYER["material"])
     thickness: Number = Field(description=LAYER["thickness"])
     interface: Literal["bonded", "frictionless"] = Field("bonded", description=LAYER["interface"])
-    name: Text | None = Field(None, description=LAYER["name"])
+    name: str | None = Field(None, description=LAYER["name"])
 
 
 Ends = Annotated[
-    list[float],
-    Field(min_length=2, max_length=2),
-    Words("a pair of numbers, or of -inf and inf where the body goes on"),
+    list[float], TWO, said("a pair of numbers, or of -inf and inf where the body goes on")
 ]
-
-
 MOST_LAYERS = 1000
 """Largest number of layers: the time of a contact grows with it."""
 
@@ -86,11 +82,7 @@ class Body(Table):
     substrate: AnyMaterial = Field(
         description='Material below the layers; "rigid" is a rigid base.'
     )
-    layers: Annotated[
-        list[Layer],
-        Field(max_length=MOST_LAYERS),
-        Words(f"a list of tables, at most {MOST_LAYERS}"),
-    ] = Field(
+    layers: Annotated[list[Layer], Field(max_length=MOST_LAYERS)] = Field(
         [], description="Layers from the surface down; a line [[body.layers]] begins each, too."
     )
     ends: Ends | None = Field(
@@ -133,13 +125,7 @@ class Grid(Table):
         return nacre.Grid(self.shape, self.size, **center, **repeats)  # type: ignore[arg-type]
 
 
-KNOWN = {
-    float: Number,
-    int: Count,
-    _keywords.Along: Annotated[
-        Along | Pair, Words("a table with x, y or both, or a pair of finite numbers")
-    ],
-}
+KNOWN = {float: Number, int: Count, _keywords.Along: AnyAlong}
 """Types that case files have for those of keywords."""
 
 
@@ -150,21 +136,7 @@ def _checked(hint: Any) -> Any:
     return Union[(*(KNOWN.get(part, part) for part in parts),)]
 
 
-class SolveKeywords(Table):
-    """The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."""
-
-    def keywords(self) -> dict[str, Any]:
-        """Return the keywords that were given."""
-        found = {name: value for name, value in self if name in self.model_fields_set}
-        for name, value in found.items():
-            if isinstance(value, Along):
-                found[name] = (value.x, value.y)
-            elif isinstance(value, list):
-                found[name] = tuple(value)
-        return found
-
-
-def _solve() -> type[SolveKeywords]:
+def _solve() -> type[Table]:
     """Return the table of those keywords."""
     groups = (_keywords.Motion, _keywords.Plan, _keywords.Search)
     hints = {name: hint for group in groups for name, hint in get_type_hints(group).items()}
@@ -173,11 +145,12 @@ def _solve() -> type[SolveKeywords]:
         name: (_checked(hint), Field(default=signature[name].default, description=SOLVE[name]))
         for name, hint in hints.items()
     }
-    return create_model("Solve", __base__=SolveKeywords, __doc__=SolveKeywords.__doc__, **fields)
+    told = "The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."
+    return create_model("Solve", __base__=Table, __doc__=told, **fields)
 
 
 if TYPE_CHECKING:
-    Solve = SolveKeywords
+    Solve = Table
 else:
     Solve = _solve()
 
@@ -191,8 +164,7 @@ class Stress(Table):
 
     def keywords(self) -> dict[str, Any]:
         """Return the keywords."""
-        direction = {} if self.direction is None else {"direction": tuple(self.direction)}
-        return {"body": self.body, "friction": self.friction, **direction}
+        return {"body": self.body, "friction": self.friction} | super().keywords()
 
 
 MOST_VALUES = 100_000
@@ -225,7 +197,7 @@ class Range(Table):
 
 Values = Annotated[
     Range | Annotated[list[Any], Field(min_length=1)],
-    Words("a list of values, or a table with first, last and count"),
+    said("a list of values, or a table with first, last and count"),
 ]
 
 
@@ -233,16 +205,16 @@ class Sweep(Table):
     """A study, for ``nacre sweep``: every combination of values at some keys of the case."""
 
     parameters: Annotated[
-        dict[str, Values], Words("a table of lists, or of tables with first, last and count")
+        dict[str, Values], said("a table of lists, or of tables with first, last and count")
     ] = Field(
         description='Values by key, such as parameters."body.layers[0].thickness" = [1e-6, 2e-6].'
     )
-    outputs: Annotated[list[str], Words("a list of texts")] | None = Field(
+    outputs: list[str] | None = Field(
         None,
         description="Numbers that are kept of each solution, as `nacre.sweep` has them; by default "
         f"{', '.join(OUTPUTS)}.",
     )
-    store: Text | None = Field(
+    store: str | None = Field(
         None, description="File for the study, .nc, in the folder of the case or below."
     )
 
@@ -253,12 +225,12 @@ class Bodies(Table):
     solved: ClassVar[tuple[str, ...]] = ()
     """Tables that describe a solve, whose values a study can change."""
 
-    units: Text = Field(
+    units: str = Field(
         "SI",
         description="Units of force, length and stress of all numbers in the file, and of what is "
         'printed: "SI" is "N-m-Pa"; "N-mm-MPa" and others must be consistent.',
     )
-    materials: Annotated[dict[str, Material], Words("a table of materials")] = Field(
+    materials: Annotated[dict[str, Material], said("a table of materials")] = Field(
         {}, description="Materials by name."
     )
     body: Body = Field(description="Body that the shape or the tip is pressed into.")

@@ -21,8 +21,6 @@ from nacre._case_tables import (
     Numbers,
     Pair,
     Table,
-    Text,
-    Words,
     described,
     table_of,
 )
@@ -58,7 +56,6 @@ PROFILE_TABLES = {
 AnyProfile: Any = Annotated[
     Union[tuple(PROFILE_TABLES.values())],  # noqa: UP007
     Field(discriminator="kind"),
-    Words("a table with the key kind"),
 ]
 
 
@@ -67,12 +64,12 @@ class Shape(Table):
 
     shift: Pair | None = Field(None, description="Distances by which the shape is moved [m].")
 
-    def make(self, folder: Path, metres: float) -> nacre.Shape:
+    def make(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape; files are in `folder`, and the unit of length has so many metres."""
         shape = self.unmoved(folder, metres)
         return shape if self.shift is None else shape.shifted(*self.shift)
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
         if "profile" in given:
@@ -84,7 +81,9 @@ class Shape(Table):
 SHAPES: dict[str, Any] = {
     re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower(): made
     for made in vars(nacre._core).values()
-    if isinstance(made, type) and issubclass(made, nacre.Shape) and made is not nacre.Shape
+    if isinstance(made, type)
+    and issubclass(made, nacre.types.Shape)
+    and made is not nacre.types.Shape
 }
 """Shapes by their names in case files: ``FlatPunch`` is "flat_punch"."""
 
@@ -95,21 +94,17 @@ class HeightMap(Shape):
     """A measured surface in a file."""
 
     kind: Literal["height_map"] = Field(description="Kind, which decides on the other keys.")
-    path: Text = Field(description="File, relative to the folder of the case. " + READ["path"])
+    path: str = Field(description="File, relative to the folder of the case. " + READ["path"])
     spacing: Number | Pair | None = Field(None, description=READ["spacing"])
-    unit: Text | None = Field(None, description=READ["unit"])
+    unit: str | None = Field(None, description=READ["unit"])
     detrend: Literal["none", "mean", "plane", "quadratic"] = Field(
         "plane", description=READ["detrend"]
     )
-    transpose: Annotated[bool, Words("true or false")] = Field(
-        False, description=READ.get("transpose")
-    )
-    channel: Text | Annotated[int, Words("an integer")] | None = Field(
-        None, description=READ["channel"]
-    )
+    transpose: bool = Field(False, description=READ.get("transpose"))
+    channel: str | int | None = Field(None, description=READ["channel"])
     periodic: Flags | None = Field(None, description=READ["periodic"])
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift, in the unit of length of the case."""
         given = self.model_dump(exclude={"kind", "shift", "path"}, exclude_none=True)
         if self.spacing is not None:
@@ -138,7 +133,7 @@ class RandomSurface(Shape):
     rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
     seed: Count = Field(description=RANDOM["seed"])
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         given = self.model_dump(exclude={"kind", "shift"}, exclude_none=True)
         return rough.random_surface(**given)
@@ -148,11 +143,11 @@ class Sum(Shape):
     """A sum of shapes: their gaps are added."""
 
     kind: Literal["sum"] = Field(description="Kind, which decides on the other keys.")
-    parts: Annotated[
-        list[AnyShape], Field(min_length=1), Words("a list of tables of shapes, at least one")
-    ] = Field(description="Shapes that are added.")
+    parts: Annotated[list[AnyShape], Field(min_length=1)] = Field(
+        description="Shapes that are added, one at least."
+    )
 
-    def unmoved(self, folder: Path, metres: float) -> nacre.Shape:
+    def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
         first, *others = (part.make(folder, metres) for part in self.parts)
         for other in others:
@@ -178,7 +173,6 @@ else:
     AnyShape = Annotated[
         Union[tuple(TABLES.values())],  # noqa: UP007
         Field(discriminator="kind"),
-        Words("a table with the key kind"),
     ]
 
 Sum.model_rebuild()

@@ -33,8 +33,6 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         import typer
 
-        import nacre._case_commands
-        import nacre.indent.case  # both add commands to app
         from nacre._commands import app
     except ModuleNotFoundError as missing:
         return _fail(f"the command line needs {missing.name}: pip install 'nacre-contact[cli]'", 2)

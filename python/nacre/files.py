@@ -17,7 +17,7 @@ from nacre._extras import extra
 from nacre._tables import FIELDS, YIELDED, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS, symbol, system
-from nacre.values import decode, encode, refusing
+from nacre.values import check_format, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
@@ -148,7 +148,7 @@ def load(path: AnyPath) -> Any:
     Parameters
     ----------
     path : str or os.PathLike
-        File to read; older versions of nacre may have written it.
+        File to read.
 
     Returns
     -------
@@ -159,7 +159,7 @@ def load(path: AnyPath) -> Any:
     ------
     ValueError
         If the file holds no result of nacre's, was changed, damaged or saved again by another
-        program, or was written by a newer version.
+        program, or has a format that this version does not know.
     OSError
         If the file cannot be read.
 
@@ -201,6 +201,7 @@ def _solution(
         raise ValueError(f"the attribute {STATE} must hold JSON: {error}") from error
     if not isinstance(state, dict):
         raise ValueError(f"the attribute {STATE} must hold named fields, got {text!r:.60}")
+    check_format(state.get("format"), state.get("nacre"), "it")
     if state.get("kind") == "FrictionSolution":
         from nacre._friction_state import restored
 
@@ -211,22 +212,7 @@ def _solution(
         from nacre.indent.solution import IndentSolution
 
         return (Fit if state["kind"] == "Fit" else IndentSolution).from_dict(state)
-    if "format" in state:
-        return core.Solution.from_dict(state | dict(arrays))
-    return _load_format0(state, arrays)
-
-
-def _load_format0(state: dict[str, Any], fields: Mapping[str, Array]) -> core.Solution:
-    """Return the solution of a file that was written before states had names."""
-    from nacre import _format0
-
-    try:
-        report = _format0._restore_report(decode(state["report"]))
-        motion = state["approach"], state["tilt"]
-        arrays = fields["pressure"], fields["gap"], fields["displacement"]
-        return _format0._restore_solution(arrays, motion, report)
-    except Exception as error:  # values of any kind in any place
-        raise ValueError(f"the attribute {STATE} does not hold a solution: {error}") from error
+    return core.Solution.from_dict(state | dict(arrays))
 
 
 def _write_netcdf(solution: core.Solution, path: Path) -> None:

@@ -97,15 +97,15 @@ def sweep(
     store : path, optional
         File, ``.nc``, for the finished Dataset: a new one, or a study that is continued and
         replaced. Finished cases are kept beside it at once, in a ``.journal``. A case is solved
-        again if an output function has changed, or a global, a default, a closure, a bound object,
-        a function or a class that it uses. Where these cannot be compared with an earlier run (open
-        files, locks, code made from text), a `nacre.NacreWarning` says so, and all cases are solved
-        again unless there is a `version`. Never compared are what a function looks up by a name
-        made at run time, such as ``getattr(module, name)``, ``os.environ``, the content of files,
-        the time and random numbers: change `version` when these change.
+        again if its arguments have changed, or the source text of an output function, its defaults,
+        the values of its closure or the object that it is bound to. Where these cannot be compared
+        with an earlier run (an open file, a lock, a function without source text), a
+        `nacre.NacreWarning` says so, and all cases are solved again unless there is a `version`.
+        Nothing else is compared: not globals, nor other functions and classes that a function uses,
+        nor libraries and files.
     version : str or int, optional
-        Version of the output functions; cases are solved again if it is another. With a version,
-        what cannot be compared counts as unchanged.
+        Version of the output functions: change it when what they use has changed, and all cases are
+        solved again. With a version, what cannot be compared counts as unchanged.
     executor : concurrent.futures.Executor, optional
         Executor of the solves; a thread for each core by default. Each solve has one thread, unless
         the case has `threads`.

@@ -21,7 +21,7 @@ import numpy as np
 import nacre._core as core
 
 FORMAT: int = core._FORMAT
-"""Number of the format in which states are written. Older ones are read, newer ones refused."""
+"""Number of the format in which states are written."""
 
 FIELDS: dict[type, tuple[str, ...]] = {
     kind: tuple(inspect.signature(kind).parameters)
@@ -147,21 +147,26 @@ def encode(value: Any, *, digest: bool = False) -> Any:
 def checked_state(data: Mapping[str, Any], kind: str, names: Collection[str]) -> dict[str, Any]:
     """Return the fields of a result's plain data, which must be of this kind and have these names.
 
-    Raises `ValueError` where they are not, or where a newer version wrote the data.
+    Raises `ValueError` where they are not, or where the format is unknown.
     """
     state = dict(data)
     written, found = state.pop("format", None), state.pop("kind", None)
     writer = state.pop("nacre", None)
     if found != kind:
         raise ValueError(f"the key 'kind' must be {kind!r}, got {found!r}")
-    if not isinstance(written, int) or written > FORMAT:
-        raise ValueError(
-            f"the data have format {written}, written by nacre {writer}; nacre "
-            f"{core.__version__} reads formats up to {FORMAT}: install a newer version"
-        )
+    check_format(written, writer, f"this {kind}")
     if wrong := set(names) ^ state.keys():
         raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
     return state
+
+
+def check_format(written: object, writer: object, what: str) -> None:
+    """Raise a `ValueError` if `what` has a format that this version does not know."""
+    if type(written) is not int or not 1 <= written <= FORMAT:
+        raise ValueError(
+            f"{what} has format {written}, written by nacre {writer}; nacre {core.__version__} "
+            f"reads formats from 1 to {FORMAT}: another version may read it"
+        )
 
 
 @contextmanager

@@ -406,7 +406,7 @@ def test_an_error_in_a_study_is_found_before_it_begins(
         ),
         (
             'body.layers = []\n[tip]\nkind = "sphere"\nradius = 1\n[indent]\nload = [LOAD]\n',
-            r"indent\.load: must be a finite number, or a list of at most 10000 of them, got",
+            r"indent\.load: must be a finite number or a list of finite numbers, at most 10000",
         ),
     ],
     ids=["layers", "steps", "loads"],
@@ -499,7 +499,7 @@ def base(**tables: Any) -> dict[str, Any]:
     ids=lambda value: value["kind"] if isinstance(value, dict) else None,
 )
 def test_every_shape_can_be_described(
-    table: dict[str, Any], shape: nacre.Shape, tmp_path: Path
+    table: dict[str, Any], shape: nacre.types.Shape, tmp_path: Path
 ) -> None:
     np.save(tmp_path / "a.npy", np.arange(4.0).reshape(2, 2))
     assert Case(base(shape=table), folder=tmp_path).arguments()["shape"] == shape
@@ -639,14 +639,19 @@ def test_units_of_a_case_are_those_of_its_map_and_of_what_is_printed(
 def test_the_reference_has_every_table_and_key(capsys: pytest.CaptureFixture[str]) -> None:
     assert nacre_command("schema") == 0
     text = capsys.readouterr().out
-    for section in _reference.sections():
-        assert section.title.replace("`", "") in text
-        for key in section.keys:
-            assert key.meaning, f"{section.title} {key.name}"
-            assert key.value not in ("", "any value")
-            assert f"  {key.name}: {key.value}" in text
-    assert "radius: finite number [m]; required" in text
-    assert "tolerance: finite number; default 1e-08" in text
+    for title, table in _reference.sections():
+        assert f"\n## {title}\n" in text
+        for name, node in table["properties"].items():
+            assert node["description"], f"{title} {name}"
+            value = _reference.words(node)
+            assert value not in ("", "any value")
+            told = f"- `{name}`: {value.removeprefix('a ').removeprefix('an ')}"
+            assert name == "kind" or told[:60] in text
+    assert "- `radius`: finite number [m]; required. Radius, above 0." in text
+    assert "- `tolerance`: finite number; default `1e-08`." in text
+    # No line that is wrapped begins another item.
+    marks = [line for line in text.splitlines() if re.match(r"\s*([-+*>#]|\d+[.)]) ", line)]
+    assert all(line.startswith(("- `", "## ")) for line in marks)
     assert all(f'kind = "{kind}"' in text for kind in (*_shape_tables.SHAPES, "sum", "iso16281"))
     assert max(map(len, text.splitlines())) <= 120
     assert nacre_command("schema", "--json") == 0

@@ -11,8 +11,11 @@ import pytest
 
 import nacre
 import nacre.cli
+<<<<<<< HEAD
 from nacre.paper import cases
 from support import Capture, Patch, command, interrupted, python, written
+=======
+>>>>>>> py
 
 
 def run(*arguments: object) -> tuple[int, str, str]:
@@ -24,7 +27,14 @@ def run(*arguments: object) -> tuple[int, str, str]:
 def test_help_names_the_commands_and_info_the_versions(capsys: Capture) -> None:
     code, out, err = run("--help")
     assert (code, err) == (0, "")
+<<<<<<< HEAD
     assert [name for name in ("info", "paper", "solve", "sweep") if f" {name} " not in out] == []
+=======
+    assert [name for name in ("info", "indent", "solve", "sweep") if f" {name} " not in out] == []
+
+
+def test_version_is_one_line() -> None:
+>>>>>>> py
     assert run("--version") == (0, f"nacre {nacre.__version__}\n", "")
     assert command("info") == 0
     assert nacre.__version__ in capsys.readouterr().out
@@ -33,12 +43,9 @@ def test_help_names_the_commands_and_info_the_versions(capsys: Capture) -> None:
 @pytest.mark.parametrize(
     ("arguments", "names"),
     [
-        (["paper", "--threads", "0"], "--threads"),
-        (["paper", "--threads", "x"], "--threads"),
-        (["paper", "--out", "FILE"], "File exists"),
-        (["paper", "--out", "FILE/below"], "Not a directory"),
-        (["paper", "--bogus"], "--bogus"),
-        (["paper", "extra"], "extra"),
+        (["solve", "FILE/below"], "Not a directory"),
+        (["info", "--bogus"], "--bogus"),
+        (["info", "extra"], "extra"),
         (["nothing"], "nothing"),
         ([], "command"),
     ],
@@ -56,10 +63,11 @@ def test_bad_input_is_one_line_and_exit_code_2(
 
 
 def test_bad_input_leaves_no_traceback_in_a_process() -> None:
-    code, out, err = run("paper", "--threads", "0")
+    code, out, err = run("info", "--threads", "0")
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
+<<<<<<< HEAD
 @pytest.mark.parametrize(
     ("missing", "extra", "arguments"),
     [
@@ -118,6 +126,17 @@ def test_interrupt_is_exit_code_130_without_traceback(tmp_path: Path) -> None:
     assert ended.code == 130
     assert "Traceback" not in ended.errors
     assert list(tmp_path.iterdir()) == []
+=======
+@pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("pydantic", "cli")])
+def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
+    code = (
+        f"import sys; sys.modules[{missing!r}] = None; import nacre.cli; nacre.cli.main(['info'])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert f"nacre-contact[{extra}]" in done.stderr
+>>>>>>> py
 
 
 SPHERE = """

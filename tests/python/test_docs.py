@@ -108,7 +108,7 @@ def test_every_public_name_is_in_the_reference() -> None:
     listed = set(re.findall(r"^\.\. (?:auto|py:)\w+:: ([\w.]+)$", text, flags=re.MULTILINE))
     public = {f"nacre.{name}" for name in nacre.__all__ if not name.startswith("__")} | {
         f"{module.__name__}.{name}"
-        for module in (nacre.design, nacre.hertz, nacre.indent, nacre.plot)
+        for module in (nacre.design, nacre.hertz, nacre.indent, nacre.plot, nacre.types)
         for name in module.__all__
     }
     assert public - listed == set()

@@ -21,6 +21,7 @@ def public_objects() -> dict[str, Any]:
     """Return classes and functions, methods and attributes, by their full names."""
     found: dict[str, Any] = {}
     named = {name: getattr(nacre, name) for name in nacre.__all__ if not name.startswith("__")}
+    named |= {f"types.{name}": getattr(nacre.types, name) for name in nacre.types.__all__}
     named |= {f"hertz.{name}": getattr(nacre.hertz, name) for name in nacre.hertz.__all__}
     for name, thing in named.items():
         found[name] = thing

@@ -343,7 +343,7 @@ def test_without_contact_there_is_no_traction() -> None:
 
 
 def test_progress_gets_the_step_and_a_report() -> None:
-    told: list[tuple[int, nacre.FrictionReport]] = []
+    told: list[tuple[int, nacre.types.FrictionReport]] = []
     CONTACT.slide(BALL, pulled(1.0, 2.0), **HELD, progress=lambda *got: told.append(got))
     assert [number for number, _ in told] == sorted(number for number, _ in told)
     assert {number for number, _ in told} == {0, 1}
@@ -363,7 +363,7 @@ def test_progress_that_returns_false_stops(no: object) -> None:
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("mine"), KeyboardInterrupt(), SystemExit(3)])
 def test_an_exception_of_progress_carries_the_finished_steps(error: BaseException) -> None:
-    def progress(number: int, report: nacre.FrictionReport) -> None:
+    def progress(number: int, report: nacre.types.FrictionReport) -> None:
         if number == 2:
             raise error
 

@@ -144,10 +144,10 @@ def test_a_wrong_key_is_named(name: str) -> None:
 
 def test_the_reference_has_every_key() -> None:
     told = _reference.text()
-    for head in ("\n[slide]\n", "\n[[slide.steps]]\n", "\n[roll]\n"):
+    for head in ("## `[slide]`\n", "## `[[slide.steps]]`\n", "## `[roll]`\n"):
         assert head in told
     for key in ("friction", "shift", "force", "twist", "torque", "coupling", "creepage", "spin"):
-        assert f"{key}: " in told
+        assert f"- `{key}`: " in told
 
 
 # nacre solve.

@@ -52,7 +52,9 @@ grids = st.builds(
 depths = powers(-7, -4.5)
 
 
-def pressed(shape: nacre.Shape, body: nacre.HalfSpace, **keywords: Any) -> nacre.Solution | None:
+def pressed(
+    shape: nacre.types.Shape, body: nacre.HalfSpace, **keywords: Any
+) -> nacre.Solution | None:
     """Return a converged solution that is in order, or None where nacre refuses with a reason."""
     try:
         solution: nacre.Solution = quiet(nacre.solve, shape, body, threads=1, **keywords)
@@ -71,7 +73,7 @@ def pressed(shape: nacre.Shape, body: nacre.HalfSpace, **keywords: Any) -> nacre
 @fuzz
 @given(shapes, bodies, grids, depths, st.tuples(*[st.floats(-1e-2, 1e-2)] * 2))
 def test_given_grid(
-    shape: nacre.Shape,
+    shape: nacre.types.Shape,
     body: nacre.HalfSpace,
     grid: nacre.Grid,
     depth: float,
@@ -98,7 +100,7 @@ def test_given_grid(
 @fuzz
 @given(shapes, bodies, grids, depths, st.floats(0.0, 0.5), powers(-6, -3))
 def test_stresses_are_finite_and_linear_in_friction(
-    shape: nacre.Shape,
+    shape: nacre.types.Shape,
     body: nacre.HalfSpace,
     grid: nacre.Grid,
     depth: float,
@@ -123,7 +125,7 @@ def test_stresses_are_finite_and_linear_in_friction(
 @given(shapes, bodies, grids, depths)
 def test_files_and_pickles_keep_every_bit(
     tmp_path_factory: pytest.TempPathFactory,
-    shape: nacre.Shape,
+    shape: nacre.types.Shape,
     body: nacre.HalfSpace,
     grid: nacre.Grid,
     depth: float,
@@ -173,6 +175,6 @@ def test_wrong_arguments_are_refused_or_answered(data: st.DataObject) -> None:
     ),
 )
 def test_wrong_keywords_are_refused_or_answered(
-    shape: nacre.Shape, body: nacre.HalfSpace, keywords: dict[str, Any]
+    shape: nacre.types.Shape, body: nacre.HalfSpace, keywords: dict[str, Any]
 ) -> None:
     pressed(shape, body, **({"grid": nacre.Grid((8, 8), (1e-3, 1e-3)), "load": 1.0} | keywords))

@@ -165,7 +165,7 @@ def test_a_stopped_step_can_be_gone_on_with() -> None:
         calls = 0
 
         def progress(
-            step: int, _: nacre.FrictionReport, number: int = number, after: int = after
+            step: int, _: nacre.types.FrictionReport, number: int = number, after: int = after
         ) -> bool:
             nonlocal calls
             calls += step == number

@@ -84,7 +84,7 @@ def test_tips_of_all_kinds(tip: str, adhesion: str, tmp_path: Path) -> None:
             '"cone"\nhalf_angle = 1.0\nslope',
             "exactly one of slope and half_angle",
         ),
-        ("load = [1e-4, 1e-3]", "load = true", "indent.load: must be a finite number, or a list"),
+        ("load = [1e-4, 1e-3]", "load = true", "indent.load: must be a finite number or a list"),
         ("load = [1e-4, 1e-3]", "load = -1.0", "indent: "),
     ],
 )
@@ -147,11 +147,11 @@ def test_a_saved_case_is_loaded(tmp_path: Path, capsys: Capture) -> None:
 def test_the_reference_has_every_tip_and_key() -> None:
     told = _reference.text()
     for kind in ("sphere", "area_function", "berkovich"):
-        assert f'[tip] with kind = "{kind}"' in told
-    assert '[adhesion] with kind = "maugis"' in told
-    assert "work: finite number [N/m]; required" in told
+        assert f'`[tip]` with `kind = "{kind}"`' in told
+    assert '`[adhesion]` with `kind = "maugis"`' in told
+    assert "`work`: finite number [N/m]; required" in told
     assert "half_angle" in told
-    assert "approach: finite number, or a list of at most 10000 of them [m]" in told
+    assert "`approach`: finite number or a list of finite numbers, at most 10000 [m]" in told
     schema = _reference.schema()["$defs"]
     assert {"SphereTip", "JkrAdhesion", "Indent", "IndentCase"} <= schema.keys()
 

@@ -95,29 +95,29 @@ TEXTS: dict[str, tuple[str, str]] = {
         "utf-8",
         "# depth (nm) force (mN) time (s)\n" + rows(DEPTH, FORCE, TIME, mark=" ", form="%.18e"),
     ),
-    "KLA": ("cp1252", kla()),
-    "Hysitron": (
+    "labels and a row of units": ("cp1252", kla()),
+    "columns in volts too": (
         "cp1252",
         "Tuesday, March 3, 2020  14:12:09\n\nNumber of Points = 77\nDepth (nm)\tLoad (µN)"
         "\tTime (s)\tDepth (V)\tLoad (V)\n"
         + rows(DEPTH, 1e3 * FORCE, TIME, 0.01 * DEPTH, 0.1 * FORCE),
     ),
-    "Anton Paar": (
+    "names of its own": (
         "utf-16",
         "Group:\tPolymer 12\nMax load\t2,00 mN\n\nTime [s]\tPd [nm]\tFn [mN]\tRef [nm]\n"
         + rows(TIME, DEPTH, FORCE, 12 + DEPTH, comma=True),
     ),
-    "Micro Materials": (
+    "a mark at the end of lines": (
         "utf-8",
         "NanoTest,4.2\nTemperature (C),23.1\n\nTime (s),Depth (nm),Load (mN),\n"
         + rows(TIME, DEPTH, FORCE, mark=",").replace("\n", ",\n"),
     ),
-    "Fischer": (
+    "letters and slashes": (
         "cp1252",
         "A1.hap\tName of the application\nVickers\nF=10 mN/20 s\n\nF/mN\th/µm\tt/s\n"
         + rows(FORCE, 1e-3 * DEPTH, TIME, comma=True, form="%.9f"),
     ),
-    "Optics11": (
+    "a long head": (
         "utf-8",
         "Date\t10/09/2018\tTime\t15:04:12\tStatus\tDone\nk (N/m)\t0.50\n\nTip radius (um)\t50.0\n"
         "D[Z1] (nm)\t3000\tt[1] (s)\t2\nD[Z2] (nm)\t3000\tt[2] (s)\t2\nD[Z3] (nm)\t0\tt[3] (s)\t2\n"
@@ -133,16 +133,28 @@ TEXTS: dict[str, tuple[str, str]] = {
 }
 
 
+GIVEN: dict[str, dict[str, Any]] = {
+    "csv of a German spreadsheet": {"depth": "Eindringtiefe", "force": "Prüfkraft", "time": "Zeit"},
+    "labels and a row of units": {"depth": "Displacement Into Surface"},
+    "names of its own": {"depth": "Pd", "force": "Fn"},
+}
+"""Columns that are given, since their names are not known or not alone."""
+
+
 @pytest.mark.parametrize("kind", TEXTS)
 def test_an_export_is_read_in_si_units(kind: str, tmp_path: Path) -> None:
     encoding, text = TEXTS[kind]
     path = tmp_path / "A1.txt"
     path.write_bytes(text.encode(encoding))
-    curve = read(path)
+    curve = read(path, **GIVEN.get(kind, {}))
     is_whole(curve)
     assert curve.name == "A1"
     path.write_bytes(text.replace("\n", "\r\n").encode(encoding))
-    assert read(str(path)) == curve
+    assert read(str(path), **GIVEN.get(kind, {})) == curve
+    for name in GIVEN.get(kind, {}).keys() - {"time"}:
+        given = {other: column for other, column in GIVEN[kind].items() if other != name}
+        with pytest.raises(ValueError, match=f"{name} must be given: .* has the columns 0 "):
+            read(path, **given)
 
 
 @pytest.mark.parametrize(
@@ -199,85 +211,18 @@ def test_a_unit_is_a_length_a_force_or_a_time(name: str, expected: Any) -> None:
     assert _text.unit_of(name) == expected
 
 
-# A cantilever of 0.4 N/m comes down to a surface at 3 µm, presses 200 nm deep, and goes back.
-SPRING = 0.4
-SURFACE = 3e-6
-
-
-def jpk(columns: str, *, sign: float = 1.0, units: str = "m N s s", index: int = 0) -> str:
-    """Return JPK's export of an approach and a retract; forces are a millionth of `whole`'s."""
-    away = -np.linspace(1e-6, 10e-9, 30)
-    zero = np.zeros(30)
-    depths = (1e-9 * DEPTH[:POINTS], 1e-9 * DEPTH[POINTS:])
-    forces = (1e-9 * FORCE[:POINTS], 1e-9 * FORCE[POINTS:])
-    segments = {
-        "extend": (np.concatenate([away, depths[0]]), np.concatenate([zero, forces[0]])),
-        "retract": (np.concatenate([depths[1], away[::-1]]), np.concatenate([forces[1], zero])),
-    }
-    text = "# TEXT EXPORT\n# data-description.name: A1\n"
-    for number, (name, (depth, force)) in enumerate(segments.items()):
-        time = 1e-3 * np.arange(depth.size)
-        values: dict[str, Any] = {
-            "verticalTipPosition": SURFACE - depth,
-            "vDeflection": sign * force,
-            "smoothedMeasuredHeight": SURFACE - depth - force / SPRING,
-            "seriesTime": number + time,
-            "time": time,
-        }
-        text += (
-            f"#\n# index: {index}\n# segmentIndex: {number}\n# segment: {name}\n"
-            f"# columns: {columns}\n# springConstant: {SPRING}\n# units: {units}\n#\n"
-            + rows(*[values[column] for column in columns.split()], mark=" ", form="%.12E")
-            + "\n"
-        )
-    return text
-
-
-TIP = "verticalTipPosition vDeflection seriesTime time"
-HEIGHT = "smoothedMeasuredHeight vDeflection seriesTime time"
-
-
-def is_pressed(curve: Curve) -> None:
-    """Check the 41 points in contact of the approach."""
-    depth, force = curve.depth[30:71] + SURFACE, curve.force[30:71]
-    # Twelve digits of 3 µm, and of the difference of two of them.
-    np.testing.assert_allclose(depth, 1e-9 * DEPTH[:POINTS], rtol=0, atol=1e-17)
-    np.testing.assert_allclose(force, 1e-9 * FORCE[:POINTS], rtol=1e-12, atol=0)
-
-
-@pytest.mark.parametrize("columns", [TIP, HEIGHT])
-def test_segments_of_jpk_are_joined_or_chosen(columns: str, tmp_path: Path) -> None:
+def test_tables_are_chosen_by_number(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
-    path.write_text(jpk(columns))
-    joined = read(path)
-    assert (joined.name, len(joined)) == ("a", 71 + 66)
-    is_pressed(joined)
-    assert joined.time is not None
-    assert joined.time[71] == 1.0
-    assert (np.diff(joined.time) > 0).all()
-    extend, retract = read(path, segment="all")
-    assert (extend.name, retract.name) == ("a extend", "a retract")
-    assert read(path, segment="extend") == read(path, segment=0) == extend
-    np.testing.assert_array_equal(joined.depth[71:], retract.depth)
-    again = read(path, time="time").time
-    assert again is not None
-    assert again[71] == again[70]  # goes on after the approach
-
-
-def test_a_force_of_the_wrong_sign_is_turned(tmp_path: Path) -> None:
-    path = tmp_path / "a.txt"
-    path.write_text(jpk(HEIGHT, sign=-1.0))
-    with pytest.warns(
-        nacre.NacreWarning, match=r"'vDeflection \(N\)' of '.*a.txt' falls to -1.131e-09 N"
-    ):
-        turned = read(path)
-    is_pressed(turned)
-    assert read(path, force="-vDeflection") == turned
-    assert read(path, force="vDeflection", depth="-smoothedMeasuredHeight").force.max() == 0
-    path.write_text(jpk(TIP, sign=-1.0))
-    with pytest.warns(nacre.NacreWarning, match="its sign was changed") as caught:
-        is_pressed(read(path))
-    assert caught[0].filename == __file__
+    head = "Depth (nm)\tLoad (mN)\n"
+    up, down = slice(0, POINTS), slice(POINTS, None)
+    parts = [head + rows(DEPTH[part], FORCE[part]) for part in (up, down)]
+    path.write_text("\n".join(parts))
+    loading, unloading = read(path, segment="all")
+    assert (loading.name, unloading.name) == ("a 0", "a 1")
+    assert read(path, segment=0) == loading
+    assert read(path, segment=1) == unloading
+    np.testing.assert_allclose(loading.depth, 1e-9 * DEPTH[up], rtol=ROUNDING)
+    np.testing.assert_allclose(unloading.force, 1e-3 * FORCE[down], rtol=ROUNDING)
 
 
 def test_a_time_that_falls_is_left_out(tmp_path: Path) -> None:
@@ -300,7 +245,7 @@ def test_columns_are_chosen_by_name_or_number(tmp_path: Path) -> None:
     given = read(path, depth=0, force=1, units={"depth": "µm", "force": "N"})
     np.testing.assert_allclose(given.depth, 1e-6 * DEPTH, rtol=ROUNDING)
     np.testing.assert_allclose(given.force, FORCE, rtol=ROUNDING)
-    path.write_text(rows(TIME, DEPTH, FORCE))  # as Micro Materials' text has it
+    path.write_text(rows(TIME, DEPTH, FORCE))
     is_whole(read(path, depth=1, force=2, time=0, units={"depth": "nm", "force": "mN"}))
 
 
@@ -419,7 +364,6 @@ TWO = "Depth (nm)\tLoad (mN)\n1\t1\n2\t2\n3\t3\n"
             "segment must be given: .* 2 tables, 0 .3 rows from line 2., 1 .3 rows from l",
         ),
         (TWO, {"segment": 1}, "segment must be one of the file's, got 1: .* has 1 tables"),
-        (TWO, {"segment": "extend"}, "segment must be one of the file's, got 'extend'"),
         (TWO, {"depth": "height"}, "depth must name one column, got 'height': .* 0 'Depth .nm.'"),
         (TWO, {"depth": 2}, "depth must name one column, got 2"),
         (TWO, {"depth": 1}, "depth must have a unit of length, got 'mN' for 'Load .mN.'"),
@@ -432,20 +376,6 @@ TWO = "Depth (nm)\tLoad (mN)\n1\t1\n2\t2\n3\t3\n"
         (TWO, {"delimiter": ";"}, "found none with ';' between"),
         (TWO, {"encoding": "latin-99"}, "encoding must suit '.*a.txt', got 'latin-99'"),
         ("\x00\x01\x02PK", {}, "must be text, got binary data"),
-        (
-            jpk("smoothedMeasuredHeight vDeflection", units="m V"),
-            {},
-            r"force must be given: .* 0 'smoothedMeasuredHeight \(m\)', 1 'vDeflection \(V\)'",
-        ),
-        (
-            jpk("smoothedMeasuredHeight vDeflection", units="m N").replace(
-                "# springConstant", "# x"
-            ),
-            {},
-            "depth must be given: 'smoothedMeasuredHeight .m.' of .* is the position of the cantil",
-        ),
-        (jpk(TIP) + jpk(TIP, index=1), {}, "segment must be given: .* 4 tables, extend .71 rows"),
-        (jpk(TIP) + jpk(TIP, index=1), {"segment": "extend"}, "segment must be one of the file's"),
     ],
 )
 def test_what_is_not_recognised_is_an_error_that_says_what_to_give(
@@ -461,8 +391,9 @@ def test_a_keyword_of_the_wrong_type_and_a_missing_file_are_named(tmp_path: Path
     path.write_text(TWO)
     with pytest.raises(TypeError, match=r"units must be a dict such as .*, got 'nm'"):
         read(path, units="nm")  # type: ignore[call-overload]
-    with pytest.raises(TypeError, match="segment must be a number or a name, got True"):
-        read(path, segment=True)
+    for wrong in (True, "extend"):
+        with pytest.raises(TypeError, match=f"segment must be a number or 'all', got {wrong!r}"):
+            read(path, segment=wrong)  # type: ignore[arg-type]
     with pytest.raises(
         TypeError, match=r"depth must be the name or the number of a column, got 1.0"
     ):

@@ -52,12 +52,12 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[type, ...], Callable[..., A
         lambda **k: SOLUTION.stress_summary(**k),
     ),
     "StressPlan.stress": (
-        nacre.StressPlan.stress,
+        nacre.types.StressPlan.stress,
         (_keywords.Section,),
         lambda **k: PLAN.stress(0.0, **k),
     ),
     "StressPlan.summary": (
-        nacre.StressPlan.summary,
+        nacre.types.StressPlan.summary,
         (_keywords.Strengths,),
         lambda **k: PLAN.summary(**k),
     ),
@@ -99,13 +99,8 @@ def test_case_files_know_the_keywords_of_a_solve() -> None:
     assert set(_schema.Solve.model_fields) == keywords(nacre.solve) - OBJECTS
 
 
-def shapes() -> dict[str, type[nacre.Shape]]:
-    found = {name: getattr(nacre, name) for name in nacre.__all__}
-    return {
-        name: kind
-        for name, kind in found.items()
-        if isinstance(kind, type) and issubclass(kind, nacre.Shape) and kind is not nacre.Shape
-    }
+def shapes() -> dict[str, type[nacre.types.Shape]]:
+    return {kind.__name__: kind for kind in nacre.types.Shape.__subclasses__()}
 
 
 KINDS = {kind.__name__: kind for kind in values.FIELDS}
@@ -139,7 +134,8 @@ def test_a_study_knows_every_argument_of_an_indentation() -> None:
 
 
 def test_the_public_names_are_those_of_the_stub() -> None:
-    assert set(nacre.__all__) == {*nacre._core.__all__, "display_units", "load", "sweep"}
+    named = {*nacre.__all__, *nacre.types.__all__}
+    assert named == {*nacre._core.__all__, "display_units", "load", "sweep"}
     assert not [name for name in nacre._core.__all__ if name.startswith("_") and "__" not in name]
 
 

@@ -1,9 +1,10 @@
-"""`nacre.paper` draws and writes what nacre solves, on the grids of a first look."""
+"""`examples/paper` draws and writes what nacre solves, on the grids of a first look."""
 
 from __future__ import annotations
 
 import csv
-import errno
+import subprocess
+import sys
 import types
 from pathlib import Path
 from typing import Any, cast
@@ -12,8 +13,8 @@ import numpy as np
 import pytest
 
 import nacre
-import nacre.paper
-from nacre.paper import cases, evaluation, figures
+import paper
+from paper import cases, evaluation, figures
 
 COARSE = 0.005  # error of the coarse grids in pressure, relative
 NAMES = {"table.csv"} | {f"figure{k}.{kind}" for k in range(1, 8) for kind in ("png", "csv")}
@@ -25,9 +26,9 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def results(out: Path) -> list[nacre.paper.Result]:
+def results(out: Path) -> list[paper.Result]:
     calls: list[tuple[int, int]] = []
-    results = nacre.paper.run(out, quick=True, progress=lambda *call: calls.append(call))
+    results = paper.run(out, quick=True, progress=lambda *call: calls.append(call))
     assert calls == [(done, 25) for done in range(1, 26)]
     return results
 
@@ -41,7 +42,7 @@ def column(rows: list[dict[str, str]], name: str) -> np.ndarray[Any, np.dtype[np
     return np.array([float(row[name]) for row in rows])
 
 
-def test_every_file_is_there_and_nothing_else(results: list[nacre.paper.Result], out: Path) -> None:
+def test_every_file_is_there_and_nothing_else(results: list[paper.Result], out: Path) -> None:
     assert {path.name for path in out.iterdir()} == NAMES
     for path in out.glob("*.png"):
         start = path.read_bytes()[:24]
@@ -49,7 +50,7 @@ def test_every_file_is_there_and_nothing_else(results: list[nacre.paper.Result],
         assert int.from_bytes(start[16:20], "big") == int(18 / 2.54 * 300)  # 18 cm at 300 dpi
 
 
-def test_table_holds_what_nacre_solves(results: list[nacre.paper.Result], out: Path) -> None:
+def test_table_holds_what_nacre_solves(results: list[paper.Result], out: Path) -> None:
     rows = read(out / "table.csv")
     assert len(rows) == 25
     row = next(
@@ -83,21 +84,21 @@ def test_table_holds_what_nacre_solves(results: list[nacre.paper.Result], out: P
     )
 
 
-def test_roller_of_one_material_is_the_known_one(results: list[nacre.paper.Result]) -> None:
+def test_roller_of_one_material_is_the_known_one(results: list[paper.Result]) -> None:
     for series in cases.CENTRED:
-        result = next(r for r in nacre.paper.of_series(results, series) if r.ratio == 1)
+        result = next(r for r in paper.of_series(results, series) if r.ratio == 1)
         solution = result.solution
         assert solution.central_pressure == pytest.approx(774e6, rel=COARSE)
         assert solution.peak_pressure == pytest.approx(822e6, rel=COARSE)
         assert solution.approach == pytest.approx(0.878e-6, rel=COARSE)
         assert result.half_width == pytest.approx(0.0335e-3, rel=COARSE)
     for series in cases.ECCENTRIC:
-        result = next(r for r in nacre.paper.of_series(results, series) if r.ratio == 1)
+        result = next(r for r in paper.of_series(results, series) if r.ratio == 1)
         assert result.solution.peak_pressure == pytest.approx(985e6, rel=COARSE)
         assert result.solution.tilt[0] == pytest.approx(3.40e-5, rel=COARSE)
 
 
-def test_no_contact_needs_a_warning(results: list[nacre.paper.Result]) -> None:
+def test_no_contact_needs_a_warning(results: list[paper.Result]) -> None:
     assert [result.solution.report.warnings for result in results] == 25 * [[]]
 
 
@@ -108,7 +109,7 @@ def test_grids_are_as_fine_as_promised() -> None:
 
 
 def test_sphere_figure_shows_computed_and_reference_values(
-    results: list[nacre.paper.Result], out: Path
+    results: list[paper.Result], out: Path
 ) -> None:
     rows = [row for row in read(out / "figure1.csv") if row["E1/E2"] == "4"]
     computed = [row for row in rows if row["source"] == "computed"]
@@ -126,7 +127,7 @@ def test_sphere_figure_shows_computed_and_reference_values(
     [(2, {"x"}, cases.CENTRED), (3, {"y"}, cases.CENTRED), (5, {"x", "y"}, cases.ECCENTRIC)],
 )
 def test_profiles_are_those_of_the_solutions(
-    results: list[nacre.paper.Result],
+    results: list[paper.Result],
     out: Path,
     figure: int,
     axes: set[str],
@@ -136,7 +137,7 @@ def test_profiles_are_those_of_the_solutions(
     assert {row["along"] for row in rows} == axes
     assert {row["E1/E2"] for row in rows} == {"0.25", "0.5", "1", "2", "4"}
     for one in series:
-        result = nacre.paper.of_series(results, one)[3]
+        result = paper.of_series(results, one)[3]
         for axis in axes:
             key = (axis, f"{1e3 * one.thickness:.9g}", "2")
             drawn = [r for r in rows if (r["along"], r["h [mm]"], r["E1/E2"]) == key]
@@ -148,7 +149,7 @@ def test_profiles_are_those_of_the_solutions(
 
 @pytest.mark.parametrize(("figure", "series"), [(4, cases.CENTRED[0]), (6, cases.ECCENTRIC[0])])
 def test_surface_carries_the_load(
-    results: list[nacre.paper.Result], out: Path, figure: int, series: cases.Series
+    results: list[paper.Result], out: Path, figure: int, series: cases.Series
 ) -> None:
     rows = read(out / f"figure{figure}.csv")
     shape = (-1, 81)
@@ -164,7 +165,7 @@ def test_surface_carries_the_load(
 
 
 def test_one_figure_is_that_of_all_and_others_are_refused(
-    results: list[nacre.paper.Result],
+    results: list[paper.Result],
 ) -> None:
     one, all_of_them = figures.figure(3, results), figures.draw(results)
     assert (one.header, one.rows) == (all_of_them[2].header, all_of_them[2].rows)
@@ -179,13 +180,13 @@ def test_reference_values_are_hertz_where_coating_is_substrate() -> None:
 
 
 def test_deviations_are_small_and_those_of_a_wrong_solution_are_not(
-    results: list[nacre.paper.Result],
+    results: list[paper.Result],
 ) -> None:
     for deviation in evaluation.deviations(results):
         assert abs(deviation.peak) < COARSE
         assert abs(deviation.approach) < 1e-3
         assert deviation.pressure < 0.05  # the steep edge, on few cells
-    sphere = nacre.paper.of_series(results, cases.SPHERE)
+    sphere = paper.of_series(results, cases.SPHERE)
     wrong = [cases.Result(cases.SPHERE, r.ratio, sphere[0].solution) for r in sphere]
     assert abs(evaluation.deviations(wrong)[-1].peak) > 0.5
 
@@ -215,7 +216,7 @@ def test_half_width_of_a_hertzian_line_is_exact_whatever_its_outermost_cell() ->
     assert cases.half_width(y, pressure) == pytest.approx(0.77, rel=1e-12)
 
 
-def test_free_ends_are_drawn(results: list[nacre.paper.Result], out: Path) -> None:
+def test_free_ends_are_drawn(results: list[paper.Result], out: Path) -> None:
     rows = read(out / "figure7.csv")
     series = {(row["roller"], row["load"], row["bodies"]) for row in rows}
     assert len(series) == 12
@@ -233,8 +234,8 @@ def test_free_ends_are_drawn(results: list[nacre.paper.Result], out: Path) -> No
     assert half_space[0] > 1.4 * free[0] > 1.5 * free[middle]
 
 
-def test_note_says_why_there_are_two_thicknesses(results: list[nacre.paper.Result]) -> None:
-    note = nacre.paper.thickness_note(results).replace("\u00a0", " ")
+def test_note_says_why_there_are_two_thicknesses(results: list[paper.Result]) -> None:
+    note = paper.thickness_note(results).replace("\u00a0", " ")
     assert "0.0335 mm" in note or "0.0336 mm" in note
     assert "about 35 kN" in note or "about 36 kN" in note
 
@@ -242,7 +243,7 @@ def test_note_says_why_there_are_two_thicknesses(results: list[nacre.paper.Resul
 def test_a_file_in_place_of_the_directory_is_refused_before_solving(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(FileExistsError):
-        nacre.paper.run(tmp_path / "file", progress=lambda done, total: pytest.fail("solved"))
+        paper.run(tmp_path / "file", progress=lambda done, total: pytest.fail("solved"))
 
 
 def test_an_exception_of_the_callback_ends_the_run_and_leaves_no_files(tmp_path: Path) -> None:
@@ -253,26 +254,37 @@ def test_an_exception_of_the_callback_ends_the_run_and_leaves_no_files(tmp_path:
         raise Enough
 
     with pytest.raises(Enough):
-        nacre.paper.run(tmp_path, quick=True, progress=stop)
+        paper.run(tmp_path, quick=True, progress=stop)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_file_is_written_whole_or_not_at_all(
+def test_a_solve_that_does_not_converge_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "table.csv"
-    path.write_bytes(b"old")
+    class Contact:
+        def __init__(self, *arguments: object, **options: object) -> None: ...
 
-    def full(self: Path, content: bytes) -> int:
-        with self.open("wb") as file:
-            file.write(content[:1])
-        raise OSError(errno.ENOSPC, "No space left on device")
+        def solve(self, *arguments: object, **options: object) -> None:
+            raise nacre.ConvergenceError("residual 1e-3 after 9 iterations")
 
-    with monkeypatch.context() as patch:
-        patch.setattr(Path, "write_bytes", full)
-        with pytest.raises(OSError, match="No space"):
-            nacre.paper._write(path, b"new")
-    assert path.read_bytes() == b"old"
-    assert list(tmp_path.iterdir()) == [path]
-    nacre.paper._write(path, b"new")
-    assert path.read_bytes() == b"new"
+    monkeypatch.setattr(nacre, "Contact", Contact)
+    with pytest.raises(nacre.ConvergenceError) as error:
+        paper.run(tmp_path)
+    assert error.value.__notes__[0].startswith("sphere, h = 0.1 mm, E1/E2 = ")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_demo_prints_table_claim_and_reference(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "paper", "--quick", "--out", str(tmp_path)]
+    folder = Path(paper.__file__).parents[1]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert max(map(len, done.stdout.splitlines())) <= 80 + len(str(tmp_path))
+    for series in cases.SERIES:
+        assert series.title in done.stdout
+    rows = [line.split() for line in done.stdout.splitlines()]
+    peaks = [row[1] for row in rows if row[:1] == ["1"] and len(row) == 12]
+    assert peaks == ["1468", "823", "986", "823", "986"]  # MPa, E1 = E2
+    assert "holds" in done.stdout
+    assert "Largest deviations" in done.stdout
+    assert {path.name for path in tmp_path.iterdir()} == NAMES

@@ -293,7 +293,7 @@ def test_names_of_layers_are_keys_and_are_shown() -> None:
     )
     assert named == numbered
     assert [layer.name for layer in named.layers] == ["TiN", None, "TiN", "CrN", None]
-    assert nacre.StressSummary.from_dict(named.to_dict()) == named
+    assert nacre.types.StressSummary.from_dict(named.to_dict()) == named
     rows = [line.split("  ")[0] for line in str(named).splitlines()]
     assert "layers[0] TiN, 0 m to 2 µm" in rows
     assert "layers[1], 2 µm to 3 µm" in rows

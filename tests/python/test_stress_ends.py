@@ -88,7 +88,9 @@ def test_stresses_with_places_beyond_an_end_are_equal_to_their_copies(
     solution: nacre.Solution,
 ) -> None:
     field = solution.stress([1e-5, 2e-5], displacement=True)
-    assert field == pickle.loads(pickle.dumps(field)) == nacre.Stress.from_dict(field.to_dict())
+    assert (
+        field == pickle.loads(pickle.dumps(field)) == nacre.types.Stress.from_dict(field.to_dict())
+    )
     assert field == solution.stress_plan().stress([1e-5, 2e-5], displacement=True)
     assert field != solution.stress([1e-5, 3e-5], displacement=True)
     assert field != solution.stress([1e-5, 2e-5], body="counterbody", displacement=True)

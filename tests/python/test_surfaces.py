@@ -152,22 +152,17 @@ def test_a_text_file_without_sizes_takes_a_spacing(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore:Could not import mpi4py:ImportWarning")
 @pytest.mark.parametrize(
-    ("name", "content", "expected"),
+    ("name", "content"),
     [
-        ("a.gwx", b"\0\1\2", "Gwyddion (.gwy)"),
-        ("b.bin", b"GWYP\0\1", "Gwyddion (.gwy)"),
-        ("c.txt", b"nothing that an instrument writes\n", "Plain text (.txt, .asc, .dat)"),
+        ("a.gwx", b"\0\1\2"),
+        ("b.bin", b"GWYP\0\1"),
+        ("c.txt", b"nothing that an instrument writes\n"),
     ],
 )
-def test_an_unknown_file_names_the_likeliest_readers(
-    name: str, content: bytes, expected: str, tmp_path: Path
-) -> None:
+def test_an_unknown_file_is_refused(name: str, content: bytes, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(ValueError, match=f"{name}' has no format .*the likeliest are ") as caught:
+    with pytest.raises(ValueError, match=f"{name}' has no format that SurfaceTopography reads; "):
         nacre.HeightMap.read(tmp_path / name)
-    named = str(caught.value).partition("likeliest are ")[2].partition(". nacre")[0]
-    assert named.count("(.") == 3
-    assert expected in named
 
 
 def test_an_export_of_an_instrument_is_transposed_on_request(tmp_path: Path) -> None:

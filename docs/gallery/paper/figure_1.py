@@ -8,8 +8,8 @@ from the :ref:`Fredholm equation <sphere-by-fredholm>` of the axisymmetric probl
 digits.
 """
 
-from nacre import paper
-from nacre.paper import figures
+import paper
+from paper import figures
 
 results = paper.solve()
 drawing = figures.figure(1, results)

@@ -7,8 +7,8 @@ crowned part begins, the curvature of the profile jumps, and the pressure rises 
 riser.
 """
 
-from nacre import paper
-from nacre.paper import figures
+import paper
+from paper import figures
 
 results = paper.solve()
 drawing = figures.figure(2, results)

@@ -6,7 +6,7 @@ Sections across the middle of the roller, for the contacts of :doc:`figure 2 <fi
 coating carries the load on a narrow strip, a soft coating on a wide one.
 """
 
-from nacre import paper
-from nacre.paper import figures
+import paper
+from paper import figures
 
 drawing = figures.figure(3, paper.solve())

@@ -7,8 +7,8 @@ its axis. The sections are along and across the axis, for two thicknesses of the
 pressure increases towards the load, most with a stiff coating as thick as the contact is wide.
 """
 
-from nacre import paper
-from nacre.paper import figures
+import paper
+from paper import figures
 
 results = paper.solve()
 drawing = figures.figure(5, results)

@@ -6,7 +6,7 @@ Equal coating and substrate, with the load at 0.3 of the half-length of the stra
 on the loaded side increases, and the other one decreases.
 """
 
-from nacre import paper
-from nacre.paper import figures
+import paper
+from paper import figures
 
 drawing = figures.figure(6, paper.solve())

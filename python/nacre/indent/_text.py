@@ -67,8 +67,6 @@ class Column(NamedTuple):
     """Name without the unit."""
     unit: str | None
     """Unit: in a name one of length, force or time, in a row of units any."""
-    also: str = ""
-    """Second name that the file gives."""
 
 
 @dataclass
@@ -83,8 +81,6 @@ class Table:
     """Line of each row in the file, from 1."""
     columns: list[Column] = field(default_factory=list)
     """Headings; those that the file does not give are empty."""
-    said: dict[str, str] = field(default_factory=dict)
-    """Comments ``# name: value`` above the table, names in small letters."""
     decimal: str = "."
     """Decimal mark."""
     above: str = ""
@@ -216,7 +212,6 @@ def _delimiter(lines: Sequence[str], decimal: str | None) -> str:
 
 def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Table, list[str]]]:
     """Yield the tables, and the lines above each, the nearest first."""
-    said: dict[str, str] = {}
     above: list[str] = []
     run: Table | None = None
     for number, line in enumerate(lines, 1):
@@ -235,7 +230,6 @@ def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Ta
             run.rows.append(fields)
             run.lines.append(number)
             if len(run.rows) == LEAST_ROWS:
-                run.said = dict(said)
                 yield run, above[: 1 - LEAST_ROWS][::-1]
                 above = []
             elif len(run.rows) < LEAST_ROWS:
@@ -249,12 +243,7 @@ def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Ta
                     f"{str(path)!r} must hold numbers in each row, line {number} has {shown[:60]!r}"
                 )
         run = None
-        if line.startswith(("#", "%")):
-            line = line.lstrip("#% ")
-            name, colon, value = line.partition(":")
-            if colon:
-                said[name.strip().lower()] = value.strip()
-        above.append(line)
+        above.append(line.lstrip("#% ") if line.startswith(("#", "%")) else line)
 
 
 def _decimal(path: Path, table: Table) -> str:
@@ -286,16 +275,6 @@ def _decimal(path: Path, table: Table) -> str:
 def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]:
     """Return the columns of a table by the lines above it, the nearest first."""
     empty = [Column("", "", None)] * table.width
-    names = table.said.get("columns", "").split()
-    if len(names) == table.width:
-        units: Sequence[str | None] = table.said.get("units", "").split()
-        also = re.findall(r'"([^"]*)"', table.said.get("fancynames", ""))
-        units = units if len(units) == table.width else [None] * table.width
-        also = also if len(also) == table.width else [""] * table.width
-        return [
-            Column(f"{name} ({unit})" if unit else name, name, unit, other)
-            for name, unit, other in zip(names, units, also, strict=True)
-        ]
     said = [
         line
         for line in above[: 2 * HEAD]

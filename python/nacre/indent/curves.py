@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal, TypedDict, Unpack, overload
 import numpy as np
 import numpy.typing as npt
 
-from nacre.indent._columns import checked_units, chosen_segments, quantities, title
+from nacre.indent._columns import checked_units, chosen_tables, quantities
 from nacre.indent._text import tables
 from nacre.units import written
 
@@ -251,12 +251,12 @@ class _Options(TypedDict, total=False):
 
 
 @overload
-def read(  # type: ignore[overload-overlap]  # no table has the name "all"
+def read(
     path: str | os.PathLike[str], *, segment: Literal["all"], **options: Unpack[_Options]
 ) -> list[Curve]: ...
 @overload
 def read(
-    path: str | os.PathLike[str], *, segment: int | str | None = None, **options: Unpack[_Options]
+    path: str | os.PathLike[str], *, segment: int | None = None, **options: Unpack[_Options]
 ) -> Curve: ...
 def read(
     path: str | os.PathLike[str],
@@ -267,13 +267,14 @@ def read(
     units: Mapping[str, str] | None = None,
     decimal: str | None = None,
     delimiter: str | None = None,
-    segment: int | str | None = None,
+    segment: int | Literal["all"] | None = None,
     encoding: str | None = None,
 ) -> Curve | list[Curve]:
     r"""Read an indentation curve from a text file, such as instruments export, in SI units.
 
     Lines above the table, names and units of columns, delimiter, decimal mark and encoding are
-    found from the file. What cannot be found is an error that says which keyword is needed.
+    found from the file. Columns are known by common names with units, such as depth, displacement,
+    force, load and time. For others, the error lists the columns and names the keyword.
 
     Parameters
     ----------
@@ -289,9 +290,8 @@ def read(
         Decimal mark, "." or ",".
     delimiter : str, optional
         Mark between fields; " " is any white space.
-    segment : int or str, optional
-        Table to read where the file holds several: its number from 0, the name that the file gives
-        it, such as "extend", or "all". Segments of one curve are joined if none is given.
+    segment : int or "all", optional
+        Table to read where the file holds several: its number from 0, or all of them.
     encoding : str, optional
         Encoding, by a name that Python knows.
 
@@ -312,20 +312,18 @@ def read(
     Warns
     -----
     NacreWarning
-        If the force is most negative where the depth is greatest, and its sign was changed; or if
-        a time that was not asked for falls, and was left out.
+        If a time that was not asked for falls, and was left out.
 
     Notes
     -----
-    A distance between tip and sample (JPK's "Vertical Tip Position") becomes a depth by a change of
-    sign. So does the height of a cantilever, less its deflection force/springConstant, if the head
-    of the file has that constant. Their zeros are the instrument's, see `contact_point`.
+    Signs and zeros are the file's: a column that falls as the tip goes in, or a force that is
+    negative in compression, needs a minus before its name. For the zero see `contact_point`.
 
     Examples
     --------
     >>> import tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "A1.txt"
-    >>> text = "Pd [nm];Fn [mN]\n0,0;0,0\n10,5;0,25\n20,0;0,75\n"
+    >>> text = "Depth [nm];Load [mN]\n0,0;0,0\n10,5;0,25\n20,0;0,75\n"
     >>> _ = path.write_text(text, encoding="utf-8")
     >>> curve = nacre.indent.read(path)
     >>> curve
@@ -345,10 +343,9 @@ def read(
     where = repr(str(path))
     found = tables(path, delimiter, decimal, encoding)
     curves = []
-    for group in chosen_segments(where, found, segment):
-        depths, forces, times = quantities(where, group, asked, units)
-        whole = len(found) == len(group)
-        name = path.stem if whole else f"{path.stem} {title(found, group[0])}"
+    for number, table in chosen_tables(where, found, segment).items():
+        depths, forces, times = quantities(where, table, asked, units)
+        name = path.stem if len(found) == 1 else f"{path.stem} {number}"
         try:
             curves.append(Curve(depths, forces, time=times, name=name))
         except ValueError as error:

@@ -6,11 +6,11 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
+from pathlib import Path
 
 import numpy as np
 
-from nacre.paper.cases import (
+from paper.cases import (
     CENTRED,
     HERTZ_APPROACH,
     HERTZ_PRESSURE,
@@ -74,7 +74,7 @@ class Reference:
 @cache
 def references() -> list[Reference]:
     """Return the reference values of the coated sphere, from soft to stiff."""
-    text = resources.files("nacre").joinpath("data", "sphere_coated.json").read_text()
+    text = Path(__file__).with_name("sphere_coated.json").read_text()
     return [
         Reference(
             case["E1_over_E2"],

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 import nacre
-from nacre.paper.cases import CROWN_RADIUS, HALF_FLAT, ROLLER_LOAD, ROLLER_RADIUS, SUBSTRATE, Array
-from nacre.paper.figures import Drawing, Row, finish, rows_of
 from nacre.plot.style import WIDTH, styled
+from paper.cases import CROWN_RADIUS, HALF_FLAT, ROLLER_LOAD, ROLLER_RADIUS, SUBSTRATE, Array
+from paper.figures import Drawing, Row, finish, rows_of
 
 LENGTH = 2 * HALF_FLAT
 MODULUS = SUBSTRATE.plane_strain_modulus / 2
@@ -63,7 +63,7 @@ class FiniteResult:
 
 
 def solve(
-    *, quick: bool = False, progress: Callable[[nacre.Report], object] | None = None
+    *, quick: bool = False, progress: Callable[[nacre.types.Report], object] | None = None
 ) -> list[FiniteResult]:
     """Solve the paper's roller with three profiles, centred and off centre, with and without ends.
 

@@ -1,7 +1,7 @@
 """The cases and figures of Spinu et al.: a coated sphere and a coated roller of finite length.
 
-``nacre paper`` runs this. From Python, ``nacre.paper.run("out")`` solves every case and writes
-table and figures; ``nacre.paper.solve()`` only solves.
+``python -m paper`` in the folder of examples solves all of them, prints a table, and writes the
+figures and all numbers. From Python, `run` does so, and `solve` only solves.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from nacre.paper.cases import (
+from paper import figures, finite
+from paper.cases import (
     CENTRED,
     ECCENTRIC,
     PROBLEM,
@@ -24,7 +25,7 @@ from nacre.paper.cases import (
     of_series,
     solve,
 )
-from nacre.paper.evaluation import claims, deviations, table, thickness_note
+from paper.evaluation import claims, deviations, table, thickness_note
 
 __all__ = [
     "CENTRED",
@@ -37,7 +38,6 @@ __all__ = [
     "Series",
     "claims",
     "deviations",
-    "make_directory",
     "of_series",
     "run",
     "solve",
@@ -72,20 +72,12 @@ def run(
     Raises
     ------
     OSError
-        Where `out` cannot be written to; this is tried before solving.
-    ModuleNotFoundError
-        Where matplotlib is missing.
+        Where `out` cannot be made; this is tried before solving.
     nacre.ConvergenceError
         Where a solve does not converge.
     """
-    try:
-        from nacre.paper import figures, finite
-    except ModuleNotFoundError as missing:
-        message = f"figures need {missing.name}: pip install 'nacre-contact[plot]'"
-        raise ModuleNotFoundError(message, name=missing.name) from missing
-
     out = Path(out)
-    make_directory(out)
+    out.mkdir(parents=True, exist_ok=True)
     results = solve(threads=threads, quick=quick, progress=progress)
     files = {"table.csv": _csv(*table(results))}
     drawings = [*figures.draw(results), finite.draw(finite.solve(quick=quick))]
@@ -93,31 +85,8 @@ def run(
         files[f"figure{number}.png"] = drawing.png
         files[f"figure{number}.csv"] = _csv(drawing.header, drawing.rows)
     for name, content in files.items():
-        _write(out / name, content)
+        (out / name).write_bytes(content)
     return results
-
-
-def make_directory(out: Path) -> None:
-    """Make the directory `out` if it does not exist.
-
-    Raises
-    ------
-    OSError
-        Where that, or writing into it, cannot be done.
-    """
-    out.mkdir(parents=True, exist_ok=True)
-    _write(out / "table.csv", None)
-
-
-def _write(path: Path, content: bytes | None) -> None:
-    """Write a file whole or not at all; without content only check that it can be written."""
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        part.write_bytes(content or b"")
-        if content is not None:
-            part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _csv(header: Sequence[str], rows: Iterable[Sequence[str | float]]) -> bytes:

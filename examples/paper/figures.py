@@ -15,7 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from nacre.paper.cases import (
+from nacre.plot.style import WIDTH, styled
+from paper.cases import (
     CENTRED,
     ECCENTRIC,
     HALF_FLAT,
@@ -27,8 +28,7 @@ from nacre.paper.cases import (
     half_width,
     of_series,
 )
-from nacre.paper.evaluation import references, sphere_profile, thickness_note
-from nacre.plot.style import WIDTH, styled
+from paper.evaluation import references, sphere_profile, thickness_note
 
 # Colours of the palette of Okabe and Ito: soft coatings cold, stiff ones warm.
 COLOURS = ("#0072B2", "#56B4E9", "#000000", "#E69F00", "#D55E00")

@@ -1,0 +1,35 @@
+"""Classes that a program names in annotations alone: nacre makes their instances."""
+
+from nacre._core import (
+    CreepCoefficients,
+    Direction,
+    FrictionReport,
+    FrictionSolution,
+    Gradient,
+    InterfaceStress,
+    LayerStress,
+    Report,
+    Shape,
+    Stress,
+    StressPlan,
+    StressSummary,
+)
+
+__all__ = [
+    "CreepCoefficients",
+    "Direction",
+    "FrictionReport",
+    "FrictionSolution",
+    "Gradient",
+    "InterfaceStress",
+    "LayerStress",
+    "Report",
+    "Shape",
+    "Stress",
+    "StressPlan",
+    "StressSummary",
+]
+
+# Pickles and the documentation find them here.
+for _name in __all__:
+    globals()[_name].__module__ = __name__
