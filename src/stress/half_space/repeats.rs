@@ -14,9 +14,8 @@ use rayon::prelude::*;
 
 use crate::compliance::images::Images;
 use crate::compliance::kernel::cells::{FAR, Source};
-use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Load, Pressure, Traction};
-use crate::compliance::kernel::plane::Kernel;
-use crate::compliance::kernel::plans::Kernels;
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Pressure, Radial, Traction};
+use crate::compliance::kernel::plane::{Kernel, Kernels};
 use crate::compliance::kernel::strip::{self, LinePlan};
 use crate::compliance::response::interior::Place;
 use crate::model::body::{HalfSpace, Substrate};
@@ -79,7 +78,7 @@ impl Repeats {
     }
 
     /// The kernel of the rectangle of all images, for the load L.
-    pub(super) fn block_kernel<const N: usize, L: Load<N>>(
+    pub(super) fn block_kernel<const N: usize, L: Radial<N>>(
         &self,
         place: &Place,
     ) -> Option<Kernel<'_, N>> {

@@ -21,9 +21,8 @@ pub(in crate::stress) const STRESSES: usize = 6;
 /// The stress components σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz.
 pub(super) type Components = [f64; STRESSES];
 
-// The next four constants were chosen by trial. With 5, 7, 3 and 4 in their places, errors of Hertz'
-// contacts of 128 cells to the half-width change by 3e-5 of the peak pressure at most, less than a
-// tenth of the largest.
+// With 5, 7, 3 and 4 in place of the next four constants, errors of Hertz' contacts of 128 cells to the half-width
+// change by 3e-5 of the peak pressure at most, less than a tenth of the largest.
 
 /// Distance to which the load of a cell near the edge is followed, in cells of the longer side.
 const REACH: f64 = 3.0;
