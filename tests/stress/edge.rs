@@ -172,9 +172,8 @@ fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
         direction: Some([1.0, 0.0]),
         ..StressOptions::default()
     };
-    let mut progress = |_| std::ops::ControlFlow::Continue(());
     let strengths = nacre::stress::Strengths::default();
-    let summary = solution.stress_summary(Member::Body, &strengths, &options, &mut progress)?;
+    let summary = solution.stress_summary(Member::Body, &strengths, &options)?;
     let tension = summary.layers[0].tension;
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;
     claim("sliding-sphere", tension.value / peak / exact - 1.0);

@@ -1,7 +1,5 @@
 //! Stress on the face of a free end, beside it, and beyond it, where there is no material.
 
-use std::ops::ControlFlow;
-
 use nacre::stress::Strengths;
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, Stress, StressOptions, StressPlan};
 use ndarray::{Array2, Array3, Axis};
@@ -185,12 +183,7 @@ fn there_is_nothing_beyond_an_end() -> Result<()> {
             assert_eq!(field.peak(field.zz()).is_none(), beyond);
         }
     }
-    let mut progress = |_| ControlFlow::Continue(());
-    let summary = plan.summary(
-        &Strengths::default(),
-        &StressOptions::default(),
-        &mut progress,
-    )?;
+    let summary = plan.summary(&Strengths::default(), &StressOptions::default())?;
     let peaks = summary
         .layers
         .iter()

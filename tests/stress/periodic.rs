@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use nacre::stress::StressSummary;
+use nacre::stress::{Strengths, StressSummary};
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, HeightMap, Layer, Member, Motion, Options, Result, Section,
     Setup, Solution, Stress, StressOptions, stress,
@@ -214,13 +214,7 @@ fn solved(by: [usize; 2], threads: usize) -> Result<Solution> {
 }
 
 fn summary(solution: &Solution, member: Member) -> Result<StressSummary> {
-    let mut go_on = |_| std::ops::ControlFlow::Continue(());
-    solution.stress_summary(
-        member,
-        &nacre::stress::Strengths::default(),
-        &StressOptions::default(),
-        &mut go_on,
-    )
+    solution.stress_summary(member, &Strengths::default(), &StressOptions::default())
 }
 
 /// A contact across the seam has the stresses of the same contact in the middle, with its pressure reconstructed within
