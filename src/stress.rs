@@ -21,7 +21,7 @@
 //! pressure alone. A [`StressPlan`] makes them once; it is then evaluated for any depths, sections,
 //! friction and residual stress. The functions here and those of `Solution` make a plan for one call.
 //!
-//! Sliding adds the traction q = μ p along a direction; its effect on the pressure is neglected. That
+//! SlidingSense adds the traction q = μ p along a direction; its effect on the pressure is neglected. That
 //! is exact where both bodies have the same elastic constants or ν = ½, and a good approximation for
 //! small μ: the neglected coupling changes the pressure by the order of μ (1 − 2ν)/(2 − 2ν). See
 //! Johnson, Contact Mechanics (1985), chapter 7, doi:10.1017/CBO9781139171731.
@@ -50,9 +50,9 @@ pub use plan::StressPlan;
 pub(crate) use plan::Weights;
 pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
 
-use options::Sliding;
-use plan::{Source, stress_once};
-use subcell::Pair;
+use options::SlidingSense;
+use plan::{PressureSource, stress_once};
+use subcell::BodyPair;
 use summary::summary_once;
 
 /// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell.
@@ -84,7 +84,7 @@ pub fn stress<'a>(
     options: impl Into<WatchedStress<'a>>,
 ) -> Result<Stress> {
     stress_once(
-        &Source::uniform(body, grid, pressure),
+        &PressureSource::uniform(body, grid, pressure),
         depths,
         options.into(),
     )
@@ -189,7 +189,7 @@ impl Solution {
         body: &HalfSpace,
         pressure: &Array2<f64>,
     ) -> Result<StressPlan> {
-        let source = Source {
+        let source = PressureSource {
             body,
             pressure,
             solved: None,
@@ -213,15 +213,15 @@ impl Solution {
     }
 
     /// The pressure on one of the bodies, with the sign of friction there.
-    fn source(&self, member: Member) -> Result<Source<'_>> {
+    fn source(&self, member: Member) -> Result<PressureSource<'_>> {
         let (body, counterbody) = (&self.report.body, &self.report.counterbody);
         let bodies = std::iter::once(body).chain(counterbody);
-        Ok(Source {
+        Ok(PressureSource {
             body: self.member(member)?,
             grid: self.grid(),
             pressure: &self.pressure,
-            solved: Some(Pair(bodies.map(|body| &**body).collect())),
-            sliding: Sliding {
+            solved: Some(BodyPair(bodies.map(|body| &**body).collect())),
+            sliding: SlidingSense {
                 sign: match member {
                     Member::Body => 1.0,
                     Member::Counterbody => -1.0,

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use ndarray::{Array1, ArrayRef2};
 
-use crate::compliance::kernel::cells::Source;
+use crate::compliance::kernel::cells::CellSource;
 use crate::compliance::kernel::loads::{
     COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
 };
-use crate::compliance::kernel::plane::{Kernel, Kernels, Plan};
-use crate::compliance::kernel::strip::{self, LinePlan};
+use crate::compliance::kernel::plane::{CellPlan, Kernel, Kernels};
+use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
 use crate::model::body::{HalfSpace, Substrate};
@@ -21,7 +21,7 @@ use crate::stress::subcell::{STRESSES, SubcellStress};
 mod evaluation;
 mod repeats;
 
-pub(super) use evaluation::{Part, PlaneMemory, Pressed, plane_memory};
+pub(super) use evaluation::{HalfSpacePart, Part, PlaneMemory, plane_memory};
 use repeats::{Repeats, RowSource, rows_of};
 
 /// A half-space under a pressure, planned once and evaluated any number of times.
@@ -43,13 +43,13 @@ pub(super) struct HalfSpacePlan {
     /// Transform of the pressure that is taken as uniform over cells for stresses.
     uniform: Transformed,
     /// Present where the pressure is reconstructed within cells.
-    pub(super) solved: Option<Solved>,
+    pub(super) solved: Option<SolvedPressure>,
     pub(super) threads: Threads,
 }
 
 /// Additional parts of a solved contact's plan.
 #[derive(Debug)]
-pub(super) struct Solved {
+pub(super) struct SolvedPressure {
     pub(super) subcell: SubcellStress,
     /// Transform of the solver's pressure, whose convolution gives displacements.
     given: Transformed,
@@ -148,7 +148,7 @@ impl HalfSpacePlan {
         let transformed =
             |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
         let uniform = transformed(uniform);
-        let solved = subcell.map(|subcell| Solved {
+        let solved = subcell.map(|subcell| SolvedPressure {
             subcell,
             given: transformed(&pressure),
         });
@@ -286,11 +286,7 @@ impl Coefficients<'_> {
     /// Coefficients of line contact.
     fn strips(&self, plan: &LinePlan, take: &mut dyn FnMut(usize, &RowSource)) {
         for (number, load) in self.loading.loads.iter().enumerate() {
-            let values = match load.axis {
-                None => plan.coefficients::<6, strip::Pressure>(self.place),
-                Some(0) => plan.coefficients::<3, strip::Along>(self.place),
-                Some(_) => plan.coefficients::<6, strip::Across>(self.place),
-            };
+            let values = plan.coefficients(self.place, load.axis);
             take(number, &|rows: Range<usize>, keep: &mut Keep| {
                 for i in rows {
                     for k in 0..self.loading.components() {
@@ -306,7 +302,7 @@ impl Coefficients<'_> {
     /// repeats, all offsets are computed at once, from those of one cell at the near ones.
     fn cells<const N: usize, const C: usize, L: Radial<N>>(
         &self,
-        plan: &Plan,
+        plan: &CellPlan,
         multipliers: &[Vec<(f64, f64)>],
         take: &mut dyn FnMut(usize, &RowSource),
     ) {
@@ -325,7 +321,7 @@ impl Coefficients<'_> {
             };
             let half = seen(self.plan.grid.spacing().map(|d| 0.5 * d));
             let odd = load.odd();
-            let source = Source {
+            let source = CellSource {
                 offsets: repeats.map_or(self.offsets, Repeats::extents),
                 spacing: self.plan.grid.spacing(),
                 depth: self.place.depth,

@@ -149,7 +149,7 @@ impl fmt::Debug for WatchedStress<'_> {
 
 /// How one body of a contact slides on the other.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sliding {
+pub(super) struct SlidingSense {
     /// 1, or −1 for a counterbody, on which the traction acts the other way.
     pub(super) sign: f64,
     /// Direction of the traction where the options have none.
@@ -158,7 +158,7 @@ pub(super) struct Sliding {
     pub(super) is_known: bool,
 }
 
-impl Sliding {
+impl SlidingSense {
     /// μ times the unit vector of the traction on `body`.
     ///
     /// # Errors

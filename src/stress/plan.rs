@@ -7,12 +7,12 @@ use ndarray::{Array1, Array2, Array3, ArrayRef2};
 use super::ends::{EndErrors, EndStress};
 use super::field::Stress;
 use super::half_space::{
-    HalfSpacePlan, Loading, Part, PlaneMemory, Pressed, SurfaceLoad, checked_pressure, components,
-    plane_memory,
+    HalfSpacePart, HalfSpacePlan, Loading, Part, PlaneMemory, SurfaceLoad, checked_pressure,
+    components, plane_memory,
 };
-use super::options::{Sliding, StressOptions, StressProgress, WatchedStress};
+use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
-use super::subcell::{Pair, STRESSES, SubcellStress};
+use super::subcell::{BodyPair, STRESSES, SubcellStress};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
@@ -47,7 +47,7 @@ pub(crate) type Weights = [Vec<f64>; STRESSES];
 #[derive(Debug)]
 pub struct StressPlan {
     pub(super) whole: HalfSpacePlan,
-    pub(super) sliding: Sliding,
+    pub(super) sliding: SlidingSense,
     /// The rows of the grid that the body has.
     span: Span,
     /// What adds to the stress of the whole half-space: ends of the body, tractions that are known.
@@ -57,19 +57,19 @@ pub struct StressPlan {
 }
 
 /// The pressure that a plan is made for, and the body below it.
-pub(super) struct Source<'a> {
+pub(super) struct PressureSource<'a> {
     pub(super) body: &'a HalfSpace,
     pub(super) grid: &'a Grid,
     pub(super) pressure: &'a ArrayRef2<f64>,
     /// The bodies of the contact that the pressure is of, which is then reconstructed within cells; none: it is uniform
     /// over each.
-    pub(super) solved: Option<Pair<'a>>,
-    pub(super) sliding: Sliding,
+    pub(super) solved: Option<BodyPair<'a>>,
+    pub(super) sliding: SlidingSense,
     /// Tractions along x and y on the body itself, where they are known.
     pub(super) tractions: Option<[&'a ArrayRef2<f64>; 2]>,
 }
 
-impl<'a> Source<'a> {
+impl<'a> PressureSource<'a> {
     /// A pressure that is uniform over each cell, and whose shape is not known.
     pub(super) fn uniform(
         body: &'a HalfSpace,
@@ -81,7 +81,7 @@ impl<'a> Source<'a> {
             grid,
             pressure,
             solved: None,
-            sliding: Sliding {
+            sliding: SlidingSense {
                 sign: 1.0,
                 direction: grid.rolling_direction(),
                 is_known: false,
@@ -127,7 +127,7 @@ impl<'a> Source<'a> {
                     factor: 1.0,
                     axis: Some(axis),
                 };
-                parts.push(Box::new(Pressed::new(plan, load)));
+                parts.push(Box::new(HalfSpacePart::new(plan, load)));
             }
         }
         Ok(Some(StressPlan {
@@ -139,7 +139,7 @@ impl<'a> Source<'a> {
         }))
     }
 
-    /// [`Source::plan`], of which a stop is an error.
+    /// [`PressureSource::plan`], of which a stop is an error.
     pub(super) fn planned(&self, mut asked: WatchedStress) -> Result<StressPlan> {
         let threads = asked.options().threads;
         let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
@@ -186,7 +186,7 @@ impl StressPlan {
         threads: Option<usize>,
     ) -> Result<Self> {
         let options = StressOptions::with_threads(threads);
-        Source::uniform(body, grid, pressure).planned((&options).into())
+        PressureSource::uniform(body, grid, pressure).planned((&options).into())
     }
 
     /// Stress at `depths`. A callback of [`StressOptions::watched`] is told the fraction done; when it breaks, the
@@ -336,7 +336,7 @@ impl<'a> Evaluation<'a> {
 
 /// Stress at `depths` by a plan that is made for this call. Bad options are refused before planning.
 pub(super) fn stress_once(
-    source: &Source,
+    source: &PressureSource,
     depths: &[f64],
     mut asked: WatchedStress,
 ) -> Result<Stress> {
@@ -369,7 +369,7 @@ impl<'a> Request<'a> {
     fn checked(
         body: &'a HalfSpace,
         grid: &'a Grid,
-        sliding: &Sliding,
+        sliding: &SlidingSense,
         depths: &'a [f64],
         options: &'a StressOptions,
     ) -> Result<Self> {

@@ -71,7 +71,7 @@ mod uncertainty;
 use cut::Cuts;
 use near::{Components, NearPlan};
 pub(super) use near::{NearTable, STRESSES};
-pub(super) use uncertainty::Pair;
+pub(super) use uncertainty::BodyPair;
 use uncertainty::{LocalSteps, Uncertainty};
 
 /// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is
@@ -92,7 +92,7 @@ pub(super) struct SubcellStress {
 impl SubcellStress {
     /// Reconstructs `pressure` within cells, for one body of a contact of the `pair`. `progress` is asked many times, with 0.
     pub(super) fn plan(
-        (body, pair): (&HalfSpace, &Pair),
+        (body, pair): (&HalfSpace, &BodyPair),
         grid: &Grid,
         pressure: &[f64],
         threads: &Threads,
@@ -155,9 +155,9 @@ impl SubcellStress {
         };
         match &self.kernels {
             Kernels::Line(plan) => {
-                let normal = plan.strips::<6, strip::Pressure>(place);
-                let along = (fx != 0.0).then(|| plan.strips::<3, strip::Along>(place));
-                let across = (fy != 0.0).then(|| plan.strips::<6, strip::Across>(place));
+                let normal = plan.strips::<6, strip::StripPressure>(place);
+                let along = (fx != 0.0).then(|| plan.strips::<3, strip::StripAlong>(place));
+                let across = (fy != 0.0).then(|| plan.strips::<6, strip::StripAcross>(place));
                 self.near.table(place.depth, |[_, y], [_, half]| {
                     let along = along.as_ref().map_or(none, |strips| strips.at(y, half));
                     let across = across.as_ref().map_or(none, |strips| strips.at(y, half));

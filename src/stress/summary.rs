@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use super::field::{Peak, Percent, Tensor};
 use super::half_space::plane_memory;
-use super::options::{Sliding, StressOptions, StressProgress, WatchedStress};
-use super::plan::{Evaluation, Source, StressPlan};
+use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
+use super::plan::{Evaluation, PressureSource, StressPlan};
 use crate::compliance::response::interior::Place;
 use crate::error::{Result, positive};
 use crate::model::body::{HalfSpace, Layer, Substrate};
@@ -75,22 +75,22 @@ pub struct StressSummary {
 
 /// Estimated error over an extreme above which a warning says so. The estimate is some three times the
 /// error (`tests/stress/resolution.rs`).
-const UNRESOLVED: f64 = 0.25;
+const UNRESOLVED_EXTREME: f64 = 0.25;
 
 /// Error, over the largest von Mises stress of all layers, below which a warning says nothing.
-const NEGLIGIBLE: f64 = 0.02;
+const NEGLIGIBLE_ERROR: f64 = 0.02;
 
 impl StressSummary {
     /// Warnings about what the cells do not resolve: layers and interfaces whose extremes have an estimated
     /// error above a quarter of them.
     pub fn warnings(&self) -> Vec<String> {
         let peaks = self.layers.iter().map(|layer| layer.von_mises.value);
-        let negligible = NEGLIGIBLE * peaks.fold(0.0, f64::max);
+        let negligible = NEGLIGIBLE_ERROR * peaks.fold(0.0, f64::max);
         let unresolved = |peaks: &[(&str, &Peak)]| -> Option<String> {
             let ratio = |(name, peak): &(&str, &Peak)| {
                 let error = peak.uncertainty.filter(|error| *error > negligible)?;
                 let ratio = error / peak.value.abs();
-                (ratio > UNRESOLVED).then(|| format!("{name} by {}", Percent(ratio)))
+                (ratio > UNRESOLVED_EXTREME).then(|| format!("{name} by {}", Percent(ratio)))
             };
             let said: Vec<String> = peaks.iter().filter_map(ratio).collect();
             (!said.is_empty()).then(|| said.join(", "))
@@ -155,7 +155,7 @@ impl StressPlan {
 
 /// The summary by a plan that is made for this call. Bad options are refused before planning.
 pub(super) fn summary_once(
-    source: &Source,
+    source: &PressureSource,
     strengths: &Strengths,
     mut asked: WatchedStress,
 ) -> Result<StressSummary> {
@@ -204,7 +204,7 @@ impl<'a> SummaryRequest<'a> {
     fn checked(
         body: &HalfSpace,
         grid: &Grid,
-        sliding: &Sliding,
+        sliding: &SlidingSense,
         strengths: &'a Strengths,
         options: &StressOptions,
     ) -> Result<Self> {
@@ -223,11 +223,8 @@ impl<'a> SummaryRequest<'a> {
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> StressSummary {
         let body = &plan.whole.body;
         let regions = regions(body, plan.whole.half_width());
-        let in_layers: usize = regions
-            .iter()
-            .map(|region| region.len() + 3 * REFINEMENTS)
-            .sum();
-        let planned = in_layers + body.layers().len();
+        let in_layers = regions.iter().map(|region| region.len() + 3 * REFINEMENTS);
+        let planned = in_layers.sum::<usize>() + body.layers().len();
         let mut planes = Planes::new(plan, self.friction, &self.residual, planned, progress);
         let mut summary = StressSummary::default();
         if self.fill(&regions, &mut planes, &mut summary).is_continue() {
@@ -269,14 +266,16 @@ fn layer(
     top: f64,
     strengths: &Strengths,
 ) -> ControlFlow<(), LayerSummary> {
-    let mut evaluated: Vec<(Place, Extremes)> = Vec::new();
+    let mut evaluated: Vec<(Place, [Peak; 3])> = Vec::new();
     for place in region {
         evaluated.push((*place, planes.extremes(place)?));
     }
-    for which in Extremes::EACH {
+    for which in 0..3 {
         for _ in 0..REFINEMENTS {
-            let value = |(place, e): &(Place, Extremes)| (*place, which(e).value);
-            let values: Vec<_> = evaluated.iter().map(value).collect();
+            let values = evaluated
+                .iter()
+                .map(|(place, peaks)| (*place, peaks[which].value));
+            let values: Vec<_> = values.collect();
             let Some(place) = refined_peak(&values) else {
                 break;
             };
@@ -286,9 +285,9 @@ fn layer(
             evaluated.sort_by(|a, b| a.0.below_top.total_cmp(&b.0.below_top));
         }
     }
-    let [von_mises, tension, shear] = Extremes::EACH.map(|which| {
-        let peaks = evaluated[1..].iter().map(|(_, extremes)| which(extremes));
-        let first = which(&evaluated[0].1);
+    let [von_mises, tension, shear] = [0, 1, 2].map(|which| {
+        let peaks = evaluated.iter().map(|(_, peaks)| peaks[which]);
+        let first = evaluated[0].1[which];
         peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
     });
     let layer = region[0].layer;
@@ -362,19 +361,6 @@ struct Planes<'a, 'b> {
     done: usize,
     /// Planes that are evaluated at most, but for those below an interface.
     planned: usize,
-}
-
-/// The extremes on one plane.
-#[derive(Debug, Clone, Copy)]
-struct Extremes {
-    von_mises: Peak,
-    tension: Peak,
-    shear: Peak,
-}
-
-impl Extremes {
-    /// Each of the extremes, to be refined by itself.
-    const EACH: [fn(&Self) -> Peak; 3] = [|e| e.von_mises, |e| e.tension, |e| e.shear];
 }
 
 /// The largest value found so far, and its cell.
@@ -455,8 +441,8 @@ impl<'a, 'b> Planes<'a, 'b> {
         }
     }
 
-    /// Extremes at `place`.
-    fn extremes(&mut self, place: &Place) -> ControlFlow<(), Extremes> {
+    /// The largest von Mises stress, principal stress and shear stress at `place`.
+    fn extremes(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
         self.evaluate(place)?;
         let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
         for cell in 0..self.fields[0].len() {
@@ -471,11 +457,7 @@ impl<'a, 'b> Planes<'a, 'b> {
                 shear.offer(0.5 * (first - last), cell);
             }
         }
-        ControlFlow::Continue(Extremes {
-            von_mises: self.peak(von_mises, place),
-            tension: self.peak(tension, place),
-            shear: self.peak(shear, place),
-        })
+        ControlFlow::Continue([von_mises, tension, shear].map(|one| self.peak(one, place)))
     }
 
     /// Extremes of the traction at `place`: the largest and the smallest σ_zz, and the largest √(σ_xz² + σ_yz²).
@@ -514,18 +496,18 @@ impl<'a, 'b> Planes<'a, 'b> {
 
 /// Depths below the top of a layer, in half-widths of the contact: dense where the
 /// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).
-const DEPTHS: [f64; 13] = [
+const DEPTHS_SEARCHED: [f64; 13] = [
     0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8, 2.5, 4.0,
 ];
 
 /// Depths within a layer, in its thickness.
 const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
-/// Depth, in a layer's thickness, below which its bottom face stands for the depths of [`DEPTHS`].
+/// Depth, in a layer's thickness, below which its bottom face stands for the depths of [`DEPTHS_SEARCHED`].
 const BOTTOM: f64 = 0.999;
 
 /// Distance, in a layer's thickness, below which two depths are one.
-const NEAREST: f64 = 1e-6;
+const ONE_DEPTH: f64 = 1e-6;
 
 /// Places in each layer and in the substrate, from the surface down.
 fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
@@ -539,19 +521,21 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
     };
     for (count, layer) in body.layers().iter().enumerate() {
         let h = layer.thickness();
-        let mut depths: Vec<f64> = DEPTHS.iter().map(|d| d * half_width).collect();
+        let mut depths: Vec<f64> = DEPTHS_SEARCHED.iter().map(|d| d * half_width).collect();
         depths.extend(FRACTIONS.map(|f| f * h));
         depths.retain(|z| *z < BOTTOM * h);
         depths.extend([0.0, h]);
         depths.sort_by(f64::total_cmp);
         // Refinement divides by the distances between depths.
-        depths.dedup_by(|next, before| *next - *before < NEAREST * h);
+        depths.dedup_by(|next, before| *next - *before < ONE_DEPTH * h);
         let place = |z: &f64| at(count, top, *z, layer.material());
         regions.push(depths.iter().map(place).collect());
         top += h;
     }
     if let Substrate::Elastic(material) = body.substrate() {
-        let depths = [0.0].into_iter().chain(DEPTHS.map(|d| d * half_width));
+        let depths = [0.0]
+            .into_iter()
+            .chain(DEPTHS_SEARCHED.map(|d| d * half_width));
         let place = |z: f64| at(body.layers().len(), top, z, material);
         regions.push(depths.map(place).collect());
     }
@@ -560,10 +544,10 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
 
 /// Steps of less than this fraction of the distance to the next depth are not taken: the peak is at
 /// the depth already evaluated, or the value falls off there as at a kink.
-const SHORTEST_STEP: f64 = 1e-3;
+const SHORTEST_REFINEMENT: f64 = 1e-3;
 
 /// The largest step, as a fraction of the distance to the next depth.
-const LONGEST_STEP: f64 = 0.9;
+const LONGEST_REFINEMENT: f64 = 0.9;
 
 /// Place of the vertex of the parabola through the largest value in `evaluated` and its two
 /// neighbours. None where the largest value is the first or the last, or is that vertex already.
@@ -585,10 +569,10 @@ fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
     // The slope of the parabola at `best`, over its curvature.
     let slope = (left * b - right * a) / (a + b);
     let step = 0.5 * slope * (a + b) / (left + right);
-    if step.abs() < SHORTEST_STEP * a.min(b) {
+    if step.abs() < SHORTEST_REFINEMENT * a.min(b) {
         return None;
     }
-    let step = step.clamp(-LONGEST_STEP * a, LONGEST_STEP * b);
+    let step = step.clamp(-LONGEST_REFINEMENT * a, LONGEST_REFINEMENT * b);
     let place = evaluated[best].0;
     Some(Place {
         below_top: place.below_top + step,

@@ -216,28 +216,28 @@ pub(crate) trait Radial<const N: usize>: Sync {
 
 /// `N` radial functions of a load, from number `FIRST` on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Functions<L, const FIRST: usize, const N: usize>(PhantomData<L>);
+pub(crate) struct RadialFunctions<L, const FIRST: usize, const N: usize>(PhantomData<L>);
 
-impl<L: Load, const FIRST: usize, const N: usize> Radial<N> for Functions<L, FIRST, N> {
+impl<L: Load, const FIRST: usize, const N: usize> Radial<N> for RadialFunctions<L, FIRST, N> {
     type Load = L;
 
     const FIRST: usize = FIRST;
 }
 
 /// Stresses and displacements of a pressure.
-pub(crate) type Pressure = Functions<UnitPressure, 0, 6>;
+pub(crate) type Pressure = RadialFunctions<UnitPressure, 0, 6>;
 
 /// Stresses of a pressure.
-pub(crate) type PressureStress = Functions<UnitPressure, 0, 4>;
+pub(crate) type PressureStress = RadialFunctions<UnitPressure, 0, 4>;
 
 /// Stresses and displacements of a traction along x.
-pub(crate) type Traction = Functions<UnitTraction, 0, 9>;
+pub(crate) type Traction = RadialFunctions<UnitTraction, 0, 9>;
 
 /// Stresses of a traction along x.
-pub(crate) type TractionStress = Functions<UnitTraction, 0, 6>;
+pub(crate) type TractionStress = RadialFunctions<UnitTraction, 0, 6>;
 
 /// Displacements of a traction along x.
-pub(crate) type TractionDisplacement = Functions<UnitTraction, 6, 3>;
+pub(crate) type TractionDisplacement = RadialFunctions<UnitTraction, 6, 3>;
 
 /// Radial functions h_ν = H_ν/r^ν of a point load on a homogeneous half-space, at depth z.
 ///

@@ -23,7 +23,7 @@ use crate::model::material::Elastic;
 
 /// The plan of a body's kernels, which all depths share.
 #[derive(Debug)]
-pub(crate) struct Plan {
+pub(crate) struct CellPlan {
     pub(crate) body: HalfSpace,
     spacing: [f64; 2],
     /// Nearest distance to a corner of a cell, or of a piece of one.
@@ -34,10 +34,10 @@ pub(crate) struct Plan {
     spectrum: Option<Spectrum>,
 }
 
-impl Plan {
+impl CellPlan {
     /// Plans kernels for cells of sides `spacing`, and pieces down to `finest` of them, at offsets up to `reach`.
     pub(crate) fn new(body: &HalfSpace, spacing: [f64; 2], finest: f64, reach: f64) -> Self {
-        let nearest = NEAREST * finest * 0.5 * spacing[0].min(spacing[1]);
+        let nearest = NEAREST_CORNER * finest * 0.5 * spacing[0].min(spacing[1]);
         Self {
             body: body.clone(),
             spacing,
@@ -62,12 +62,12 @@ impl Plan {
 
 /// Nearest distance to a corner of a cell, in half sides: half a side, and some more for the nodes of
 /// quadratures.
-const NEAREST: f64 = 0.4;
+const NEAREST_CORNER: f64 = 0.4;
 
 /// The coefficients of one load at one place.
 #[derive(Debug)]
 pub(crate) struct Kernel<'a, const N: usize> {
-    plan: &'a Plan,
+    plan: &'a CellPlan,
     material: Elastic,
     depth: f64,
     /// h_ν of the layered body.
@@ -82,7 +82,7 @@ pub(crate) struct Kernel<'a, const N: usize> {
 impl<'a, const N: usize> Kernel<'a, N> {
     /// The kernel of load L at `place`. On the threads of the caller.
     pub(crate) fn new<L: Radial<N>>(
-        plan: &'a Plan,
+        plan: &'a CellPlan,
         multipliers: &[Multipliers],
         place: &Place,
     ) -> Self {
@@ -167,7 +167,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
 #[derive(Debug)]
 pub(crate) enum Kernels {
     Plane {
-        plan: Box<Plan>,
+        plan: Box<CellPlan>,
         pressure: Vec<Multipliers>,
         /// Multipliers of the traction, made at the first place with friction.
         traction: OnceLock<Vec<Multipliers>>,
@@ -197,7 +197,7 @@ impl Kernels {
         finest: f64,
         reach: f64,
     ) -> Self {
-        let plan = Plan::new(body, spacing, finest, reach);
+        let plan = CellPlan::new(body, spacing, finest, reach);
         Self::Plane {
             pressure: plan.multipliers::<N, L>(),
             traction: OnceLock::new(),

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::numerics::parallel::{Threads, check_memory};
-use crate::stress::half_space::{Loading, Part, PlaneMemory, Pressed, components};
+use crate::stress::half_space::{HalfSpacePart, Loading, Part, PlaneMemory, components};
 use crate::stress::options::{Side, StressProgress};
 use crate::stress::section::place;
 
@@ -37,7 +37,7 @@ const FACE_ROWS: [f64; 2] = [64.0, 256.0];
 const BETWEEN: usize = 4;
 
 /// Components at several depths below the face, on (z, y) in C order.
-type Fields = Vec<Vec<Vec<f64>>>;
+type FaceFields = Vec<Vec<Vec<f64>>>;
 
 /// Stress below one end face.
 #[derive(Debug)]
@@ -52,16 +52,16 @@ pub(super) struct Face {
     tables: Vec<FaceTable>,
 }
 
-/// Fields of one part of the pressure on a face.
+/// FaceFields of one part of the pressure on a face.
 #[derive(Debug)]
 struct FaceTable {
-    part: Pressed,
+    part: HalfSpacePart,
     /// Length of its rows, which begin at z = 0.
     spacing: f64,
     /// Depth z down to which it counts.
     reach: f64,
-    stresses: Fields,
-    displacements: OnceLock<Fields>,
+    stresses: FaceFields,
+    displacements: OnceLock<FaceFields>,
 }
 
 impl Face {
@@ -113,7 +113,7 @@ impl Face {
         let whole = images.part(&below, threads)?;
         let [coarse, fine] = strip.parts(&below, &on, &beside, 0.0, threads)?;
         // In every finer cell.
-        let fine = Pressed {
+        let fine = HalfSpacePart {
             first: fine.first - fine.stride / 2,
             rows: 0..finer,
             stride: 1,
@@ -129,7 +129,7 @@ impl Face {
             part,
             spacing,
             reach,
-            stresses: Fields::new(),
+            stresses: FaceFields::new(),
             displacements: OnceLock::new(),
         }))
     }
@@ -244,13 +244,13 @@ impl FaceTable {
         depths: &[f64],
         displacement: bool,
         progress: &mut StressProgress,
-    ) -> ControlFlow<(), Fields> {
+    ) -> ControlFlow<(), FaceFields> {
         let plan = &self.part.plan;
         let loading = Loading::new([0.0; 2], displacement);
         let mut memory = plan.plane_memory(&loading);
         let mut planes = vec![vec![0.0; plan.pressure.len()]; components(displacement)];
         let first = if displacement { components(false) } else { 0 };
-        let mut fields = Fields::new();
+        let mut fields = FaceFields::new();
         for depth in depths {
             let Ok(place) = place(&plan.body, *depth, Side::Below) else {
                 return ControlFlow::Break(());

@@ -12,14 +12,14 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
-use crate::stress::half_space::{HalfSpacePlan, Pressed, SurfaceLoad};
+use crate::stress::half_space::{HalfSpacePart, HalfSpacePlan, SurfaceLoad};
 
 /// Length over which the pressures beside the load are followed, in widths of the contact or in distances of it from
 /// the end, if that is more: they fall with the square of the distance at least.
-const REACH: f64 = 3.0;
+const FOLLOWED: f64 = 3.0;
 
 /// Columns beyond the contact's on either side, in the same unit.
-const MARGIN: f64 = 3.0;
+const MARGIN_BESIDE: f64 = 3.0;
 
 /// Rows of cells on which the excess is followed.
 const MOST_ROWS: usize = 1024;
@@ -73,8 +73,8 @@ impl NearEnd {
             beyond,
             nearest,
             rows: nx - beyond,
-            reach: REACH * scale,
-            margin: ((MARGIN * scale / grid.spacing()[1]).ceil() as usize).min(2 * ny),
+            reach: FOLLOWED * scale,
+            margin: ((MARGIN_BESIDE * scale / grid.spacing()[1]).ceil() as usize).min(2 * ny),
             spread: EndPressure::new(&from_end, distance(beyond), grid.spacing()),
             material,
         })
@@ -174,16 +174,16 @@ impl EndImages {
     }
 
     /// The stress of `body` under the sum of all, in the cells of the grid.
-    pub(super) fn part(&self, body: &HalfSpace, threads: &Threads) -> Result<Pressed> {
+    pub(super) fn part(&self, body: &HalfSpace, threads: &Threads) -> Result<HalfSpacePart> {
         let (pressure, grid, [first, column]) = self.together()?;
         let [rows, columns] = self.grid.shape();
         let plan = HalfSpacePlan::uniform(body, &grid, &pressure, threads)?;
-        Ok(Pressed {
+        Ok(HalfSpacePart {
             rows: 0..rows,
             columns,
             first,
             column,
-            ..Pressed::new(plan, SurfaceLoad::PRESSURE)
+            ..HalfSpacePart::new(plan, SurfaceLoad::PRESSURE)
         })
     }
 
@@ -229,7 +229,7 @@ const REPLACED: [usize; 2] = [3, 12];
 pub(super) const STRIP: usize = 18;
 
 /// Finer cells in one of the contact's, at least.
-const FINER: f64 = 9.0;
+const FINER_CELLS: f64 = 9.0;
 
 /// A pressure beside an edge, by the distance from it, on cells and on finer ones.
 ///
@@ -254,7 +254,7 @@ impl Strip {
         threads: &Threads,
     ) -> Self {
         // An odd number, so that centres coincide.
-        let half = 0.5 * (FINER * spacing / dx - 1.0);
+        let half = 0.5 * (FINER_CELLS * spacing / dx - 1.0);
         let division = 2 * half.ceil() as usize + 1;
         let [all, none] = REPLACED.map(|cells| (cells * division) as f64);
         let count = REPLACED[1] * division;
@@ -286,12 +286,12 @@ impl Strip {
         rows: &Range<usize>,
         end: f64,
         threads: &Threads,
-    ) -> Result<[Pressed; 2]> {
+    ) -> Result<[HalfSpacePart; 2]> {
         let part = |factor: f64, division: usize, pressure| {
             let mut images = EndImages::new(&rows_of(grid, rows, division)?);
             images.add_excess(pressure, end, self.margin);
             let whole = images.part(body, threads)?;
-            Ok(Pressed {
+            Ok(HalfSpacePart {
                 factor,
                 rows: rows.clone(),
                 first: whole.first + division / 2,

@@ -24,11 +24,11 @@ const TOGETHER: usize = 3;
 const _: () = assert!(STRESSES.is_multiple_of(TOGETHER));
 
 /// Depth in cells that stands for the surface, at edges of cells.
-const SHALLOW: f64 = 1e-9;
+const SURFACE_DEPTH: f64 = 1e-9;
 
 /// Rows of coefficients that one thread makes at a time for points. Each such block makes two more rows; few blocks
 /// leave threads idle.
-const ROWS: usize = 8;
+const POINT_ROWS: usize = 8;
 
 /// Memory that all planes of a plan under one loading use.
 #[derive(Debug)]
@@ -218,7 +218,7 @@ impl HalfSpacePlan {
         // At the surface, the line is on edges of cells, where kernels have the mean of both sides as their limit.
         let mut below = *place;
         if place.depth <= 0.0 {
-            below.depth = SHALLOW * self.grid.spacing()[0];
+            below.depth = SURFACE_DEPTH * self.grid.spacing()[0];
             below.below_top = below.depth;
         }
         let mut memory = self.memory_with_parity(loading, |[_, y]| [false, y]);
@@ -286,9 +286,9 @@ impl HalfSpacePlan {
         self.threads.run(|| {
             coefficients.each(&mut |number, source| {
                 let load = loading.loads[number];
-                let starts: Vec<usize> = (0..offsets[0]).step_by(ROWS).collect();
+                let starts: Vec<usize> = (0..offsets[0]).step_by(POINT_ROWS).collect();
                 let block = |start: &usize| {
-                    let rows = *start..(start + ROWS).min(offsets[0]);
+                    let rows = *start..(start + POINT_ROWS).min(offsets[0]);
                     self.sums_of_rows(load, source, rows, cells)
                 };
                 // In the order of the rows, whatever the number of threads.
@@ -399,7 +399,7 @@ pub(in crate::stress) trait Part: fmt::Debug + Send + Sync {
 
 /// A half-space under one load, which may be on more, or finer, cells than those in which its stress is wanted.
 #[derive(Debug)]
-pub(in crate::stress) struct Pressed {
+pub(in crate::stress) struct HalfSpacePart {
     pub(in crate::stress) plan: HalfSpacePlan,
     pub(in crate::stress) load: SurfaceLoad,
     /// 1, or −1 for what another part replaces.
@@ -414,7 +414,7 @@ pub(in crate::stress) struct Pressed {
     pub(in crate::stress) column: usize,
 }
 
-impl Pressed {
+impl HalfSpacePart {
     /// The stress of a plan in its own cells.
     pub(in crate::stress) fn new(plan: HalfSpacePlan, load: SurfaceLoad) -> Self {
         let [rows, columns] = plan.grid.shape();
@@ -448,7 +448,7 @@ impl Pressed {
     }
 }
 
-impl Part for Pressed {
+impl Part for HalfSpacePart {
     fn plane(
         &self,
         place: &Place,

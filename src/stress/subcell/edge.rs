@@ -33,7 +33,7 @@ const DEGREES: [u8; 2] = [2, 3];
 const NEIGHBOURS: usize = 3;
 
 /// Cells that are fitted between two calls of the callback: some hundredths of a second of work.
-const BLOCK: usize = 4096;
+const FITS_BETWEEN_CALLS: usize = 4096;
 
 /// Largest uncertainty of the place of the edge, in cells, at which a fit is taken: the pressure there
 /// errs by the root of it times the slope of p². Rough contacts are a tenth of a cell
@@ -72,7 +72,10 @@ pub(super) fn edge_cells(
     let (first, others): (Vec<usize>, Vec<usize>) =
         (0..band.len()).partition(|k| band[*k].iter().all(|at| at % NEIGHBOURS == 0));
     let mut fitted: Vec<Option<SquaredPressure>> = vec![None; band.len()];
-    for block in first.chunks(BLOCK).chain(others.chunks(BLOCK)) {
+    for block in first
+        .chunks(FITS_BETWEEN_CALLS)
+        .chain(others.chunks(FITS_BETWEEN_CALLS))
+    {
         progress(0.0)?;
         let is_needed = |k: &usize| open.any_around(band[*k], NEIGHBOURS);
         let needed: Vec<usize> = block.iter().copied().filter(is_needed).collect();

@@ -50,13 +50,13 @@ const SHARE_OF_CHANGE: f64 = 2.0;
 const LONGEST: f64 = 1.5;
 
 /// Largest wavenumber that is looked at, as a multiple of that of the longest waves.
-const RATIO: f64 = 100.0;
+const HIGHEST_RATIO: f64 = 100.0;
 
 /// Number of those wavenumbers, even in their logarithm: four to an octave.
 const COUNT: u32 = 27;
 
 /// Distance in cells to which a step is felt near the surface.
-const REACH: usize = 6;
+const STEP_REACH: usize = 6;
 
 /// What is not known of the pressure of a solved contact, at the wavenumbers that matter.
 #[derive(Debug)]
@@ -86,7 +86,7 @@ pub(in crate::stress) struct LocalSteps([Steps; 2]);
 
 impl Uncertainty {
     pub(super) fn new(
-        (body, pair): (&HalfSpace, &Pair),
+        (body, pair): (&HalfSpace, &BodyPair),
         grid: &Grid,
         pressure: &[f64],
         reconstruction: &Reconstruction,
@@ -104,7 +104,7 @@ impl Uncertainty {
         let waves = |spacing: f64| {
             let of_cell = pair.response(1.0 / spacing);
             let wave = |k: u32| {
-                let ratio = RATIO.powf(f64::from(k) / f64::from(COUNT - 1));
+                let ratio = HIGHEST_RATIO.powf(f64::from(k) / f64::from(COUNT - 1));
                 let alpha = ratio * LONGEST / spacing;
                 let change = (pair.response(alpha) / of_cell - 1.0).abs();
                 let share = (SHARE_OF_CHANGE * change).clamp(EDGE_SHARE, UNIFORM_SHARE);
@@ -125,8 +125,9 @@ impl Uncertainty {
     /// Largest steps of `pressure` that are felt in the cells of `window`.
     pub(super) fn steps(&self, pressure: &[f64], window: &Window) -> LocalSteps {
         let [nx, ny] = self.shape;
-        let rows = window[0].start.saturating_sub(REACH)..(window[0].end + REACH).min(nx);
-        let columns = window[1].start.saturating_sub(REACH)..(window[1].end + REACH).min(ny);
+        let rows = window[0].start.saturating_sub(STEP_REACH)..(window[0].end + STEP_REACH).min(nx);
+        let columns =
+            window[1].start.saturating_sub(STEP_REACH)..(window[1].end + STEP_REACH).min(ny);
         let count = |steps: &mut Steps, a: usize, b: usize| {
             let step = (pressure[a] - pressure[b]).abs();
             let largest = &mut steps[self.known[a].max(self.known[b]) as usize];
@@ -208,9 +209,9 @@ const PER_OCTAVE: f64 = 4.0;
 const LARGEST_CHANGE: f64 = 0.06;
 
 /// The bodies of a contact, whose responses add.
-pub(in crate::stress) struct Pair<'a>(pub(in crate::stress) Vec<&'a dyn Response>);
+pub(in crate::stress) struct BodyPair<'a>(pub(in crate::stress) Vec<&'a dyn Response>);
 
-impl Pair<'_> {
+impl BodyPair<'_> {
     /// α û/p̂ of all bodies at the wavenumber α, with the local compliance, which grows without limit.
     pub(super) fn response(&self, alpha: f64) -> f64 {
         let of = |body: &&dyn Response| body.normal(alpha) + alpha * body.local();
@@ -247,7 +248,7 @@ mod tests {
     fn the_law_holds_where_cells_see_one_material() -> Result<()> {
         let steel = Elastic::new(1.0, 0.3)?;
         let bare = HalfSpace::from(steel);
-        assert!(Pair(vec![&bare, &bare]).root_law_holds(1.0));
+        assert!(BodyPair(vec![&bare, &bare]).root_law_holds(1.0));
         for (ratio, thickness, expected) in [
             (0.3, 0.05, true),
             (3.0, 0.05, true),
@@ -260,7 +261,7 @@ mod tests {
         ] {
             let layer = Layer::new(Elastic::new(ratio, 0.3)?, thickness)?;
             let coated = HalfSpace::new(steel, [layer])?;
-            let found = Pair(vec![&coated]).root_law_holds(1.0);
+            let found = BodyPair(vec![&coated]).root_law_holds(1.0);
             assert_eq!(found, expected, "{ratio} {thickness}");
         }
         Ok(())
