@@ -4,6 +4,8 @@ use nacre::stress::Strengths;
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, Stress, StressOptions, StressPlan};
 use ndarray::{Array2, Array3, Axis};
 
+use crate::support::stresses::{displaced, fields, on};
+
 /// A smooth pressure of height 1 over lengths of 3, about `centre` along x and 0 along y.
 fn smooth(grid: &Grid, centre: f64) -> Array2<f64> {
     let (x, y) = (grid.x(), grid.y());
@@ -22,16 +24,7 @@ fn largest(field: &Array3<f64>, depth: usize) -> f64 {
 }
 
 fn at(section: Section) -> StressOptions {
-    StressOptions {
-        section,
-        displacement: true,
-        ..StressOptions::default()
-    }
-}
-
-fn fields(stress: &Stress) -> Vec<&Array3<f64>> {
-    let displacement = stress.displacement.iter().flatten();
-    stress.components.iter().chain(displacement).collect()
+    displaced(on(section))
 }
 
 /// Where the first cells begin at the end, a section at the end is the face, not half a cell within the body, where

@@ -11,6 +11,7 @@ use ndarray::{Array2, Axis};
 
 use crate::support::claims::claim;
 use crate::support::random::uniform;
+use crate::support::stresses::{self, displaced};
 
 fn coated() -> Result<HalfSpace> {
     let (soft, hard) = (Elastic::new(1.0, 0.3)?, Elastic::new(4.0, 0.25)?);
@@ -18,12 +19,7 @@ fn coated() -> Result<HalfSpace> {
 }
 
 fn sliding(direction: [f64; 2]) -> StressOptions {
-    StressOptions {
-        friction: 0.3,
-        direction: Some(direction),
-        displacement: true,
-        ..StressOptions::default()
-    }
+    displaced(stresses::sliding(0.3, direction))
 }
 
 /// Largest difference of any component.

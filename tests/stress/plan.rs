@@ -11,6 +11,8 @@ use nacre::{
 };
 use ndarray::Array2;
 
+use crate::support::stresses::{bits, displaced, sliding};
+
 /// At the surface and at a tenth of a cell pressure within cells is felt, deeper it is not.
 const DEPTHS: [f64; 3] = [0.0, 0.004, 0.3];
 
@@ -40,12 +42,7 @@ fn solution() -> Result<Solution> {
 /// Options that need different kernels, fields and sections.
 fn options() -> [StressOptions; 4] {
     let frictionless = StressOptions::default();
-    let sliding = StressOptions {
-        friction: 0.3,
-        direction: Some([1.0, -2.0]),
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let sliding = displaced(sliding(0.3, [1.0, -2.0]));
     let along = StressOptions {
         friction: 0.1,
         direction: Some([1.0, 0.0]),
@@ -63,12 +60,6 @@ fn options() -> [StressOptions; 4] {
 
 fn on_threads(count: usize) -> StressOptions {
     StressOptions::with_threads(Some(count))
-}
-
-fn bits(field: &Stress) -> Vec<u64> {
-    let displacement = field.displacement.iter().flatten();
-    let fields = field.components.iter().chain(displacement);
-    fields.flatten().map(|value| value.to_bits()).collect()
 }
 
 fn assert_same(field: &Stress, expected: &Stress, options: &StressOptions) {
@@ -151,11 +142,7 @@ fn a_point_has_the_stress_of_its_plane() -> Result<()> {
 #[test]
 fn friction_on_the_counterbody_is_opposite() -> Result<()> {
     let plan = solution()?.stress_plan(Member::Counterbody, &StressOptions::default())?;
-    let options = StressOptions {
-        friction: 0.5,
-        direction: Some([0.0, 2.0]),
-        ..StressOptions::default()
-    };
+    let options = sliding(0.5, [0.0, 2.0]);
     // Signed zeros are equal; halves are exact.
     let [x, y] = plan.stress(&[0.1], &options)?.friction;
     assert!(x.abs() < f64::EPSILON && (y + 0.5).abs() < f64::EPSILON);

@@ -28,12 +28,6 @@ fn options(threads: usize) -> StressOptions {
     }
 }
 
-fn bits(field: &Stress) -> Vec<u64> {
-    let displacement = field.displacement.iter().flatten();
-    let fields = field.components.iter().chain(displacement);
-    fields.flatten().map(|value| value.to_bits()).collect()
-}
-
 /// Pressure within cells is felt at the surface and at a tenth of a cell, not at the interface and
 /// in the substrate.
 #[test]
