@@ -96,7 +96,9 @@ fn measure_plan(cells: usize, depths: usize, threads: usize) -> Result<()> {
     };
     let [mut plan, mut evaluate, mut section] = [f64::INFINITY; 3];
     for _ in 0..ROUNDS {
-        let (time, planned) = seconds(|| solution.stress_plan(Member::Body, Some(threads)))?;
+        let (time, planned) = seconds(|| {
+            solution.stress_plan(Member::Body, &StressOptions::with_threads(Some(threads)))
+        })?;
         plan = plan.min(time);
         let (time, field) = seconds(|| planned.stress(&planes, &whole))?;
         assert!(field.zz()[[0, cells / 2, cells / 2]] < 0.0);

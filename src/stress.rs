@@ -21,49 +21,45 @@
 //! pressure alone. A [`StressPlan`] makes them once; it is then evaluated for any depths, sections,
 //! friction and residual stress. The functions here and those of `Solution` make a plan for one call.
 //!
-//! Sliding adds the traction q = μ p along a direction; its effect on the pressure is neglected. That
+//! SlidingSense adds the traction q = μ p along a direction; its effect on the pressure is neglected. That
 //! is exact where both bodies have the same elastic constants or ν = ½, and a good approximation for
 //! small μ: the neglected coupling changes the pressure by the order of μ (1 − 2ν)/(2 − 2ν). See
 //! Johnson, Contact Mechanics (1985), chapter 7, doi:10.1017/CBO9781139171731.
 
-use std::ops::ControlFlow;
+use ndarray::{Array2, ArrayRef2};
 
-use ndarray::ArrayRef2;
-
-use crate::error::Result;
+use crate::compliance::response::Body;
+use crate::contact::Solution;
+use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 
-mod derived;
 mod ends;
 mod field;
-mod friction;
 mod half_space;
-mod member;
 mod options;
 mod plan;
-mod request;
 mod section;
 mod subcell;
 mod summary;
 
-pub use derived::Peak;
-pub(crate) use derived::Tensor;
-pub use field::Stress;
-pub use member::Member;
-pub use options::{Section, Side, StressOptions, StressProgress};
+pub(crate) use field::Tensor;
+pub use field::{Peak, Stress};
+pub use options::{Section, Side, StressOptions, StressProgress, WatchedStress};
 pub use plan::StressPlan;
+pub(crate) use plan::Weights;
 pub use summary::{InterfaceSummary, LayerSummary, Strengths, StressSummary};
 
-pub(crate) use request::Weights;
-
-use half_space::Source;
-use request::stress_once;
+use options::SlidingSense;
+use plan::{PressureSource, stress_once};
+use subcell::BodyPair;
+use summary::summary_once;
 
 /// Stress of `body` at `depths` under `pressure` (nx, ny) \[Pa\] on `grid`, uniform over each cell.
 ///
 /// For a solved contact, [`Solution::stress`](crate::Solution::stress) also reconstructs the pressure
-/// within cells. To evaluate one pressure several times, make a [`StressPlan`].
+/// within cells. To evaluate one pressure several times, make a [`StressPlan`]. A callback of
+/// [`StressOptions::watched`] is told the fraction done; when it breaks, the result holds the depths finished so far.
 ///
 /// # Errors
 /// Bad input, or too little memory.
@@ -80,34 +76,168 @@ use request::stress_once;
 /// assert!(field.zz()[[1, 0, 0]] > -0.7);
 /// # Ok::<(), nacre::Error>(())
 /// ```
-pub fn stress(
+pub fn stress<'a>(
     body: &HalfSpace,
     grid: &Grid,
     pressure: &ArrayRef2<f64>,
     depths: &[f64],
-    options: &StressOptions,
-) -> Result<Stress> {
-    let mut progress = |_| ControlFlow::Continue(());
-    stress_watched(body, grid, pressure, depths, options, &mut progress)
-}
-
-/// [`stress`] with a callback: `progress` is told the fraction done. When it breaks, the result holds
-/// the depths finished so far.
-///
-/// # Errors
-/// As [`stress`].
-pub fn stress_watched(
-    body: &HalfSpace,
-    grid: &Grid,
-    pressure: &ArrayRef2<f64>,
-    depths: &[f64],
-    options: &StressOptions,
-    progress: &mut StressProgress,
+    options: impl Into<WatchedStress<'a>>,
 ) -> Result<Stress> {
     stress_once(
-        &Source::uniform(body, grid, pressure),
+        &PressureSource::uniform(body, grid, pressure),
         depths,
-        options,
-        progress,
+        options.into(),
     )
+}
+
+/// One of the two bodies of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Member {
+    /// The body that the shape is pressed into.
+    #[default]
+    Body,
+    /// The body that carries the shape. z points into it; x and y are those of the contact.
+    Counterbody,
+}
+
+impl Solution {
+    /// Stress at `depths` in one of the bodies. The direction of friction is that of the traction on the
+    /// body; the counterbody gets the opposite. Without a direction, friction acts along the direction in
+    /// which the shape rolls.
+    ///
+    /// The pressure is reconstructed within cells, with a square-root profile near a smooth edge;
+    /// [`stress`](crate::stress()) takes it as uniform over each cell. To evaluate a solution several
+    /// times, make its [`StressPlan`] with [`Solution::stress_plan`]. A callback of [`StressOptions::watched`]
+    /// is told the fraction done, 0 while planning; when it breaks, the result holds the depths finished so far.
+    ///
+    /// # Errors
+    /// Bad input, a counterbody that is rigid, friction without a direction on a shape that has none, too
+    /// little memory.
+    ///
+    /// ```
+    /// use nacre::{Elastic, Member, Motion, Sphere, StressOptions, solve};
+    /// let steel = Elastic::new(210e9, 0.3)?;
+    /// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
+    /// let a = (0.75 * 10.0 * 5e-3 / steel.plane_strain_modulus()).cbrt();
+    /// let field = solution.stress(&[0.48 * a], Member::Body, &StressOptions::default())?;
+    /// let shear = field.max_shear().fold(0.0_f64, |m, s| m.max(*s));
+    /// assert!((shear / solution.peak_pressure() / 0.31 - 1.0).abs() < 5e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn stress<'a>(
+        &self,
+        depths: &[f64],
+        member: Member,
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<Stress> {
+        stress_once(&self.source(member)?, depths, options.into())
+    }
+
+    /// Peaks in each layer and tractions at each interface of one of the bodies, compared with
+    /// `strengths`; see [`StressPlan::summary`]. The pressure is that of [`Solution::stress`].
+    ///
+    /// # Errors
+    /// As [`Solution::stress`], and a strength that is not finite and above 0.
+    pub fn stress_summary<'a>(
+        &self,
+        member: Member,
+        strengths: &Strengths,
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<StressSummary> {
+        summary_once(&self.source(member)?, strengths, options.into())
+    }
+
+    /// A plan of the stress in one of the bodies, evaluated any number of times without planning again. The pressure is
+    /// that of [`Solution::stress`], and the plan does not borrow the solution. Of the options, only `threads` is used. A
+    /// callback of [`StressOptions::watched`] is told 0 while planning.
+    ///
+    /// # Errors
+    /// A counterbody that is rigid, no threads, too little memory, or a callback that breaks.
+    pub fn stress_plan<'a>(
+        &self,
+        member: Member,
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<StressPlan> {
+        self.source(member)?.planned(options.into())
+    }
+
+    /// A plan of the stress under the pressure and the `tractions` (q_x, q_y) on the body; on the counterbody, their
+    /// opposites act. They are uniform over each cell.
+    ///
+    /// # Errors
+    /// As [`Solution::stress_plan`], and tractions of another shape than the grid's.
+    pub(crate) fn stress_plan_with(
+        &self,
+        member: Member,
+        tractions: [&Array2<f64>; 2],
+        asked: WatchedStress,
+    ) -> Result<StressPlan> {
+        let mut source = self.source(member)?;
+        source.sliding.is_known = true;
+        source.tractions = Some(tractions.map(|traction| &**traction));
+        source.planned(asked)
+    }
+
+    /// A plan of the stress in `body`, which stands for one of the bodies, under `pressure` that is uniform over each
+    /// cell.
+    ///
+    /// # Errors
+    /// As [`Solution::stress_plan`].
+    pub(crate) fn uniform_stress_plan(
+        &self,
+        member: Member,
+        body: &HalfSpace,
+        pressure: &Array2<f64>,
+    ) -> Result<StressPlan> {
+        let source = PressureSource {
+            body,
+            pressure,
+            solved: None,
+            ..self.source(member)?
+        };
+        source.planned((&StressOptions::default()).into())
+    }
+
+    /// The layers of one of the bodies.
+    ///
+    /// # Errors
+    /// A rigid counterbody, or a body that is known by its normal response alone.
+    pub fn member(&self, member: Member) -> Result<&HalfSpace> {
+        match (member, &self.report.counterbody) {
+            (Member::Body, _) => layered(&self.report.body),
+            (Member::Counterbody, Some(counterbody)) => layered(counterbody),
+            (Member::Counterbody, None) => Err(Error::Inconsistent(
+                "body must be \"body\" where the counterbody is rigid",
+            )),
+        }
+    }
+
+    /// The pressure on one of the bodies, with the sign of friction there.
+    fn source(&self, member: Member) -> Result<PressureSource<'_>> {
+        let (body, counterbody) = (&self.report.body, &self.report.counterbody);
+        let bodies = std::iter::once(body).chain(counterbody);
+        Ok(PressureSource {
+            body: self.member(member)?,
+            grid: self.grid(),
+            pressure: &self.pressure,
+            solved: Some(BodyPair(bodies.map(|body| &**body).collect())),
+            sliding: SlidingSense {
+                sign: match member {
+                    Member::Body => 1.0,
+                    Member::Counterbody => -1.0,
+                },
+                direction: self.report.rolling_direction,
+                is_known: false,
+            },
+            tractions: None,
+        })
+    }
+}
+
+/// The layers of a body.
+fn layered(body: &Body) -> Result<&HalfSpace> {
+    body.half_space().ok_or(Error::Inconsistent(
+        "stresses need a body that is a stack of layers: this one is a normal response alone; \
+         give the contact a HalfSpace",
+    ))
 }

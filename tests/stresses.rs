@@ -5,6 +5,7 @@ mod support {
     pub(crate) mod huber;
     pub(crate) mod random;
     pub(crate) mod reference;
+    pub(crate) mod stresses;
 }
 
 mod stress {

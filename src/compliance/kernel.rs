@@ -11,27 +11,22 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `rectangle` | corner functions and the potential 1/r of a loaded rectangle |
-//! | `love`, `cerruti` | a homogeneous half-space under pressure, and under traction, on a rectangle |
+//! | `rectangle` | a homogeneous half-space under pressure and under traction on a rectangle; its potential 1/r |
 //! | `quadrature` | Gauss rules; integrals over a cell, near and far |
 //! | `mesh`, `series` | Hankel, sine and cosine transforms by Fourier series in ln α |
 //! | `table` | tables of functions of the squared distance |
 //! | `loads` | which transforms make which component under which load; point loads |
-//! | `plane` | kernels of cells at one depth |
+//! | `plane` | kernels of cells at one depth, and plans of these or of strips |
 //! | `strip` | kernels of endless strips, for line contact |
 //! | `cells` | kernels at all offsets of a grid |
-//! | `plans` | plans for cells or strips |
 //!
 //! The displacement of the surface under pressure, for any response, is made of the same series, tables
 //! and rules in `influence`.
 
 pub(crate) mod cells;
-mod cerruti;
 pub(crate) mod loads;
-mod love;
 pub(crate) mod mesh;
 pub(crate) mod plane;
-pub(crate) mod plans;
 pub(crate) mod quadrature;
 pub(crate) mod rectangle;
 pub(crate) mod series;

@@ -1,14 +1,12 @@
 //! The solution of a contact with friction.
 
-use std::ops::ControlFlow;
-
 use ndarray::Array2;
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
 use crate::error::{Error, Result, same_shape};
 use crate::model::grid::Grid;
-use crate::stress::{Member, Stress, StressOptions, StressPlan, StressProgress};
+use crate::stress::{Member, Stress, StressPlan, WatchedStress};
 
 /// Tangential motion of the counterbody over the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,31 +134,33 @@ impl FrictionSolution {
     ///
     /// # Errors
     /// As [`Solution::stress`](crate::Solution::stress); friction among the `options`.
-    pub fn stress(
+    pub fn stress<'a>(
         &self,
         depths: &[f64],
         member: Member,
-        options: &StressOptions,
+        options: impl Into<WatchedStress<'a>>,
     ) -> Result<Stress> {
-        let mut progress = |_| ControlFlow::Continue(());
-        let plan = self.stress_plan(member, options.threads, &mut progress)?;
-        plan.ok_or(Error::Stopped)?.stress(depths, options)
+        let mut asked = options.into();
+        let options = asked.options();
+        let mut progress = |part| asked.tell(part);
+        let plan = self.stress_plan(member, options.watched(&mut progress))?;
+        plan.stress(depths, options.watched(&mut progress))
     }
 
     /// A plan of the stress in one of the bodies under the pressure and the tractions, evaluated any number of times,
-    /// also for a [`StressPlan::summary`]. `progress` is told 0 while planning; when it breaks, there is no plan.
+    /// also for a [`StressPlan::summary`]. Of the options, only `threads` is used. A callback of
+    /// [`StressOptions::watched`](crate::StressOptions::watched) is told 0 while planning.
     ///
     /// # Errors
-    /// A counterbody that is rigid, no threads, or too little memory.
-    pub fn stress_plan(
+    /// A counterbody that is rigid, no threads, too little memory, or a callback that breaks.
+    pub fn stress_plan<'a>(
         &self,
         member: Member,
-        threads: Option<usize>,
-        progress: &mut StressProgress,
-    ) -> Result<Option<StressPlan>> {
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<StressPlan> {
         let tractions = self.traction.each_ref();
         self.normal
-            .stress_plan_with(member, tractions, threads, progress)
+            .stress_plan_with(member, tractions, options.into())
     }
 
     /// The solution itself, if its fields fit the grid and are finite.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
@@ -25,7 +24,7 @@ use super::stress::keywords::{
 use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
 use super::words::Word;
 use crate::contact::{Hardness, Solution, Termination};
-use crate::stress::Member;
+use crate::stress::{Member, StressOptions};
 
 mod direction;
 mod gradient;
@@ -509,7 +508,7 @@ impl PySolution {
         keywords.finish("keywords of Solution.stress")?;
         let solution = Arc::clone(&self.solution);
         let evaluated = watched(py, progress, move |progress| {
-            solution.stress_watched(&depths, member, &options, progress)
+            solution.stress(&depths, member, options.watched(progress))
         })?;
         issue_warnings(py, evaluated.warnings())?;
         Ok(PyStress::new(evaluated, one, lines))
@@ -571,7 +570,7 @@ impl PySolution {
         keywords.finish("keywords of Solution.stress_summary")?;
         let solution = Arc::clone(&self.solution);
         let summary = watched(py, progress, move |progress| {
-            solution.stress_summary(member, &strengths, &options, progress)
+            solution.stress_summary(member, &strengths, options.watched(progress))
         })?;
         issue_warnings(py, summary.warnings())?;
         Ok(PyStressSummary(summary))
@@ -613,12 +612,11 @@ impl PySolution {
     ) -> PyResult<PyStressPlan> {
         let member = Member::from_word(body)?;
         let threads = threads.map(|n| count("threads", 1, n)).transpose()?;
+        let options = StressOptions::with_threads(threads);
         let solution = Arc::clone(&slf.get().solution);
         let plan = watched(slf.py(), None, move |progress| {
-            solution.stress_plan_watched(member, threads, progress)
+            solution.stress_plan(member, options.watched(progress))
         })?;
-        // Only an interrupt stops the planning, and that is an error above.
-        let plan = plan.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
         Ok(PyStressPlan::new(
             plan,
             member,

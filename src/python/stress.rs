@@ -8,7 +8,6 @@ use super::arguments::real_matrix;
 use super::bodies::body;
 use super::grid::PyGrid;
 use crate::model::body::HalfSpace;
-use crate::stress::stress_watched;
 
 mod field;
 pub(super) mod keywords;
@@ -93,7 +92,8 @@ pub(super) fn stress<'py>(
     let progress = keywords.callable("progress")?;
     keywords.finish("keywords of stress")?;
     let evaluated = keywords::watched(py, progress, move |progress| {
-        stress_watched(&body, &grid.0, &pressure, &depths, &options, progress)
+        let options = options.watched(progress);
+        crate::stress::stress(&body, &grid.0, &pressure, &depths, options)
     })?;
     Ok(PyStress::new(evaluated, one, lines))
 }

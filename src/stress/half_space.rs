@@ -1,14 +1,424 @@
-//! Stress and displacement of the body that goes on along x and y.
+//! Stress and displacement of the body that goes on along x and y: one plan, and its influence coefficients at any place.
 
-mod coefficients;
-mod plan;
-mod plane;
-mod points;
+use std::ops::Range;
+
+use ndarray::{Array1, ArrayRef2};
+
+use crate::compliance::kernel::cells::CellSource;
+use crate::compliance::kernel::loads::{
+    COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
+};
+use crate::compliance::kernel::plane::{CellPlan, Kernel, Kernels};
+use crate::compliance::kernel::strip::LinePlan;
+use crate::compliance::response::interior::Place;
+use crate::error::{Error, Result};
+use crate::model::body::{HalfSpace, Substrate};
+use crate::model::grid::{Grid, Window};
+use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
+use crate::numerics::parallel::{Threads, check_memory};
+use crate::stress::subcell::{STRESSES, SubcellStress};
+
+mod evaluation;
 mod repeats;
-mod tractions;
 
-pub(super) use coefficients::{SurfaceLoad, components};
-pub(super) use plan::{Form, HalfSpacePlan, MAGNITUDES, Source};
-pub(super) use plane::PlaneEvaluator;
-pub(super) use points::PointEvaluator;
-pub(super) use tractions::{TractionPlanes, TractionPoints, Tractions};
+pub(super) use evaluation::{HalfSpacePart, Part, PlaneMemory, plane_memory};
+use repeats::{Repeats, RowSource, rows_of};
+
+/// A half-space under a pressure, planned once and evaluated any number of times.
+#[derive(Debug)]
+pub(super) struct HalfSpacePlan {
+    pub(super) body: HalfSpace,
+    pub(super) grid: Grid,
+    kernels: Kernels,
+    /// Present where the grid repeats.
+    repeats: Option<Repeats>,
+    /// First and last row, then first and last column, of the loaded cells; none where no cell is loaded.
+    loaded: Option<[[usize; 2]; 2]>,
+    /// Number of offsets along x and y between a loaded cell and any other.
+    offsets: [usize; 2],
+    /// The pressure \[Pa\], in C order.
+    pub(super) pressure: Vec<f64>,
+    transform: PaddedTransform,
+    quarter: QuarterTransform,
+    /// Transform of the pressure that is taken as uniform over cells for stresses.
+    uniform: Transformed,
+    /// Present where the pressure is reconstructed within cells.
+    pub(super) solved: Option<SolvedPressure>,
+    pub(super) threads: Threads,
+}
+
+/// Additional parts of a solved contact's plan.
+#[derive(Debug)]
+pub(super) struct SolvedPressure {
+    pub(super) subcell: SubcellStress,
+    /// Transform of the solver's pressure, whose convolution gives displacements.
+    given: Transformed,
+}
+
+/// A load on the surface, in proportion to the pressure.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfaceLoad {
+    /// Load per unit of pressure: 1, or a component of the friction.
+    pub(super) factor: f64,
+    /// Axis along which the traction acts; none for pressure.
+    pub(super) axis: Option<usize>,
+}
+
+impl SurfaceLoad {
+    /// The pressure itself.
+    pub(super) const PRESSURE: Self = Self {
+        factor: 1.0,
+        axis: None,
+    };
+
+    /// Whether each component is odd in x and in y.
+    fn odd(self) -> [[bool; 2]; COMPONENTS] {
+        ODD.map(|odd| [0, 1].map(|along| odd[along] != (self.axis == Some(along))))
+    }
+}
+
+/// The loads that act on a plan, and the components that are wanted.
+#[derive(Debug)]
+pub(super) struct Loading {
+    loads: Vec<SurfaceLoad>,
+    /// μ times the unit vector of the traction, under the pressure within cells.
+    friction: [f64; 2],
+    displacement: bool,
+}
+
+impl Loading {
+    /// The pressure, and the tractions of `friction` that are not 0.
+    pub(super) fn new(friction: [f64; 2], displacement: bool) -> Self {
+        let tractions = friction.into_iter().enumerate();
+        let tractions = tractions.map(|(axis, factor)| SurfaceLoad {
+            factor,
+            axis: Some(axis),
+        });
+        let tractions = tractions.filter(|load| load.factor != 0.0);
+        Self {
+            loads: std::iter::once(SurfaceLoad::PRESSURE)
+                .chain(tractions)
+                .collect(),
+            friction,
+            displacement,
+        }
+    }
+
+    /// One load, which may be other than the pressure.
+    fn one(load: SurfaceLoad, displacement: bool) -> Self {
+        Self {
+            loads: vec![load],
+            friction: [0.0; 2],
+            displacement,
+        }
+    }
+
+    fn components(&self) -> usize {
+        components(self.displacement)
+    }
+}
+
+/// Number of components: six stresses, and three displacements where they are asked for.
+pub(super) const fn components(displacement: bool) -> usize {
+    if displacement { COMPONENTS } else { STRESSES }
+}
+
+impl HalfSpacePlan {
+    /// The plan of a body under a `pressure` of [`checked_pressure`]; `subcell` has what is known of it within cells.
+    pub(super) fn new(
+        body: &HalfSpace,
+        grid: &Grid,
+        pressure: Vec<f64>,
+        subcell: Option<SubcellStress>,
+        threads: Threads,
+    ) -> Self {
+        let [lx, ly] = grid.size();
+        let repeats = threads.run(|| Repeats::plan(body, grid));
+        // One per cent more than the diagonal, for rounding.
+        let reach = (repeats.as_ref()).map_or(1.01 * lx.hypot(ly), Repeats::reach);
+        let kernels = threads.run(|| Kernels::new::<6, Pressure>(body, grid, 1.0, reach));
+        let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
+        let shape = grid.shape();
+        let loaded = loaded_cells(shape, &[&pressure, uniform]);
+        // From the first loaded cell to the last cell, from the first cell to the last loaded one.
+        let offsets = loaded.map_or(shape, |loaded| {
+            [0, 1].map(|k| (shape[k] - loaded[k][0]).max(loaded[k][1] + 1))
+        });
+        let transform = PaddedTransform::plan_even(shape, offsets, &threads);
+        let transformed =
+            |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
+        let uniform = transformed(uniform);
+        let solved = subcell.map(|subcell| SolvedPressure {
+            subcell,
+            given: transformed(&pressure),
+        });
+        Self {
+            body: body.clone(),
+            grid: *grid,
+            kernels,
+            repeats,
+            loaded,
+            offsets,
+            quarter: transform.quarter_transform(),
+            pressure,
+            transform,
+            uniform,
+            solved,
+            threads,
+        }
+    }
+
+    /// The plan of a body under a `pressure` that is uniform over cells.
+    pub(super) fn uniform(
+        body: &HalfSpace,
+        grid: &Grid,
+        pressure: &ArrayRef2<f64>,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let pressure = checked_pressure(body, grid, pressure)?;
+        check_memory(grid.shape(), Self::memory(grid, false))?;
+        let threads = Threads::new(Some(threads.count()))?;
+        Ok(Self::new(body, grid, pressure, None, threads))
+    }
+
+    /// Bytes that planning takes.
+    pub(super) fn memory(grid: &Grid, is_solved: bool) -> u64 {
+        // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
+        // and the transform of the solver's pressure, as 24.
+        let arrays = 8 + if is_solved { 24 } else { 0 };
+        // The coefficients of a component, at all offsets.
+        let repeats = grid.is_periodic() != [false; 2];
+        transforms_memory(
+            grid,
+            arrays + if repeats { 2 * COMPONENTS as u64 } else { 0 },
+        )
+    }
+
+    /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
+    /// none where the pressure is given as uniform over them.
+    pub(super) fn uncertainties(
+        &self,
+        places: &[Place],
+        friction: [f64; 2],
+        window: &Window,
+    ) -> Option<Array1<f64>> {
+        let subcell = &self.solved.as_ref()?.subcell;
+        let steps = subcell.steps(window);
+        let error = |place: &Place| subcell.uncertainty(&self.body, place, friction, steps);
+        Some(places.iter().map(error).collect())
+    }
+
+    /// Pressure that is taken as uniform over cells for stresses.
+    fn stress_pressure(&self) -> &[f64] {
+        let solved = self.solved.as_ref();
+        solved.map_or(&self.pressure, |solved| solved.subcell.uniform())
+    }
+
+    /// Half the width of the cells with a pressure along their shorter side \[m\]; of the whole grid if there are none.
+    /// Along directions that repeat, which have no first cell, the lines with a pressure count.
+    pub(super) fn half_width(&self) -> f64 {
+        let (grid, [nx, ny]) = (&self.grid, self.grid.shape());
+        let loaded = loaded_cells([nx, ny], &[&self.pressure]);
+        let lines = |axis: usize| -> usize {
+            let touches = |line: &usize| match axis {
+                0 => (0..ny).any(|j| self.pressure[line * ny + j] != 0.0),
+                _ => (0..nx).any(|i| self.pressure[i * ny + line] != 0.0),
+            };
+            (0..[nx, ny][axis]).filter(touches).count()
+        };
+        let width = |axis: usize| {
+            let cells = match loaded {
+                None => grid.shape()[axis],
+                Some(_) if grid.is_periodic()[axis] => lines(axis),
+                Some(ends) => ends[axis][1] - ends[axis][0] + 1,
+            };
+            0.5 * cells as f64 * grid.spacing()[axis]
+        };
+        match grid.is_line() {
+            true => width(1),
+            false => width(0).min(width(1)),
+        }
+    }
+}
+
+/// Coefficients of a plan at one place.
+#[derive(Debug, Clone, Copy)]
+struct Coefficients<'a> {
+    plan: &'a HalfSpacePlan,
+    place: &'a Place,
+    loading: &'a Loading,
+    /// Numbers of offsets along x and y.
+    offsets: [usize; 2],
+    /// Whether offsets along x are half a cell longer: those between cells and the line between two rows.
+    between: bool,
+}
+
+impl Coefficients<'_> {
+    /// Calls `take` with the number of each load, and the source of its coefficients. On the threads of the caller.
+    fn each(&self, take: &mut dyn FnMut(usize, &RowSource)) {
+        let slides = self.loading.loads.iter().any(|load| load.axis.is_some());
+        match &self.plan.kernels {
+            Kernels::Line(plan) => self.strips(plan, take),
+            Kernels::Plane {
+                plan,
+                pressure,
+                traction,
+            } => {
+                // Made without rayon, so that a thread that waits for it cannot be asked to make it.
+                let traction =
+                    slides.then(|| traction.get_or_init(|| plan.multipliers::<9, Traction>()));
+                // Stresses alone need fewer radial functions.
+                if self.loading.displacement {
+                    self.cells::<6, COMPONENTS, Pressure>(plan, pressure, take);
+                    if let Some(traction) = traction {
+                        self.cells::<9, COMPONENTS, Traction>(plan, traction, take);
+                    }
+                } else {
+                    self.cells::<4, STRESSES, PressureStress>(plan, pressure, take);
+                    if let Some(traction) = traction {
+                        self.cells::<6, STRESSES, TractionStress>(plan, traction, take);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Coefficients of line contact.
+    fn strips(&self, plan: &LinePlan, take: &mut dyn FnMut(usize, &RowSource)) {
+        for (number, load) in self.loading.loads.iter().enumerate() {
+            let values = plan.coefficients(self.place, load.axis);
+            take(number, &|rows: Range<usize>, keep: &mut Keep| {
+                for i in rows {
+                    for k in 0..self.loading.components() {
+                        let row: Vec<f64> = values.iter().map(|values| values[k]).collect();
+                        keep(i, k, &row);
+                    }
+                }
+            });
+        }
+    }
+
+    /// C coefficients of the loads of the kind L: of pressure, or of the tractions along x and along y. Where the grid
+    /// repeats, all offsets are computed at once, from those of one cell at the near ones.
+    fn cells<const N: usize, const C: usize, L: Radial<N>>(
+        &self,
+        plan: &CellPlan,
+        multipliers: &[Vec<(f64, f64)>],
+        take: &mut dyn FnMut(usize, &RowSource),
+    ) {
+        let kernel = Kernel::new::<L>(plan, multipliers, self.place);
+        let repeats = self.plan.repeats.as_ref();
+        let block = repeats.and_then(|repeats| repeats.block_kernel::<N, L>(self.place));
+        let of_kind = |load: &SurfaceLoad| load.axis.is_some() == L::IS_TRACTION;
+        let loads = self.loading.loads.iter().enumerate();
+        for (number, load) in loads.filter(|(_, load)| of_kind(load)) {
+            // Traction along y is traction along x with both exchanged.
+            let is_exchanged = load.axis == Some(1);
+            let seen = |[x, y]: [f64; 2]| if is_exchanged { [y, x] } else { [x, y] };
+            let turned = |values: [f64; COMPONENTS]| match is_exchanged {
+                true => EXCHANGED.map(|k| values[k]),
+                false => values,
+            };
+            let half = seen(self.plan.grid.spacing().map(|d| 0.5 * d));
+            let odd = load.odd();
+            let source = CellSource {
+                offsets: repeats.map_or(self.offsets, Repeats::extents),
+                spacing: self.plan.grid.spacing(),
+                depth: self.place.depth,
+                between: self.between,
+                odd: std::array::from_fn::<_, C, _>(|k| odd[k]),
+                mean: |x, y| turned(kernel.at::<L>(seen([x, y]), half)),
+                point: |x, y| {
+                    let [x, y] = seen([x, y]);
+                    turned(kernel.far::<L>(x, y))
+                },
+            };
+            let Some(repeats) = repeats else {
+                take(number, &|rows, keep| source.rows(rows, keep));
+                continue;
+            };
+            let of_block = |at: [f64; 2], half: [f64; 2]| match &block {
+                Some(block) => turned(block.at::<L>(seen(at), seen(half))),
+                None => [0.0; COMPONENTS],
+            };
+            let summed = repeats.coefficients(&source, of_block, (self.place, load.axis));
+            take(number, &*rows_of(&summed, self.offsets[1]));
+        }
+    }
+}
+
+/// Smallest and largest length and modulus, in whatever units: kernels take fifth powers of lengths and
+/// fourth powers of moduli, which neither overflow nor vanish between these.
+pub(super) const MAGNITUDES: [f64; 2] = [1e-60, 1e60];
+
+/// Refuses lengths and moduli outside of [`MAGNITUDES`].
+fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
+    let check = |name, value: f64| match (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value) {
+        true => Ok(()),
+        false => Err(Error::Parameter {
+            name,
+            requirement: "between 1e-60 and 1e60 for stresses (take other units)",
+            value,
+        }),
+    };
+    for axis in 0..2 {
+        check("size of the grid", grid.size()[axis])?;
+        check("spacing of the grid", grid.spacing()[axis])?;
+    }
+    for layer in body.layers() {
+        check("thickness", layer.thickness())?;
+        check("young", layer.material().young())?;
+    }
+    match body.substrate() {
+        Substrate::Elastic(material) => check("young", material.young()),
+        Substrate::Rigid => Ok(()),
+    }
+}
+
+/// `pressure` in C order.
+///
+/// # Errors
+/// Lengths and moduli outside of [`MAGNITUDES`]; a pressure that is not finite or not of the grid's shape.
+pub(super) fn checked_pressure(
+    body: &HalfSpace,
+    grid: &Grid,
+    pressure: &ArrayRef2<f64>,
+) -> Result<Vec<f64>> {
+    check_magnitudes(body, grid)?;
+    let found = [pressure.nrows(), pressure.ncols()];
+    if found != grid.shape() {
+        return Err(Error::Shape {
+            name: "pressure",
+            expected: grid.shape(),
+            found,
+        });
+    }
+    if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
+        return Err(Error::NonFinite {
+            name: "pressure",
+            index: [index.0, index.1],
+        });
+    }
+    Ok(pressure.iter().copied().collect())
+}
+
+/// Bytes of `arrays` arrays of cells as transforms keep them. Transforms store whole blocks of
+/// columns, at lengths that are products of small primes: together a fifth more than the cells.
+fn transforms_memory(grid: &Grid, arrays: u64) -> u64 {
+    let [nx, ny] = grid.shape().map(|n| n as u64);
+    (nx + 1) * (ny + 8) * 8 * arrays * 6 / 5
+}
+
+/// First and last row, then first and last column, of the cells that any of `pressures` loads; none
+/// where all are zero.
+fn loaded_cells(shape: [usize; 2], pressures: &[&[f64]]) -> Option<[[usize; 2]; 2]> {
+    let mut ends = [[usize::MAX, 0]; 2];
+    for pressure in pressures {
+        for (k, _) in pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {
+            for (end, at) in ends.iter_mut().zip([k / shape[1], k % shape[1]]) {
+                *end = [end[0].min(at), end[1].max(at)];
+            }
+        }
+    }
+    (ends[0][0] <= ends[0][1]).then_some(ends)
+}

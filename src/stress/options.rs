@@ -1,9 +1,10 @@
-//! Options of an evaluation of stress, and its progress callback.
+//! Options of an evaluation of stress, its friction, and its progress callback.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::error::{Error, Result, finite};
-use crate::model::body::HalfSpace;
+use crate::model::body::{HalfSpace, Interface, Layer};
 
 /// Side of an interface, for a depth that lies on one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -73,6 +74,22 @@ impl Default for StressOptions {
 }
 
 impl StressOptions {
+    /// Default options on `threads` threads; none: all of the machine's.
+    pub fn with_threads(threads: Option<usize>) -> Self {
+        Self {
+            threads,
+            ..Self::default()
+        }
+    }
+
+    /// These options, with a callback that is told the fraction of the work done, and that may break to stop it.
+    pub fn watched<'a>(&'a self, progress: &'a mut StressProgress<'a>) -> WatchedStress<'a> {
+        WatchedStress {
+            options: self,
+            progress: Some(progress),
+        }
+    }
+
     /// Residual stress of every layer and of the substrate.
     pub(super) fn residual_by_layer(&self, body: &HalfSpace) -> Result<Vec<f64>> {
         let count = body.layers().len() + 1;
@@ -93,3 +110,110 @@ impl StressOptions {
 
 /// Callback that is told the fraction of the work done, from 0 to 1; it breaks to stop the work.
 pub type StressProgress<'a> = dyn FnMut(f64) -> ControlFlow<()> + 'a;
+
+/// Options of an evaluation, and the callback that watches it, if there is one: [`StressOptions::watched`].
+pub struct WatchedStress<'a> {
+    options: &'a StressOptions,
+    progress: Option<&'a mut StressProgress<'a>>,
+}
+
+impl<'a> WatchedStress<'a> {
+    /// The options.
+    pub(crate) fn options(&self) -> &'a StressOptions {
+        self.options
+    }
+
+    /// Tells the callback the fraction of the work done.
+    pub(crate) fn tell(&mut self, part: f64) -> ControlFlow<()> {
+        match &mut self.progress {
+            Some(progress) => progress(part),
+            None => ControlFlow::Continue(()),
+        }
+    }
+}
+
+impl<'a> From<&'a StressOptions> for WatchedStress<'a> {
+    fn from(options: &'a StressOptions) -> Self {
+        Self {
+            options,
+            progress: None,
+        }
+    }
+}
+
+impl fmt::Debug for WatchedStress<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.options.fmt(f)
+    }
+}
+
+/// How one body of a contact slides on the other.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SlidingSense {
+    /// 1, or −1 for a counterbody, on which the traction acts the other way.
+    pub(super) sign: f64,
+    /// Direction of the traction where the options have none.
+    pub(super) direction: Option<[f64; 2]>,
+    /// Whether the tractions of the contact are known, and no others may be added.
+    pub(super) is_known: bool,
+}
+
+impl SlidingSense {
+    /// μ times the unit vector of the traction on `body`.
+    ///
+    /// # Errors
+    /// A negative or infinite μ, a direction without length, friction without a direction, or friction on
+    /// a body with a frictionless interface.
+    pub(super) fn traction(&self, body: &HalfSpace, options: &StressOptions) -> Result<[f64; 2]> {
+        let friction = finite("friction", options.friction)?;
+        if friction < 0.0 {
+            return Err(Error::Parameter {
+                name: "friction",
+                requirement: "at least 0 (turn the direction)",
+                value: friction,
+            });
+        }
+        if friction > 1e100 {
+            return Err(Error::Parameter {
+                name: "friction",
+                requirement: "at most 1e100",
+                value: friction,
+            });
+        }
+        let given = options.direction.map(check_direction).transpose()?;
+        if friction <= 0.0 {
+            return Ok([0.0; 2]);
+        }
+        if self.is_known {
+            return Err(Error::Inconsistent(
+                "friction must be 0: the tractions of this contact are known, and their stress is part of the result",
+            ));
+        }
+        let slips = |layer: &Layer| layer.interface() == Interface::Frictionless;
+        if body.layers().iter().any(slips) {
+            return Err(Error::Inconsistent(
+                "friction must be 0 on a body with a frictionless interface: nothing holds the layers \
+                 above it against the traction",
+            ));
+        }
+        let [x, y] = given.or(self.direction).ok_or(Error::Inconsistent(
+            "direction must be given where friction is above 0: only rollers, cylinders and line \
+             contacts have a rolling direction to take instead; (1, 0) is along x",
+        ))?;
+        let length = x.hypot(y);
+        Ok([x, y].map(|component| friction * (self.sign * component) / length))
+    }
+}
+
+/// `direction`, if it has a finite length above 0.
+fn check_direction(direction @ [x, y]: [f64; 2]) -> Result<[f64; 2]> {
+    let length = x.hypot(y);
+    if length > 0.0 && length.is_finite() {
+        return Ok(direction);
+    }
+    Err(Error::Parameter {
+        name: "direction",
+        requirement: "a vector of finite length above 0",
+        value: length,
+    })
+}

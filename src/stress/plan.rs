@@ -1,21 +1,27 @@
-//! The plan of a stress field: the body that goes on, and what its free ends add.
+//! A plan of stress, and its evaluation at some depths.
 
 use std::ops::ControlFlow;
 
-use ndarray::{Array1, ArrayRef2};
+use ndarray::{Array1, Array2, Array3, ArrayRef2};
 
-use super::ends::{EndPlanes, EndPoints, EndStress};
+use super::ends::{EndErrors, EndStress};
+use super::field::Stress;
 use super::half_space::{
-    HalfSpacePlan, PlaneEvaluator, PointEvaluator, Source, SurfaceLoad, TractionPlanes,
-    TractionPoints, Tractions,
+    HalfSpacePart, HalfSpacePlan, Loading, Part, PlaneMemory, SurfaceLoad, checked_pressure,
+    components, plane_memory,
 };
-use super::options::StressProgress;
-use super::section::Span;
+use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
+use super::section::{Points, Span, place};
+use super::subcell::{BodyPair, STRESSES, SubcellStress};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
+use crate::numerics::parallel::{Threads, check_memory};
+
+/// Weights of the components σ_xx … σ_xz in each cell, in C order.
+pub(crate) type Weights = [Vec<f64>; STRESSES];
 
 /// Stress below a pressure, planned once and evaluated any number of times.
 ///
@@ -29,7 +35,7 @@ use crate::model::grid::{Grid, Window};
 /// use nacre::{Elastic, Member, Motion, Section, Sphere, StressOptions, solve};
 /// let steel = Elastic::new(210e9, 0.3)?;
 /// let solution = solve(&Sphere::new(5e-3)?, &steel, &Motion::load(10.0))?;
-/// let plan = solution.stress_plan(Member::Body, None)?;
+/// let plan = solution.stress_plan(Member::Body, &StressOptions::default())?;
 /// let axis = StressOptions { section: Section::Axis([0.0, 0.0]), ..StressOptions::default() };
 /// let sliding = StressOptions { friction: 0.3, direction: Some([1.0, 0.0]), ..StressOptions::default() };
 /// let below = plan.stress(&[1e-5, 2e-5, 4e-5], &axis)?;
@@ -41,45 +47,126 @@ use crate::model::grid::{Grid, Window};
 #[derive(Debug)]
 pub struct StressPlan {
     pub(super) whole: HalfSpacePlan,
+    pub(super) sliding: SlidingSense,
     /// The rows of the grid that the body has.
     span: Span,
+    /// What adds to the stress of the whole half-space: ends of the body, tractions that are known.
+    parts: Vec<Box<dyn Part>>,
     /// Present where the body has free ends, and bears pressure.
-    ends: Option<EndStress>,
-    /// Present where tractions are known.
-    tractions: Option<Tractions>,
+    ends: Option<EndErrors>,
 }
 
-impl Source<'_> {
-    /// The plan with the ends of the body; none where `progress` stops it.
-    pub(super) fn complete(
+/// The pressure that a plan is made for, and the body below it.
+pub(super) struct PressureSource<'a> {
+    pub(super) body: &'a HalfSpace,
+    pub(super) grid: &'a Grid,
+    pub(super) pressure: &'a ArrayRef2<f64>,
+    /// The bodies of the contact that the pressure is of, which is then reconstructed within cells; none: it is uniform
+    /// over each.
+    pub(super) solved: Option<BodyPair<'a>>,
+    pub(super) sliding: SlidingSense,
+    /// Tractions along x and y on the body itself, where they are known.
+    pub(super) tractions: Option<[&'a ArrayRef2<f64>; 2]>,
+}
+
+impl<'a> PressureSource<'a> {
+    /// A pressure that is uniform over each cell, and whose shape is not known.
+    pub(super) fn uniform(
+        body: &'a HalfSpace,
+        grid: &'a Grid,
+        pressure: &'a ArrayRef2<f64>,
+    ) -> Self {
+        Self {
+            body,
+            grid,
+            pressure,
+            solved: None,
+            sliding: SlidingSense {
+                sign: 1.0,
+                direction: grid.rolling_direction(),
+                is_known: false,
+            },
+            tractions: None,
+        }
+    }
+
+    /// Bytes that planning takes.
+    pub(super) fn memory(&self) -> u64 {
+        HalfSpacePlan::memory(self.grid, self.solved.is_some())
+    }
+
+    /// The plan; none where `progress` stops it. `progress` is asked, with 0, while the pressure is
+    /// reconstructed within cells, and while ends are planned; the rest is quick.
+    pub(super) fn plan(
         &self,
         threads: Option<usize>,
         progress: &mut StressProgress,
     ) -> Result<Option<StressPlan>> {
+        let Self { body, grid, .. } = *self;
         self.check_ends()?;
-        let Some(whole) = self.plan(threads, progress)? else {
+        let pressure = checked_pressure(body, grid, self.pressure)?;
+        check_memory(grid.shape(), self.memory())?;
+        let threads = Threads::new(threads)?;
+        let within = |pair| SubcellStress::plan((body, pair), grid, &pressure, &threads, progress);
+        let subcell = match self.solved.as_ref().map(within) {
+            Some(ControlFlow::Break(())) => return Ok(None),
+            Some(ControlFlow::Continue(subcell)) => Some(subcell),
+            None => None,
+        };
+        let whole = HalfSpacePlan::new(body, grid, pressure, subcell, threads);
+        let span = Span::of(body, grid);
+        let Some(EndStress { mut parts, errors }) = EndStress::plan(&whole, &span, progress)?
+        else {
             return Ok(None);
         };
-        let span = Span::of(self.body, self.grid);
-        let ControlFlow::Continue(ends) = EndStress::plan(&whole, &span, progress)? else {
-            return Ok(None);
-        };
-        let (sign, count) = (self.sliding.sign, &whole.threads);
-        let planned = |tractions| Tractions::plan(self.body, self.grid, tractions, sign, count);
-        let tractions = self.tractions.map(planned).transpose()?;
+        for (axis, traction) in self.tractions.iter().flatten().enumerate() {
+            if traction.iter().any(|q| *q != 0.0) {
+                let traction: Array2<f64> = traction.mapv(|q| self.sliding.sign * q);
+                let plan = HalfSpacePlan::uniform(body, grid, &traction, &whole.threads)?;
+                let load = SurfaceLoad {
+                    factor: 1.0,
+                    axis: Some(axis),
+                };
+                parts.push(Box::new(HalfSpacePart::new(plan, load)));
+            }
+        }
         Ok(Some(StressPlan {
             whole,
+            sliding: self.sliding,
             span,
-            ends,
-            tractions,
+            parts,
+            ends: errors,
         }))
     }
 
-    /// [`Source::complete`] without a callback.
-    pub(super) fn complete_unwatched(&self, threads: Option<usize>) -> Result<StressPlan> {
-        let mut progress = |_| ControlFlow::Continue(());
+    /// [`PressureSource::plan`], of which a stop is an error.
+    pub(super) fn planned(&self, mut asked: WatchedStress) -> Result<StressPlan> {
+        let threads = asked.options().threads;
         let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
-        self.complete(threads, &mut progress)?.ok_or(stopped)
+        let plan = self.plan(threads, &mut |part| asked.tell(part))?;
+        plan.ok_or(stopped)
+    }
+
+    /// Refuses what stresses near free ends are not known for, and a pressure beyond an end.
+    fn check_ends(&self) -> Result<()> {
+        if self.body.ends() == [None; 2] {
+            return Ok(());
+        }
+        if self.grid.is_line() || self.grid.is_periodic() != [false; 2] {
+            return Err(Error::Inconsistent(
+                "stresses of a body with free ends need a grid that has cells along x and is not periodic",
+            ));
+        }
+        let Span { rows, .. } = Span::of(self.body, self.grid);
+        let lines = self.pressure.rows().into_iter().enumerate();
+        for (_, pressure) in lines.filter(|(i, _)| !rows.contains(i)) {
+            if pressure.iter().any(|p| *p != 0.0) {
+                return Err(Error::Inconsistent(
+                    "pressure must be 0 beyond the free ends of the body",
+                ));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -98,7 +185,49 @@ impl StressPlan {
         pressure: &ArrayRef2<f64>,
         threads: Option<usize>,
     ) -> Result<Self> {
-        Source::uniform(body, grid, pressure).complete_unwatched(threads)
+        let options = StressOptions::with_threads(threads);
+        PressureSource::uniform(body, grid, pressure).planned((&options).into())
+    }
+
+    /// Stress at `depths`. A callback of [`StressOptions::watched`] is told the fraction done; when it breaks, the
+    /// result holds the depths finished so far.
+    ///
+    /// # Errors
+    /// Bad depths or options, or too little memory for the result.
+    pub fn stress<'a>(
+        &self,
+        depths: &[f64],
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<Stress> {
+        let mut asked = options.into();
+        let (body, grid) = (&self.whole.body, &self.whole.grid);
+        let request = Request::checked(body, grid, &self.sliding, depths, asked.options())?;
+        check_memory(grid.shape(), request.memory())?;
+        Ok(request.evaluate(self, &mut |part| asked.tell(part)))
+    }
+
+    /// Σ_c Σ_k K_c[k − i] w_c[k] in the cells i that the plan's pressure loads: the derivative with respect to the pressure
+    /// of each cell of Σ w σ at depth `z`, of which [`StressPlan::stress`] gives σ. Other cells hold no meaning.
+    ///
+    /// A kernel is even or odd along x and y, so that its transpose is itself with a sign for each odd direction.
+    ///
+    /// # Errors
+    /// As [`StressPlan::stress`]; a body with free ends, whose stress is no convolution.
+    pub(crate) fn transposed(
+        &self,
+        z: f64,
+        weights: &Weights,
+        options: &StressOptions,
+    ) -> Result<Array2<f64>> {
+        if self.ends.is_some() || self.whole.solved.is_some() {
+            return Err(Error::Inconsistent(
+                "derivatives of stresses need a body without free ends, under a pressure that is uniform over cells",
+            ));
+        }
+        let place = place(&self.whole.body, z, options.side)?;
+        let friction = self.sliding.traction(&self.whole.body, options)?;
+        let loading = Loading::new(friction, false);
+        Ok(self.whole.transposed(&loading, &place, weights))
     }
 
     /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`: from the size of the cells, and of
@@ -113,14 +242,8 @@ impl StressPlan {
         let Some(ends) = &self.ends else {
             return cells;
         };
-        let ends = places.iter().map(|place| ends.uncertainty(place.depth));
-        let ends: Array1<f64> = ends.collect();
+        let ends: Array1<f64> = places.iter().map(|place| ends.at(place.depth)).collect();
         Some(cells.map_or(ends.clone(), |cells| cells + &ends))
-    }
-
-    /// Whether the body has free ends whose stress is added.
-    pub(super) fn has_ends(&self) -> bool {
-        self.ends.is_some()
     }
 
     /// The body.
@@ -129,125 +252,293 @@ impl StressPlan {
     }
 }
 
-/// A plan under one friction, on whole planes, with the memory that all planes use.
+/// A plan under one friction, with the memory that all its planes use.
 #[derive(Debug)]
-pub(super) struct PlaneStress<'a> {
+pub(super) struct Evaluation<'a> {
     plan: &'a StressPlan,
-    friction: [f64; 2],
+    loading: Loading,
     displacement: bool,
-    whole: PlaneEvaluator<'a>,
-    ends: Option<EndPlanes<'a>>,
-    tractions: Option<TractionPlanes<'a>>,
+    whole: Option<PlaneMemory>,
+    parts: Vec<Option<PlaneMemory>>,
 }
 
-impl<'a> PlaneStress<'a> {
+impl<'a> Evaluation<'a> {
     pub(super) fn new(plan: &'a StressPlan, friction: [f64; 2], displacement: bool) -> Self {
-        let (ends, tractions) = (plan.ends.as_ref(), plan.tractions.as_ref());
         Self {
             plan,
-            friction,
+            loading: Loading::new(friction, displacement),
             displacement,
-            whole: PlaneEvaluator::new(&plan.whole, friction, displacement),
-            ends: ends.map(|ends| EndPlanes::new(ends, displacement)),
-            tractions: tractions.map(|tractions| TractionPlanes::new(tractions, displacement)),
+            whole: None,
+            parts: plan.parts.iter().map(|_| None).collect(),
         }
-    }
-
-    /// Bytes that it takes.
-    pub(super) fn memory(grid: &Grid, slides: bool, displacement: bool) -> u64 {
-        PlaneEvaluator::memory(grid, slides, displacement)
     }
 
     /// Writes the components at `place` to `outputs`, whole planes of (nx, ny) cells. `progress` is told
     /// the fraction of this plane that is done; where it breaks, `outputs` are incomplete.
-    pub(super) fn evaluate(
+    pub(super) fn plane(
         &mut self,
         place: &Place,
         outputs: &mut [&mut [f64]],
         progress: &mut StressProgress,
     ) -> ControlFlow<()> {
-        self.whole.evaluate(place, outputs, progress)?;
-        if let Some(ends) = &mut self.ends {
-            ends.add(place, outputs, progress)?;
+        let (plan, loading) = (self.plan, &self.loading);
+        let memory = || plan.whole.plane_memory(loading);
+        let memory = self.whole.get_or_insert_with(memory);
+        plan.whole
+            .plane(loading, place, memory, outputs, progress)?;
+        for (part, memory) in plan.parts.iter().zip(&mut self.parts) {
+            part.plane(place, self.displacement, memory, outputs, progress)?;
         }
-        if let Some(tractions) = &mut self.tractions {
-            tractions.add(place, outputs, progress)?;
-        }
-        let span = &self.plan.span;
-        outputs.iter_mut().for_each(|output| span.blank(output));
+        outputs
+            .iter_mut()
+            .for_each(|output| plan.span.blank(output));
         ControlFlow::Continue(())
     }
 
-    /// The components at `place` on the face of an end that lies between the rows `row` − 1 and `row`, for each of them
-    /// along y. The pressure is uniform over cells there; tractions are known for bodies that go on alone.
-    pub(super) fn on_face(
+    /// Components at `place` in each of the `cells`; with displacements, nine. `progress` is told 0.
+    fn points(
         &self,
         place: &Place,
-        (end, row): (usize, usize),
-        progress: &mut StressProgress,
-    ) -> ControlFlow<(), Vec<Vec<f64>>> {
-        let (plan, displacement) = (self.plan, self.displacement);
-        let loads = SurfaceLoad::all(self.friction);
-        let at = (place, row);
-        let mut lines = PlaneEvaluator::between(&plan.whole, loads, displacement, at, progress)?;
-        if let Some(ends) = &plan.ends {
-            ends.add_on_face(place, (end, row), displacement, &mut lines, progress)?;
-        }
-        ControlFlow::Continue(lines)
-    }
-}
-
-/// A plan under one friction, in some cells.
-#[derive(Debug)]
-pub(super) struct PointStress<'a> {
-    span: &'a Span,
-    cells: Vec<[usize; 2]>,
-    whole: PointEvaluator<'a>,
-    ends: Option<EndPoints<'a>>,
-    tractions: Option<TractionPoints<'a>>,
-}
-
-impl<'a> PointStress<'a> {
-    pub(super) fn new(
-        plan: &'a StressPlan,
-        friction: [f64; 2],
-        displacement: bool,
-        cells: Vec<[usize; 2]>,
-    ) -> Self {
-        let (ends, tractions) = (plan.ends.as_ref(), plan.tractions.as_ref());
-        Self {
-            ends: ends.map(|ends| EndPoints::new(ends, displacement, &cells)),
-            tractions: tractions
-                .map(|tractions| TractionPoints::new(tractions, displacement, &cells)),
-            whole: PointEvaluator::new(&plan.whole, friction, displacement, cells.clone()),
-            span: &plan.span,
-            cells,
-        }
-    }
-
-    /// Bytes that it takes.
-    pub(super) fn memory(grid: &Grid) -> u64 {
-        PointEvaluator::memory(grid)
-    }
-
-    /// Components at `place` in each of the cells; with displacements, nine. `progress` is told 0.
-    pub(super) fn evaluate(
-        &self,
-        place: &Place,
+        cells: &[[usize; 2]],
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Vec<[f64; COMPONENTS]>> {
-        let mut sums = self.whole.evaluate(place, progress)?;
-        if let Some(ends) = &self.ends {
-            ends.add(place, &mut sums, progress)?;
+        let plan = self.plan;
+        let mut sums = plan.whole.points(&self.loading, place, cells, progress)?;
+        for part in &plan.parts {
+            part.points(place, self.displacement, cells, &mut sums, progress)?;
         }
-        if let Some(tractions) = &self.tractions {
-            tractions.add(place, &mut sums, progress)?;
-        }
-        for (sums, [i, _]) in sums.iter_mut().zip(&self.cells) {
-            if !self.span.rows.contains(i) {
+        for (sums, [i, _]) in sums.iter_mut().zip(cells) {
+            if !plan.span.rows.contains(i) {
                 *sums = [f64::NAN; COMPONENTS];
             }
         }
         ControlFlow::Continue(sums)
     }
+
+    /// The components at `place` on the face of an end that lies between the rows `row` − 1 and `row`, for each of them
+    /// along y. The pressure is uniform over cells there.
+    fn on_face(
+        &self,
+        place: &Place,
+        (end, row): (usize, usize),
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Vec<Vec<f64>>> {
+        let mut lines = self
+            .plan
+            .whole
+            .line(&self.loading, (place, row), progress)?;
+        for part in &self.plan.parts {
+            part.on_face(place, self.displacement, (end, row), &mut lines, progress)?;
+        }
+        ControlFlow::Continue(lines)
+    }
+}
+
+/// Stress at `depths` by a plan that is made for this call. Bad options are refused before planning.
+pub(super) fn stress_once(
+    source: &PressureSource,
+    depths: &[f64],
+    mut asked: WatchedStress,
+) -> Result<Stress> {
+    let (body, grid, options) = (source.body, source.grid, asked.options());
+    let request = Request::checked(body, grid, &source.sliding, depths, options)?;
+    check_memory(grid.shape(), request.memory() + source.memory())?;
+    let mut progress = |part| asked.tell(part);
+    Ok(match source.plan(options.threads, &mut progress)? {
+        Some(plan) => request.evaluate(&plan, &mut progress),
+        // Stopped while planning: no depth is done.
+        None => request.result(zeros(request.components(), 0), 0, None),
+    })
+}
+
+/// Arguments of one evaluation, checked.
+struct Request<'a> {
+    body: &'a HalfSpace,
+    grid: &'a Grid,
+    depths: &'a [f64],
+    options: &'a StressOptions,
+    places: Vec<Place>,
+    points: Points,
+    /// Residual stress of each layer and of the substrate.
+    residual: Vec<f64>,
+    /// μ times the unit vector of the traction on the body.
+    friction: [f64; 2],
+}
+
+impl<'a> Request<'a> {
+    fn checked(
+        body: &'a HalfSpace,
+        grid: &'a Grid,
+        sliding: &SlidingSense,
+        depths: &'a [f64],
+        options: &'a StressOptions,
+    ) -> Result<Self> {
+        let places = depths.iter().map(|&z| place(body, z, options.side));
+        Ok(Self {
+            body,
+            grid,
+            depths,
+            options,
+            places: places.collect::<Result<_>>()?,
+            points: Points::new(body, grid, options.section)?,
+            residual: options.residual_by_layer(body)?,
+            friction: sliding.traction(body, options)?,
+        })
+    }
+
+    fn components(&self) -> usize {
+        components(self.options.displacement)
+    }
+
+    /// Bytes that the evaluation and its result take.
+    fn memory(&self) -> u64 {
+        let result = (8 * self.places.len() * self.points.count() * self.components()) as u64;
+        if self.is_point() {
+            // Sums of one row of coefficients for each cell.
+            return result + (8 * 4 * COMPONENTS * self.grid.shape()[0]) as u64;
+        }
+        let slides = self.options.friction != 0.0;
+        result + plane_memory(self.grid, slides, self.options.displacement)
+    }
+
+    /// Whether a plane has a single point, which is interpolated from cells.
+    fn is_point(&self) -> bool {
+        self.points.count() == 1 && self.points.face().is_none()
+    }
+
+    fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> Stress {
+        let mut fields = zeros(self.components(), self.places.len() * self.points.count());
+        if self.points.are_beyond {
+            fields.iter_mut().for_each(|field| field.fill(f64::NAN));
+            let unknown = Array1::from_elem(self.places.len(), f64::NAN);
+            return self.result(fields, self.places.len(), Some(unknown));
+        }
+        let done = self.fill(plan, &mut fields, progress);
+        let window = self.points.window();
+        let uncertainty = plan.uncertainties(&self.places[..done], self.friction, &window);
+        self.result(fields, done, uncertainty)
+    }
+
+    /// Evaluates one place after another into `fields`; returns how many were finished.
+    fn fill(
+        &self,
+        plan: &StressPlan,
+        fields: &mut [Vec<f64>],
+        progress: &mut StressProgress,
+    ) -> usize {
+        let count = self.points.count();
+        // Whole planes and single points are evaluated in place, lines by way of a plane.
+        let in_place = self.points.are_all_cells() || self.is_point();
+        let mut planes = match in_place {
+            true => Vec::new(),
+            false => zeros(fields.len(), self.points.of_plane()),
+        };
+        let mut evaluation = Evaluation::new(plan, self.friction, self.options.displacement);
+        for (done, place) in self.places.iter().enumerate() {
+            let total = self.places.len() as f64;
+            let mut progress = |part: f64| progress((done as f64 + part) / total);
+            let mut here: Vec<&mut [f64]> = fields
+                .iter_mut()
+                .map(|field| &mut field[done * count..(done + 1) * count])
+                .collect();
+            let flow = if self.is_point() {
+                self.fill_point(&evaluation, place, &mut here, &mut progress)
+            } else if in_place {
+                evaluation.plane(place, &mut here, &mut progress)
+            } else {
+                self.fill_planes(&mut evaluation, place, &mut planes, &mut progress)
+            };
+            if flow.is_break() {
+                return done;
+            }
+            for (plane, here) in planes.iter().zip(&mut here) {
+                self.points.interpolate(plane, here);
+            }
+            let residual = self.residual[place.layer];
+            for in_plane in &mut here[..2] {
+                if residual != 0.0 {
+                    in_plane.iter_mut().for_each(|s| *s += residual);
+                }
+            }
+        }
+        // All is done: a break has nothing left to stop.
+        let _ = progress(1.0);
+        self.places.len()
+    }
+
+    /// Evaluates what points at `place` are interpolated from: the cells of planes and, behind them, a face.
+    fn fill_planes(
+        &self,
+        evaluation: &mut Evaluation,
+        place: &Place,
+        planes: &mut [Vec<f64>],
+        progress: &mut StressProgress,
+    ) -> ControlFlow<()> {
+        let [nx, ny] = self.grid.shape();
+        if !self.points.are_on_face() {
+            let outputs = planes.iter_mut().map(|plane| &mut plane[..nx * ny]);
+            evaluation.plane(place, &mut outputs.collect::<Vec<_>>(), progress)?;
+        }
+        if let Some((end, row)) = self.points.face() {
+            let lines = evaluation.on_face(place, (end, row), progress)?;
+            for (plane, line) in planes.iter_mut().zip(lines) {
+                plane[(nx + end) * ny..][..ny].copy_from_slice(&line);
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Evaluates a single point, which needs no other cells than those that it is interpolated from.
+    fn fill_point(
+        &self,
+        evaluation: &Evaluation,
+        place: &Place,
+        here: &mut [&mut [f64]],
+        progress: &mut StressProgress,
+    ) -> ControlFlow<()> {
+        let (cells, weights): (Vec<_>, Vec<_>) = self.points.weighted_cells().into_iter().unzip();
+        let found = evaluation.points(place, &cells, progress)?;
+        for (k, value) in here.iter_mut().enumerate() {
+            let parts = found.iter().zip(&weights);
+            value[0] = parts
+                .map(|(components, weight)| weight * components[k])
+                .sum();
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The result of the first `done` places.
+    fn result(
+        &self,
+        fields: Vec<Vec<f64>>,
+        done: usize,
+        uncertainty: Option<Array1<f64>>,
+    ) -> Stress {
+        let [ox, oy] = self.points.shape;
+        let mut arrays = fields.into_iter().map(|mut values| {
+            values.truncate(done * self.points.count());
+            Array3::from_shape_vec((done, ox, oy), values).unwrap_or_default()
+        });
+        let mut next = || arrays.next().unwrap_or_default();
+        Stress {
+            z: self.depths[..done].to_vec().into(),
+            x: self.points.x.clone(),
+            y: self.points.y.clone(),
+            body: self.body.clone(),
+            side: self.options.side,
+            friction: self.friction,
+            components: std::array::from_fn(|_| next()),
+            uncertainty,
+            displacement: self
+                .options
+                .displacement
+                .then(|| std::array::from_fn(|_| next())),
+        }
+    }
+}
+
+/// `fields` arrays of zeros. Each is allocated by itself: a copy would touch its memory here, on one
+/// thread.
+fn zeros(fields: usize, length: usize) -> Vec<Vec<f64>> {
+    (0..fields).map(|_| vec![0.0; length]).collect()
 }

@@ -1,5 +1,7 @@
 //! Where fields are evaluated: the layer that a depth lies in, and the points of a plane.
 
+use std::ops::Range;
+
 use ndarray::Array1;
 
 use super::half_space::MAGNITUDES;
@@ -8,10 +10,6 @@ use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result, finite};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::{Grid, Window};
-
-mod span;
-
-pub(super) use span::Span;
 
 /// Relative distance within which a depth counts as that of an interface: depths of interfaces are
 /// sums of thicknesses, which round by some 1e-16 each.
@@ -270,5 +268,60 @@ fn interpolation(position: f64, count: usize, periodic: bool) -> Interpolation {
         lower: lower as usize,
         upper: (lower as usize + 1).min(count.saturating_sub(1)),
         weight: position - lower,
+    }
+}
+
+/// Rows of a grid that a body has, and its end faces.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Span {
+    /// Rows with their centres in the body, or on a face.
+    pub(super) rows: Range<usize>,
+    /// The row behind each end face that lies between two rows, or on the border of the grid.
+    pub(super) faces: [Option<usize>; 2],
+    /// Where the body is, in rows: 0 is the centre of the first.
+    reach: [f64; 2],
+    /// Number of the grid's columns.
+    columns: usize,
+}
+
+/// Distance in cells that is rounding.
+const ROUNDED_ROW: f64 = 1e-6;
+
+impl Span {
+    pub(super) fn of(body: &HalfSpace, grid: &Grid) -> Self {
+        let [nx, columns] = grid.shape();
+        let first = grid.x()[0];
+        let at = |x: f64| (x - first) / grid.spacing()[0];
+        let [low, high] = body.ends();
+        let reach = [
+            low.map_or(f64::NEG_INFINITY, at) - ROUNDED_ROW,
+            high.map_or(f64::INFINITY, at) + ROUNDED_ROW,
+        ];
+        let row = |k: f64| k.clamp(0.0, nx as f64) as usize;
+        let start = row(reach[0].ceil());
+        let face = |end: Option<f64>| {
+            let behind = at(end?) + 0.5;
+            let row = behind.round();
+            let is_there = (behind - row).abs() < ROUNDED_ROW && (0.0..=nx as f64).contains(&row);
+            is_there.then_some(row as usize)
+        };
+        Self {
+            rows: start..row(reach[1].floor() + 1.0).max(start),
+            faces: body.ends().map(face),
+            reach,
+            columns,
+        }
+    }
+
+    /// Whether the body is at the place `at`, in rows.
+    pub(super) fn has(&self, at: f64) -> bool {
+        (self.reach[0]..=self.reach[1]).contains(&at)
+    }
+
+    /// Makes the values of a `plane` NaN where there is no body.
+    pub(super) fn blank(&self, plane: &mut [f64]) {
+        let cells = self.rows.start * self.columns..self.rows.end * self.columns;
+        plane[..cells.start].fill(f64::NAN);
+        plane[cells.end..].fill(f64::NAN);
     }
 }

@@ -44,28 +44,285 @@
 //!
 //! | file | what it makes |
 //! |---|---|
-//! | `neighbours` | neighbourhoods of cells, distances to the edge |
-//! | `fit` | a polynomial through values at cell centres, by least squares |
-//! | `edge` | the cells near the edge where a polynomial is certain enough |
+//! | `edge` | the cells near the edge where a polynomial, fitted by least squares, is certain enough |
 //! | `cut` | cells cut into rectangles |
 //! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots |
-//! | `margin` | images around the cells of a grid that repeats |
 //! | `near` | the sum of the third part over the cells around |
-//! | `scale` | whether cells resolve the law of the pressure at an edge |
-//! | `uncertainty` | the error that the size of the cells leaves, at a depth |
-//! | `within` | the stresses of rectangles in a given body, and the whole for a plan |
+//! | `uncertainty` | whether cells resolve the law at an edge; the error that their size leaves, at a depth |
+
+use std::borrow::Cow;
+use std::ops::ControlFlow;
+
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, PressureStress, TractionStress};
+use crate::compliance::kernel::plane::{Kernel, Kernels};
+use crate::compliance::kernel::strip;
+use crate::compliance::response::interior::Place;
+use crate::model::body::HalfSpace;
+use crate::model::grid::{Grid, Window};
+use crate::numerics::parallel::Threads;
+use crate::stress::options::StressProgress;
 
 mod cut;
 mod edge;
-mod fit;
-mod margin;
 mod near;
-mod neighbours;
 mod reconstruction;
-mod scale;
 mod uncertainty;
-mod within;
 
+use cut::Cuts;
+use near::{Components, NearPlan};
 pub(super) use near::{NearTable, STRESSES};
-pub(super) use scale::Pair;
-pub(super) use within::SubcellStress;
+pub(super) use uncertainty::BodyPair;
+use uncertainty::{LocalSteps, Uncertainty};
+
+/// A body under the pressure within the cells of a solved contact. The uniform part of the pressure is
+/// left to the convolution.
+#[derive(Debug)]
+pub(super) struct SubcellStress {
+    kernels: Kernels,
+    near: NearPlan,
+    uncertainty: Uncertainty,
+    /// The solver's pressure: tractions at the surface are those of it.
+    given: Vec<f64>,
+    /// Where the grid repeats, the pressure is reconstructed with a margin of its images.
+    margin: Margin,
+    /// Pressure that is taken as uniform over the cells of the grid.
+    uniform: Vec<f64>,
+}
+
+impl SubcellStress {
+    /// Reconstructs `pressure` within cells, for one body of a contact of the `pair`. `progress` is asked many times, with 0.
+    pub(super) fn plan(
+        (body, pair): (&HalfSpace, &BodyPair),
+        grid: &Grid,
+        pressure: &[f64],
+        threads: &Threads,
+        progress: &mut StressProgress,
+    ) -> ControlFlow<(), Self> {
+        let [dx, dy] = grid.spacing();
+        let side = if grid.is_line() { dy } else { dx.min(dy) };
+        let edges = pair.root_law_holds(side);
+        let margin = Margin::of(grid);
+        let wide = margin.wide(grid);
+        let pressure = &*margin.around(pressure);
+        let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
+        let reach = near.farthest();
+        let kernels =
+            threads.run(|| Kernels::new::<4, PressureStress>(body, grid, Cuts::SMALLEST, reach));
+        let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
+        ControlFlow::Continue(Self {
+            uniform: margin.middle(&near.reconstruction.uniform),
+            margin,
+            kernels,
+            uncertainty,
+            near,
+            given: pressure.to_vec(),
+        })
+    }
+
+    /// Largest steps of the pressure that are felt in the cells of `window`.
+    pub(super) fn steps(&self, window: &Window) -> LocalSteps {
+        self.uncertainty
+            .steps(&self.given, &self.margin.window(window))
+    }
+
+    /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells, where the
+    /// pressure has these steps.
+    pub(super) fn uncertainty(
+        &self,
+        body: &HalfSpace,
+        place: &Place,
+        friction: [f64; 2],
+        steps: LocalSteps,
+    ) -> f64 {
+        self.uncertainty.at(body, place, friction, steps)
+    }
+
+    /// Pressure that is taken as uniform over cells.
+    pub(super) fn uniform(&self) -> &[f64] {
+        &self.uniform
+    }
+
+    /// Stresses of pieces of cells at `place`, under pressure and `friction` times it. On the threads of
+    /// the caller.
+    pub(super) fn table(&self, place: &Place, friction: [f64; 2]) -> NearTable {
+        if !self.near.reaches(place.depth) {
+            return NearTable::default();
+        }
+        let [fx, fy] = friction;
+        let none = [0.0; COMPONENTS];
+        let sum = |normal: [f64; COMPONENTS], x: [f64; COMPONENTS], y: [f64; COMPONENTS]| {
+            std::array::from_fn(|k| normal[k] + fx * x[k] + fy * y[k])
+        };
+        match &self.kernels {
+            Kernels::Line(plan) => {
+                let normal = plan.strips::<6, strip::StripPressure>(place);
+                let along = (fx != 0.0).then(|| plan.strips::<3, strip::StripAlong>(place));
+                let across = (fy != 0.0).then(|| plan.strips::<6, strip::StripAcross>(place));
+                self.near.table(place.depth, |[_, y], [_, half]| {
+                    let along = along.as_ref().map_or(none, |strips| strips.at(y, half));
+                    let across = across.as_ref().map_or(none, |strips| strips.at(y, half));
+                    sum(normal.at(y, half), along, across)
+                })
+            }
+            Kernels::Plane {
+                plan,
+                pressure,
+                traction,
+            } => {
+                let slides = fx != 0.0 || fy != 0.0;
+                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
+                let lateral = slides.then(|| {
+                    let traction = traction.get_or_init(|| plan.multipliers::<6, TractionStress>());
+                    Kernel::new::<TractionStress>(plan, traction, place)
+                });
+                self.near
+                    .table(place.depth, |[x, y], [a, b]| -> Components {
+                        let pressed = normal.at::<PressureStress>([x, y], [a, b]);
+                        let Some(lateral) = &lateral else {
+                            return sum(pressed, none, none);
+                        };
+                        let stresses = |at, half| lateral.at::<TractionStress>(at, half);
+                        let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
+                        // Traction along y is traction along x with both exchanged.
+                        let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
+                        let across = across.map(|values| EXCHANGED.map(|k| values[k]));
+                        sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
+                    })
+            }
+        }
+    }
+
+    /// Adds the stresses of a table to those of the uniform part, one plane of each component; at the
+    /// surface, sets the tractions to those of the solver's pressure. On the threads of the caller.
+    pub(super) fn add(&self, near: &NearTable, friction: [f64; 2], stresses: &mut [&mut [f64]]) {
+        self.margin
+            .add(stresses, |stresses| self.near.add(near, stresses));
+        if near.at_surface() {
+            let given = self.margin.middle(&self.given);
+            for (k, factor) in tractions(friction) {
+                let tractions = stresses[k].iter_mut().zip(&given);
+                tractions.for_each(|(stress, p)| *stress = -factor * p);
+            }
+        }
+    }
+
+    /// What [`SubcellStress::add`] does, for the `stresses` of one cell.
+    pub(super) fn add_at(
+        &self,
+        near: &NearTable,
+        friction: [f64; 2],
+        cell: [usize; 2],
+        stresses: &mut [f64],
+    ) {
+        let cell = self.margin.cell(cell);
+        let added = self.near.sum_at(near, cell);
+        stresses.iter_mut().zip(added).for_each(|(s, d)| *s += d);
+        if near.at_surface() {
+            let p = self.given[self.near.number(cell)];
+            for (k, factor) in tractions(friction) {
+                stresses[k] = -factor * p;
+            }
+        }
+    }
+}
+
+/// Components of the traction at the surface, σ_zz, σ_yz and σ_xz, and their ratios to minus the pressure.
+fn tractions([fx, fy]: [f64; 2]) -> [(usize, f64); 3] {
+    [(2, 1.0), (4, fy), (5, fx)]
+}
+
+/// Cells of the margin: more than fits, closings of edges and the reach of loads together.
+const MARGIN_CELLS: usize = 24;
+
+/// A margin of images around the cells of a grid that repeats, so that the seam is like any other place: numbers of cells
+/// of the grid, and of its margin on each side.
+#[derive(Debug, Clone, Copy)]
+struct Margin {
+    shape: [usize; 2],
+    width: [usize; 2],
+}
+
+impl Margin {
+    /// The margin of `grid`; it has no cells along directions that do not repeat.
+    fn of(grid: &Grid) -> Self {
+        Self {
+            shape: grid.shape(),
+            width: grid
+                .is_periodic()
+                .map(|repeats| if repeats { MARGIN_CELLS } else { 0 }),
+        }
+    }
+
+    /// Whether there is any.
+    fn is_empty(self) -> bool {
+        self.width == [0; 2]
+    }
+
+    fn wide_shape(self) -> [usize; 2] {
+        [0, 1].map(|k| self.shape[k] + 2 * self.width[k])
+    }
+
+    /// The grid with its margin. Sides of cells stay to rounding, and the place does not matter.
+    fn wide(self, grid: &Grid) -> Grid {
+        let shape = self.wide_shape();
+        let size = [0, 1].map(|k| shape[k] as f64 * grid.spacing()[k]);
+        match self.is_empty() {
+            true => *grid,
+            false => Grid::new(shape, size).unwrap_or(*grid),
+        }
+    }
+
+    /// Values of the cells with those of the margin, which repeat them.
+    fn around(self, values: &[f64]) -> Cow<'_, [f64]> {
+        if self.is_empty() {
+            return Cow::Borrowed(values);
+        }
+        let ([nx, ny], [wx, wy]) = (self.shape, self.wide_shape());
+        // Before the first cell lies the last.
+        let place = |k: usize, at: usize| {
+            let n = self.shape[k];
+            (at + n * MARGIN_CELLS - self.width[k]) % n
+        };
+        debug_assert!(nx > 0 && ny > 0);
+        let cells = (0..wx).flat_map(|i| (0..wy).map(move |j| (i, j)));
+        Cow::Owned(
+            cells
+                .map(|(i, j)| values[place(0, i) * ny + place(1, j)])
+                .collect(),
+        )
+    }
+
+    /// Values of the cells from those with the margin.
+    fn middle(self, wide: &[f64]) -> Vec<f64> {
+        let ([nx, ny], [_, wy]) = (self.shape, self.wide_shape());
+        let rows = (0..nx).map(|i| (i + self.width[0]) * wy + self.width[1]);
+        rows.flat_map(|start| wide[start..start + ny].iter().copied())
+            .collect()
+    }
+
+    /// Number of a cell along both directions, counted with the margin.
+    fn cell(self, cell: [usize; 2]) -> [usize; 2] {
+        [0, 1].map(|k| cell[k] + self.width[k])
+    }
+
+    /// A window, counted with the margin.
+    fn window(self, window: &Window) -> Window {
+        [0, 1].map(|k| window[k].start + self.width[k]..window[k].end + self.width[k])
+    }
+
+    /// Calls `add` for stresses on the cells with their margin, and adds the middle of them to `stresses`.
+    fn add(self, stresses: &mut [&mut [f64]], add: impl FnOnce(&mut [&mut [f64]])) {
+        if self.is_empty() {
+            add(stresses);
+            return;
+        }
+        let [wx, wy] = self.wide_shape();
+        let mut wide = vec![vec![0.0; wx * wy]; STRESSES];
+        let mut planes: Vec<&mut [f64]> = wide.iter_mut().map(Vec::as_mut_slice).collect();
+        add(&mut planes);
+        for (stress, wide) in stresses.iter_mut().zip(&wide) {
+            let middle = self.middle(wide);
+            stress.iter_mut().zip(middle).for_each(|(s, w)| *s += w);
+        }
+    }
+}

@@ -2,23 +2,15 @@
 
 use std::ops::ControlFlow;
 
-use super::derived::Peak;
-use super::field::Percent;
-use super::friction::Sliding;
-use super::half_space::Source;
-use super::options::{StressOptions, StressProgress};
-use super::plan::{PlaneStress, StressPlan};
+use super::field::{Peak, Percent, Tensor};
+use super::half_space::plane_memory;
+use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
+use super::plan::{Evaluation, PressureSource, StressPlan};
 use crate::compliance::response::interior::Place;
 use crate::error::{Result, positive};
 use crate::model::body::{HalfSpace, Layer, Substrate};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::check_memory;
-
-mod depths;
-mod extremes;
-
-use depths::{refined_peak, regions};
-use extremes::{Extremes, Planes, Tractions};
 
 /// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
 /// not known.
@@ -83,22 +75,22 @@ pub struct StressSummary {
 
 /// Estimated error over an extreme above which a warning says so. The estimate is some three times the
 /// error (`tests/stress/resolution.rs`).
-const UNRESOLVED: f64 = 0.25;
+const UNRESOLVED_EXTREME: f64 = 0.25;
 
 /// Error, over the largest von Mises stress of all layers, below which a warning says nothing.
-const NEGLIGIBLE: f64 = 0.02;
+const NEGLIGIBLE_ERROR: f64 = 0.02;
 
 impl StressSummary {
     /// Warnings about what the cells do not resolve: layers and interfaces whose extremes have an estimated
     /// error above a quarter of them.
     pub fn warnings(&self) -> Vec<String> {
         let peaks = self.layers.iter().map(|layer| layer.von_mises.value);
-        let negligible = NEGLIGIBLE * peaks.fold(0.0, f64::max);
+        let negligible = NEGLIGIBLE_ERROR * peaks.fold(0.0, f64::max);
         let unresolved = |peaks: &[(&str, &Peak)]| -> Option<String> {
             let ratio = |(name, peak): &(&str, &Peak)| {
                 let error = peak.uncertainty.filter(|error| *error > negligible)?;
                 let ratio = error / peak.value.abs();
-                (ratio > UNRESOLVED).then(|| format!("{name} by {}", Percent(ratio)))
+                (ratio > UNRESOLVED_EXTREME).then(|| format!("{name} by {}", Percent(ratio)))
             };
             let said: Vec<String> = peaks.iter().filter_map(ratio).collect();
             (!said.is_empty()).then(|| said.join(", "))
@@ -134,12 +126,12 @@ impl StressSummary {
     }
 }
 
-/// How many times a peak inside a layer is refined by a parabola. Chosen by trial.
+/// How many times a peak inside a layer is refined by a parabola.
 const REFINEMENTS: usize = 3;
 
 impl StressPlan {
     /// Peaks in each layer and tractions at each interface. `side`, `section` and `displacement` of the
-    /// options are not used.
+    /// options are not used. A callback of [`StressOptions::watched`] is told the fraction done.
     ///
     /// Depths are the faces of the layers, and some 18 inside each, spread over its thickness and over
     /// the width of the contact; a peak inside is then refined by parabolas through three depths
@@ -147,36 +139,32 @@ impl StressPlan {
     ///
     /// # Errors
     /// Bad options, a strength that is not finite and above 0, or too little memory.
-    pub fn summary(
+    pub fn summary<'a>(
         &self,
         strengths: &Strengths,
-        options: &StressOptions,
-        progress: &mut StressProgress,
+        options: impl Into<WatchedStress<'a>>,
     ) -> Result<StressSummary> {
-        let request = SummaryRequest::checked(
-            &self.whole.body,
-            &self.whole.grid,
-            &self.whole.sliding,
-            strengths,
-            options,
-        )?;
-        check_memory(self.whole.grid.shape(), request.memory)?;
-        Ok(request.evaluate(self, progress))
+        let mut asked = options.into();
+        let (body, grid) = (&self.whole.body, &self.whole.grid);
+        let request =
+            SummaryRequest::checked(body, grid, &self.sliding, strengths, asked.options())?;
+        check_memory(grid.shape(), request.memory)?;
+        Ok(request.evaluate(self, &mut |part| asked.tell(part)))
     }
 }
 
 /// The summary by a plan that is made for this call. Bad options are refused before planning.
 pub(super) fn summary_once(
-    source: &Source,
+    source: &PressureSource,
     strengths: &Strengths,
-    options: &StressOptions,
-    progress: &mut StressProgress,
+    mut asked: WatchedStress,
 ) -> Result<StressSummary> {
-    let (body, grid) = (source.body, source.grid);
+    let (body, grid, options) = (source.body, source.grid, asked.options());
     let request = SummaryRequest::checked(body, grid, &source.sliding, strengths, options)?;
     check_memory(grid.shape(), request.memory + source.memory())?;
-    Ok(match source.complete(options.threads, progress)? {
-        Some(plan) => request.evaluate(&plan, progress),
+    let mut progress = |part| asked.tell(part);
+    Ok(match source.plan(options.threads, &mut progress)? {
+        Some(plan) => request.evaluate(&plan, &mut progress),
         None => StressSummary::default(),
     })
 }
@@ -216,7 +204,7 @@ impl<'a> SummaryRequest<'a> {
     fn checked(
         body: &HalfSpace,
         grid: &Grid,
-        sliding: &Sliding,
+        sliding: &SlidingSense,
         strengths: &'a Strengths,
         options: &StressOptions,
     ) -> Result<Self> {
@@ -228,24 +216,21 @@ impl<'a> SummaryRequest<'a> {
             strengths,
             residual: options.residual_by_layer(body)?,
             friction: sliding.traction(body, options)?,
-            memory: planes + PlaneStress::memory(grid, options.friction != 0.0, false),
+            memory: planes + plane_memory(grid, options.friction != 0.0, false),
         })
     }
 
     fn evaluate(&self, plan: &StressPlan, progress: &mut StressProgress) -> StressSummary {
         let body = &plan.whole.body;
-        let regions = regions(body, plan.whole.half_width);
-        let in_layers: usize = regions
-            .iter()
-            .map(|region| region.len() + 3 * REFINEMENTS)
-            .sum();
-        let planned = in_layers + body.layers().len();
+        let regions = regions(body, plan.whole.half_width());
+        let in_layers = regions.iter().map(|region| region.len() + 3 * REFINEMENTS);
+        let planned = in_layers.sum::<usize>() + body.layers().len();
         let mut planes = Planes::new(plan, self.friction, &self.residual, planned, progress);
         let mut summary = StressSummary::default();
-        let flow = self.fill(body, &regions, &mut planes, &mut summary);
-        if flow.is_continue() {
+        if self.fill(&regions, &mut planes, &mut summary).is_continue() {
             summary.finished = true;
-            planes.finish();
+            // A break has nothing left to stop.
+            let _ = (planes.progress)(1.0);
         }
         summary
     }
@@ -253,11 +238,11 @@ impl<'a> SummaryRequest<'a> {
     /// Adds all layers and interfaces to `summary`.
     fn fill(
         &self,
-        body: &HalfSpace,
         regions: &[Vec<Place>],
         planes: &mut Planes,
         summary: &mut StressSummary,
     ) -> ControlFlow<()> {
+        let body = &planes.plan.whole.body;
         let mut top = 0.0;
         for region in regions {
             let layer = layer(planes, body, region, top, self.strengths)?;
@@ -265,8 +250,9 @@ impl<'a> SummaryRequest<'a> {
             summary.layers.push(layer);
         }
         for (number, layer) in body.layers().iter().enumerate() {
-            let faces = faces(body, number, layer);
-            summary.interfaces.push(interface(planes, number, &faces)?);
+            summary
+                .interfaces
+                .push(interface(planes, body, number, layer)?);
         }
         ControlFlow::Continue(())
     }
@@ -280,14 +266,16 @@ fn layer(
     top: f64,
     strengths: &Strengths,
 ) -> ControlFlow<(), LayerSummary> {
-    let mut evaluated: Vec<(Place, Extremes)> = Vec::new();
+    let mut evaluated: Vec<(Place, [Peak; 3])> = Vec::new();
     for place in region {
         evaluated.push((*place, planes.extremes(place)?));
     }
-    for which in Extremes::EACH {
+    for which in 0..3 {
         for _ in 0..REFINEMENTS {
-            let value = |(place, e): &(Place, Extremes)| (*place, which(e).value);
-            let values: Vec<_> = evaluated.iter().map(value).collect();
+            let values = evaluated
+                .iter()
+                .map(|(place, peaks)| (*place, peaks[which].value));
+            let values: Vec<_> = values.collect();
             let Some(place) = refined_peak(&values) else {
                 break;
             };
@@ -297,9 +285,9 @@ fn layer(
             evaluated.sort_by(|a, b| a.0.below_top.total_cmp(&b.0.below_top));
         }
     }
-    let [von_mises, tension, shear] = Extremes::EACH.map(|which| {
-        let peaks = evaluated[1..].iter().map(|(_, extremes)| which(extremes));
-        let first = which(&evaluated[0].1);
+    let [von_mises, tension, shear] = [0, 1, 2].map(|which| {
+        let peaks = evaluated.iter().map(|(_, peaks)| peaks[which]);
+        let first = evaluated[0].1[which];
         peaks.fold(first, |a, b| if b.value > a.value { b } else { a })
     });
     let layer = region[0].layer;
@@ -322,58 +310,322 @@ fn layer(
     })
 }
 
-/// Places on both sides of an interface. There is none below it on a rigid base.
-struct Faces {
-    above: Place,
-    below: Option<Place>,
-}
-
-/// The two sides of the interface below `layer`, which has the `number`.
-fn faces(body: &HalfSpace, number: usize, layer: &Layer) -> Faces {
+/// Summary of the interface below `layer`, which has the `number`.
+fn interface(
+    planes: &mut Planes,
+    body: &HalfSpace,
+    number: usize,
+    layer: &Layer,
+) -> ControlFlow<(), InterfaceSummary> {
     let depth = body.layers()[..=number].iter().map(Layer::thickness).sum();
     let next = body.layers().get(number + 1).map(Layer::material);
     let below = next.or(match body.substrate() {
         Substrate::Elastic(material) => Some(material),
         Substrate::Rigid => None,
     });
-    Faces {
-        above: Place {
-            layer: number,
-            below_top: layer.thickness(),
-            depth,
-            material: layer.material(),
-        },
-        below: below.map(|material| Place {
+    let [tension, compression, shear] = planes.tractions(&Place {
+        layer: number,
+        below_top: layer.thickness(),
+        depth,
+        material: layer.material(),
+    })?;
+    let jump = match below {
+        None => None,
+        Some(material) => Some(planes.jump(&Place {
             layer: number + 1,
             below_top: 0.0,
             depth,
             material,
-        }),
+        })?),
+    };
+    ControlFlow::Continue(InterfaceSummary {
+        interface: number,
+        depth,
+        tension,
+        compression,
+        shear,
+        jump,
+    })
+}
+
+/// The plane of stress that was evaluated last, and what evaluates the next.
+struct Planes<'a, 'b> {
+    plan: &'a StressPlan,
+    friction: [f64; 2],
+    residual: &'a [f64],
+    evaluation: Evaluation<'a>,
+    /// The six components at the cells.
+    fields: [Vec<f64>; 6],
+    progress: &'a mut StressProgress<'b>,
+    /// Planes evaluated so far.
+    done: usize,
+    /// Planes that are evaluated at most, but for those below an interface.
+    planned: usize,
+}
+
+/// The largest value found so far, and its cell.
+#[derive(Debug, Clone, Copy)]
+struct Largest {
+    value: f64,
+    cell: usize,
+}
+
+impl Largest {
+    /// Before any value.
+    const NONE: Self = Self {
+        value: f64::NEG_INFINITY,
+        cell: 0,
+    };
+
+    fn offer(&mut self, value: f64, cell: usize) {
+        if value > self.value {
+            *self = Self { value, cell };
+        }
     }
 }
 
-/// Summary of interface `number`, which has these `faces`.
-fn interface(
-    planes: &mut Planes,
-    number: usize,
-    faces: &Faces,
-) -> ControlFlow<(), InterfaceSummary> {
-    let Tractions {
-        tension,
-        compression,
-        shear,
-    } = planes.tractions(&faces.above)?;
-    let below = faces.below.as_ref();
-    let jump = below.map(|below| planes.jump(below));
-    ControlFlow::Continue(InterfaceSummary {
-        interface: number,
-        depth: faces.above.depth,
-        tension,
-        compression,
-        shear,
-        jump: match jump {
-            Some(jump) => Some(jump?),
-            None => None,
-        },
+impl<'a, 'b> Planes<'a, 'b> {
+    /// Planes of `plan` under a friction and the residual stress of each layer; `progress` is told how
+    /// many of those `planned` are done.
+    fn new(
+        plan: &'a StressPlan,
+        friction: [f64; 2],
+        residual: &'a [f64],
+        planned: usize,
+        progress: &'a mut StressProgress<'b>,
+    ) -> Self {
+        let cells = plan.whole.grid.shape().iter().product();
+        Self {
+            plan,
+            friction,
+            residual,
+            evaluation: Evaluation::new(plan, friction, false),
+            fields: std::array::from_fn(|_| vec![0.0; cells]),
+            progress,
+            done: 0,
+            planned,
+        }
+    }
+
+    /// Evaluates the stress at `place`.
+    fn evaluate(&mut self, place: &Place) -> ControlFlow<()> {
+        let (done, planned) = (self.done as f64, self.planned as f64);
+        let progress = &mut self.progress;
+        let mut progress = |part: f64| progress(((done + part) / planned).min(1.0));
+        let mut outputs = self.fields.each_mut().map(Vec::as_mut_slice);
+        self.evaluation.plane(place, &mut outputs, &mut progress)?;
+        let residual = self.residual[place.layer];
+        for field in &mut self.fields[..2] {
+            field.iter_mut().for_each(|s| *s += residual);
+        }
+        self.done += 1;
+        ControlFlow::Continue(())
+    }
+
+    fn tensor(&self, cell: usize) -> Tensor {
+        Tensor::new(self.fields.each_ref().map(|field| field[cell]))
+    }
+
+    fn peak(&self, largest: Largest, place: &Place) -> Peak {
+        let grid = &self.plan.whole.grid;
+        let ny = grid.shape()[1];
+        let Largest { value, cell } = largest;
+        let [i, j] = [cell / ny, cell % ny];
+        let window = [i..i + 1, j..j + 1];
+        let places = std::slice::from_ref(place);
+        let error = self.plan.uncertainties(places, self.friction, &window);
+        Peak {
+            value,
+            position: [grid.x()[i], grid.y()[j], place.depth],
+            uncertainty: error.map(|errors| errors[0]),
+        }
+    }
+
+    /// The largest von Mises stress, principal stress and shear stress at `place`.
+    fn extremes(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
+        self.evaluate(place)?;
+        let [mut von_mises, mut tension, mut shear] = [Largest::NONE; 3];
+        for cell in 0..self.fields[0].len() {
+            let tensor = self.tensor(cell);
+            let mises = tensor.von_mises();
+            von_mises.offer(mises, cell);
+            // The largest principal stress is at most the mean plus 2/3 of von Mises' stress, and the
+            // largest shear stress at most 1/√3 of it: most cells need no principal stresses.
+            if tensor.mean() + 0.67 * mises > tension.value || 0.58 * mises > shear.value {
+                let [first, _, last] = tensor.principal();
+                tension.offer(first, cell);
+                shear.offer(0.5 * (first - last), cell);
+            }
+        }
+        ControlFlow::Continue([von_mises, tension, shear].map(|one| self.peak(one, place)))
+    }
+
+    /// Extremes of the traction at `place`: the largest and the smallest σ_zz, and the largest √(σ_xz² + σ_yz²).
+    fn tractions(&mut self, place: &Place) -> ControlFlow<(), [Peak; 3]> {
+        self.evaluate(place)?;
+        let [mut tension, mut compression, mut shear] = [Largest::NONE; 3];
+        for cell in 0..self.fields[0].len() {
+            let Tensor { zz, yz, xz, .. } = self.tensor(cell);
+            tension.offer(zz, cell);
+            compression.offer(-zz, cell);
+            shear.offer(xz.hypot(yz), cell);
+        }
+        compression.value = -compression.value;
+        ControlFlow::Continue([tension, compression, shear].map(|one| self.peak(one, place)))
+    }
+
+    /// Largest jump of the in-plane stress from the plane evaluated last to that at `below`.
+    fn jump(&mut self, below: &Place) -> ControlFlow<(), Peak> {
+        let [above_xx, above_yy, above_xy] = [0, 1, 3].map(|k| self.fields[k].clone());
+        self.evaluate(below)?;
+        let mut largest = Largest::NONE;
+        let above = above_xx.iter().zip(&above_yy).zip(&above_xy).enumerate();
+        for (cell, ((above_xx, above_yy), above_xy)) in above {
+            let below = self.tensor(cell);
+            let (xx, yy, xy) = (
+                below.xx - above_xx,
+                below.yy - above_yy,
+                below.xy - above_xy,
+            );
+            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+            largest.offer(mean.abs() + half.hypot(xy), cell);
+        }
+        ControlFlow::Continue(self.peak(largest, below))
+    }
+}
+
+/// Depths below the top of a layer, in half-widths of the contact: dense where the
+/// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).
+const DEPTHS_SEARCHED: [f64; 13] = [
+    0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8, 2.5, 4.0,
+];
+
+/// Depths within a layer, in its thickness.
+const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+/// Depth, in a layer's thickness, below which its bottom face stands for the depths of [`DEPTHS_SEARCHED`].
+const BOTTOM: f64 = 0.999;
+
+/// Distance, in a layer's thickness, below which two depths are one.
+const ONE_DEPTH: f64 = 1e-6;
+
+/// Places in each layer and in the substrate, from the surface down.
+fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
+    let mut top = 0.0;
+    let mut regions = Vec::new();
+    let at = |layer: usize, top: f64, below_top: f64, material| Place {
+        layer,
+        below_top,
+        depth: top + below_top,
+        material,
+    };
+    for (count, layer) in body.layers().iter().enumerate() {
+        let h = layer.thickness();
+        let mut depths: Vec<f64> = DEPTHS_SEARCHED.iter().map(|d| d * half_width).collect();
+        depths.extend(FRACTIONS.map(|f| f * h));
+        depths.retain(|z| *z < BOTTOM * h);
+        depths.extend([0.0, h]);
+        depths.sort_by(f64::total_cmp);
+        // Refinement divides by the distances between depths.
+        depths.dedup_by(|next, before| *next - *before < ONE_DEPTH * h);
+        let place = |z: &f64| at(count, top, *z, layer.material());
+        regions.push(depths.iter().map(place).collect());
+        top += h;
+    }
+    if let Substrate::Elastic(material) = body.substrate() {
+        let depths = [0.0]
+            .into_iter()
+            .chain(DEPTHS_SEARCHED.map(|d| d * half_width));
+        let place = |z: f64| at(body.layers().len(), top, z, material);
+        regions.push(depths.map(place).collect());
+    }
+    regions
+}
+
+/// Steps of less than this fraction of the distance to the next depth are not taken: the peak is at
+/// the depth already evaluated, or the value falls off there as at a kink.
+const SHORTEST_REFINEMENT: f64 = 1e-3;
+
+/// The largest step, as a fraction of the distance to the next depth.
+const LONGEST_REFINEMENT: f64 = 0.9;
+
+/// Place of the vertex of the parabola through the largest value in `evaluated` and its two
+/// neighbours. None where the largest value is the first or the last, or is that vertex already.
+fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
+    let value = |k: usize| evaluated[k].1;
+    let best = (0..evaluated.len()).reduce(|a, b| if value(b) > value(a) { b } else { a })?;
+    if best == 0 || best + 1 == evaluated.len() {
+        return None;
+    }
+    let z = |k: usize| evaluated[k].0.below_top;
+    let (a, b) = (z(best) - z(best - 1), z(best + 1) - z(best));
+    let (left, right) = (
+        (value(best) - value(best - 1)) / a,
+        (value(best) - value(best + 1)) / b,
+    );
+    if left + right <= 0.0 {
+        return None;
+    }
+    // The slope of the parabola at `best`, over its curvature.
+    let slope = (left * b - right * a) / (a + b);
+    let step = 0.5 * slope * (a + b) / (left + right);
+    if step.abs() < SHORTEST_REFINEMENT * a.min(b) {
+        return None;
+    }
+    let step = step.clamp(-LONGEST_REFINEMENT * a, LONGEST_REFINEMENT * b);
+    let place = evaluated[best].0;
+    Some(Place {
+        below_top: place.below_top + step,
+        depth: place.depth + step,
+        ..place
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use crate::model::body::Layer;
+    use crate::model::material::Elastic;
+
+    /// Where the thickness is the half-width, some depths come from both lists: each is a place once.
+    #[test]
+    fn depths_increase() -> Result<()> {
+        let material = Elastic::new(1.0, 0.3)?;
+        for thickness in [1e-18, 0.1, 1.0, 1.0 + 1e-12, 4.0] {
+            let layers = [1e3, thickness].map(|h| Layer::new(material, h));
+            let [upper, lower] = layers;
+            let body = HalfSpace::new(material, [upper?, lower?])?;
+            for region in regions(&body, 1.0) {
+                assert!(region.is_sorted_by(|a, b| a.below_top < b.below_top));
+            }
+        }
+        Ok(())
+    }
+
+    /// On a parabola its vertex is found exactly; evaluated there, nothing is left to find.
+    #[test]
+    fn the_vertex_of_a_parabola_is_found() -> Result<()> {
+        const ROUNDING: f64 = 1e-15;
+        let material = Elastic::new(1.0, 0.3)?;
+        let at = |z: f64| {
+            let place = Place {
+                layer: 0,
+                below_top: z,
+                depth: z,
+                material,
+            };
+            (place, 3.0 - 2.0 * (z - 0.7) * (z - 0.7))
+        };
+        let mut evaluated = vec![at(0.0), at(0.5), at(1.1), at(2.0)];
+        let vertex = refined_peak(&evaluated).map(|place| place.depth);
+        assert!(
+            vertex.is_some_and(|z| (z - 0.7).abs() < ROUNDING),
+            "{vertex:?}"
+        );
+        evaluated.insert(2, at(0.7));
+        assert_eq!(refined_peak(&evaluated), None);
+        assert_eq!(refined_peak(&[at(0.7), at(1.0), at(2.0)]), None);
+        Ok(())
+    }
 }

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 use crate::support::claims::claim;
 use crate::support::huber::huber;
+use crate::support::stresses::{displaced, on, sliding};
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, stress};
 use ndarray::{Array2, Array3};
 
@@ -126,10 +127,7 @@ fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
         f64::from(u8::from(x[i].abs() < half[0] && y[j].abs() < half[1]))
     });
     let depths = [0.075, 0.1, 0.3, 1.0, 2.5, 8.0];
-    let pressed = StressOptions {
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let pressed = displaced(StressOptions::default());
     let sliding = StressOptions {
         friction: 1.0,
         direction: Some([1.0, 0.0]),
@@ -248,10 +246,7 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     // 201 cells: second order, 1e-4; depths are sampled every 1e-3.
     let depths: Vec<f64> = (0..61).map(|k| 0.45 + 0.001 * f64::from(k)).collect();
     let grid = Grid::new([161, 161], [2.5, 2.5])?;
-    let axis = StressOptions {
-        section: Section::Axis([0.0, 0.0]),
-        ..StressOptions::default()
-    };
+    let axis = on(Section::Axis([0.0, 0.0]));
     let field = stress(&steel()?, &grid, &hertz_pressure(&grid), &depths, &axis)?;
     let shear = field.max_shear();
     let Some(peak) = field.peak(&shear) else {
@@ -282,11 +277,7 @@ fn tension_at_the_trailing_edge_of_a_sliding_line_contact() -> Result<()> {
         let grid = Grid::line(n, 2.5)?;
         let y = grid.y();
         let pressure = Array2::from_shape_fn((1, n), |(_, j)| (1.0 - y[j] * y[j]).max(0.0).sqrt());
-        let options = StressOptions {
-            friction: 0.4,
-            direction: Some([0.0, 1.0]),
-            ..StressOptions::default()
-        };
+        let options = sliding(0.4, [0.0, 1.0]);
         let field = stress(&steel()?, &grid, &pressure, &[0.0], &options)?;
         let largest = field.yy().fold(0.0_f64, |m, v| m.max(*v));
         Ok((largest / 0.8 - 1.0).abs())
@@ -318,12 +309,7 @@ fn equilibrium_and_hookes_law_hold() -> Result<()> {
         let grid = Grid::new([n, n], [2.5, 2.5])?;
         let d = grid.spacing()[0];
         let pressure = hertz_pressure(&grid);
-        let options = StressOptions {
-            friction: 0.3,
-            direction: Some([1.0, 2.0]),
-            displacement: true,
-            ..StressOptions::default()
-        };
+        let options = displaced(sliding(0.3, [1.0, 2.0]));
         let mut worst = [0.0_f64; 2];
         for (depth, material) in [(0.5, hard), (1.2, soft)] {
             let depths = [depth - d, depth, depth + d];

@@ -3,6 +3,7 @@
 
 use crate::support::claims::claim;
 use crate::support::reference::{cases, list, number};
+use crate::support::stresses::on;
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, Interface, Layer, Member, Motion, Options, Paraboloid,
     Result, Section, Setup, Side, Solution, Stress, StressOptions, stress,
@@ -100,10 +101,7 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
             errors[0] = errors[0].max(error / number(case, "p0_over_pH"));
         }
     }
-    let section = StressOptions {
-        section: Section::Y(0.0),
-        ..StressOptions::default()
-    };
+    let section = on(Section::Y(0.0));
     let interface = solution.stress(&[thickness], Member::Body, &section)?;
     let (shear, place) = largest(interface.xz(), &interface.x);
     errors[1] = (shear / hertz / number(case, "interface_shear_max_over_pH") - 1.0).abs();

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use crate::support::claims::claim;
 use crate::support::huber::huber;
+use crate::support::stresses::{displaced, sliding};
 use nacre::{
     Contact, Elastic, FlatPunch, Grid, HalfSpace, Member, Motion, Options, Paraboloid, Result,
     Setup, Solution, Stress, StressOptions, Surface, stress,
@@ -142,11 +143,7 @@ fn hertz_line_contact() -> Result<()> {
 fn surface_of_a_sliding_cylinder() -> Result<()> {
     const FRICTION: f64 = 0.4;
     let (solution, peak) = cylinder(128)?;
-    let options = StressOptions {
-        friction: FRICTION,
-        direction: Some([0.0, 1.0]),
-        ..StressOptions::default()
-    };
+    let options = sliding(FRICTION, [0.0, 1.0]);
     let field = solution.stress(&[0.0], Member::Body, &options)?;
     let mut worst = 0.0_f64;
     for (j, &y) in field.y.iter().enumerate() {
@@ -167,14 +164,9 @@ fn surface_of_a_sliding_cylinder() -> Result<()> {
 fn summary_has_the_tension_behind_a_sliding_sphere() -> Result<()> {
     const FRICTION: f64 = 0.5;
     let (solution, peak) = sphere(128)?;
-    let options = StressOptions {
-        friction: FRICTION,
-        direction: Some([1.0, 0.0]),
-        ..StressOptions::default()
-    };
-    let mut progress = |_| std::ops::ControlFlow::Continue(());
+    let options = sliding(FRICTION, [1.0, 0.0]);
     let strengths = nacre::stress::Strengths::default();
-    let summary = solution.stress_summary(Member::Body, &strengths, &options, &mut progress)?;
+    let summary = solution.stress_summary(Member::Body, &strengths, &options)?;
     let tension = summary.layers[0].tension;
     let exact = (1.0 - 2.0 * NU) / 3.0 + FRICTION * PI * (4.0 + NU) / 8.0;
     claim("sliding-sphere", tension.value / peak / exact - 1.0);
@@ -190,12 +182,7 @@ fn surface_keeps_the_pressure_and_displacement_of_the_solution() -> Result<()> {
     // Influence coefficients keep 1e-9, and those of stress 1e-9 of the largest.
     const COEFFICIENTS: f64 = 3e-9;
     let (solution, _) = sphere(32)?;
-    let options = StressOptions {
-        friction: 0.25,
-        direction: Some([3.0, 4.0]),
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let options = displaced(sliding(0.25, [3.0, 4.0]));
     let field = solution.stress(&[0.0], Member::Body, &options)?;
     let alone = StressOptions {
         friction: 0.0,
@@ -256,11 +243,7 @@ impl Surface for Rough {
 fn against_finer(coarse: Grid, shape: &dyn Surface, load: f64, depth: f64) -> Result<[f64; 2]> {
     let fine = Grid::new(coarse.shape().map(|n| 3 * n), coarse.size())?;
     let (coarse, fine) = (press(coarse, shape, load)?, press(fine, shape, load)?);
-    let options = StressOptions {
-        friction: 0.5,
-        direction: Some([1.0, 0.0]),
-        ..StressOptions::default()
-    };
+    let options = sliding(0.5, [1.0, 0.0]);
     let [dx, dy] = coarse.grid().spacing();
     let z = [depth * dx.min(dy)];
     let body: HalfSpace = steel()?.into();
@@ -306,11 +289,7 @@ fn long_cells_are_evaluated() -> Result<()> {
         let grid = Grid::new([n, 65], [12.96, 2.6])?;
         let contact = Contact::plan(&body, grid, Setup::default())?;
         let solution = contact.solve(&shape, &Motion::load(1e-2), &Options::default())?;
-        let options = StressOptions {
-            friction: 0.3,
-            direction: Some([1.0, 0.0]),
-            ..StressOptions::default()
-        };
+        let options = sliding(0.3, [1.0, 0.0]);
         let depths = [0.0, 0.02];
         let field = solution.stress(&depths, Member::Body, &options)?;
         let uniform = stress(&body, &grid, &solution.pressure, &depths, &options)?;

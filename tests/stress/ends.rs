@@ -8,6 +8,8 @@ use nacre::{
 };
 use ndarray::{Array2, Array3, Axis};
 
+use crate::support::stresses::{displaced, sliding};
+
 /// A smooth pressure of height 1, from 0.1 to 3.1 along x.
 fn smooth(grid: &Grid) -> Array2<f64> {
     let bell = |t: f64| (1.0 - t * t).max(0.0).powi(3);
@@ -137,10 +139,7 @@ fn sections_and_mirrors_agree() -> Result<()> {
         contact.solve(shape, &Motion::load(0.05), &Options::default())
     };
     let solution = solved(steel.clone().with_ends([Some(0.0), None])?, grid, &ball)?;
-    let planes = StressOptions {
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let planes = displaced(StressOptions::default());
     let (depth, [i, j]) = (0.3, [5, 13]);
     let plane = solution.stress(&[depth], Member::Body, &planes)?;
     let at = [grid.x()[i], grid.y()[j]];
@@ -201,11 +200,7 @@ fn friction_at_an_end_is_warned_of() -> Result<()> {
     let body = HalfSpace::from(Elastic::new(1.0, 0.3)?).with_ends([Some(0.0), None])?;
     let grid = Grid::new([8, 8], [4.0, 4.0])?.centered_at([2.0, 0.0])?;
     let plan = StressPlan::plan(&body, &grid, &smooth(&grid), None)?;
-    let sliding = StressOptions {
-        friction: 0.1,
-        direction: Some([0.0, 1.0]),
-        ..StressOptions::default()
-    };
+    let sliding = sliding(0.1, [0.0, 1.0]);
     let warnings = plan.stress(&[2.0], &sliding)?.warnings();
     assert!(
         warnings.iter().any(|w| w.contains("friction")),

@@ -1,10 +1,10 @@
 //! Stress on the face of a free end, beside it, and beyond it, where there is no material.
 
-use std::ops::ControlFlow;
-
 use nacre::stress::Strengths;
 use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, Stress, StressOptions, StressPlan};
 use ndarray::{Array2, Array3, Axis};
+
+use crate::support::stresses::{displaced, fields, on};
 
 /// A smooth pressure of height 1 over lengths of 3, about `centre` along x and 0 along y.
 fn smooth(grid: &Grid, centre: f64) -> Array2<f64> {
@@ -24,16 +24,7 @@ fn largest(field: &Array3<f64>, depth: usize) -> f64 {
 }
 
 fn at(section: Section) -> StressOptions {
-    StressOptions {
-        section,
-        displacement: true,
-        ..StressOptions::default()
-    }
-}
-
-fn fields(stress: &Stress) -> Vec<&Array3<f64>> {
-    let displacement = stress.displacement.iter().flatten();
-    stress.components.iter().chain(displacement).collect()
+    displaced(on(section))
 }
 
 /// Where the first cells begin at the end, a section at the end is the face, not half a cell within the body, where
@@ -185,12 +176,7 @@ fn there_is_nothing_beyond_an_end() -> Result<()> {
             assert_eq!(field.peak(field.zz()).is_none(), beyond);
         }
     }
-    let mut progress = |_| ControlFlow::Continue(());
-    let summary = plan.summary(
-        &Strengths::default(),
-        &StressOptions::default(),
-        &mut progress,
-    )?;
+    let summary = plan.summary(&Strengths::default(), &StressOptions::default())?;
     let peaks = summary
         .layers
         .iter()

@@ -1,7 +1,5 @@
 //! Depths and lengths at the ends of what numbers hold: a result that is right, or an error.
 
-use std::ops::ControlFlow;
-
 use nacre::stress::{Strengths, StressSummary};
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, Layer, Member, Motion, Options, Result, Section, Setup,
@@ -116,11 +114,10 @@ fn layers_thinner_than_rounding_have_a_summary() -> Result<()> {
         let layers = layers.into_iter().collect::<Result<Vec<_>>>()?;
         let body = HalfSpace::new(substrate, layers)?;
         let solution = press(&body, Grid::new([16, 16], [0.4, 0.4])?)?;
-        let mut progress = |_| ControlFlow::Continue(());
         let (strengths, options) = (Strengths::default(), StressOptions::default());
         let StressSummary {
             layers, interfaces, ..
-        } = solution.stress_summary(Member::Body, &strengths, &options, &mut progress)?;
+        } = solution.stress_summary(Member::Body, &strengths, &options)?;
         for (number, layer) in layers.iter().enumerate() {
             assert_eq!(layer.layer, number);
             for peak in [&layer.von_mises, &layer.tension, &layer.shear] {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use nacre::stress::StressSummary;
+use nacre::stress::{Strengths, StressSummary};
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, HeightMap, Layer, Member, Motion, Options, Result, Section,
     Setup, Solution, Stress, StressOptions, stress,
@@ -11,6 +11,7 @@ use ndarray::{Array2, Axis};
 
 use crate::support::claims::claim;
 use crate::support::random::uniform;
+use crate::support::stresses::{self, displaced};
 
 fn coated() -> Result<HalfSpace> {
     let (soft, hard) = (Elastic::new(1.0, 0.3)?, Elastic::new(4.0, 0.25)?);
@@ -18,12 +19,7 @@ fn coated() -> Result<HalfSpace> {
 }
 
 fn sliding(direction: [f64; 2]) -> StressOptions {
-    StressOptions {
-        friction: 0.3,
-        direction: Some(direction),
-        displacement: true,
-        ..StressOptions::default()
-    }
+    displaced(stresses::sliding(0.3, direction))
 }
 
 /// Largest difference of any component.
@@ -214,13 +210,7 @@ fn solved(by: [usize; 2], threads: usize) -> Result<Solution> {
 }
 
 fn summary(solution: &Solution, member: Member) -> Result<StressSummary> {
-    let mut go_on = |_| std::ops::ControlFlow::Continue(());
-    solution.stress_summary(
-        member,
-        &nacre::stress::Strengths::default(),
-        &StressOptions::default(),
-        &mut go_on,
-    )
+    solution.stress_summary(member, &Strengths::default(), &StressOptions::default())
 }
 
 /// A contact across the seam has the stresses of the same contact in the middle, with its pressure reconstructed within

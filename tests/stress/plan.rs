@@ -11,6 +11,8 @@ use nacre::{
 };
 use ndarray::Array2;
 
+use crate::support::stresses::{bits, displaced, sliding};
+
 /// At the surface and at a tenth of a cell pressure within cells is felt, deeper it is not.
 const DEPTHS: [f64; 3] = [0.0, 0.004, 0.3];
 
@@ -40,12 +42,7 @@ fn solution() -> Result<Solution> {
 /// Options that need different kernels, fields and sections.
 fn options() -> [StressOptions; 4] {
     let frictionless = StressOptions::default();
-    let sliding = StressOptions {
-        friction: 0.3,
-        direction: Some([1.0, -2.0]),
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let sliding = displaced(sliding(0.3, [1.0, -2.0]));
     let along = StressOptions {
         friction: 0.1,
         direction: Some([1.0, 0.0]),
@@ -61,10 +58,8 @@ fn options() -> [StressOptions; 4] {
     [frictionless, sliding, along, residual]
 }
 
-fn bits(field: &Stress) -> Vec<u64> {
-    let displacement = field.displacement.iter().flatten();
-    let fields = field.components.iter().chain(displacement);
-    fields.flatten().map(|value| value.to_bits()).collect()
+fn on_threads(count: usize) -> StressOptions {
+    StressOptions::with_threads(Some(count))
 }
 
 fn assert_same(field: &Stress, expected: &Stress, options: &StressOptions) {
@@ -75,8 +70,7 @@ fn assert_same(field: &Stress, expected: &Stress, options: &StressOptions) {
 }
 
 fn summary(plan: &StressPlan, options: &StressOptions) -> Result<StressSummary> {
-    let mut progress = |_| ControlFlow::Continue(());
-    plan.summary(&Strengths::default(), options, &mut progress)
+    plan.summary(&Strengths::default(), options)
 }
 
 /// Friction comes between frictionless evaluations, so that what it plans is seen to change nothing.
@@ -84,7 +78,7 @@ fn summary(plan: &StressPlan, options: &StressOptions) -> Result<StressSummary> 
 fn a_plan_gives_the_bits_of_separate_calls() -> Result<()> {
     let solution = solution()?;
     for member in [Member::Body, Member::Counterbody] {
-        let plan = solution.stress_plan(member, Some(2))?;
+        let plan = solution.stress_plan(member, &on_threads(2))?;
         assert_eq!(plan.body(), solution.member(member)?);
         for options in options().iter().chain(&options()) {
             // A homogeneous body has no second layer for a residual stress.
@@ -94,9 +88,7 @@ fn a_plan_gives_the_bits_of_separate_calls() -> Result<()> {
             assert_same(&plan.stress(&DEPTHS, &options)?, &separate, &options);
         }
         let sliding = &options()[1];
-        let mut progress = |_| ControlFlow::Continue(());
-        let strengths = Strengths::default();
-        let separate = solution.stress_summary(member, &strengths, sliding, &mut progress)?;
+        let separate = solution.stress_summary(member, &Strengths::default(), sliding)?;
         assert_eq!(summary(&plan, sliding)?, separate);
     }
     Ok(())
@@ -149,12 +141,8 @@ fn a_point_has_the_stress_of_its_plane() -> Result<()> {
 
 #[test]
 fn friction_on_the_counterbody_is_opposite() -> Result<()> {
-    let plan = solution()?.stress_plan(Member::Counterbody, None)?;
-    let options = StressOptions {
-        friction: 0.5,
-        direction: Some([0.0, 2.0]),
-        ..StressOptions::default()
-    };
+    let plan = solution()?.stress_plan(Member::Counterbody, &StressOptions::default())?;
+    let options = sliding(0.5, [0.0, 2.0]);
     // Signed zeros are equal; halves are exact.
     let [x, y] = plan.stress(&[0.1], &options)?.friction;
     assert!(x.abs() < f64::EPSILON && (y + 0.5).abs() < f64::EPSILON);
@@ -169,7 +157,7 @@ fn a_plan_outlives_what_it_was_made_from() -> Result<()> {
     let (plan, expected) = {
         let solution = solution()?;
         let expected = solution.stress(&DEPTHS, Member::Body, options)?;
-        (solution.stress_plan(Member::Body, None)?, expected)
+        (solution.stress_plan(Member::Body, options)?, expected)
     };
     assert_same(&plan.stress(&DEPTHS, options)?, &expected, options);
     let (plan, expected) = {
@@ -186,7 +174,7 @@ fn a_plan_outlives_what_it_was_made_from() -> Result<()> {
 /// friction plans its part while others run.
 #[test]
 fn threads_share_a_plan() -> Result<()> {
-    let plan = &solution()?.stress_plan(Member::Body, Some(2))?;
+    let plan = &solution()?.stress_plan(Member::Body, &on_threads(2))?;
     let evaluate = |options: StressOptions| plan.stress(&DEPTHS, &options);
     let fields: Vec<_> = thread::scope(|scope| {
         let calls = options().map(|options| scope.spawn(move || evaluate(options)));
@@ -208,14 +196,14 @@ fn threads_share_a_plan() -> Result<()> {
 /// first plane. A break leaves the depths finished before.
 #[test]
 fn an_evaluation_goes_straight_to_its_planes() -> Result<()> {
-    let plan = solution()?.stress_plan(Member::Body, None)?;
+    let plan = solution()?.stress_plan(Member::Body, &StressOptions::default())?;
     let options = StressOptions::default();
     let mut told = Vec::new();
     let mut progress = |part: f64| {
         told.push(part);
         ControlFlow::Continue(())
     };
-    plan.stress_watched(&DEPTHS, &options, &mut progress)?;
+    plan.stress(&DEPTHS, options.watched(&mut progress))?;
     // Six components by three at a time on three planes, and the end.
     assert_eq!(told.len(), 2 * DEPTHS.len() + 1);
     assert!(told.is_sorted());
@@ -223,7 +211,7 @@ fn an_evaluation_goes_straight_to_its_planes() -> Result<()> {
         part if part < 0.5 => ControlFlow::Continue(()),
         _ => ControlFlow::Break(()),
     };
-    let field = plan.stress_watched(&DEPTHS, &options, &mut stop)?;
+    let field = plan.stress(&DEPTHS, options.watched(&mut stop))?;
     assert_eq!(field.components[0].dim(), (1, 63, 58));
     assert_eq!(field.z.as_slice(), Some(&DEPTHS[..1]));
     Ok(())
@@ -235,8 +223,9 @@ fn planning_stops_when_told() -> Result<()> {
         assert!(part.abs() < f64::EPSILON);
         ControlFlow::Break(())
     };
-    let stopped = solution()?.stress_plan_watched(Member::Body, None, &mut stop)?;
-    assert!(stopped.is_none());
+    let options = StressOptions::default();
+    let stopped = solution()?.stress_plan(Member::Body, options.watched(&mut stop));
+    assert!(stopped.is_err());
     Ok(())
 }
 

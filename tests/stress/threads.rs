@@ -28,12 +28,6 @@ fn options(threads: usize) -> StressOptions {
     }
 }
 
-fn bits(field: &Stress) -> Vec<u64> {
-    let displacement = field.displacement.iter().flatten();
-    let fields = field.components.iter().chain(displacement);
-    fields.flatten().map(|value| value.to_bits()).collect()
-}
-
 /// Pressure within cells is felt at the surface and at a tenth of a cell, not at the interface and
 /// in the substrate.
 #[test]
@@ -73,7 +67,7 @@ fn planning_for_one_call_stops_when_told() -> Result<()> {
                 _ => ControlFlow::Break(()),
             }
         };
-        let field = solution.stress_watched(&[0.0, 0.1], Member::Body, &options, &mut stop)?;
+        let field = solution.stress(&[0.0, 0.1], Member::Body, options.watched(&mut stop))?;
         assert!(field.z.is_empty() && field.components[0].is_empty());
         assert_eq!(calls, last);
         calls = 0;
@@ -84,7 +78,8 @@ fn planning_for_one_call_stops_when_told() -> Result<()> {
                 _ => ControlFlow::Break(()),
             }
         };
-        let summary = solution.stress_summary(Member::Body, &strengths, &options, &mut stop)?;
+        let options = options.watched(&mut stop);
+        let summary = solution.stress_summary(Member::Body, &strengths, options)?;
         assert!(!summary.finished && summary.layers.is_empty());
         assert_eq!(calls, last);
     }

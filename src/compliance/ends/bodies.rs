@@ -18,11 +18,11 @@ use crate::numerics::parallel::Threads;
 
 /// Distance between an end and the edge of a cell, in cells, or the end of a shape, relative to its length, that is
 /// rounding.
-const ROUNDING: f64 = 1e-6;
+const ROUNDED_PLACE: f64 = 1e-6;
 
-/// Side of a body on which it ends: the lower or the higher x.
+/// EndSide of a body on which it ends: the lower or the higher x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Side {
+enum EndSide {
     Low,
     High,
 }
@@ -30,7 +30,7 @@ enum Side {
 /// A free end of one body.
 #[derive(Debug, Clone)]
 struct End {
-    side: Side,
+    side: EndSide,
     x: f64,
     ending: Ending,
 }
@@ -87,7 +87,10 @@ impl Ends {
                 continue;
             };
             let ending = Ending { body, material };
-            for (side, x) in [Side::Low, Side::High].into_iter().zip(half_space.ends()) {
+            for (side, x) in [EndSide::Low, EndSide::High]
+                .into_iter()
+                .zip(half_space.ends())
+            {
                 if let Some(x) = x {
                     let ending = ending.clone();
                     ends.push(End { side, x, ending });
@@ -135,18 +138,18 @@ impl Ends {
 
     /// Range of x in which all bodies go on.
     pub(crate) fn range(&self) -> [f64; 2] {
-        let on = |side: Side| self.ends.iter().filter(move |end| end.side == side);
+        let on = |side: EndSide| self.ends.iter().filter(move |end| end.side == side);
         [
-            on(Side::Low).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
-            on(Side::High).fold(f64::INFINITY, |x, end| x.min(end.x)),
+            on(EndSide::Low).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
+            on(EndSide::High).fold(f64::INFINITY, |x, end| x.min(end.x)),
         ]
     }
 
     /// Number of bodies that end on side `k` at x, or before, and whether these are all.
     pub(crate) fn at(&self, k: usize, x: f64, tolerance: f64) -> (usize, bool) {
         let before = |end: &&End| match (k, end.side) {
-            (0, Side::Low) => end.x >= x - tolerance,
-            (1, Side::High) => end.x <= x + tolerance,
+            (0, EndSide::Low) => end.x >= x - tolerance,
+            (1, EndSide::High) => end.x <= x + tolerance,
             _ => false,
         };
         let count = self.ends.iter().filter(before).count();
@@ -175,8 +178,8 @@ impl Ends {
         let place = |x: f64| (x - start(grid)) / spacing;
         for end in &self.ends {
             let at = place(end.x);
-            let off = (at - at.round()).abs() > ROUNDING;
-            if at > ROUNDING && at < count - ROUNDING && off {
+            let off = (at - at.round()).abs() > ROUNDED_PLACE;
+            if at > ROUNDED_PLACE && at < count - ROUNDED_PLACE && off {
                 return Err(Error::EndOffGrid {
                     end: end.x,
                     edges: [at.floor(), at.ceil()].map(|k| start(grid) + k * spacing),
@@ -207,7 +210,7 @@ impl Ends {
         let dx = grid.spacing()[0];
         let length = Along::of(grid).length;
         let [low, high] = [0.0, finest.size()[0]].map(|part| start(finest) + part);
-        let mut groups: BTreeMap<(Side, u64), Vec<&End>> = BTreeMap::new();
+        let mut groups: BTreeMap<(EndSide, u64), Vec<&End>> = BTreeMap::new();
         for end in &self.ends {
             groups
                 .entry((end.side, end.x.to_bits()))
@@ -221,15 +224,15 @@ impl Ends {
             let &End { side, x, .. } = ends[0];
             let from_end = |row: usize| {
                 let center = start(grid) + (row as f64 + 0.5) * dx;
-                if side == Side::Low {
+                if side == EndSide::Low {
                     center - x
                 } else {
                     x - center
                 }
             };
             let rows: Vec<usize> = match side {
-                Side::Low => (0..nx).collect(),
-                Side::High => (0..nx).rev().collect(),
+                EndSide::Low => (0..nx).collect(),
+                EndSide::High => (0..nx).rev().collect(),
             };
             let beyond = rows.iter().take_while(|row| from_end(**row) < 0.0).count();
             let Some(&first) = rows.get(beyond) else {
@@ -277,7 +280,7 @@ pub(crate) fn check_carried(counterbody: Option<&Body>, shape: &dyn Surface) -> 
         return Ok(());
     };
     let [from, to] = Ends::of(&Vec::from_iter(counterbody)).range();
-    let within = ROUNDING * (high - low);
+    let within = ROUNDED_PLACE * (high - low);
     for (end, shape, inside) in [
         (from, low, from > low + within),
         (to, high, to < high - within),

@@ -115,7 +115,7 @@ fn near_panel(mesh: &Mesh, xi: f64, panel: usize) -> [f64; POINTS] {
 
 /// A kernel as a sum of products, Σ_r f_r(ξ) g_r(ξ′): ξ is where it acts, ξ′ where the pressure is.
 #[derive(Debug)]
-pub(super) struct Products {
+pub(super) struct KernelProducts {
     pub(super) targets: Modes,
     pub(super) sources: Modes,
 }
@@ -133,19 +133,19 @@ pub(super) struct Reduction {
     /// φ
     pub(super) displacement: Modes,
     /// Excess of P over p on the surface, times 1/k.
-    pub(super) surface: Kernel,
+    pub(super) surface: EndKernel,
     /// Q on the face, times 1/k.
-    pub(super) face: Kernel,
+    pub(super) face: EndKernel,
 }
 
 /// A kernel, and its sum of products, which stresses alone need.
 #[derive(Debug)]
-pub(super) struct Kernel {
+pub(super) struct EndKernel {
     values: Array2<f64>,
-    products: OnceLock<Products>,
+    products: OnceLock<KernelProducts>,
 }
 
-impl Kernel {
+impl EndKernel {
     fn new(values: Array2<f64>) -> Self {
         Self {
             values,
@@ -153,13 +153,13 @@ impl Kernel {
         }
     }
 
-    pub(super) fn products(&self) -> &Products {
+    pub(super) fn products(&self) -> &KernelProducts {
         self.products.get_or_init(|| products(self.values.clone()))
     }
 }
 
 /// Terms of the sum that are left out, relative to its largest value.
-const NEGLIGIBLE: f64 = 1e-11;
+const NEGLIGIBLE_TERM: f64 = 1e-11;
 
 /// Reductions that are kept.
 const KEPT: usize = 32;
@@ -205,8 +205,8 @@ impl Reduction {
             Array2::from_shape_fn(response.dim(), |(i, j)| response[[i.min(j), i.max(j)]]);
         Self {
             displacement: Modes::new(square_root(response)),
-            surface: Kernel::new(kernel(excess)),
-            face: Kernel::new(face),
+            surface: EndKernel::new(kernel(excess)),
+            face: EndKernel::new(face),
         }
     }
 }
@@ -221,7 +221,7 @@ fn square_root(mut response: Array2<f64>) -> Array2<f64> {
         let pivot = (first..n).max_by(|&a, &b| response[[a, a]].total_cmp(&response[[b, b]]));
         let pivot = pivot.unwrap_or(first);
         let size = response[[pivot, pivot]];
-        if size <= NEGLIGIBLE * largest || modes.len() == n {
+        if size <= NEGLIGIBLE_TERM * largest || modes.len() == n {
             break;
         }
         let mut mode = response.column(pivot).to_owned() / size.sqrt();
@@ -237,7 +237,7 @@ fn square_root(mut response: Array2<f64>) -> Array2<f64> {
 }
 
 /// A `kernel` as a sum of products, with the largest remaining entry as the next pivot.
-fn products(mut kernel: Array2<f64>) -> Products {
+fn products(mut kernel: Array2<f64>) -> KernelProducts {
     let (first, n) = (first_reliable(), kernel.nrows());
     let (mut targets, mut sources) = (Vec::new(), Vec::new());
     // Entries are weighted by ξ′, over which the kernel is integrated.
@@ -250,7 +250,7 @@ fn products(mut kernel: Array2<f64>) -> Products {
             break;
         };
         let most = *largest.get_or_insert(size(&pivot));
-        if size(&pivot) <= NEGLIGIBLE * most {
+        if size(&pivot) <= NEGLIGIBLE_TERM * most {
             break;
         }
         let target = kernel.column(pivot[1]).to_owned() / kernel[pivot];
@@ -265,7 +265,7 @@ fn products(mut kernel: Array2<f64>) -> Products {
         let values = Array2::from_shape_fn((n, functions.len()), |(i, r)| functions[r][i]);
         Modes::new(values)
     };
-    Products {
+    KernelProducts {
         targets: columns(targets),
         sources: columns(sources),
     }

@@ -11,7 +11,7 @@ use rustfft::num_complex::Complex64;
 use super::VANISHED;
 use super::cells::Nodes;
 use super::mesh::Modes;
-use super::reduction::{Products, Reduction};
+use super::reduction::{KernelProducts, Reduction};
 use super::waves::{Waves, Width};
 use crate::compliance::convolution::RowWeights;
 use crate::numerics::fft::fast_length;
@@ -81,7 +81,7 @@ impl EndPressure {
 
     /// Pressure on each target node per pressure on each source node, by the distance along y: pairs (target,
     /// source), distances up to half the `length` of a transform.
-    fn kernel(&self, products: &Products, targets: &Nodes, length: usize) -> Array2<f64> {
+    fn kernel(&self, products: &KernelProducts, targets: &Nodes, length: usize) -> Array2<f64> {
         let (dx, dy) = (self.nodes.spacing, self.dy);
         let along_y: Vec<f64> = (0..=length / 2).map(|l| l as f64 * dy).collect();
         let reach = along_y.last().copied().unwrap_or(0.0) + dy;

@@ -184,7 +184,7 @@ impl Waves {
     fn add_octave(&mut self, rule: &Rule, start: f64, distances: &[f64], width: Width) {
         let (middle, half) = (1.5 * start, 0.5 * start);
         let points: Vec<(f64, f64)> = rule.nodes(0.0, 1.0).collect();
-        let panel = Panel {
+        let panel = WavePanel {
             middle,
             half,
             polynomials: points.iter().map(|(t, w)| legendre(*t, *w)).collect(),
@@ -239,14 +239,14 @@ impl Width {
 }
 
 /// Wavenumbers middle ± half.
-struct Panel {
+struct WavePanel {
     middle: f64,
     half: f64,
     /// (2n + 1) w P_n at each point.
     polynomials: Vec<[f64; POINTS]>,
 }
 
-impl Panel {
+impl WavePanel {
     /// Weights of the points in the integrals of f cos ky and f sin ky.
     fn moments(&self, y: f64) -> [[f64; 2]; POINTS] {
         let bessel = spherical_bessel((self.half * y).abs());

@@ -18,8 +18,8 @@ use crate::numerics::fft::Keep;
 /// Distance, in longer sides of a cell, from which differences are used.
 pub(crate) const FAR: f64 = 60.0;
 
-/// Source of the coefficients of C components.
-pub(crate) struct Source<M, P, const C: usize> {
+/// CellSource of the coefficients of C components.
+pub(crate) struct CellSource<M, P, const C: usize> {
     /// Numbers of offsets along x and y.
     pub(crate) offsets: [usize; 2],
     pub(crate) spacing: [f64; 2],
@@ -34,14 +34,12 @@ pub(crate) struct Source<M, P, const C: usize> {
     pub(crate) point: P,
 }
 
-/// Values at the centres of a row, one component after another.
-type Points = Vec<f64>;
+/// Components at (x, y).
+pub(crate) trait ComponentsAt: Fn(f64, f64) -> [f64; COMPONENTS] + Sync {}
 
-impl<M, P, const C: usize> Source<M, P, C>
-where
-    M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-    P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-{
+impl<F: Fn(f64, f64) -> [f64; COMPONENTS] + Sync> ComponentsAt for F {}
+
+impl<M: ComponentsAt, P: ComponentsAt, const C: usize> CellSource<M, P, C> {
     /// Gives `keep` the coefficients of `rows`.
     pub(crate) fn rows(&self, rows: Range<usize>, keep: &mut Keep) {
         let ny = self.offsets[1];
@@ -91,8 +89,8 @@ where
         }
     }
 
-    /// Computes the values at the points of row i that differences need.
-    fn points(&self, i: usize, row: &mut Points) {
+    /// Computes the values at the points of row i that differences need, one component after another.
+    fn points(&self, i: usize, row: &mut [f64]) {
         let width = self.offsets[1] + 1;
         let [_, dy] = self.spacing;
         let start = self.first(i + 1).min(self.first(i).saturating_sub(1));
@@ -106,7 +104,7 @@ where
     }
 
     /// Computes the coefficients of row i, from the points of three rows.
-    fn means(&self, i: usize, [before, here, after]: [&Points; 3], means: &mut [f64]) {
+    fn means(&self, i: usize, [before, here, after]: [&[f64]; 3], means: &mut [f64]) {
         let ny = self.offsets[1];
         let width = ny + 1;
         let [dx, dy] = self.spacing;

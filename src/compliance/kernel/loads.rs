@@ -17,9 +17,11 @@
 //! u_z = H1[W] cos φ        u_x = H0[M] − H2[N] cos 2φ        u_y = −H2[N] sin 2φ
 //! ```
 
+use std::marker::PhantomData;
+
 pub(crate) use super::COMPONENTS;
 use super::mesh::{Kind, Order, homogeneous};
-use super::{cerruti, love};
+use super::rectangle::{under_pressure, under_traction};
 use crate::compliance::response::interior::Fields;
 use crate::model::material::Elastic;
 
@@ -39,24 +41,28 @@ pub(crate) const ODD: [[bool; 2]; COMPONENTS] = [
 /// Position of each component after x and y are exchanged.
 pub(crate) const EXCHANGED: [usize; COMPONENTS] = [1, 0, 2, 3, 5, 4, 7, 6, 8];
 
-/// A load on a point or a cell, of `N` radial functions.
-pub(crate) trait Load<const N: usize>: Sync {
-    /// Bessel orders and kinds of the radial functions.
-    const ORDERS: [Order; N];
+/// A unit load on a point or a cell: pressure, or traction along x.
+pub(crate) trait Load: Sync {
+    /// Bessel orders and kinds of the radial functions: those of the stresses, then those of the displacements. There
+    /// may be fewer than [`RADIAL`].
+    const ORDERS: &'static [Order];
 
     /// Whether this is a traction along x, instead of a pressure.
     const IS_TRACTION: bool;
 
     /// D of each radial function of [`super::series`]; displacements times α.
-    fn radial(fields: &Fields, material: Elastic) -> [f64; N];
+    fn radial(fields: &Fields, material: Elastic) -> [f64; RADIAL];
 
     /// Components at (x, y), made of h_ν = H_ν/r^ν.
-    fn components(h: &[f64; N], x: f64, y: f64) -> [f64; COMPONENTS];
+    fn components(h: &[f64; RADIAL], x: f64, y: f64) -> [f64; COMPONENTS];
 
     /// Components in a homogeneous half-space, of a unit load on a cell of half sides `half`, at
     /// (x, y) from its centre and depth z.
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS];
 }
+
+/// Most radial functions that a load has.
+const RADIAL: usize = 9;
 
 const fn stress(nu: f64) -> Order {
     Order {
@@ -74,10 +80,10 @@ const fn displacement(nu: f64) -> Order {
 
 /// Unit pressure.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pressure;
+pub(crate) struct UnitPressure;
 
-impl Load<6> for Pressure {
-    const ORDERS: [Order; 6] = [
+impl Load for UnitPressure {
+    const ORDERS: &'static [Order] = &[
         stress(0.0),
         stress(0.0),
         stress(2.0),
@@ -88,21 +94,15 @@ impl Load<6> for Pressure {
 
     const IS_TRACTION: bool = false;
 
-    fn radial(fields: &Fields, material: Elastic) -> [f64; 6] {
+    fn radial(fields: &Fields, material: Elastic) -> [f64; RADIAL] {
         let state = &fields.pressure;
         let (along, across) = state.lateral_stress(material);
-        [
-            state.p,
-            0.5 * (along + across),
-            0.5 * (along - across),
-            state.tau,
-            state.w,
-            state.v,
-        ]
+        let (s, d) = (0.5 * (along + across), 0.5 * (along - across));
+        [state.p, s, d, state.tau, state.w, state.v, 0.0, 0.0, 0.0]
     }
 
-    fn components(h: &[f64; 6], x: f64, y: f64) -> [f64; COMPONENTS] {
-        let [p, s, d, tau, w, v] = *h;
+    fn components(h: &[f64; RADIAL], x: f64, y: f64) -> [f64; COMPONENTS] {
+        let [p, s, d, tau, w, v, ..] = *h;
         let d2 = d * (x * x - y * y);
         [
             s - d2,
@@ -118,40 +118,16 @@ impl Load<6> for Pressure {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        love::components(material, half, at, z)
-    }
-}
-
-/// Unit pressure, without its displacements.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PressureStress;
-
-impl Load<4> for PressureStress {
-    const ORDERS: [Order; 4] = [stress(0.0), stress(0.0), stress(2.0), stress(1.0)];
-
-    const IS_TRACTION: bool = false;
-
-    fn radial(fields: &Fields, material: Elastic) -> [f64; 4] {
-        let [p, s, d, tau, ..] = Pressure::radial(fields, material);
-        [p, s, d, tau]
-    }
-
-    fn components(h: &[f64; 4], x: f64, y: f64) -> [f64; COMPONENTS] {
-        let [p, s, d, tau] = *h;
-        Pressure::components(&[p, s, d, tau, 0.0, 0.0], x, y)
-    }
-
-    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        love::components(material, half, at, z)
+        under_pressure(material, half, at, z)
     }
 }
 
 /// Unit traction along x.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Traction;
+pub(crate) struct UnitTraction;
 
-impl Load<9> for Traction {
-    const ORDERS: [Order; 9] = [
+impl Load for UnitTraction {
+    const ORDERS: &'static [Order] = &[
         stress(1.0),
         stress(0.0),
         stress(2.0),
@@ -165,7 +141,7 @@ impl Load<9> for Traction {
 
     const IS_TRACTION: bool = true;
 
-    fn radial(fields: &Fields, material: Elastic) -> [f64; 9] {
+    fn radial(fields: &Fields, material: Elastic) -> [f64; RADIAL] {
         let state = &fields.shear;
         let (q, u) = fields.twist;
         let (along, across) = state.lateral_stress(material);
@@ -184,7 +160,7 @@ impl Load<9> for Traction {
         ]
     }
 
-    fn components(h: &[f64; 9], x: f64, y: f64) -> [f64; COMPONENTS] {
+    fn components(h: &[f64; RADIAL], x: f64, y: f64) -> [f64; COMPONENTS] {
         let [p, a, b, s, e1, e3, w, m, n] = *h;
         let (x2, y2) = (x * x, y * y);
         let (cos2, sin2) = (x2 - y2, 2.0 * x * y);
@@ -204,64 +180,64 @@ impl Load<9> for Traction {
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        cerruti::components(material, half, at, z)
+        under_traction(material, half, at, z)
     }
 }
 
-/// Unit traction along x, without its displacements.
+/// `N` radial functions of a load, which make all of its components or some.
+pub(crate) trait Radial<const N: usize>: Sync {
+    type Load: Load;
+
+    /// Number of the first of the functions.
+    const FIRST: usize;
+
+    /// Whether the load is a traction along x, instead of a pressure.
+    const IS_TRACTION: bool = Self::Load::IS_TRACTION;
+
+    /// Bessel orders and kinds of the functions.
+    fn orders() -> [Order; N] {
+        std::array::from_fn(|k| Self::Load::ORDERS[Self::FIRST + k])
+    }
+
+    /// D of the functions.
+    fn radial(fields: &Fields, material: Elastic) -> [f64; N] {
+        let all = Self::Load::radial(fields, material);
+        std::array::from_fn(|k| all[Self::FIRST + k])
+    }
+
+    /// The components that the functions make.
+    #[inline]
+    fn components(h: &[f64; N], x: f64, y: f64) -> [f64; COMPONENTS] {
+        let mut all = [0.0; RADIAL];
+        all[Self::FIRST..Self::FIRST + N].copy_from_slice(h);
+        Self::Load::components(&all, x, y)
+    }
+}
+
+/// `N` radial functions of a load, from number `FIRST` on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TractionStress;
+pub(crate) struct RadialFunctions<L, const FIRST: usize, const N: usize>(PhantomData<L>);
 
-impl Load<6> for TractionStress {
-    const ORDERS: [Order; 6] = [
-        stress(1.0),
-        stress(0.0),
-        stress(2.0),
-        stress(1.0),
-        stress(1.0),
-        stress(3.0),
-    ];
+impl<L: Load, const FIRST: usize, const N: usize> Radial<N> for RadialFunctions<L, FIRST, N> {
+    type Load = L;
 
-    const IS_TRACTION: bool = true;
-
-    fn radial(fields: &Fields, material: Elastic) -> [f64; 6] {
-        let [p, a, b, s, e1, e3, ..] = Traction::radial(fields, material);
-        [p, a, b, s, e1, e3]
-    }
-
-    fn components(h: &[f64; 6], x: f64, y: f64) -> [f64; COMPONENTS] {
-        let [p, a, b, s, e1, e3] = *h;
-        Traction::components(&[p, a, b, s, e1, e3, 0.0, 0.0, 0.0], x, y)
-    }
-
-    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        cerruti::components(material, half, at, z)
-    }
+    const FIRST: usize = FIRST;
 }
 
-/// Unit traction along x, without its stresses.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct TractionDisplacement;
+/// Stresses and displacements of a pressure.
+pub(crate) type Pressure = RadialFunctions<UnitPressure, 0, 6>;
 
-impl Load<3> for TractionDisplacement {
-    const ORDERS: [Order; 3] = [displacement(1.0), displacement(0.0), displacement(2.0)];
+/// Stresses of a pressure.
+pub(crate) type PressureStress = RadialFunctions<UnitPressure, 0, 4>;
 
-    const IS_TRACTION: bool = true;
+/// Stresses and displacements of a traction along x.
+pub(crate) type Traction = RadialFunctions<UnitTraction, 0, 9>;
 
-    fn radial(fields: &Fields, material: Elastic) -> [f64; 3] {
-        let [.., w, m, n] = Traction::radial(fields, material);
-        [w, m, n]
-    }
+/// Stresses of a traction along x.
+pub(crate) type TractionStress = RadialFunctions<UnitTraction, 0, 6>;
 
-    fn components(h: &[f64; 3], x: f64, y: f64) -> [f64; COMPONENTS] {
-        let [w, m, n] = *h;
-        Traction::components(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, w, m, n], x, y)
-    }
-
-    fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
-        cerruti::components(material, half, at, z)
-    }
-}
+/// Displacements of a traction along x.
+pub(crate) type TractionDisplacement = RadialFunctions<UnitTraction, 6, 3>;
 
 /// Radial functions h_ν = H_ν/r^ν of a point load on a homogeneous half-space, at depth z.
 ///
@@ -281,9 +257,9 @@ pub(crate) struct PointLoad<const N: usize> {
 }
 
 impl<const N: usize> PointLoad<N> {
-    pub(crate) fn new<L: Load<N>>(material: Elastic, z: f64) -> Self {
+    pub(crate) fn new<L: Radial<N>>(material: Elastic, z: f64) -> Self {
         Self {
-            orders: L::ORDERS,
+            orders: L::orders(),
             z,
             coefficients: homogeneous(material, L::radial),
         }

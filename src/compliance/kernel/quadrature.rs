@@ -75,7 +75,7 @@ pub(crate) struct Rules {
 }
 
 /// Nearest singularity, in half-intervals, for which there is a rule.
-const NEAREST: f64 = 2.0;
+const NEAREST_RULED: f64 = 2.0;
 
 impl Rules {
     /// Rules for displacements. With a singularity at q half-intervals from it, n points leave an error
@@ -97,7 +97,7 @@ impl Rules {
             (four, 4),
             (five, 5),
             (seven, 7),
-            (NEAREST, 11),
+            (NEAREST_RULED, 11),
         ];
         Self {
             rules: numbers.map(|(bound, n)| (bound, Rule::gauss_legendre(n))),

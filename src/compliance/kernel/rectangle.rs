@@ -1,4 +1,5 @@
-//! Harmonic potentials of a uniformly loaded rectangle, as sums over its corners.
+//! Harmonic potentials of a uniformly loaded rectangle, as sums over its corners, and the stress and displacement of a
+//! homogeneous half-space that they make.
 //!
 //! With (x, y) the distances to a corner, z the depth and ρ² = x² + y² + z²,
 //!
@@ -8,24 +9,27 @@
 //! ```
 //!
 //! (L_x, U_y, Y_y with x and y exchanged), T = −U_x − U_y, and F_xx = −xy/ρ(x²+z²), T_x =
-//! yz/ρ(x²+z²). F is the potential itself, ∬ 1/ρ. [`super::love`] and [`super::cerruti`] make stress
-//! and displacement of them.
+//! yz/ρ(x²+z²). F is the potential itself, ∬ 1/ρ.
 
+use std::f64::consts::PI;
+
+use super::COMPONENTS;
 use super::quadrature::Rules;
+use crate::model::material::Elastic;
 
 /// Functions of a corner.
-pub(super) struct Corner {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) z: f64,
-    pub(super) rho: f64,
+struct Corner {
+    x: f64,
+    y: f64,
+    z: f64,
+    rho: f64,
     /// ln(ρ + z).
-    pub(super) log: f64,
-    pub(super) t: f64,
-    pub(super) lx: f64,
-    pub(super) ly: f64,
-    pub(super) ux: f64,
-    pub(super) uy: f64,
+    log: f64,
+    t: f64,
+    lx: f64,
+    ly: f64,
+    ux: f64,
+    uy: f64,
 }
 
 impl Corner {
@@ -48,31 +52,31 @@ impl Corner {
         }
     }
 
-    pub(super) fn fxx(&self) -> f64 {
+    fn fxx(&self) -> f64 {
         -self.x * self.y / (self.rho * (self.x * self.x + self.z * self.z))
     }
 
-    pub(super) fn fyy(&self) -> f64 {
+    fn fyy(&self) -> f64 {
         -self.x * self.y / (self.rho * (self.y * self.y + self.z * self.z))
     }
 
-    pub(super) fn tx(&self) -> f64 {
+    fn tx(&self) -> f64 {
         self.y * self.z / (self.rho * (self.x * self.x + self.z * self.z))
     }
 
-    pub(super) fn ty(&self) -> f64 {
+    fn ty(&self) -> f64 {
         self.x * self.z / (self.rho * (self.y * self.y + self.z * self.z))
     }
 
-    pub(super) fn f(&self) -> f64 {
+    fn f(&self) -> f64 {
         product(self.x, self.ly) + product(self.y, self.lx) - self.z * self.t
     }
 
-    pub(super) fn potential_x(&self) -> f64 {
+    fn potential_x(&self) -> f64 {
         -(self.y * self.log + self.z * self.ly - self.x * self.ux)
     }
 
-    pub(super) fn potential_y(&self) -> f64 {
+    fn potential_y(&self) -> f64 {
         -(self.x * self.log + self.z * self.lx - self.y * self.uy)
     }
 }
@@ -84,7 +88,7 @@ fn product(x: f64, l: f64) -> f64 {
 
 /// Sum over the corners, with their signs, of N functions, at (x, y) from the centre of a
 /// rectangle of half sides `half` and at depth z.
-pub(super) fn corners<const N: usize>(
+fn corners<const N: usize>(
     [a, b]: [f64; 2],
     [x, y]: [f64; 2],
     z: f64,
@@ -131,6 +135,81 @@ pub(crate) fn potential(rules: &Rules, half: [f64; 2], at: [f64; 2], z: f64) -> 
 fn segment(x1: f64, x2: f64, s2: f64) -> f64 {
     let (r1, r2) = ((x1 * x1 + s2).sqrt(), (x2 * x2 + s2).sqrt());
     2.0 * ((x2 - x1) / (r1 + r2)).atanh()
+}
+
+/// Components at `at` from the centre of a cell of half sides `half`, at depth z of a homogeneous half-space, under unit
+/// pressure on the cell. Times 2π,
+///
+/// ```text
+/// σ_xx = U_x + 2ν U_y − z F_xx      σ_zz = −T + z (F_xx + F_yy)      σ_xz = z T_x
+/// σ_xy = −(1−2ν) ln(ρ+z) − z/ρ
+/// 2G u_z = 2(1−ν) F + z T           2G u_x = (1−2ν) X − z L_y
+/// ```
+///
+/// and those with x and y exchanged. Love, Phil. Trans. R. Soc. A 228 (1929) 377, doi:10.1098/rsta.1929.0009.
+pub(super) fn under_pressure(
+    material: Elastic,
+    half: [f64; 2],
+    at: [f64; 2],
+    z: f64,
+) -> [f64; COMPONENTS] {
+    let nu = material.poisson();
+    let far = 1.0 - 2.0 * nu;
+    let c = 0.5 / material.shear();
+    let sums = corners(half, at, z, |corner: &Corner| {
+        let (fxx, fyy) = (corner.fxx(), corner.fyy());
+        [
+            corner.ux + 2.0 * nu * corner.uy - z * fxx,
+            corner.uy + 2.0 * nu * corner.ux - z * fyy,
+            z * (fxx + fyy) - corner.t,
+            -far * corner.log - z / corner.rho,
+            z * corner.ty(),
+            z * corner.tx(),
+            c * (far * corner.potential_x() - z * corner.ly),
+            c * (far * corner.potential_y() - z * corner.lx),
+            c * (2.0 * (1.0 - nu) * corner.f() + z * corner.t),
+        ]
+    });
+    sums.map(|sum| sum / (2.0 * PI))
+}
+
+/// Components as of [`under_pressure`], under unit traction along x on the cell. Times 2π,
+///
+/// ```text
+/// σ_xx = 2 L_y − z T_x + (2ν + z/ρ) y/(ρ+z)     σ_yy = 2ν L_y − (2ν + z/ρ) y/(ρ+z)
+/// σ_zz = z T_x      σ_xy = L_x − (2ν + z/ρ) x/(ρ+z)
+/// σ_xz = −T − z F_xx      σ_yz = −z/ρ
+/// 2G u_x = 2F + 2ν Y_x + z U_x      2G u_y = 2ν [z ln(ρ+z) − ρ] − z ln(ρ+z)
+/// 2G u_z = −(1−2ν) X − z L_y
+/// ```
+///
+/// They are Cerruti's solution for a point force (Johnson, Contact Mechanics (1985), §3.6,
+/// doi:10.1017/CBO9781139171731), integrated over the rectangle.
+pub(super) fn under_traction(
+    material: Elastic,
+    half: [f64; 2],
+    at: [f64; 2],
+    z: f64,
+) -> [f64; COMPONENTS] {
+    let nu = material.poisson();
+    let far = 1.0 - 2.0 * nu;
+    let c = 0.5 / material.shear();
+    let sums = corners(half, at, z, |corner: &Corner| {
+        let bend = (2.0 * nu + z / corner.rho) / (corner.rho + z);
+        let yx = -corner.x * corner.ly - z * corner.ux;
+        [
+            2.0 * corner.ly - z * corner.tx() + bend * corner.y,
+            2.0 * nu * corner.ly - bend * corner.y,
+            z * corner.tx(),
+            corner.lx - bend * corner.x,
+            -z / corner.rho,
+            -corner.t - z * corner.fxx(),
+            c * (2.0 * corner.f() + 2.0 * nu * yx + z * corner.ux),
+            c * (2.0 * nu * (z * corner.log - corner.rho) - z * corner.log),
+            -c * (far * corner.potential_x() + z * corner.ly),
+        ]
+    });
+    sums.map(|sum| sum / (2.0 * PI))
 }
 
 #[cfg(test)]

@@ -36,12 +36,12 @@ pub(crate) struct Series<const N: usize> {
     means: Vec<[[f64; N]; 2]>,
     orders: [Order; N],
     depth: f64,
-    /// Coefficients of H/r^ν by powers of (r/depth)².
+    /// FourierTerms of H/r^ν by powers of (r/depth)².
     powers: [[f64; MOMENTS]; N],
 }
 
 /// Fourier coefficients of one function on a mesh, and the size below which the last are dropped.
-struct Coefficients {
+struct FourierTerms {
     values: Vec<(f64, f64)>,
     negligible: f64,
 }
@@ -62,7 +62,7 @@ impl<const N: usize> Series<N> {
             .map(|(k, samples)| {
                 let powers = powers(mesh, orders[k], &samples, depth);
                 let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-                let spectrum = Coefficients {
+                let spectrum = FourierTerms {
                     values: coefficients(mesh, samples),
                     // All terms of this size together are rounding.
                     negligible: 1e-15 * largest / mesh.points as f64,
@@ -83,10 +83,10 @@ impl<const N: usize> Series<N> {
         mesh: &LogMesh,
         orders: &[Order; N],
         multipliers: &[Multipliers],
-        spectra: &[Coefficients],
+        spectra: &[FourierTerms],
     ) -> Self {
         let step = mesh.step();
-        let kept = |spectrum: &Coefficients| {
+        let kept = |spectrum: &FourierTerms| {
             let size = |c: &(f64, f64)| c.0.hypot(c.1);
             let last = (spectrum.values.iter()).rposition(|c| size(c) > spectrum.negligible);
             last.map_or(0, |last| last + 1)
@@ -202,7 +202,7 @@ impl Series<1> {
             found = sampled(spacing);
         }
         let (mesh, coefficients, tail) = found;
-        let spectrum = Coefficients {
+        let spectrum = FourierTerms {
             values: coefficients,
             negligible: 1e-3 * ROUNDING * size,
         };
@@ -217,7 +217,7 @@ fn coefficients(mesh: &LogMesh, mut samples: Vec<f64>) -> Vec<(f64, f64)> {
     fourier_coefficients(samples)
 }
 
-/// Coefficients of (r/z)^{2k} in H/r^ν, z the `depth`; none at the surface.
+/// FourierTerms of (r/z)^{2k} in H/r^ν, z the `depth`; none at the surface.
 ///
 /// ```text
 /// (−1)^k / (2^{ν+2k} k! (ν+k)!) · z^{−2k} / 2π ∫ D α^{w+ν+2k} dα

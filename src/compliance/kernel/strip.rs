@@ -17,17 +17,17 @@ use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 
-/// Output of one function of the wavenumber: the component that it makes, with its sign.
+/// StripOutput of one function of the wavenumber: the component that it makes, with its sign.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Output {
+pub(crate) struct StripOutput {
     component: usize,
     sign: f64,
     sine: bool,
     displacement: bool,
 }
 
-const fn output(component: usize, sign: f64, sine: bool) -> Output {
-    Output {
+const fn output(component: usize, sign: f64, sine: bool) -> StripOutput {
+    StripOutput {
         component,
         sign,
         sine,
@@ -37,17 +37,17 @@ const fn output(component: usize, sign: f64, sine: bool) -> Output {
 
 /// A load on a strip.
 pub(crate) trait StripLoad<const N: usize> {
-    const OUTPUTS: [Output; N];
+    const OUTPUTS: [StripOutput; N];
 
     /// D of each output; displacements times α.
     fn functions(fields: &Fields, material: Elastic) -> [f64; N];
 }
 
 /// Unit pressure.
-pub(crate) struct Pressure;
+pub(crate) struct StripPressure;
 
-impl StripLoad<6> for Pressure {
-    const OUTPUTS: [Output; 6] = [
+impl StripLoad<6> for StripPressure {
+    const OUTPUTS: [StripOutput; 6] = [
         output(0, 1.0, false),
         output(1, 1.0, false),
         output(2, -1.0, false),
@@ -64,10 +64,10 @@ impl StripLoad<6> for Pressure {
 }
 
 /// Unit traction along y.
-pub(crate) struct Across;
+pub(crate) struct StripAcross;
 
-impl StripLoad<6> for Across {
-    const OUTPUTS: [Output; 6] = [
+impl StripLoad<6> for StripAcross {
+    const OUTPUTS: [StripOutput; 6] = [
         output(0, 1.0, true),
         output(1, 1.0, true),
         output(2, -1.0, true),
@@ -84,10 +84,10 @@ impl StripLoad<6> for Across {
 }
 
 /// Unit traction along x.
-pub(crate) struct Along;
+pub(crate) struct StripAlong;
 
-impl StripLoad<3> for Along {
-    const OUTPUTS: [Output; 3] = [
+impl StripLoad<3> for StripAlong {
+    const OUTPUTS: [StripOutput; 3] = [
         output(3, -1.0, true),
         output(5, -1.0, false),
         output(6, 1.0, false),
@@ -126,11 +126,20 @@ impl LinePlan {
         }
     }
 
-    /// Components at offsets of 0, 1, … cells from a strip under a unit load.
-    pub(crate) fn coefficients<const N: usize, L: StripLoad<N>>(
+    /// Components at offsets of 0, 1, … cells from a strip under a unit pressure, or a unit traction along an axis.
+    pub(crate) fn coefficients(
         &self,
         place: &Place,
+        axis: Option<usize>,
     ) -> Vec<[f64; COMPONENTS]> {
+        match axis {
+            None => self.at_offsets::<6, StripPressure>(place),
+            Some(0) => self.at_offsets::<3, StripAlong>(place),
+            Some(_) => self.at_offsets::<6, StripAcross>(place),
+        }
+    }
+
+    fn at_offsets<const N: usize, L: StripLoad<N>>(&self, place: &Place) -> Vec<[f64; COMPONENTS]> {
         let strips = self.strips::<N, L>(place);
         // S at the edges of the cells, (j ± ½) dy.
         let mut before = strips.integral(-0.5 * self.width);
@@ -145,9 +154,9 @@ impl LinePlan {
     }
 
     /// Components of strips of any width at one place.
-    pub(crate) fn strips<const N: usize, L: StripLoad<N>>(&self, place: &Place) -> Strips<N> {
+    pub(crate) fn strips<const N: usize, L: StripLoad<N>>(&self, place: &Place) -> StripKernel<N> {
         let (material, depth) = (place.material, place.depth);
-        Strips {
+        StripKernel {
             outputs: L::OUTPUTS,
             closed: homogeneous(material, L::functions).map(|[c0, c1]| Closed { c0, c1, depth }),
             rest: self.rest::<N, L>(place, self.thickness + depth),
@@ -203,14 +212,14 @@ impl LinePlan {
 }
 
 /// A load at one depth, on strips of any width.
-pub(crate) struct Strips<const N: usize> {
-    outputs: [Output; N],
+pub(crate) struct StripKernel<const N: usize> {
+    outputs: [StripOutput; N],
     closed: [Closed; N],
     rest: Option<(Series<N>, [Closed; N])>,
     datum: f64,
 }
 
-impl<const N: usize> Strips<N> {
+impl<const N: usize> StripKernel<N> {
     /// Components at y from the middle of a strip of half width `half` under a unit load.
     pub(crate) fn at(&self, y: f64, half: f64) -> [f64; COMPONENTS] {
         self.components(&self.integral(y - half), &self.integral(y + half))
@@ -261,7 +270,7 @@ impl Closed {
     /// cos/α    −y ln(R/ℓ) + y − z atan(y/z)              z atan(y/z)
     /// sin/α    y atan(y/z) − z ln R                      z ln R
     /// ```
-    fn integral(&self, output: Output, y: f64, datum: f64) -> f64 {
+    fn integral(&self, output: StripOutput, y: f64, datum: f64) -> f64 {
         let Self { c0, c1, depth: z } = *self;
         let square = y * y + z * z;
         // Lengths over the datum, so that logarithms are those of numbers.

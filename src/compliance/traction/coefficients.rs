@@ -4,10 +4,10 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
 use super::bare::of_cells;
-use crate::compliance::kernel::cells::Source;
+use crate::compliance::kernel::cells::CellSource;
 use crate::compliance::kernel::loads::{EXCHANGED, ODD, TractionDisplacement};
-use crate::compliance::kernel::plane::{Kernel, Plan};
-use crate::compliance::kernel::strip::{Across, Along, LinePlan};
+use crate::compliance::kernel::plane::{CellPlan, Kernel};
+use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::Body;
 use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
@@ -120,7 +120,7 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
     let spacing = grid.spacing();
     let [lx, ly] = grid.size();
     // One per cent more than the diagonal, for rounding.
-    let plan = threads.run(|| Plan::new(body, spacing, 1.0, 1.01 * lx.hypot(ly)));
+    let plan = threads.run(|| CellPlan::new(body, spacing, 1.0, 1.01 * lx.hypot(ly)));
     let multipliers = plan.multipliers::<3, TractionDisplacement>();
     let kernel = threads.run(|| Kernel::new::<TractionDisplacement>(&plan, &multipliers, &place));
     let half @ [a, b] = spacing.map(|d| 0.5 * d);
@@ -137,7 +137,7 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
             0 => kernel.far::<TractionDisplacement>(x, y),
             _ => turned(kernel.far::<TractionDisplacement>(y, x)),
         };
-        let source = Source {
+        let source = CellSource {
             between: false,
             offsets: [nx, ny],
             spacing,
@@ -179,8 +179,8 @@ const ROWS: usize = 8;
 
 fn of_strips(body: &HalfSpace, grid: &Grid, place: &Place) -> TractionCoefficients {
     let plan = LinePlan::new(body, grid, 1.0);
-    let along = plan.coefficients::<3, Along>(place);
-    let across = plan.coefficients::<6, Across>(place);
+    let along = plan.coefficients(place, Some(0));
+    let across = plan.coefficients(place, Some(1));
     let row = |values: &[[f64; 9]], k: usize| {
         Array2::from_shape_fn(grid.shape(), |(_, j)| values[j][6 + k])
     };

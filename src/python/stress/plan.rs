@@ -104,7 +104,7 @@ impl PyStressPlan {
         keywords.finish("keywords of StressPlan.stress")?;
         let plan = Arc::clone(&self.plan);
         let evaluated = watched(py, progress, move |progress| {
-            plan.stress_watched(&depths, &options, progress)
+            plan.stress(&depths, options.watched(progress))
         })?;
         issue_warnings(py, evaluated.warnings())?;
         Ok(PyStress::new(evaluated, one, lines))
@@ -152,7 +152,7 @@ impl PyStressPlan {
         keywords.finish("keywords of StressPlan.summary")?;
         let plan = Arc::clone(&self.plan);
         let summary = watched(py, progress, move |progress| {
-            plan.summary(&strengths, &options, progress)
+            plan.summary(&strengths, options.watched(progress))
         })?;
         issue_warnings(py, summary.warnings())?;
         Ok(PyStressSummary(summary))

@@ -13,11 +13,10 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use crate::compliance::images::Images;
-use crate::compliance::kernel::cells::{FAR, Source};
-use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Load, Pressure, Traction};
-use crate::compliance::kernel::plane::Kernel;
-use crate::compliance::kernel::plans::Kernels;
-use crate::compliance::kernel::strip::{self, LinePlan};
+use crate::compliance::kernel::cells::{CellSource, ComponentsAt, FAR};
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Pressure, Radial, Traction};
+use crate::compliance::kernel::plane::{Kernel, Kernels};
+use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
@@ -26,10 +25,10 @@ use crate::numerics::fft::Keep;
 
 /// Distance of the end of the sums, in longest lengths of what is summed: 1e-7 of the coefficient of the loaded cell is
 /// left.
-const RINGS: f64 = 8.0;
+const STRESS_RINGS: f64 = 8.0;
 
 /// Rows of coefficients that one thread makes at a time.
-const ROWS: usize = 8;
+const ROWS_TOGETHER: usize = 8;
 
 /// What a plan on a grid that repeats has besides the kernels of its cells.
 #[derive(Debug)]
@@ -59,7 +58,7 @@ impl Repeats {
         if periodic == [false; 2] {
             return None;
         }
-        let images = Images::plan(grid, RINGS);
+        let images = Images::plan(grid, STRESS_RINGS);
         let sides = images.block_sides();
         // From one end of the rectangle to places beyond the other.
         let reach = images.block_reach() + sides[0].hypot(sides[1]);
@@ -79,7 +78,7 @@ impl Repeats {
     }
 
     /// The kernel of the rectangle of all images, for the load L.
-    pub(super) fn block_kernel<const N: usize, L: Load<N>>(
+    pub(super) fn block_kernel<const N: usize, L: Radial<N>>(
         &self,
         place: &Place,
     ) -> Option<Kernel<'_, N>> {
@@ -114,16 +113,12 @@ impl Repeats {
 
     /// Arrays of the coefficients of C components at all offsets. `source` has those of one cell alone, at offsets up to
     /// [`Repeats::extents`], `block` those of the rectangle of half sides `half`.
-    pub(super) fn coefficients<M, P, const C: usize>(
+    pub(super) fn coefficients<M: ComponentsAt, P: ComponentsAt, const C: usize>(
         &self,
-        source: &Source<M, P, C>,
+        source: &CellSource<M, P, C>,
         block: impl Fn([f64; 2], [f64; 2]) -> [f64; COMPONENTS] + Sync,
         (place, axis): (&Place, Axis),
-    ) -> Vec<Array2<f64>>
-    where
-        M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-        P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-    {
+    ) -> Vec<Array2<f64>> {
         let far = self.images.far(
             |[x, y]| mean_of_cell(source, x, y),
             |at| {
@@ -133,15 +128,15 @@ impl Repeats {
         );
         let uniform = self.uniform(place, axis);
         let kept = self.images.kept();
-        let starts: Vec<usize> = (0..kept[0]).step_by(ROWS).collect();
+        let starts: Vec<usize> = (0..kept[0]).step_by(ROWS_TOGETHER).collect();
         let near: Vec<Vec<f64>> = starts
             .par_iter()
-            .map(|start| self.near_rows(source, *start..(start + ROWS).min(kept[0])))
+            .map(|start| self.near_rows(source, *start..(start + ROWS_TOGETHER).min(kept[0])))
             .collect();
         (0..C)
             .map(|component| {
                 let sum = Array2::from_shape_fn((kept[0], kept[1]), |(i, j)| {
-                    let (block, row) = (i / ROWS, i % ROWS);
+                    let (block, row) = (i / ROWS_TOGETHER, i % ROWS_TOGETHER);
                     let rows = near[block].len() / (C * kept[1]);
                     near[block][(component * rows + row) * kept[1] + j] + far[component][[i, j]]
                 });
@@ -154,15 +149,11 @@ impl Repeats {
     }
 
     /// Sums over the near images of some rows, component by component.
-    fn near_rows<M, P, const C: usize>(
+    fn near_rows<M: ComponentsAt, P: ComponentsAt, const C: usize>(
         &self,
-        source: &Source<M, P, C>,
+        source: &CellSource<M, P, C>,
         rows: Range<usize>,
-    ) -> Vec<f64>
-    where
-        M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-        P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-    {
+    ) -> Vec<f64> {
         let (kept, [nx, ny]) = (self.images.kept(), self.grid.shape());
         let mut sums = vec![0.0; C * rows.len() * kept[1]];
         for k in self.images.near(0) {
@@ -200,12 +191,10 @@ impl Repeats {
         };
         // Strips are endless along x: where y repeats, x and y are exchanged.
         let exchanged = self.open == 0;
-        let along = if exchanged { 1 } else { 0 };
-        let values = match axis {
-            None => strips.coefficients::<6, strip::Pressure>(place),
-            Some(axis) if axis == along => strips.coefficients::<3, strip::Along>(place),
-            Some(_) => strips.coefficients::<6, strip::Across>(place),
-        };
+        let values = strips.coefficients(
+            place,
+            axis.map(|axis| if exchanged { 1 - axis } else { axis }),
+        );
         let turned = |values: [f64; COMPONENTS]| match exchanged {
             true => EXCHANGED.map(|k| values[k]),
             false => values,
@@ -215,11 +204,11 @@ impl Repeats {
 }
 
 /// Components at (x, y) from a cell under a unit load: means, or differences where the cell is far.
-fn mean_of_cell<M, P, const C: usize>(source: &Source<M, P, C>, x: f64, y: f64) -> [f64; C]
-where
-    M: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-    P: Fn(f64, f64) -> [f64; COMPONENTS] + Sync,
-{
+fn mean_of_cell<M: ComponentsAt, P: ComponentsAt, const C: usize>(
+    source: &CellSource<M, P, C>,
+    x: f64,
+    y: f64,
+) -> [f64; C] {
     let [dx, dy] = source.spacing;
     let values = if x.hypot(y).hypot(source.depth) < (FAR + 1.0) * dx.max(dy) {
         (source.mean)(x, y)

@@ -2,7 +2,7 @@
 //! interior.
 //!
 //! A polynomial of second or of third degree is fitted to p² of cells that are [`BAND`] cells from the
-//! edge and farther ([`super::fit`]), and continued to the edge. The outermost two cells carry the
+//! edge and farther ([`NormalEquations`]), and continued to the edge. The outermost two cells carry the
 //! staircase of the solver's contact; those farther inside determine the edge within some thousandths
 //! of a cell. A cell keeps its uniform pressure
 //!
@@ -19,8 +19,6 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::fit::{Fit, NormalEquations, SquaredPressure, may_be_fitted};
-use super::neighbours::{around, is_at_border};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -31,15 +29,14 @@ pub(super) const BAND: u8 = 3;
 /// Degrees of the polynomials that are tried: at the second, Hertz' contact is exact.
 const DEGREES: [u8; 2] = [2, 3];
 
-/// Distance, in cells, around a cell without a fit in which no other cell takes its own. Chosen by
-/// trial.
+/// Distance, in cells, around a cell without a fit in which no other cell takes its own.
 const NEIGHBOURS: usize = 3;
 
 /// Cells that are fitted between two calls of the callback: some hundredths of a second of work.
-const BLOCK: usize = 4096;
+const FITS_BETWEEN_CALLS: usize = 4096;
 
 /// Largest uncertainty of the place of the edge, in cells, at which a fit is taken: the pressure there
-/// errs by the root of it times the slope of p². Chosen by trial: rough contacts are a tenth of a cell
+/// errs by the root of it times the slope of p². Rough contacts are a tenth of a cell
 /// uncertain or more, smooth ones some thousandths.
 const UNCERTAINTY_LIMIT: f64 = 0.05;
 
@@ -75,7 +72,10 @@ pub(super) fn edge_cells(
     let (first, others): (Vec<usize>, Vec<usize>) =
         (0..band.len()).partition(|k| band[*k].iter().all(|at| at % NEIGHBOURS == 0));
     let mut fitted: Vec<Option<SquaredPressure>> = vec![None; band.len()];
-    for block in first.chunks(BLOCK).chain(others.chunks(BLOCK)) {
+    for block in first
+        .chunks(FITS_BETWEEN_CALLS)
+        .chain(others.chunks(FITS_BETWEEN_CALLS))
+    {
         progress(0.0)?;
         let is_needed = |k: &usize| open.any_around(band[*k], NEIGHBOURS);
         let needed: Vec<usize> = block.iter().copied().filter(is_needed).collect();
@@ -181,9 +181,293 @@ fn accepted_fit(
     (uncertainty <= UNCERTAINTY_LIMIT && agrees).then_some(polynomial)
 }
 
+/// Cells to each side of a cell that its fit uses: over more of them p² of a small
+/// contact is no polynomial, over fewer the solver's staircase is felt more.
+const WINDOW: usize = 8;
+
+/// Square of the distance, in windows, at which the weight (1.1 − r²)² of a value falls to 0: cells at
+/// the window's sides still count a little.
+const WEIGHT_RADIUS_SQUARED: f64 = 1.1;
+
+/// Smallest pivot of Cholesky's factorisation, over the diagonal entry that it comes from: below it
+/// the values do not determine the polynomial. Far above rounding and far below the pivots of windows
+/// that are half filled.
+const PIVOT_LIMIT: f64 = 1e-9;
+
+/// Terms of a polynomial of third degree in two variables.
+const TERMS: usize = 10;
+
+/// Powers of u and of v in each term.
+const POWERS: [[u8; 2]; TERMS] = [
+    [0, 0],
+    [1, 0],
+    [0, 1],
+    [2, 0],
+    [1, 1],
+    [0, 2],
+    [3, 0],
+    [2, 1],
+    [1, 2],
+    [0, 3],
+];
+
+/// The square of the pressure near a cell: a polynomial in the distances u, v from the cell's centre,
+/// in cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SquaredPressure([f64; TERMS]);
+
+impl SquaredPressure {
+    /// Value at (u, v); negative beyond the edge.
+    pub(super) fn at(&self, u: f64, v: f64) -> f64 {
+        let [c, cu, cv, cuu, cuv, cvv, cuuu, cuuv, cuvv, cvvv] = self.0;
+        let along = cu + u * (cuu + u * cuuu);
+        let across = cv + v * (cvv + v * cvvv);
+        c + u * along + v * across + u * v * (cuv + u * cuuv + v * cuvv)
+    }
+
+    /// The polynomial plus a constant, which shifts the edge.
+    pub(super) fn raised(mut self, by: f64) -> Self {
+        self.0[0] += by;
+        self
+    }
+
+    /// Change from the centre to a corner of a rectangle of half sides (a, b), at the slope of the
+    /// cell's centre.
+    pub(super) fn variation(&self, [a, b]: [f64; 2]) -> f64 {
+        self.0[1].abs() * a + self.0[2].abs() * b
+    }
+
+    /// Magnitude of the gradient at the cell's centre.
+    pub(super) fn slope(&self) -> f64 {
+        self.0[1].hypot(self.0[2])
+    }
+}
+
+/// A fitted polynomial, and how certain it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    pub(super) polynomial: SquaredPressure,
+    /// Standard deviation of the place of the edge, in cells, from the residuals of the fit.
+    pub(super) uncertainty: f64,
+}
+
+/// Fewest values that a polynomial of so many terms is fitted to.
+fn fewest_values(terms: usize, line: bool) -> usize {
+    if line { terms + 2 } else { 2 * terms }
+}
+
+/// Whether there may be values enough around a cell for a polynomial of second degree. They are
+/// counted in a square, and the fit uses a circle within it: counting is far cheaper than summing.
+pub(super) fn may_be_fitted(values: &[Option<f64>], shape: [usize; 2], cell: [usize; 2]) -> bool {
+    let line = shape[0] == 1;
+    let terms = if line { 3 } else { 6 };
+    let known = |[i, j]: &[usize; 2]| values[i * shape[1] + j].is_some();
+    around(shape, cell, WINDOW).filter(known).count() >= fewest_values(terms, line)
+}
+
+/// Normal equations of the values around one cell.
+pub(super) struct NormalEquations {
+    line: bool,
+    /// Lower triangle of the matrix.
+    matrix: [[f64; TERMS]; TERMS],
+    right: [f64; TERMS],
+    /// Weighted sum of the squares of the values.
+    values_squared: f64,
+    weights: f64,
+    count: usize,
+}
+
+impl NormalEquations {
+    /// Sums over the known `values` of the cells around `cell`, nearer ones weighing more.
+    pub(super) fn around(
+        values: &[Option<f64>],
+        shape: [usize; 2],
+        cell @ [i, j]: [usize; 2],
+    ) -> Self {
+        let scale = 1.0 / WINDOW as f64;
+        let mut equations = Self {
+            line: shape[0] == 1,
+            matrix: [[0.0; TERMS]; TERMS],
+            right: [0.0; TERMS],
+            values_squared: 0.0,
+            weights: 0.0,
+            count: 0,
+        };
+        for [k, l] in around(shape, cell, WINDOW) {
+            let Some(value) = values[k * shape[1] + l] else {
+                continue;
+            };
+            let u = (k as f64 - i as f64) * scale;
+            let v = (l as f64 - j as f64) * scale;
+            let (uu, vv) = (u * u, v * v);
+            let rest = WEIGHT_RADIUS_SQUARED - (uu + vv);
+            if rest > 0.0 {
+                let basis = [1.0, u, v, uu, u * v, vv, u * uu, uu * v, u * vv, v * vv];
+                equations.add(rest * rest, basis, value);
+            }
+        }
+        equations
+    }
+
+    fn add(&mut self, weight: f64, basis: [f64; TERMS], value: f64) {
+        for (a, row) in self.matrix.iter_mut().enumerate() {
+            let along = weight * basis[a];
+            for (sum, across) in row[..=a].iter_mut().zip(&basis) {
+                *sum += along * across;
+            }
+            self.right[a] += along * value;
+        }
+        self.values_squared += weight * value * value;
+        self.weights += weight;
+        self.count += 1;
+    }
+
+    /// The polynomial of `degree` that fits best; none where there are too few values, or they do not
+    /// determine it.
+    pub(super) fn fit(&self, degree: u8) -> Option<Fit> {
+        let used = |[a, b]: [u8; 2]| a + b <= degree && !(self.line && a > 0);
+        let powers: Vec<usize> = (0..TERMS).filter(|k| used(POWERS[*k])).collect();
+        let terms = powers.len();
+        if self.count < fewest_values(terms, self.line) {
+            return None;
+        }
+        let (mut matrix, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+        for (a, row) in powers.iter().enumerate() {
+            for (b, column) in powers[..=a].iter().enumerate() {
+                matrix[a][b] = self.matrix[*row][*column];
+            }
+            right[a] = self.right[*row];
+        }
+        factorise(&mut matrix, terms)?;
+        let solution = solved(&matrix, right, terms);
+        let mut first = [0.0; TERMS];
+        first[0] = 1.0;
+        // The first entry of the inverse: the variance of the value at the centre, over that of values.
+        let spread = solved(&matrix, first, terms)[0];
+        let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
+        let count = self.count as f64;
+        let free = count / (count - terms as f64);
+        let variance = ((self.values_squared - product) / self.weights * free).max(0.0);
+        let mut polynomial = SquaredPressure([0.0; TERMS]);
+        for (value, k) in solution.iter().zip(&powers) {
+            let [a, b] = POWERS[*k];
+            polynomial.0[*k] = value / (WINDOW as f64).powi(i32::from(a + b));
+        }
+        let deviation = (variance * spread * self.weights / count).sqrt();
+        let uncertainty = deviation / polynomial.slope();
+        uncertainty.is_finite().then_some(Fit {
+            polynomial,
+            uncertainty,
+        })
+    }
+}
+
+/// Replaces the lower triangle of `matrix` by its Cholesky factor; none where a pivot is lost. Golub &
+/// Van Loan, Matrix Computations, 4th ed. (2013), §4.2.
+fn factorise(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
+    for a in 0..terms {
+        let scale = matrix[a][a];
+        for b in 0..=a {
+            let sum: f64 = (0..b).map(|k| matrix[a][k] * matrix[b][k]).sum();
+            let rest = matrix[a][b] - sum;
+            if a == b {
+                if rest <= PIVOT_LIMIT * scale {
+                    return None;
+                }
+                matrix[a][a] = rest.sqrt();
+            } else {
+                matrix[a][b] = rest / matrix[b][b];
+            }
+        }
+    }
+    Some(())
+}
+
+/// Solution of the system whose Cholesky factor is `factor`.
+fn solved(factor: &[[f64; TERMS]; TERMS], mut right: [f64; TERMS], terms: usize) -> [f64; TERMS] {
+    for a in 0..terms {
+        let sum: f64 = (0..a).map(|k| factor[a][k] * right[k]).sum();
+        right[a] = (right[a] - sum) / factor[a][a];
+    }
+    for a in (0..terms).rev() {
+        let sum: f64 = (a + 1..terms).map(|k| factor[k][a] * right[k]).sum();
+        right[a] = (right[a] - sum) / factor[a][a];
+    }
+    right
+}
+
+/// Cells of the grid within `reach` rows and columns of a cell, itself included.
+pub(super) fn around(
+    [nx, ny]: [usize; 2],
+    [i, j]: [usize; 2],
+    reach: usize,
+) -> impl Iterator<Item = [usize; 2]> {
+    let rows = i.saturating_sub(reach)..(i + reach + 1).min(nx);
+    rows.flat_map(move |i| (j.saturating_sub(reach)..(j + reach + 1).min(ny)).map(move |j| [i, j]))
+}
+
+/// Whether a cell is at the border of the grid; a row of line contact is endless and has none.
+pub(super) fn is_at_border([nx, ny]: [usize; 2], [i, j]: [usize; 2]) -> bool {
+    let ends = |at: usize, count: usize| at == 0 || at + 1 == count;
+    ends(j, ny) || nx > 1 && ends(i, nx)
+}
+
+/// Distance in cells of each cell from the nearest without pressure, a diagonal step counting as one;
+/// at most `limit`. Beyond the grid there is no pressure; a row of line contact is endless.
+pub(super) fn edge_distances(pressure: &[f64], [nx, ny]: [usize; 2], limit: u8) -> Vec<u8> {
+    let mut distances: Vec<u8> = pressure.iter().map(|p| u8::from(*p > 0.0)).collect();
+    for level in 1..limit {
+        let before = distances.clone();
+        let inside = |i: isize, j: isize| {
+            let row = nx == 1 || (0..nx as isize).contains(&i);
+            let column = (0..ny as isize).contains(&j);
+            let i = if nx == 1 { 0 } else { i };
+            row && column && before[i as usize * ny + j as usize] >= level
+        };
+        for (cell, distance) in distances.iter_mut().enumerate() {
+            if *distance == level {
+                let (i, j) = ((cell / ny) as isize, (cell % ny) as isize);
+                let all = (-1..=1).all(|a| (-1..=1).all(|b| inside(i + a, j + b)));
+                *distance += u8::from(all);
+            }
+        }
+    }
+    distances
+}
+
+/// Sums of a field over rectangles of cells, from its sums over all rectangles that begin at the first
+/// cell.
+pub(super) struct RectangleSums {
+    shape: [usize; 2],
+    sums: Vec<f64>,
+}
+
+impl RectangleSums {
+    pub(super) fn new(values: &[f64], shape @ [nx, ny]: [usize; 2]) -> Self {
+        let width = ny + 1;
+        let mut sums = vec![0.0; (nx + 1) * width];
+        for i in 0..nx {
+            let mut row = 0.0;
+            for j in 0..ny {
+                row += values[i * ny + j];
+                sums[(i + 1) * width + j + 1] = sums[i * width + j + 1] + row;
+            }
+        }
+        Self { shape, sums }
+    }
+
+    /// Sum over the cells of [`around`].
+    pub(super) fn around(&self, [i, j]: [usize; 2], reach: usize) -> f64 {
+        let [nx, ny] = self.shape;
+        let at = |i: usize, j: usize| self.sums[i * (ny + 1) + j];
+        let (top, left) = (i.saturating_sub(reach), j.saturating_sub(reach));
+        let (bottom, right) = ((i + reach + 1).min(nx), (j + reach + 1).min(ny));
+        at(bottom, right) - at(top, right) - at(bottom, left) + at(top, left)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::neighbours::edge_distances;
     use super::*;
     use crate::error::Result;
 
@@ -229,5 +513,77 @@ mod tests {
             .collect();
         assert!(found(&punch)?.is_empty());
         Ok(())
+    }
+
+    /// A polynomial is found from cells that are three cells inside of its zero and farther, and
+    /// continued over it: three cells beyond those that are fitted, rounding grows by 1e4.
+    #[test]
+    fn polynomials_are_exact() {
+        const ROUNDING: f64 = 1e-12;
+        let ellipse = |x: f64, y: f64| 1.0 - x * x / 200.0 - y * y / 310.0 + x * y / 900.0;
+        let cubic = |x: f64, y: f64| ellipse(x, y) + x.powi(3) / 3e4 - x * y * y / 5e4;
+        let check = |q: &dyn Fn(f64, f64) -> f64, degree: u8| {
+            let place = |cell: usize| [cell / SHAPE[1], cell % SHAPE[1]];
+            let value = |cell: usize| {
+                let [i, j] = place(cell);
+                q(i as f64 - 20.3, j as f64 - 21.1)
+            };
+            let values: Vec<f64> = (0..SHAPE[0] * SHAPE[1]).map(value).collect();
+            let distances = edge_distances(&values, SHAPE, BAND + 1);
+            let inside = |(q, d): (&f64, &u8)| (*d >= BAND).then_some(*q);
+            let known: Vec<_> = values.iter().zip(&distances).map(inside).collect();
+            let mut count = 0;
+            for (cell, distance) in distances.iter().enumerate() {
+                if *distance == 0 || *distance > BAND {
+                    continue;
+                }
+                let cell @ [i, j] = place(cell);
+                let Some(fit) = NormalEquations::around(&known, SHAPE, cell).fit(degree) else {
+                    panic!("too few values around {cell:?}")
+                };
+                let (x, y) = (i as f64 - 20.3, j as f64 - 21.1);
+                for (u, v) in [(0.0, 0.0), (0.5, -0.5), (-1.0, 0.7)] {
+                    let error = fit.polynomial.at(u, v) - q(x + u, y + v);
+                    assert!(error.abs() < 1e4 * ROUNDING, "{cell:?}: {error:.1e}");
+                }
+                // The residual is a difference of squares.
+                assert!(fit.uncertainty < 1e-5, "{cell:?}: {:.1e}", fit.uncertainty);
+                count += 1;
+            }
+            assert!(count > 200);
+        };
+        check(&ellipse, 2);
+        check(&cubic, 3);
+    }
+
+    #[test]
+    fn sums_over_rectangles_are_those_of_their_cells() {
+        let shape @ [nx, ny] = [5, 7];
+        let values: Vec<f64> = (0..nx * ny).map(|k| (k * k % 11) as f64).collect();
+        let sums = RectangleSums::new(&values, shape);
+        for cell in around(shape, [0, 0], 7) {
+            for reach in [0, 1, 3] {
+                let direct: f64 = around(shape, cell, reach)
+                    .map(|[i, j]| values[i * ny + j])
+                    .sum();
+                // Small whole numbers are summed exactly.
+                assert!((sums.around(cell, reach) - direct).abs() < f64::EPSILON);
+            }
+        }
+    }
+
+    /// A contact of 5 × 6 cells, which the grid's border cuts; in line contact, of 6 cells.
+    #[test]
+    fn distances_are_counted_from_the_edge_and_the_border() {
+        let (nx, ny) = (5, 8);
+        let pressure: Vec<f64> = (0..nx * ny)
+            .map(|k| f64::from(u8::from((1..7).contains(&(k % ny)))))
+            .collect();
+        let distances = edge_distances(&pressure, [nx, ny], 4);
+        assert_eq!(distances[..ny], [0, 1, 1, 1, 1, 1, 1, 0]);
+        assert_eq!(distances[2 * ny..3 * ny], [0, 1, 2, 3, 3, 2, 1, 0]);
+        let line = edge_distances(&pressure[..ny], [1, ny], 3);
+        assert_eq!(line, [0, 1, 2, 3, 3, 2, 1, 0]);
+        assert!(is_at_border([1, ny], [0, 0]) && !is_at_border([1, ny], [0, 3]));
     }
 }

@@ -21,12 +21,11 @@ pub(in crate::stress) const STRESSES: usize = 6;
 /// The stress components σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz.
 pub(super) type Components = [f64; STRESSES];
 
-// The next four constants were chosen by trial. With 5, 7, 3 and 4 in their places, errors of Hertz'
-// contacts of 128 cells to the half-width change by 3e-5 of the peak pressure at most, less than a
-// tenth of the largest.
+// With 5, 7, 3 and 4 in place of the next four constants, errors of Hertz' contacts of 128 cells to the half-width
+// change by 3e-5 of the peak pressure at most, less than a tenth of the largest.
 
 /// Distance to which the load of a cell near the edge is followed, in cells of the longer side.
-const REACH: f64 = 3.0;
+const NEAR_REACH: f64 = 3.0;
 
 /// Depth, in shorter sides of a cell, below which loads near the edge are not felt.
 const DEPTH_LIMIT: f64 = 4.0;
@@ -43,7 +42,7 @@ const INTERIOR_REACH: usize = 2;
 const REACH_LIMIT: usize = 10;
 
 /// Cells near the edge whose stresses are held at a time, which bounds the memory.
-const BLOCK: usize = 512;
+const CELLS_HELD: usize = 512;
 
 /// The pressure within cells, and how its stresses are summed at any depth.
 #[derive(Debug)]
@@ -128,7 +127,7 @@ impl NearPlan {
             grid.spacing()
         };
         let longer = sides[0].max(sides[1]);
-        let reach = |side: f64| ((REACH * longer / side).ceil() as usize).min(REACH_LIMIT);
+        let reach = |side: f64| ((NEAR_REACH * longer / side).ceil() as usize).min(REACH_LIMIT);
         ControlFlow::Continue(Self {
             reconstruction: Reconstruction::new(pressure, shape, edges, threads, progress)?,
             shape,
@@ -246,7 +245,7 @@ impl NearPlan {
         if near.offsets.is_empty() {
             return;
         }
-        for block in self.reconstruction.roots.chunks(BLOCK) {
+        for block in self.reconstruction.roots.chunks(CELLS_HELD) {
             let stresses: Vec<_> = block
                 .par_iter()
                 .map(|cell| self.root_stresses(near, cell))

@@ -15,9 +15,7 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use super::cut::{Piece, pieces};
-use super::edge::{BAND, EdgeCell, edge_cells};
-use super::fit::SquaredPressure;
-use super::neighbours::{RectangleSums, edge_distances};
+use super::edge::{BAND, EdgeCell, RectangleSums, SquaredPressure, edge_cells, edge_distances};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -65,7 +63,7 @@ const MEAN_DIVISIONS: usize = 6;
 /// first shifts by thousandths of a cell.
 const BALANCE_STEPS: usize = 2;
 
-/// Cells to each side whose forces are balanced together: some runs of the staircase. Chosen by trial.
+/// Cells to each side whose forces are balanced together: some runs of the staircase.
 const BALANCE_REACH: usize = 12;
 
 /// Largest shift of the edge in one step, in cells; a cell whose edge would have to shift more keeps its

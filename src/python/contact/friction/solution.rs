@@ -25,7 +25,7 @@ use crate::python::stress::keywords::{
 };
 use crate::python::stress::{PyStress, PyStressPlan, PyStressSummary};
 use crate::python::words::Word;
-use crate::stress::Member;
+use crate::stress::{Member, StressOptions};
 
 /// A contact with friction: one step of a history, or rolling. Fields are at cell centres, and read-only.
 ///
@@ -401,10 +401,7 @@ impl PyFrictionSolution {
         keywords.finish("keywords of FrictionSolution.stress")?;
         let solution = Arc::clone(&self.solution);
         let evaluated = watched(py, progress, move |progress| {
-            let stopped = crate::Error::Inconsistent("the stress plan was stopped");
-            let plan = solution.stress_plan(member, options.threads, progress)?;
-            plan.ok_or(stopped)?
-                .stress_watched(&depths, &options, progress)
+            solution.stress(&depths, member, options.watched(progress))
         })?;
         issue_warnings(py, evaluated.warnings())?;
         Ok(PyStress::new(evaluated, one, lines))
@@ -456,9 +453,8 @@ impl PyFrictionSolution {
         keywords.finish("keywords of FrictionSolution.stress_summary")?;
         let solution = Arc::clone(&self.solution);
         let summary = watched(py, progress, move |progress| {
-            let stopped = crate::Error::Inconsistent("the stress plan was stopped");
-            let plan = solution.stress_plan(member, options.threads, progress)?;
-            plan.ok_or(stopped)?.summary(&strengths, &options, progress)
+            let plan = solution.stress_plan(member, options.watched(progress))?;
+            plan.summary(&strengths, options.watched(progress))
         })?;
         Ok(PyStressSummary(summary))
     }
@@ -497,16 +493,11 @@ impl PyFrictionSolution {
         let member = Member::from_word(body)?;
         let solution = Arc::clone(&slf.get().solution);
         let plan = watched(slf.py(), None, move |progress| {
-            solution.stress_plan(member, threads, progress)
+            let options = StressOptions::with_threads(threads);
+            solution.stress_plan(member, options.watched(progress))
         })?;
-        let stopped = crate::Error::Inconsistent("the stress plan was stopped");
         let solution = slf.clone().into_any().unbind();
-        Ok(PyStressPlan::new(
-            plan.ok_or(stopped)?,
-            member,
-            threads,
-            solution,
-        ))
+        Ok(PyStressPlan::new(plan, member, threads, solution))
     }
 
     /// Draws stick and slip, with arrows of the traction; needs ``nacre-contact[plot]``.
