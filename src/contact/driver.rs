@@ -10,10 +10,11 @@ use ndarray::Array2;
 use super::cascade::corners;
 use super::cascade::discretisation::{GridResult, estimate};
 use super::cascade::{Cascade, Coarser};
-use super::hardness::{Elastic, Hardness, Yielding, check_indentation, check_load};
+use super::hardness::{Hardness, check_indentation, check_load};
 use super::motion::Motion;
 use super::options::{Algorithm, Options};
 use super::plan::{Plan, bodies};
+use super::problem::bounds::Bounds;
 use super::problem::fields::{Fields, array, slice};
 use super::problem::freedoms::{Freedoms, OVERFLOW};
 use super::problem::{Problem, Quality};
@@ -23,14 +24,13 @@ use super::solution::gap::Gap;
 use super::solution::report::{Progress, Report};
 use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
-use super::start::{Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure};
+use super::start::{
+    Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
+};
 use crate::compliance::ends::check_carried;
 use crate::error::Result;
 use crate::model::surface::{Lifted, Surface};
-use crate::numerics::parallel::{Rows, check_memory};
-
-/// Arrays of a solve with a hardness, besides those of every solve. Measured: 68 bytes a cell.
-const YIELDING_ARRAYS: u64 = 9;
+use crate::numerics::parallel::Rows;
 
 /// Certificates that may fail on a window that need not open, by rounding of the displacement.
 const RETRIES: usize = 2;
@@ -75,8 +75,6 @@ impl Plan {
         let freedoms = Freedoms::new(motion, &self.grid)?;
         if let Some(hardness) = &options.hardness {
             hardness.check(&self.grid)?;
-            let [nx, ny] = self.grid.shape();
-            check_memory([nx, ny], YIELDING_ARRAYS * 8 * (nx * ny) as u64)?;
         }
         let limited = self.ends.limit(shape);
         let (given, shape): (_, &dyn Surface) = match self.ends.any() {
@@ -113,12 +111,13 @@ impl Plan {
         if bounded {
             self.datum.check_gap(motion.approach.unwrap_or(0.0), &gap)?;
         }
+        let no_limit = Bounds::none(self.grid.shape()[1]);
         let problem = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,
             gap: slice(&gap),
             local: &self.local,
-            dent: 0.0,
+            bounds: &no_limit,
         };
 
         if let Some(hardness) = &options.hardness {
@@ -146,52 +145,66 @@ impl Plan {
         };
 
         // The cells that yield: where there are any, the coarser grids say nothing.
-        let mut indentation = None;
-        if let Some(hardness) = &options.hardness {
-            let mut elastic: Box<Elastic> =
-                Box::new(|problem, gap, start, fields, criteria, watch| match start {
-                    Some(start) if cascades => {
-                        let cascade = Cascade::from(&start, problem, gap, &self.levels);
-                        solve_in_window(problem, cascade, fields, criteria, watch)
-                    }
-                    start => {
-                        fields.pressure = start.map_or_else(|| uniform_pressure(problem), Ok)?;
-                        polonsky_keer::solve(problem, fields, criteria, watch)
-                    }
-                });
-            let tools: (&mut Elastic, &mut Watch) = (&mut *elastic, &mut watch);
-            let cells = problem.gap.len();
-            let yielding = Yielding::new(hardness, cells, criteria, outcome, tools);
-            (outcome, indentation) = yielding.solve(&problem, &mut fields)?;
-        }
-        let indentation = indentation.map(|deeper| array(self.grid.shape(), deeper));
-        let gap = match &indentation {
-            Some(deeper) => Arc::new(&*gap + deeper),
-            None => Arc::clone(&gap),
+        let limited = (options.hardness.as_ref()).map(|h| Bounds::of(h, self.grid.shape()[1]));
+        let over = |bounds: &Bounds| {
+            let mut cells = slice(&fields.pressure).iter().enumerate();
+            cells.any(|(k, p)| *p > bounds.limit(k))
         };
+        let limited = limited.filter(over);
         let problem = Problem {
-            gap: slice(&gap),
-            dent: (indentation.iter().flatten()).fold(0.0, |a: f64, w| a.max(*w)),
+            bounds: limited.as_ref().unwrap_or(problem.bounds),
             ..problem
         };
+        let yields = limited.is_some() && outcome.termination != Termination::Stopped;
+        if yields {
+            let mut g = vec![0.0; problem.gap.len()];
+            problem.gap_into(slice(&fields.displacement), fields.multipliers, &mut g);
+            let start = yielding_pressure(&problem, slice(&fields.pressure), &g)?;
+            let before = (outcome.iterations, outcome.work);
+            let left = criteria.after(outcome.iterations.min(criteria.max_iterations));
+            let mut counted = |more: usize, spent: f64, quality| {
+                watch(before.0 + more, before.1 + spent, quality)
+            };
+            fields.pressure.fill(0.0);
+            let end = if cascades {
+                let cascade = Cascade::from(&start, &problem, &gap, &self.levels);
+                solve_in_window(&problem, cascade, &mut fields, left, &mut counted)?
+            } else {
+                fields.pressure = start;
+                polonsky_keer::solve(&problem, &mut fields, left, &mut counted)?
+            };
+            outcome = end.after(before.0, before.1);
+        }
 
         // The certificate: everything that is reported is computed afresh from the pressure.
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
         if quality.overflows() {
             return Err(OVERFLOW);
         }
+        let mut indentation = None;
+        let mut dented = Arc::clone(&gap);
+        if limited.is_some() {
+            let mut deeper = vec![0.0; problem.gap.len()];
+            problem.gap_into(slice(&fields.displacement), fields.multipliers, &mut deeper);
+            for (k, (w, p)) in deeper.iter_mut().zip(slice(&fields.pressure)).enumerate() {
+                let held = *p >= problem.bounds.limit(k);
+                *w = if held { (-*w).max(0.0) } else { 0.0 };
+            }
+            let deeper = array(self.grid.shape(), deeper);
+            dented = Arc::new(&*gap + &deeper);
+            indentation = Some(deeper);
+        }
         let (approach, tilt) = freedoms.rigid_motion(fields.multipliers.lambda());
         let (pressure, window) = (&fields.pressure, &fields.window);
         let (carried, warnings) = rows.both(
             || Carried::by(pressure, window, &self.grid),
-            || warnings(pressure, window, &gap, &self.grid, shape, &self.ends),
+            || warnings(pressure, window, &dented, &self.grid, shape, &self.ends),
         );
         report.count(outcome.iterations, outcome.work / unit, quality);
-        let borne = (options.hardness.as_ref()).is_none_or(|hardness| hardness.bears(pressure));
         // One rule decides, on the numbers that are reported.
         report.termination = match outcome.termination {
             Termination::Stopped => Termination::Stopped,
-            _ if quality.meets(criteria.tolerance) && borne => Termination::Converged,
+            _ if quality.meets(criteria.tolerance) => Termination::Converged,
             _ => Termination::IterationLimit,
         };
         report.solver = Some(outcome.solver);
@@ -226,7 +239,7 @@ impl Plan {
             indentation,
             report,
             gap: Gap::Computed {
-                undeformed: gap,
+                undeformed: dented,
                 freedoms: Box::new(freedoms),
                 multipliers: fields.multipliers,
             },

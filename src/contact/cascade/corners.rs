@@ -10,7 +10,6 @@ use std::f64::consts::PI;
 
 use ndarray::Array2;
 
-use crate::contact::problem::constraint::NonNegative;
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;
 
@@ -40,7 +39,7 @@ pub(crate) fn peak_error(
     }
     let peak = pressure.fold(0.0_f64, |most, p| most.max(*p));
     let found = pressure.indexed_iter().find(|(_, p)| **p >= peak);
-    let Some(((row, column), _)) = found.filter(|(_, p)| NonNegative.is_free(**p)) else {
+    let Some(((row, column), _)) = found.filter(|(_, p)| **p > 0.0) else {
         return 0.0;
     };
     let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
@@ -48,7 +47,7 @@ pub(crate) fn peak_error(
     let per_slope = 2.0 / short * FINER.ln() / (2.0 * PI);
     let mut most = 0.0_f64;
     let mut look = |p: f64, axis: usize, at: [f64; 2]| {
-        if NonNegative.is_free(p) {
+        if p > 0.0 {
             let gap = |offset: f64| {
                 let mut at = at;
                 at[axis] += offset;

@@ -10,6 +10,7 @@ use ndarray::Array2;
 use super::discretisation::GridResult;
 use crate::compliance::convolution::{Addition, Convolution};
 use crate::contact::problem::Problem;
+use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, copied, enclosing, widened};
 use crate::contact::problem::scale::LocalDisplacement;
@@ -118,6 +119,7 @@ impl Levels {
             grid: &self.grids[0],
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
+            bounds: problem.bounds.clone(),
             memory: self.memory(),
         }
     }
@@ -158,6 +160,7 @@ impl Levels {
                 grid,
                 freedoms,
                 gap: Cow::Owned(gap),
+                bounds: Bounds::none(grid.shape()[1]),
                 memory: self.memory(),
             });
         }
@@ -205,6 +208,7 @@ pub(crate) struct Level<'a> {
     grid: &'a Grid,
     pub(crate) freedoms: Freedoms,
     pub(crate) gap: Cow<'a, Array2<f64>>,
+    bounds: Bounds<'a>,
     /// Memory of iterations, and the largest number of cells of one.
     memory: (&'a Pool<Memory>, usize),
 }
@@ -240,7 +244,7 @@ impl Level<'_> {
         }
         self.freedoms
             .in_window(patch.window.clone())
-            .balance(&mut patch.values)
+            .balance(&mut patch.values, &self.bounds.in_window(&patch.window))
     }
 
     /// Solves in the window of `patch`, and in larger windows while the contact reaches the edge; `patch`
@@ -260,6 +264,7 @@ impl Level<'_> {
             let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
             let repeats = repeating(self.grid, window);
             let freedoms = self.freedoms.in_window(window.clone());
+            let bounds = self.bounds.in_window(window);
             let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
             // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
             let ((windowed, [periodic, inverse]), (gap, memory)) = rows.both(
@@ -281,7 +286,7 @@ impl Level<'_> {
                 freedoms: &freedoms,
                 gap: &gap,
                 local: self.local,
-                dent: 0.0,
+                bounds: &bounds,
             };
             let mut solver = Preconditioned::new(&problem, &approximation, memory);
             let before = *work;
@@ -295,7 +300,10 @@ impl Level<'_> {
             // The next solver reuses its workspace.
             drop(solver);
             let limited = outcome.termination == Termination::IterationLimit;
-            if limited && done < criteria.max_iterations && active_set::is_small(&patch.values) {
+            if limited
+                && done < criteria.max_iterations
+                && active_set::is_small(&problem, &patch.values)
+            {
                 let before = *work;
                 outcome = active_set::solve(
                     &problem,

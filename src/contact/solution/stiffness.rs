@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use super::tangent::Tangent;
 use crate::contact::Solution;
-use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::bounds;
 use crate::error::Result;
 use crate::model::grid::full_window;
@@ -51,7 +50,7 @@ impl Solution {
         &self,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Option<[[f64; 3]; 3]>> {
-        let touching = |i: usize, j: usize| NonNegative.is_free(self.pressure[[i, j]]);
+        let touching = |i: usize, j: usize| self.pressure[[i, j]] > 0.0;
         let Some(window) = bounds(&full_window(self.grid().shape()), touching) else {
             return Ok(Some([[0.0; 3]; 3]));
         };

@@ -12,7 +12,6 @@ use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::{bodies, operator};
-use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::block;
 use crate::contact::solver::linear_cg;
 use crate::error::Result;
@@ -85,7 +84,7 @@ impl Tangent {
             window: window.clone(),
             inverse,
             convolution,
-            contact: contact.iter().map(|&p| NonNegative.is_free(p)).collect(),
+            contact: contact.iter().map(|&p| p > 0.0).collect(),
             origin: [middle(&coordinates[0]), middle(&coordinates[1])],
             scale: [half(0), half(1)],
             coordinates,

@@ -5,13 +5,13 @@
 //! - the mean gap over the contact is one of up to three multipliers, found together by least
 //!   squares: force and moments are balanced in the same iteration;
 //! - scaling p to the load becomes p ← [p (1 + Bμ)]₊, which restores force and moments;
+//! - a pressure at the hardness leaves it where the gap opens;
 //! - the iteration ends on complementarity and overlap, not on the change of pressure;
 //! - where a direction does not descend, as after a change of the contact it may not, the gradient takes
 //!   its place.
 
 use super::conjugacy::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Termination, Watch};
-use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::fields::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Problem};
 use crate::error::Result;
@@ -94,11 +94,14 @@ pub(crate) fn solve(
         }
 
         // Where nothing touches yet, the cells that overlap are the contact.
-        let empty = !p.iter().any(|&p| NonNegative.is_free(p));
-        let in_contact = |p: f64, g: f64| NonNegative.is_free(p) || (empty && g < 0.0);
+        let bounds = problem.bounds;
+        let empty = !p.iter().enumerate().any(|(k, &p)| bounds.is_free(k, p));
+        let in_contact = |k: usize, p: f64, g: f64| {
+            bounds.is_free(k, p) || (empty && bounds.wrong(k, p, g) > 0.0)
+        };
         let mut steepness = 0.0;
-        for (&p, &g) in p.iter().zip(&g) {
-            if in_contact(p, g) {
+        for (k, (&p, &g)) in p.iter().zip(&g).enumerate() {
+            if in_contact(k, p, g) {
                 steepness += g * g;
             }
         }
@@ -106,8 +109,8 @@ pub(crate) fn solve(
         // The direction g + βt on the contact, and the step to the least energy along it.
         let step = loop {
             let (mut slope, mut size, mut energy) = (0.0, 0.0_f64, 0.0);
-            for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&g) {
-                *t = if in_contact(p, g) {
+            for (k, ((t, &p), &g)) in direction.iter_mut().zip(&*p).zip(&g).enumerate() {
+                *t = if in_contact(k, p, g) {
                     let next = g + beta * *t;
                     slope += g * next;
                     size += next.abs();
@@ -143,14 +146,13 @@ pub(crate) fn solve(
 
         let mut joined = false;
         for (k, p) in p.iter_mut().enumerate() {
-            let inside = in_contact(*p, g[k]);
+            let inside = in_contact(k, *p, g[k]);
             if inside {
-                *p = NonNegative.nearest(*p - step * direction[k]);
+                *p = bounds.nearest(k, *p - step * direction[k]);
             }
-            // A step is above 0, so that no cell joins with a pressure below 0.
-            if !NonNegative.is_free(*p) && g[k] < 0.0 && problem.gap[k].is_finite() {
+            if bounds.wrong(k, *p, g[k]) > 0.0 && problem.gap[k].is_finite() {
                 joined |= !inside;
-                *p = -step * g[k];
+                *p = bounds.nearest(k, *p - step * g[k]);
             }
         }
         if joined {
