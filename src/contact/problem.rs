@@ -52,7 +52,7 @@ pub(super) struct Problem<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Quality {
     /// Σ p|g| over the cells whose pressure no bound holds, relative to Σ p u, or to Σ p times the local displacement
-    /// if that is less; 0 when p = 0. The indentation of cells at the hardness is part of u.
+    /// if that is less; 0 when p = 0.
     pub(super) residual: f64,
     /// max(−g, 0) over the cells that can touch and are below the hardness, relative to max |u|, or to the local
     /// displacement if that is less.
@@ -286,15 +286,35 @@ impl Problem<'_> {
         for (p, h) in p.iter_mut().zip(self.gap) {
             if h.is_finite() {
                 *p += joining;
-            } else if self.bounds.is_limited() {
-                *p = f64::NEG_INFINITY;
             }
         }
-        if self.bounds.is_limited() {
-            self.freedoms.spread(p, self.bounds, joining);
-        } else {
-            self.freedoms.balance(p, self.bounds);
+        self.freedoms.balance(p, self.bounds);
+    }
+
+    /// Restores balance up to the hardness, by [`Problem::press_springs`] where the cells whose pressure is free cannot
+    /// carry what is missing. `u` and `lambda` are those of a pressure near `p`.
+    pub(super) fn rebalance_within(&self, p: &mut [f64], u: &[f64], lambda: [f64; 3]) {
+        if !self.freedoms.balance(p, self.bounds) {
+            let mut g = vec![0.0; p.len()];
+            (self.freedoms).for_each(lambda, |k, b| g[k] = self.gap[k] + u[k] - b);
+            self.press_springs(p, &g);
         }
+    }
+
+    /// Makes `p`, whose gap is `g`, a balanced pressure up to the hardness: that of a spring in each cell which a motion
+    /// loads and unloads. Returns whether there is one.
+    pub(super) fn press_springs(&self, p: &mut [f64], g: &[f64]) -> bool {
+        let rise = self.freedoms.typical_pressure(p.len());
+        // Softer springs where too few cells lie between the bounds.
+        [1.0, 1e-1, 1e-2, 1e-3].into_iter().any(|softer| {
+            let spring = softer / self.self_influence();
+            let mut pressed: Vec<f64> = p.iter().zip(g).map(|(p, g)| p - spring * g).collect();
+            let balanced = self.freedoms.spread(&mut pressed, self.bounds, rise);
+            if balanced {
+                p.copy_from_slice(&pressed);
+            }
+            balanced
+        })
     }
 
     /// The quality of a pressure with these sums, which is allowed; `fit` are its sums for the fit of λ.
@@ -344,27 +364,17 @@ fn works_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -
     })
 }
 
-/// A mask of the cells at the hardness, and their indentation; 0 elsewhere.
-fn indented(p: Lanes, limit: Lanes, overlap: Lanes) -> (Lanes, Lanes) {
-    let held = p.simd_ge(limit);
-    (held, held & where_positive(overlap, overlap))
-}
-
-/// Overlap of cells below the hardness, and the magnitude of the displacement, with the indentation, of cells that can
-/// touch.
+/// Overlap of cells below the hardness, and the magnitude of the displacement of cells that can touch.
 pub(super) fn depths(p: Lanes, limit: Lanes, u: Lanes, overlap: Lanes) -> [Lanes; 2] {
     let touches = overlap.simd_gt(all(f64::NEG_INFINITY));
-    let (_, indented) = indented(p, limit, overlap);
-    [overlap - indented, touches & u.abs().fast_max(indented)]
+    [p.simd_lt(limit) & overlap, touches & u.abs()]
 }
 
-/// Work p u of cells, with that of the indentation, mismatch p|g| where no bound holds the pressure, and 1 in cells at
-/// the hardness.
+/// Work p u of cells, mismatch p|g| where no bound holds the pressure, and 1 in cells at the hardness.
 pub(super) fn works(p: Lanes, limit: Lanes, u: Lanes, overlap: Lanes) -> [Lanes; 3] {
-    let (held, indented) = indented(p, limit, overlap);
     // The gap is infinite only where there is no pressure.
     let mismatch = where_positive(p, p * residual(p, limit, overlap).abs());
-    [p * (u + indented), mismatch, held & ONE]
+    [p * u, mismatch, p.simd_ge(limit) & ONE]
 }
 
 /// Multipliers λ in two parts: at small loads h − Bλ is far smaller than either term, and taking the larger

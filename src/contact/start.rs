@@ -161,8 +161,7 @@ pub(super) fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
     ))
 }
 
-/// A balanced pressure up to the hardness: that of springs which the elastic solution, of this `pressure` and gap `g`,
-/// loads and unloads.
+/// A balanced pressure up to the hardness near an elastic solution of this `pressure` and gap `g`.
 ///
 /// # Errors
 /// Eccentricity or moment that no pressure up to the hardness has.
@@ -171,23 +170,13 @@ pub(super) fn yielding_pressure(
     pressure: &[f64],
     g: &[f64],
 ) -> Result<Array2<f64>> {
-    let (freedoms, shape) = (problem.freedoms, problem.convolution.shape());
-    let rise = freedoms.typical_pressure(pressure.len());
-    // Softer springs where too few cells lie between the bounds.
-    for softer in [1.0, 1e-1, 1e-2, 1e-3] {
-        let spring = softer / problem.self_influence();
-        let cells = pressure.iter().zip(g);
-        let mut p: Vec<f64> = cells.map(|(p, g)| p - spring * g).collect();
-        if !freedoms.any_loaded() {
-            p = (0..p.len())
-                .map(|k| problem.bounds.nearest(k, pressure[k]))
-                .collect();
-        }
-        if !freedoms.any_loaded() || freedoms.spread(&mut p, problem.bounds, rise) {
-            return Ok(array(shape, p));
-        }
+    let mut p = pressure.to_vec();
+    if !problem.freedoms.any_loaded() {
+        (p.iter_mut().enumerate()).for_each(|(k, p)| *p = problem.bounds.nearest(k, *p));
+    } else if !problem.press_springs(&mut p, g) {
+        return Err(Error::Inconsistent(
+            "no pressure up to the hardness has this eccentricity or moment: give a larger hardness or a smaller load",
+        ));
     }
-    Err(Error::Inconsistent(
-        "no pressure up to the hardness has this eccentricity or moment: give a larger hardness or a smaller load",
-    ))
+    Ok(array(problem.convolution.shape(), p))
 }

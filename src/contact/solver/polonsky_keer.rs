@@ -158,7 +158,11 @@ pub(crate) fn solve(
         if joined {
             conjugacy.restart();
         }
-        problem.rebalance(p);
+        if bounds.is_limited() {
+            problem.rebalance_within(p, u, found.lambda());
+        } else {
+            problem.rebalance(p);
+        }
     }
     unreachable!("the loop ends by its limit")
 }

@@ -85,7 +85,8 @@ impl Preconditioned<'_> {
                 },
             )
         });
-        let (done, factor) = balance(problem, p, fit.counted, fit.moments);
+        let near = (&*u, self.lambda);
+        let (done, factor) = balance(problem, p, near, fit.counted, fit.moments);
         if done == Step::Whole {
             self.displacement = Displacement::Fitted(fit);
             return done;
@@ -112,6 +113,7 @@ impl Preconditioned<'_> {
             return Step::Stalled;
         };
         let Arrays {
+            u,
             direction,
             trial,
             r,
@@ -128,7 +130,7 @@ impl Preconditioned<'_> {
                     });
                     (lost, freedoms.moments_of(row, trial))
                 });
-        let (done, factor) = balance(problem, trial, lost, moments);
+        let (done, factor) = balance(problem, trial, (u, self.lambda), lost, moments);
         let (inwards, halves) = problem.convolution.inwards(&mut self.workspace);
         let outputs = ([&mut *p, &mut *trial], halves);
         self.rows
@@ -189,16 +191,26 @@ impl Preconditioned<'_> {
 }
 
 /// [`Step::Whole`] where a pressure of these `moments`, from which `lost` cells were clipped, is balanced.
-/// Otherwise restores balance up to a factor on `p`, which is returned with [`Step::Truncated`].
-fn balance(problem: &Problem, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
+/// Otherwise restores balance up to a factor on `p`, which is returned with [`Step::Truncated`]. The displacement and λ
+/// before the step are `near`.
+fn balance(
+    problem: &Problem,
+    p: &mut [f64],
+    near: (&[f64], [f64; 3]),
+    lost: f64,
+    moments: [f64; 3],
+) -> (Step, f64) {
     let freedoms = problem.freedoms;
     // A direction that lost cells since it was made is out of balance, too.
     if lost <= 0.0 && freedoms.on_target(moments) {
         return (Step::Whole, 1.0);
     }
+    if problem.bounds.is_limited() {
+        problem.rebalance_within(p, near.0, near.1);
+        return (Step::Truncated, 1.0);
+    }
     let factor = freedoms.to_load(moments[0]);
-    let scales = freedoms.only_force() && !problem.bounds.is_limited();
-    let factor = factor.filter(|_| scales).unwrap_or_else(|| {
+    let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {
         problem.rebalance(p);
         1.0
     });
