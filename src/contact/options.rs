@@ -88,13 +88,3 @@ pub(super) struct StopCriteria {
     pub(super) tolerance: f64,
     pub(super) max_iterations: usize,
 }
-
-impl StopCriteria {
-    /// The criteria that are left after so many iterations.
-    pub(super) fn after(self, iterations: usize) -> Self {
-        Self {
-            max_iterations: self.max_iterations - iterations,
-            ..self
-        }
-    }
-}

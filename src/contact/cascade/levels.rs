@@ -15,7 +15,7 @@ use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, copied, enclosing, widened};
 use crate::contact::problem::scale::LocalDisplacement;
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
-use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
+use crate::contact::solver::{Outcome, StopCriteria, Tally, Termination, active_set};
 use crate::contact::start::checked_gaps;
 use crate::error::Result;
 use crate::model::grid::{Grid, full_window, repeating};
@@ -253,11 +253,9 @@ impl Level<'_> {
         &self,
         patch: &mut Patch,
         criteria: StopCriteria,
-        work: &mut f64,
-        watch: &mut Watch,
+        tally: &mut Tally,
     ) -> Outcome {
         let shape = self.shape();
-        let mut done = 0;
         loop {
             let window = &patch.window;
             let whole = *window == full_window(shape);
@@ -289,38 +287,23 @@ impl Level<'_> {
                 bounds: &bounds,
             };
             let mut solver = Preconditioned::new(&problem, &approximation, memory);
-            let before = *work;
-            let mut outcome = solver.solve(
-                &mut patch.values,
-                criteria.after(done),
-                &mut |iterations, spent, quality| watch(done + iterations, before + spent, quality),
-            );
-            *work += solver.work;
-            done += outcome.iterations;
+            let mut outcome = solver.solve(&mut patch.values, criteria, tally);
             // The next solver reuses its workspace.
             drop(solver);
             let limited = outcome.termination == Termination::IterationLimit;
             if limited
-                && done < criteria.max_iterations
+                && tally.iterations < criteria.max_iterations
                 && active_set::is_small(&problem, &patch.values)
             {
-                let before = *work;
                 outcome = active_set::solve(
                     &problem,
                     &corner,
                     &mut patch.values,
                     outcome.lambda,
-                    criteria.after(done),
-                    &mut |more, spent, quality| watch(done + more, before + spent, quality),
+                    criteria,
+                    tally,
                 );
-                *work += outcome.work;
-                done += outcome.iterations;
             }
-            let outcome = Outcome {
-                iterations: done,
-                work: *work,
-                ..outcome
-            };
             let Some(contact) = patch.contact() else {
                 return outcome;
             };

@@ -27,7 +27,7 @@
 
 use ndarray::ArrayRef2;
 
-use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
 use crate::contact::problem::Problem;
 use crate::model::grid::full_window;
@@ -67,8 +67,9 @@ pub(crate) fn solve(
     p: &mut [f64],
     lambda: [f64; 3],
     criteria: StopCriteria,
-    watch: &mut Watch,
+    tally: &mut Tally,
 ) -> Outcome {
+    let before = tally.work;
     let mut system = System {
         problem,
         coefficients,
@@ -85,35 +86,32 @@ pub(crate) fn solve(
     let (mut u, mut g) = (vec![0.0; p.len()], vec![0.0; p.len()]);
     let everywhere = full_window(problem.convolution.shape());
     let mut renewals = 0;
-    for iterations in 0.. {
+    loop {
         let Some(lambda) = system.descend(p) else {
+            tally.work = before + system.work;
             return Outcome {
                 solver: Solver::ActiveSet,
                 termination: Termination::IterationLimit,
-                iterations,
-                work: system.work,
                 lambda: system.lambda,
             };
         };
         let (multipliers, quality) = problem.judge(p, &everywhere, &mut u, lambda, &mut workspace);
         system.work += problem.convolution.work();
-        let work = system.work;
+        tally.work = before + system.work;
         let lambda = multipliers.lambda();
         problem.gap_into(&u, multipliers, &mut g);
         let termination = if quality.meets(criteria.tolerance) {
             Some(Termination::Converged)
-        } else if watch(iterations, work, quality).is_break() {
+        } else if tally.tell(quality).is_break() {
             Some(Termination::Stopped)
         } else {
-            let limited = renewals == RENEWALS || iterations >= criteria.max_iterations;
+            let limited = renewals == RENEWALS || tally.iterations >= criteria.max_iterations;
             (limited || quality.overflows()).then_some(Termination::IterationLimit)
         };
         if let Some(termination) = termination {
             return Outcome {
                 solver: Solver::ActiveSet,
                 termination,
-                iterations,
-                work,
                 lambda,
             };
         }
@@ -133,8 +131,8 @@ pub(crate) fn solve(
             system.renew(lambda, &g);
             renewals += 1;
         }
+        tally.iterations += 1;
     }
-    unreachable!("the loop ends by its limit")
 }
 
 /// The problem on the cells of a contact.

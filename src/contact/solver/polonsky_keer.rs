@@ -11,7 +11,7 @@
 //!   its place.
 
 use super::conjugacy::Conjugacy;
-use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::contact::problem::fields::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Problem};
 use crate::error::Result;
@@ -31,7 +31,7 @@ pub(crate) fn solve(
     problem: &Problem,
     fields: &mut Fields,
     criteria: StopCriteria,
-    watch: &mut Watch,
+    tally: &mut Tally,
 ) -> Result<Outcome> {
     let freedoms = problem.freedoms;
     let Fields {
@@ -52,12 +52,11 @@ pub(crate) fn solve(
     let mut response = vec![0.0; cells];
     let no_gap = vec![0.0; cells];
     let mut conjugacy = Conjugacy::default();
-    let mut work = 0.0;
 
-    for iterations in 0.. {
+    loop {
         let mut near = multipliers.lambda();
         let (mut found, mut now) = problem.judge(p, &window, u, near, workspace);
-        work += problem.convolution.work();
+        tally.work += problem.convolution.work();
         // A tilt that the contact does not determine is 0, and not what it was before.
         let stale = [1, 2].map(|k| near[k].abs() > 0.0 && found.change[k].abs() <= 0.0);
         if stale[0] || stale[1] {
@@ -65,12 +64,12 @@ pub(crate) fn solve(
                 near[k] *= f64::from(!stale[k - 1]);
             }
             (found, now) = problem.judge(p, &window, u, near, workspace);
-            work += problem.convolution.work();
+            tally.work += problem.convolution.work();
         }
         if now.meets(criteria.tolerance) {
             // Gaps are exact only near the multipliers that they are counted from.
             (found, now) = problem.judge(p, &window, u, found.lambda(), workspace);
-            work += problem.convolution.work();
+            tally.work += problem.convolution.work();
         }
         (*multipliers, *quality) = (found, Some(now));
         problem.gap_into(u, found, &mut g);
@@ -78,18 +77,16 @@ pub(crate) fn solve(
             Ok(Outcome {
                 solver: Solver::PolonskyKeer,
                 termination,
-                iterations,
-                work,
                 lambda: found.lambda(),
             })
         };
         if now.meets(criteria.tolerance) {
             return end(Termination::Converged);
         }
-        if watch(iterations, work, now).is_break() {
+        if tally.tell(now).is_break() {
             return end(Termination::Stopped);
         }
-        if now.overflows() || iterations == criteria.max_iterations {
+        if now.overflows() || tally.iterations >= criteria.max_iterations {
             return end(Termination::IterationLimit);
         }
 
@@ -121,7 +118,7 @@ pub(crate) fn solve(
             }
             if slope > 0.0 || beta <= 0.0 {
                 problem.apply(&direction, &mut response, workspace);
-                work += problem.convolution.work();
+                tally.work += problem.convolution.work();
                 energy = dot(&direction, &response);
                 let mean = problem.fit(p, &response, &no_gap);
                 freedoms.for_each(mean, |k, b| response[k] -= b);
@@ -163,6 +160,6 @@ pub(crate) fn solve(
         } else {
             problem.rebalance(p);
         }
+        tally.iterations += 1;
     }
-    unreachable!("the loop ends by its limit")
 }

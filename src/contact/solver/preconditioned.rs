@@ -27,7 +27,7 @@ use std::mem;
 
 use super::active_set;
 use super::conjugacy::Conjugacy;
-use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::{Convolution, Workspace};
 use crate::contact::problem::bounds::{in_contact, is_free, residual};
 use crate::contact::problem::fit::FitSums;
@@ -65,7 +65,7 @@ pub(crate) struct Preconditioned<'a> {
     /// step that used both.
     curvature_ratio: f64,
     /// Work done so far, in the unit of [`Convolution::work`].
-    pub(crate) work: f64,
+    work: f64,
 }
 
 /// Iterations by which most contacts have converged. After them a contact of a few cells is left to
@@ -141,8 +141,9 @@ impl<'a> Preconditioned<'a> {
         &mut self,
         p: &mut [f64],
         criteria: StopCriteria,
-        watch: &mut Watch,
+        tally: &mut Tally,
     ) -> Outcome {
+        let before = tally.work;
         let mut last = Step::Truncated;
         let mut course = Course::new();
         self.start(p);
@@ -152,21 +153,19 @@ impl<'a> Preconditioned<'a> {
                 quality,
                 contact_changed,
             } = self.assess(p);
-            let work = self.work;
+            tally.work = before + self.work;
             let end = |termination| Outcome {
                 solver: Solver::Preconditioned,
                 termination,
-                iterations,
-                work,
                 lambda,
             };
             if quality.meets(criteria.tolerance) {
                 return end(Termination::Converged);
             }
-            if watch(iterations, work, quality).is_break() {
+            if tally.tell(quality).is_break() {
                 return end(Termination::Stopped);
             }
-            let limited = iterations == criteria.max_iterations || quality.overflows();
+            let limited = tally.iterations >= criteria.max_iterations || quality.overflows();
             if limited || (iterations >= PATIENCE && active_set::is_small(self.problem, p)) {
                 return end(Termination::IterationLimit);
             }
@@ -176,9 +175,11 @@ impl<'a> Preconditioned<'a> {
             }
             self.prepare_images(p, contact_changed, iterations);
             last = self.step(p, last);
+            tally.work = before + self.work;
             if last == Step::Stalled {
                 return end(Termination::IterationLimit);
             }
+            tally.iterations += 1;
         }
         unreachable!("the loop ends by its limit")
     }
