@@ -5,10 +5,8 @@
 //! afterwards, when the displacement is computed on the whole grid: where something overlaps there, the
 //! window opens.
 
-pub(super) mod corners;
 pub(super) mod discretisation;
 pub(super) mod levels;
-pub(super) mod unresolved;
 
 use ndarray::Array2;
 

@@ -7,11 +7,10 @@ use std::time::Instant;
 
 use ndarray::Array2;
 
-use super::cascade::corners;
-use super::cascade::discretisation::{Discretisation, GridResult, estimate};
+use super::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
 use super::cascade::{Cascade, Coarser};
 use super::hardness::{Hardness, check_indentation, check_load};
-use super::motion::Motion;
+use super::options::Motion;
 use super::options::{Algorithm, Options};
 use super::plan::{Plan, bodies};
 use super::problem::bounds::Bounds;
@@ -19,8 +18,8 @@ use super::problem::fields::{Fields, slice};
 use super::problem::freedoms::{Freedoms, OVERFLOW};
 use super::problem::{Problem, Quality};
 use super::solution::Solution;
-use super::solution::carried::Carried;
 use super::solution::gap::Gap;
+use super::solution::report::Carried;
 use super::solution::report::{Progress, Report};
 use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
@@ -334,7 +333,7 @@ impl<'a> Steps<'a> {
             (&fields.pressure, &self.plan.grid, &self.plan.unresolved);
         let (both, loaded) = ([pressure, &fields.displacement], self.motion.load.is_some());
         let others = unresolved.errors(both, &fields.window, grid, loaded, singular);
-        let corners = corners::peak_error(pressure, grid, self.shape, self.short_waves());
+        let corners = corner_error(pressure, grid, self.shape, self.short_waves());
         Some(changes.plus(others).at_least(corners))
     }
 

@@ -14,7 +14,6 @@ pub(super) mod bounds;
 pub(super) mod fields;
 pub(super) mod fit;
 pub(super) mod freedoms;
-pub(super) mod load_point;
 pub(super) mod patch;
 pub(super) mod scale;
 

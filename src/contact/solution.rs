@@ -1,10 +1,8 @@
 //! The solution of a contact.
 
-pub(super) mod carried;
 pub(super) mod gap;
 mod outline;
 pub(super) mod report;
-mod stiffness;
 pub(super) mod tangent;
 pub(super) mod warnings;
 

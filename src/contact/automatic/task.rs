@@ -1,7 +1,7 @@
 //! The contact that is solved on one grid after another, and rectangles.
 
 use crate::compliance::response::Body;
-use crate::contact::motion::Motion;
+use crate::contact::options::Motion;
 use crate::contact::options::{Options, Setup};
 use crate::contact::plan::Plan;
 use crate::contact::problem::patch::bounds;

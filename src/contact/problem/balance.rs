@@ -189,7 +189,7 @@ fn largest(values: [f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::contact::motion::Motion;
+    use crate::contact::options::Motion;
     use crate::contact::problem::bounds::Bounds;
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;

@@ -273,7 +273,7 @@ pub(crate) fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3])
 
 #[cfg(test)]
 mod tests {
-    use crate::contact::motion::Motion;
+    use crate::contact::options::Motion;
     use crate::contact::problem::bounds::Bounds;
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;

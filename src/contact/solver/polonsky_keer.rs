@@ -10,7 +10,7 @@
 //! - where a direction does not descend, as after a change of the contact it may not, the gradient takes
 //!   its place.
 
-use super::conjugacy::Conjugacy;
+use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::contact::problem::fields::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Problem};

@@ -26,7 +26,7 @@ mod textbook;
 use std::mem;
 
 use super::active_set;
-use super::conjugacy::Conjugacy;
+use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::{Convolution, Workspace};
 use crate::contact::problem::bounds::{in_contact, is_free, residual};

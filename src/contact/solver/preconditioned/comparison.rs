@@ -9,7 +9,7 @@ use super::{Approximation, Assessment, Memory, PATIENCE, Preconditioned, Step};
 use crate::compliance::convolution::Convolution;
 use crate::compliance::influence::{Method, influence_coefficients};
 use crate::compliance::response::Body;
-use crate::contact::motion::Motion;
+use crate::contact::options::Motion;
 use crate::contact::problem::Problem;
 use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
