@@ -15,7 +15,6 @@ mod batch;
 mod cascade;
 mod driver;
 mod hardness;
-mod motion;
 mod options;
 mod plan;
 mod problem;
@@ -27,13 +26,12 @@ pub use automatic::{choose_grid, solve, solve_watched};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
 pub use hardness::Hardness;
-pub use motion::Motion;
-pub use options::{Algorithm, Options, Setup};
+pub use options::{Algorithm, Motion, Options, Setup};
 pub(crate) use problem::freedoms::OVERFLOW;
 pub(crate) use problem::patch::{block, bounds};
 pub use solution::Solution;
-pub use solution::carried::Balance;
-pub use solution::report::{Progress, Report};
+pub use solution::report::Balance;
+pub use solution::report::{Balance, Progress, Report};
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::Warning;
 
@@ -44,7 +42,7 @@ use start::Sampled;
 
 /// A body on a grid, planned once: influence coefficients and their transform.
 ///
-/// A plan and a solve take up to 170 bytes a cell, with a hardness 230; a grid that does not fit into memory is refused
+/// A plan and a solve take up to 170 bytes a cell, with a hardness 210; a grid that does not fit into memory is refused
 /// before it starts. Between solves a plan keeps the memory that they worked in: up to 130 bytes a cell.
 ///
 /// ```

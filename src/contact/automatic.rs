@@ -13,7 +13,7 @@ mod task;
 use std::ops::ControlFlow;
 
 use super::hardness::Hardness;
-use super::motion::Motion;
+use super::options::Motion;
 use super::options::{Algorithm, Options, Setup};
 use super::plan::bodies;
 use super::solution::Solution;

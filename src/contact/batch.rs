@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::motion::Motion;
+use super::options::Motion;
 use super::options::Options;
 use super::plan::Plan;
 use super::solution::Solution;

@@ -7,33 +7,29 @@ use std::time::Instant;
 
 use ndarray::Array2;
 
-use super::cascade::corners;
-use super::cascade::discretisation::{GridResult, estimate};
+use super::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
 use super::cascade::{Cascade, Coarser};
-use super::hardness::{Elastic, Hardness, Yielding, check_indentation, check_load};
-use super::motion::Motion;
+use super::hardness::{Hardness, check_indentation, check_load};
+use super::options::Motion;
 use super::options::{Algorithm, Options};
 use super::plan::{Plan, bodies};
-use super::problem::fields::{Fields, array, slice};
+use super::problem::bounds::Bounds;
+use super::problem::fields::{Fields, slice};
 use super::problem::freedoms::{Freedoms, OVERFLOW};
 use super::problem::{Problem, Quality};
 use super::solution::Solution;
-use super::solution::carried::Carried;
 use super::solution::gap::Gap;
+use super::solution::report::Carried;
 use super::solution::report::{Progress, Report};
 use super::solution::warnings::{Warning, warnings};
-use super::solver::{Outcome, StopCriteria, Termination, Watch, polonsky_keer};
-use super::start::{Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure};
+use super::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
+use super::start::{
+    Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
+};
 use crate::compliance::ends::check_carried;
 use crate::error::Result;
 use crate::model::surface::{Lifted, Surface};
-use crate::numerics::parallel::{Rows, check_memory};
-
-/// Arrays of a solve with a hardness, besides those of every solve. Measured: 68 bytes a cell.
-const YIELDING_ARRAYS: u64 = 9;
-
-/// Certificates that may fail on a window that need not open, by rounding of the displacement.
-const RETRIES: usize = 2;
+use crate::numerics::parallel::Rows;
 
 impl Plan {
     /// Presses `shape` into the body, on this thread and on threads of the plan that are free. Where `shape`
@@ -73,237 +69,284 @@ impl Plan {
     ) -> Result<Solution> {
         let start = Instant::now();
         let freedoms = Freedoms::new(motion, &self.grid)?;
-        if let Some(hardness) = &options.hardness {
-            hardness.check(&self.grid)?;
-            let [nx, ny] = self.grid.shape();
-            check_memory([nx, ny], YIELDING_ARRAYS * 8 * (nx * ny) as u64)?;
-        }
-        let limited = self.ends.limit(shape);
-        let (given, shape): (_, &dyn Surface) = match self.ends.any() {
-            true => (shape, &limited),
-            false => (shape, shape),
-        };
+        let columns = self.grid.shape()[1];
+        let limits = (options.hardness.as_ref())
+            .map(|hardness| {
+                hardness
+                    .check(&self.grid)
+                    .map(|()| Bounds::of(hardness, columns))
+            })
+            .transpose()?;
         if !freedoms.loaded[0] {
             self.datum.check_approach()?;
         }
-        let criteria = options.stop_criteria()?;
-        let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
-        let mut report = Report::planned(self, shape, motion, criteria.tolerance);
+        let limited = self.ends.limit(shape);
+        let steps = Steps {
+            plan: self,
+            shape: if self.ends.any() { &limited } else { shape },
+            motion,
+            options,
+            freedoms: &freedoms,
+            criteria: options.stop_criteria()?,
+        };
+        let mut report = Report::planned(self, steps.shape, motion, options.tolerance);
         let unit = self.convolution.work();
-        let mut watch = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
+        let mut count = |iterations: usize, work: f64, quality: Quality| -> ControlFlow<()> {
             report.count(iterations, work / unit, quality);
             report.seconds = start.elapsed().as_secs_f64();
             progress(&report)
         };
+        let tally = &mut Tally::new(&mut count);
 
-        // The gap on the finest grid; at the same time coarser solutions, since fetching memory may take
-        // long and the coarsest grids are too small for several threads.
-        let cascades = options.algorithm == Algorithm::Cascade;
-        // An approach that may be too large for a solution is looked at before.
-        let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
-        let bounded = self.datum.floats() && !freedoms.loaded[0] && !yields;
-        let mut coarser = |gap: Option<&Array2<f64>>| {
-            Coarser::solve(&freedoms, gap, shape, &self.levels, criteria, &mut watch)
-        };
-        let (finest, ahead) = rows.both(
-            || self.finest_gap(given, shape, sampled, &freedoms, &rows),
-            || (cascades && options.initial.is_none() && !bounded).then(|| coarser(None)),
-        );
-        let (gap, mut fields) = finest?;
-        if bounded {
-            self.datum.check_gap(motion.approach.unwrap_or(0.0), &gap)?;
-        }
-        let problem = Problem {
+        let (gap, mut fields, ahead) = steps.sample(shape, sampled, tally)?;
+        let elastic = Problem {
             convolution: &self.convolution,
             freedoms: &freedoms,
             gap: slice(&gap),
+            bounds: &Bounds::none(columns),
             local: &self.local,
-            dent: 0.0,
         };
-
         if let Some(hardness) = &options.hardness {
-            check_load(&problem, hardness)?;
+            check_load(&elastic, hardness)?;
         }
-
-        // The start: a given pressure, or the coarser solutions.
-        let initial = given_pressure(&problem, options.initial.as_deref())?;
-        let cascade = match &initial {
-            _ if !cascades => None,
-            Some(given) => Some(Cascade::from(given, &problem, &gap, &self.levels)),
-            None => (ahead.flatten())
-                .or_else(|| coarser(Some(&gap)))
-                .and_then(|coarser| Cascade::after(coarser, &problem, &gap, &self.levels)),
+        let (mut outcome, results) = steps.iterate(&elastic, &gap, ahead, &mut fields, tally)?;
+        let exceeded = |limits: &Bounds| {
+            let mut cells = slice(&fields.pressure).iter().enumerate();
+            cells.any(|(k, p)| *p > limits.limit(k))
         };
-
-        // The iteration.
-        let mut results = Vec::new();
-        let mut outcome = if let Some(mut cascade) = cascade {
-            results = std::mem::take(&mut cascade.results);
-            solve_in_window(&problem, cascade, &mut fields, criteria, &mut watch)?
-        } else {
-            fields.pressure = initial.map_or_else(|| uniform_pressure(&problem), Ok)?;
-            polonsky_keer::solve(&problem, &mut fields, criteria, &mut watch)?
-        };
-
-        // The cells that yield: where there are any, the coarser grids say nothing.
-        let mut indentation = None;
-        if let Some(hardness) = &options.hardness {
-            let mut elastic: Box<Elastic> =
-                Box::new(|problem, gap, start, fields, criteria, watch| match start {
-                    Some(start) if cascades => {
-                        let cascade = Cascade::from(&start, problem, gap, &self.levels);
-                        solve_in_window(problem, cascade, fields, criteria, watch)
-                    }
-                    start => {
-                        fields.pressure = start.map_or_else(|| uniform_pressure(problem), Ok)?;
-                        polonsky_keer::solve(problem, fields, criteria, watch)
-                    }
-                });
-            let tools: (&mut Elastic, &mut Watch) = (&mut *elastic, &mut watch);
-            let cells = problem.gap.len();
-            let yielding = Yielding::new(hardness, cells, criteria, outcome, tools);
-            (outcome, indentation) = yielding.solve(&problem, &mut fields)?;
-        }
-        let indentation = indentation.map(|deeper| array(self.grid.shape(), deeper));
-        let gap = match &indentation {
-            Some(deeper) => Arc::new(&*gap + deeper),
-            None => Arc::clone(&gap),
-        };
+        let stopped = outcome.termination == Termination::Stopped;
+        let limits = limits.filter(|limits| !stopped && exceeded(limits));
         let problem = Problem {
-            gap: slice(&gap),
-            dent: (indentation.iter().flatten()).fold(0.0, |a: f64, w| a.max(*w)),
-            ..problem
+            bounds: limits.as_ref().unwrap_or(elastic.bounds),
+            ..elastic
         };
-
-        // The certificate: everything that is reported is computed afresh from the pressure.
+        if problem.bounds.is_limited() {
+            outcome = steps.let_yield(&problem, &gap, &mut fields, tally)?;
+        }
+        let (iterations, work) = (tally.iterations, tally.work);
         let quality = (fields.quality).unwrap_or_else(|| fields.certify(&problem, outcome.lambda));
+        report.count(iterations, work / unit, quality);
+        let mut solution =
+            steps.report(&problem, &gap, fields, (outcome, quality), results, report)?;
+        solution.report.seconds = start.elapsed().as_secs_f64();
+        Ok(solution)
+    }
+}
+
+/// What the steps of one solve share.
+struct Steps<'a> {
+    plan: &'a Plan,
+    /// The shape between the free ends of the bodies.
+    shape: &'a dyn Surface,
+    motion: &'a Motion,
+    options: &'a Options,
+    freedoms: &'a Freedoms,
+    criteria: StopCriteria,
+}
+
+impl<'a> Steps<'a> {
+    fn rows(&self) -> Rows<'a> {
+        Rows::new(&self.freedoms.columns, self.plan.convolution.own_threads())
+    }
+
+    /// Whether the solve starts with nested grids.
+    fn cascades(&self) -> bool {
+        self.options.algorithm == Algorithm::Cascade
+    }
+
+    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution; at the same time
+    /// coarser solutions, since fetching memory may take long and the coarsest grids are too small for several threads.
+    /// The shape that is `given` tells whether it was sampled before.
+    fn sample<'s>(
+        &self,
+        given: &'s dyn Surface,
+        sampled: &mut Sampled<'s>,
+        tally: &mut Tally,
+    ) -> Result<(Arc<Array2<f64>>, Fields, Option<Coarser>)> {
+        let (plan, rows, options) = (self.plan, self.rows(), self.options);
+        // An approach that may be too large for a solution is looked at before.
+        let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
+        let bounded = plan.datum.floats() && !self.freedoms.loaded[0] && !yields;
+        let (finest, ahead) = rows.both(
+            || -> Result<_> {
+                let sample = || checked_gaps(self.shape, &plan.grid, &rows);
+                let mut gap = sampled.gaps(given, sample)?;
+                self.freedoms.check_feasible(&gap)?;
+                if self.freedoms.any_prescribed() {
+                    self.freedoms.prescribe(Arc::make_mut(&mut gap));
+                }
+                Ok((gap, Fields::new(plan.grid.shape(), &rows)))
+            },
+            || {
+                let ahead = self.cascades() && options.initial.is_none() && !bounded;
+                ahead.then(|| self.solve_coarser(None, tally)).flatten()
+            },
+        );
+        let (gap, fields) = finest?;
+        if bounded {
+            let approach = self.motion.approach.unwrap_or(0.0);
+            plan.datum.check_gap(approach, &gap)?;
+        }
+        Ok((gap, fields, ahead))
+    }
+
+    /// Solutions on the coarser grids; `None` where they need the `gap` of the finest.
+    fn solve_coarser(&self, gap: Option<&Array2<f64>>, tally: &mut Tally) -> Option<Coarser> {
+        let levels = &self.plan.levels;
+        Coarser::solve(self.freedoms, gap, self.shape, levels, self.criteria, tally)
+    }
+
+    /// Solves the elastic problem from a given pressure, or from the solutions on coarser grids, whose results it
+    /// returns.
+    fn iterate(
+        &self,
+        problem: &Problem,
+        gap: &Array2<f64>,
+        ahead: Option<Coarser>,
+        fields: &mut Fields,
+        tally: &mut Tally,
+    ) -> Result<(Outcome, Vec<GridResult>)> {
+        let levels = &self.plan.levels;
+        if let Some(given) = given_pressure(problem, self.options.initial.as_deref())? {
+            let outcome = self.solve_from(given, problem, gap, fields, tally)?;
+            return Ok((outcome, Vec::new()));
+        }
+        if self.cascades()
+            && let Some(coarser) = ahead.or_else(|| self.solve_coarser(Some(gap), tally))
+            && let Some(mut cascade) = Cascade::after(coarser, problem, gap, levels, tally)
+        {
+            let results = std::mem::take(&mut cascade.results);
+            let outcome = cascade.solve_in_window(problem, fields, self.criteria, tally)?;
+            return Ok((outcome, results));
+        }
+        fields.pressure = uniform_pressure(problem)?;
+        let outcome = polonsky_keer::solve(problem, fields, self.criteria, tally)?;
+        Ok((outcome, Vec::new()))
+    }
+
+    /// Solves the problem from a balanced pressure.
+    fn solve_from(
+        &self,
+        start: Array2<f64>,
+        problem: &Problem,
+        gap: &Array2<f64>,
+        fields: &mut Fields,
+        tally: &mut Tally,
+    ) -> Result<Outcome> {
+        if self.cascades() {
+            let cascade = Cascade::from(&start, problem, gap, &self.plan.levels);
+            return cascade.solve_in_window(problem, fields, self.criteria, tally);
+        }
+        fields.pressure = start;
+        polonsky_keer::solve(problem, fields, self.criteria, tally)
+    }
+
+    /// Solves the problem with its hardness from the elastic solution in `fields`.
+    fn let_yield(
+        &self,
+        problem: &Problem,
+        gap: &Array2<f64>,
+        fields: &mut Fields,
+        tally: &mut Tally,
+    ) -> Result<Outcome> {
+        let g = fields.gap(problem);
+        let start = yielding_pressure(problem, slice(&fields.pressure), &g)?;
+        fields.pressure.fill(0.0);
+        self.solve_from(start, problem, gap, fields, tally)
+    }
+
+    /// The solution. All that it reports is computed from the pressure, with the `quality` that was found afresh.
+    fn report(
+        &self,
+        problem: &Problem,
+        gap: &Arc<Array2<f64>>,
+        mut fields: Fields,
+        (outcome, quality): (Outcome, Quality),
+        results: Vec<GridResult>,
+        mut report: Report,
+    ) -> Result<Solution> {
         if quality.overflows() {
             return Err(OVERFLOW);
         }
-        let (approach, tilt) = freedoms.rigid_motion(fields.multipliers.lambda());
+        let (plan, grid) = (self.plan, &self.plan.grid);
+        let indentation = (problem.bounds.is_limited()).then(|| fields.indentation(problem));
+        let undeformed = match &indentation {
+            Some(deeper) => Arc::new(&**gap + deeper),
+            None => Arc::clone(gap),
+        };
+        let (approach, tilt) = self.freedoms.rigid_motion(fields.multipliers.lambda());
         let (pressure, window) = (&fields.pressure, &fields.window);
-        let (carried, warnings) = rows.both(
-            || Carried::by(pressure, window, &self.grid),
-            || warnings(pressure, window, &gap, &self.grid, shape, &self.ends),
+        let (carried, warnings) = self.rows().both(
+            || Carried::by(pressure, window, grid),
+            || warnings(pressure, window, &undeformed, grid, self.shape, &plan.ends),
         );
-        report.count(outcome.iterations, outcome.work / unit, quality);
-        let borne = (options.hardness.as_ref()).is_none_or(|hardness| hardness.bears(pressure));
         // One rule decides, on the numbers that are reported.
         report.termination = match outcome.termination {
             Termination::Stopped => Termination::Stopped,
-            _ if quality.meets(criteria.tolerance) && borne => Termination::Converged,
+            _ if quality.meets(self.criteria.tolerance) => Termination::Converged,
             _ => Termination::IterationLimit,
         };
         report.solver = Some(outcome.solver);
+        report.balance = carried.balance(grid, self.motion);
+        report.warnings = warnings;
+        // Where cells yield, the coarser grids say nothing.
         if report.converged() && indentation.is_none() {
-            results.push(GridResult {
+            let finest = GridResult {
                 peak_pressure: carried.peak,
                 approach,
                 load: carried.force,
-            });
-            let singular = warnings.iter().any(Warning::is_singular);
-            report.discretisation = estimate(&results, singular).map(|changes| {
-                let (fields, loaded) = ([pressure, &fields.displacement], motion.load.is_some());
-                let unresolved = &self.unresolved;
-                let others = unresolved.errors(fields, window, &self.grid, loaded, singular);
-                let corners = corners::peak_error(pressure, &self.grid, shape, self.short_waves());
-                changes.plus(others).at_least(corners)
-            });
+            };
+            report.discretisation = self.discretisation(results, finest, &fields, &report.warnings);
         }
-        let raised = self.datum.raise() * carried.force;
+        let raised = plan.datum.raise() * carried.force;
         if raised != 0.0 {
             fields.lower(raised);
         }
-        report.balance = carried.balance(&self.grid, motion);
-        report.warnings = warnings;
-        report.seconds = start.elapsed().as_secs_f64();
         Ok(Solution {
             pressure: fields.pressure,
             displacement: fields.displacement,
             approach: approach - raised,
             tilt,
-            hardness: options.hardness.clone(),
+            hardness: self.options.hardness.clone(),
             indentation,
             report,
             gap: Gap::Computed {
-                undeformed: gap,
-                freedoms: Box::new(freedoms),
+                undeformed,
+                freedoms: Box::new(self.freedoms.clone()),
                 multipliers: fields.multipliers,
             },
         })
     }
 
+    /// Discretisation errors, from results on the coarser grids and on the finest one.
+    fn discretisation(
+        &self,
+        mut results: Vec<GridResult>,
+        finest: GridResult,
+        fields: &Fields,
+        warnings: &[Warning],
+    ) -> Option<Discretisation> {
+        results.push(finest);
+        let singular = warnings.iter().any(Warning::is_singular);
+        let changes = estimate(&results, singular)?;
+        let (pressure, grid, unresolved) =
+            (&fields.pressure, &self.plan.grid, &self.plan.unresolved);
+        let (both, loaded) = ([pressure, &fields.displacement], self.motion.load.is_some());
+        let others = unresolved.errors(both, &fields.window, grid, loaded, singular);
+        let corners = corner_error(pressure, grid, self.shape, self.short_waves());
+        Some(changes.plus(others).at_least(corners))
+    }
+
     /// Sum of the responses α û/p̂ of both bodies to waves of the length of two cells \[1/Pa\].
     fn short_waves(&self) -> f64 {
-        let [dx, dy] = self.grid.spacing();
-        let finest = if self.grid.is_line() { dy } else { dx.min(dy) };
-        let bodies = bodies(&self.body, &self.setup);
-        bodies.iter().map(|body| body.normal(PI / finest)).sum()
-    }
-
-    /// The gap on the finest grid, less the prescribed motion, and room for the fields of the solution. The shape
-    /// that is `given` tells whether the `limited` one was sampled before.
-    fn finest_gap<'a>(
-        &self,
-        given: &'a dyn Surface,
-        limited: &dyn Surface,
-        sampled: &mut Sampled<'a>,
-        freedoms: &Freedoms,
-        rows: &Rows,
-    ) -> Result<(Arc<Array2<f64>>, Fields)> {
-        let mut gap = sampled.gaps(given, || checked_gaps(limited, &self.grid, rows))?;
-        freedoms.check_feasible(&gap)?;
-        if freedoms.any_prescribed() {
-            freedoms.prescribe(Arc::make_mut(&mut gap));
-        }
-        Ok((gap, Fields::new(self.grid.shape(), rows)))
-    }
-}
-
-/// Residual and overlap from which on the reference algorithm goes on where the preconditioned iteration ended. A worse
-/// pressure cost it two to five times the iterations that it takes from a uniform one, on coats 1e3 to 1e5 times harder
-/// than the body.
-const GOOD_START: f64 = 1e-5;
-
-/// Solves in a window, which opens until nothing overlaps on the whole grid. Where the cascade breaks down, the
-/// reference algorithm goes on.
-fn solve_in_window(
-    problem: &Problem,
-    mut cascade: Cascade,
-    fields: &mut Fields,
-    criteria: StopCriteria,
-    watch: &mut Watch,
-) -> Result<Outcome> {
-    let (mut iterations, mut retries) = (0, 0);
-    loop {
-        let outcome = cascade.solve(fields, criteria.after(iterations), watch);
-        let quality = fields.certify(problem, outcome.lambda);
-        cascade.work += problem.convolution.work();
-        iterations += outcome.iterations;
-        let outcome = Outcome {
-            iterations,
-            work: cascade.work,
-            ..outcome
+        let [dx, dy] = self.plan.grid.spacing();
+        let finest = if self.plan.grid.is_line() {
+            dy
+        } else {
+            dx.min(dy)
         };
-        let stopped = outcome.termination == Termination::Stopped;
-        if stopped || quality.meets(criteria.tolerance) || iterations >= criteria.max_iterations {
-            return Ok(outcome);
-        }
-        let converged = outcome.termination == Termination::Converged;
-        if converged && cascade.open(problem, fields) {
-            continue;
-        }
-        retries += 1;
-        if !converged || retries > RETRIES {
-            let (left, before) = (criteria.after(iterations), cascade.work);
-            if !converged && !quality.meets(GOOD_START) {
-                fields.pressure = uniform_pressure(problem)?;
-            }
-            let end = polonsky_keer::solve(problem, fields, left, &mut |more, work, quality| {
-                watch(iterations + more, before + work, quality)
-            })?;
-            return Ok(end.after(iterations, before));
-        }
+        let bodies = bodies(&self.plan.body, &self.plan.setup);
+        bodies.iter().map(|body| body.normal(PI / finest)).sum()
     }
 }
 

@@ -12,16 +12,12 @@
 //! none. On a half-space no cell yields too early: the others can only come to bear more while cells yield. Cells that
 //! part nevertheless, as they may on layers, bear less than H again.
 
-mod yielding;
-
 use ndarray::{Array2, ArrayRef2};
 
 use super::problem::Problem;
 use super::problem::fields::slice;
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
-
-pub(super) use yielding::{Elastic, Yielding};
 
 /// Largest pressure that a surface bears \[Pa\], above 0; +∞ where it does not yield.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,12 +66,6 @@ impl Hardness {
             Self::Uniform(value) => value.is_finite(),
             Self::Cells(values) => values.iter().any(|value| value.is_finite()),
         }
-    }
-
-    /// Whether no cell has a `pressure` above it.
-    pub(super) fn bears(&self, pressure: &Array2<f64>) -> bool {
-        let cells = slice(pressure).iter().enumerate();
-        cells.into_iter().all(|(k, p)| *p <= self.at(k))
     }
 
     /// The hardness, where it is the same everywhere: grids may be chosen with it.

@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 
 use ndarray::Array2;
 
+use super::cascade::discretisation::Unresolved;
 use super::cascade::levels::Levels;
-use super::cascade::unresolved::Unresolved;
 use super::options::Setup;
 use super::problem::INDEFINITE;
 use super::problem::scale::LocalDisplacement;

@@ -1,19 +1,19 @@
 //! The contact problem in the form that the algorithms solve.
 //!
 //! ```text
-//! minimise ½ pᵀK p + pᵀh     over the pressures p that the constraint allows,     subject to Bᵀp = F
+//! minimise ½ pᵀK p + pᵀh     over 0 ≤ p ≤ H,     subject to Bᵀp = F
 //! ```
 //!
-//! Its multipliers λ are the loaded degrees of freedom of the rigid motion: g = K p + h − Bλ ≥ 0, p g = 0.
+//! Its multipliers λ are the loaded degrees of freedom of the rigid motion, g = K p + h − Bλ. Without a hardness H,
+//! g ≥ 0 and p g = 0; [`bounds`] has the conditions with one.
 //! Polonsky & Keer, Wear 231 (1999) 206, eqs (1)–(4), doi:10.1016/S0043-1648(99)00113-1, have one column
 //! of B, the approach.
 
 pub(super) mod balance;
-pub(super) mod constraint;
+pub(super) mod bounds;
 pub(super) mod fields;
 pub(super) mod fit;
 pub(super) mod freedoms;
-pub(super) mod load_point;
 pub(super) mod patch;
 pub(super) mod scale;
 
@@ -21,9 +21,9 @@ use crate::compliance::convolution::{Convolution, Workspace};
 use crate::error::Error;
 use crate::model::grid::Window;
 use crate::numerics::parallel::{
-    Lanes, Row, Rows, Total, ZERO, all, sum, update, update_with_largest,
+    Lanes, ONE, Row, Rows, Total, ZERO, all, sum, update, update_with_largest, where_positive,
 };
-use constraint::NonNegative;
+use bounds::{Bounds, not_allowed, residual};
 use fit::FitSums;
 use freedoms::Freedoms;
 use scale::LocalDisplacement;
@@ -42,23 +42,23 @@ pub(super) struct Problem<'a> {
     pub(super) freedoms: &'a Freedoms,
     /// h, less the prescribed motion; +∞ where the shape cannot touch.
     pub(super) gap: &'a [f64],
+    /// 0 ≤ p ≤ H
+    pub(super) bounds: &'a Bounds<'a>,
     pub(super) local: &'a LocalDisplacement,
-    /// Deepest permanent indentation that is part of h, which counts as a displacement.
-    pub(super) dent: f64,
 }
 
 /// How well a pressure solves the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Quality {
-    /// Σ p|g| over the cells that can touch, relative to Σ p u, or to Σ p times the local displacement if
-    /// that is less; 0 when p = 0.
+    /// Σ p|g| over the cells whose pressure no bound holds, relative to Σ p u, or to Σ p times the local displacement
+    /// if that is less; 0 when p = 0.
     pub(super) residual: f64,
-    /// max(−g, 0) over the cells that can touch, relative to max |u|, or to the local displacement if that is
-    /// less.
+    /// max(−g, 0) over the cells that can touch and are below the hardness, relative to max |u|, or to the local
+    /// displacement if that is less.
     pub(super) overlap: f64,
     /// Whether force and moments are balanced.
     pub(super) balanced: bool,
-    /// Whether the constraint allows the pressure; only [`Problem::judge`] checks it.
+    /// Whether the bounds allow the pressure; only [`Problem::judge`] checks it.
     pub(super) allowed: bool,
     /// Whether all sums are finite; [`Problem::judge`] checks the displacement of each cell as well.
     pub(super) finite: bool,
@@ -84,14 +84,16 @@ impl Quality {
 /// Extremes and sums over cells from which [`Problem::quality`] is found.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct QualitySums {
-    /// Deepest overlap −g; 0 where nothing overlaps.
+    /// Deepest overlap −g below the hardness; 0 where nothing overlaps.
     overlap: f64,
     /// Largest magnitude of the displacement where the shape can touch.
     displacement: f64,
     /// Σ p u
     work: f64,
-    /// Σ p|g|
+    /// Σ p|g| where no bound holds the pressure.
     mismatch: f64,
+    /// Number of cells at the hardness.
+    held: f64,
 }
 
 impl Total for QualitySums {
@@ -100,6 +102,7 @@ impl Total for QualitySums {
         displacement: 0.0,
         work: 0.0,
         mismatch: 0.0,
+        held: 0.0,
     };
 
     fn joined(self, other: Self) -> Self {
@@ -109,18 +112,23 @@ impl Total for QualitySums {
             displacement: larger(self.displacement, other.displacement),
             work: self.work + other.work,
             mismatch: self.mismatch + other.mismatch,
+            held: self.held + other.held,
         }
     }
 }
 
 impl QualitySums {
-    /// The sums from their values in one row: overlap and displacement, work and mismatch.
-    pub(super) fn of_row([overlap, displacement]: [f64; 2], [work, mismatch]: [f64; 2]) -> Self {
+    /// The sums from their values in one row: those of [`depths`] and of [`works`].
+    pub(super) fn of_row(
+        [overlap, displacement]: [f64; 2],
+        [work, mismatch, held]: [f64; 3],
+    ) -> Self {
         Self {
             overlap,
             displacement,
             work,
             mismatch,
+            held,
         }
     }
 }
@@ -141,21 +149,22 @@ impl Problem<'_> {
         Rows::new(&self.freedoms.columns, self.convolution.own_threads())
     }
 
-    /// λ that makes u + h − Bλ least over the cells with pressure. Degrees of freedom that these cells do
+    /// λ that makes u + h − Bλ least over the cells whose pressure is free. Degrees of freedom that these cells do
     /// not determine are 0: one or two cells have no tilt.
     pub(super) fn fit(&self, p: &[f64], u: &[f64], h: &[f64]) -> [f64; 3] {
         let sums = self.rows().each([p, u, h], [], |row, fields, []| {
-            self.fit_near([0.0; 3], row, fields)
+            self.fit_near([0.0; 3], row, self.bounds.row(row.number), fields)
         });
         self.freedoms.fitted(sums)
     }
 
     /// The sums of one row for the fit of λ − `near`.
-    fn fit_near(&self, near: [f64; 3], row: Row, fields: [&[f64]; 3]) -> FitSums {
+    fn fit_near(&self, near: [f64; 3], row: Row, limit: &[f64], fields: [&[f64]; 3]) -> FitSums {
         let (base, slope) = (all(near[0] + near[1] * row.x), all(near[2]));
-        self.freedoms.fit_row(row, fields, [], |[p, u, h, y], []| {
+        let step = |[p, u, h, _, y]: [Lanes; 5], []: [Lanes; 0]| {
             ([], [p, (h - (base + slope * y)) + u, ZERO])
-        })
+        };
+        (self.freedoms).fit_row(row, limit, fields, [], step)
     }
 
     /// Computes the displacement `u` of a pressure that is zero outside `window`. Returns λ that makes the
@@ -169,6 +178,24 @@ impl Problem<'_> {
         near: [f64; 3],
         workspace: &mut Workspace,
     ) -> (Multipliers, Quality) {
+        let (found, free_cells) = self.judge_near(p, window, u, near, workspace);
+        if free_cells > 0.0 || !self.bounds.is_limited() {
+            return found;
+        }
+        let near = self.until_touching(p, u, near);
+        self.judge_near(p, window, u, near, workspace).0
+    }
+
+    /// [`Problem::judge`] without a rule for contacts of which no pressure is free; the number of cells whose pressure
+    /// is.
+    fn judge_near(
+        &self,
+        p: &[f64],
+        window: &Window,
+        u: &mut [f64],
+        near: [f64; 3],
+        workspace: &mut Workspace,
+    ) -> ((Multipliers, Quality), f64) {
         let (rows, ny) = (self.rows(), self.convolution.shape()[1]);
         let occupied = || window[0].clone();
         self.convolution.rows_in(p, occupied(), workspace);
@@ -186,10 +213,10 @@ impl Problem<'_> {
                 block.first + local.start,
                 &mut u[local.start * ny..local.end * ny],
             );
-            block.each([p, u, h], [], |row, fields, []| {
-                let inside = row.within(window, fields);
-                inside.map_or(FitSums::ZERO, |(row, fields)| {
-                    self.fit_near(near, row, fields)
+            block.each([p, u, h], [], |row, [p, u, h], []| {
+                let inside = row.within(window, [p, u, h, self.bounds.row(row.number)]);
+                inside.map_or(FitSums::ZERO, |(row, [p, u, h, limit])| {
+                    self.fit_near(near, row, limit, [p, u, h])
                 })
             })
         });
@@ -201,12 +228,13 @@ impl Problem<'_> {
             let local = block.local(&window[0]);
             displace(block.first, &mut u[..local.start * ny]);
             displace(block.first + local.end, &mut u[local.end * ny..]);
-            block.each([p, u, h], [], |row, fields, []| {
-                let (extremes, not_finite) = overlap_of(multipliers, row, fields);
+            block.each([p, u, h], [], |row, [p, u, h], []| {
+                let fields = [p, self.bounds.row(row.number), u, h];
+                let (extremes, not_finite) = depths_of(multipliers, row, fields);
                 let inside = row.within(window, fields);
-                let carried = inside.map(|(row, fields)| mismatch_of(multipliers, row, fields));
-                let [work, mismatch, not_allowed] = carried.unwrap_or_default();
-                let sums = QualitySums::of_row(extremes, [work, mismatch]);
+                let carried = inside.map(|(row, fields)| works_of(multipliers, row, fields));
+                let [work, mismatch, held, not_allowed] = carried.unwrap_or_default();
+                let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
                 (sums, [not_finite, not_allowed])
             })
         });
@@ -216,7 +244,25 @@ impl Problem<'_> {
             finite: quality.finite && not_finite <= 0.0,
             ..quality
         };
-        (multipliers, quality)
+        ((multipliers, quality), fit.cells())
+    }
+
+    /// λ where no pressure is free to tell it: `near` it, the surfaces approach until the next cell touches.
+    pub(super) fn until_touching(&self, p: &[f64], u: &[f64], near: [f64; 3]) -> [f64; 3] {
+        if !self.bounds.is_limited() {
+            return [0.0; 3];
+        }
+        if !self.freedoms.loaded[0] {
+            return near;
+        }
+        let mut first = f64::INFINITY;
+        self.freedoms.for_each(near, |k, b| {
+            if p[k] <= 0.0 {
+                first = first.min(self.gap[k] + u[k] - b);
+            }
+        });
+        let further = if first.is_finite() { first } else { 0.0 };
+        [near[0] + further, near[1], near[2]]
     }
 
     /// g = u + h − Bλ
@@ -232,7 +278,7 @@ impl Problem<'_> {
     pub(super) fn rebalance(&self, p: &mut [f64]) {
         // Pressure of the cells that join, relative to the mean pressure of the grid; chosen by trial.
         const JOINING_PRESSURE: f64 = 1e-3;
-        if self.freedoms.balance(p) {
+        if self.freedoms.balance(p, self.bounds) {
             return;
         }
         let joining = JOINING_PRESSURE * self.freedoms.typical_pressure(p.len());
@@ -241,7 +287,33 @@ impl Problem<'_> {
                 *p += joining;
             }
         }
-        self.freedoms.balance(p);
+        self.freedoms.balance(p, self.bounds);
+    }
+
+    /// Restores balance up to the hardness, by [`Problem::press_springs`] where the cells whose pressure is free cannot
+    /// carry what is missing. `u` and `lambda` are those of a pressure near `p`.
+    pub(super) fn rebalance_within(&self, p: &mut [f64], u: &[f64], lambda: [f64; 3]) {
+        if !self.freedoms.balance(p, self.bounds) {
+            let mut g = vec![0.0; p.len()];
+            (self.freedoms).for_each(lambda, |k, b| g[k] = self.gap[k] + u[k] - b);
+            self.press_springs(p, &g);
+        }
+    }
+
+    /// Makes `p`, whose gap is `g`, a balanced pressure up to the hardness: that of a spring in each cell which a motion
+    /// loads and unloads. Returns whether there is one.
+    pub(super) fn press_springs(&self, p: &mut [f64], g: &[f64]) -> bool {
+        let rise = self.freedoms.typical_pressure(p.len());
+        // Softer springs where too few cells lie between the bounds.
+        [1.0, 1e-1, 1e-2, 1e-3].into_iter().any(|softer| {
+            let spring = softer / self.self_influence();
+            let mut pressed: Vec<f64> = p.iter().zip(g).map(|(p, g)| p - spring * g).collect();
+            let balanced = self.freedoms.spread(&mut pressed, self.bounds, rise);
+            if balanced {
+                p.copy_from_slice(&pressed);
+            }
+            balanced
+        })
     }
 
     /// The quality of a pressure with these sums, which is allowed; `fit` are its sums for the fit of λ.
@@ -253,9 +325,10 @@ impl Problem<'_> {
             (false, _) => 0.0,
         };
         let [force, ..] = fit.moments;
-        let far = sums.displacement.max(self.dent);
-        let local = (self.local.under(force, fit.cells())).max(SMALLEST_SCALE * far);
-        let work = (sums.work.abs() + self.dent * force).min(local * force);
+        let far = sums.displacement;
+        let pressed = fit.cells() + sums.held;
+        let local = (self.local.under(force, pressed)).max(SMALLEST_SCALE * far);
+        let work = sums.work.abs().min(local * force);
         Quality {
             residual: relative(sums.mismatch, work),
             overlap: relative(sums.overlap, local.min(far)),
@@ -266,36 +339,41 @@ impl Problem<'_> {
     }
 }
 
-/// Deepest overlap of one row and largest displacement where it can touch; and a number that is 0 unless a
-/// displacement is not finite.
-fn overlap_of(multipliers: Multipliers, row: Row, [_, u, h]: [&[f64]; 3]) -> ([f64; 2], f64) {
-    let step = |u, overlap| ([], depths(u, overlap), [u * ZERO]);
+/// [`depths`] of one row; and a number that is 0 unless a displacement is not finite.
+fn depths_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -> ([f64; 2], f64) {
     let overlap = multipliers.overlap(row);
+    let step =
+        |[p, limit, u, h, y]: [Lanes; 5]| ([], depths(p, limit, u, overlap([u, h, y])), [u * ZERO]);
     let (extremes, [not_finite]) = if multipliers.tilts_along_y() {
-        update_with_largest([u, h, row.y], [], |[u, h, y], []| {
-            step(u, overlap([u, h, y]))
-        })
+        update_with_largest([p, limit, u, h, row.y], [], |fields, []| step(fields))
     } else {
-        update_with_largest([u, h], [], |[u, h], []| step(u, overlap([u, h, ZERO])))
+        update_with_largest([p, limit, u, h], [], |[p, limit, u, h], []| {
+            step([p, limit, u, h, ZERO])
+        })
     };
     (extremes, not_finite)
 }
 
-/// Work Σ p u and mismatch Σ p|g| of one row, and the number of its pressures that are not allowed.
-fn mismatch_of(multipliers: Multipliers, row: Row, [p, u, h]: [&[f64]; 3]) -> [f64; 3] {
+/// [`works`] of one row, and the number of its pressures that are not allowed.
+fn works_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -> [f64; 4] {
     let overlap = multipliers.overlap(row);
-    sum([p, u, h, row.y], |[p, u, h, y]| {
-        // The gap is infinite only where there is no pressure.
-        let mismatch = NonNegative.where_free(p, p * overlap([u, h, y]).abs());
-        let (_, not_allowed) = NonNegative.clip(p);
-        [p * u, mismatch, not_allowed]
+    sum([p, limit, u, h, row.y], |[p, limit, u, h, y]| {
+        let [work, mismatch, held] = works(p, limit, u, overlap([u, h, y]));
+        [work, mismatch, held, not_allowed(p, limit)]
     })
 }
 
-/// Overlap of cells, and the magnitude of their displacement where they can touch.
-pub(super) fn depths(u: Lanes, overlap: Lanes) -> [Lanes; 2] {
+/// Overlap of cells below the hardness, and the magnitude of the displacement of cells that can touch.
+pub(super) fn depths(p: Lanes, limit: Lanes, u: Lanes, overlap: Lanes) -> [Lanes; 2] {
     let touches = overlap.simd_gt(all(f64::NEG_INFINITY));
-    [overlap, touches & u.abs()]
+    [p.simd_lt(limit) & overlap, touches & u.abs()]
+}
+
+/// Work p u of cells, mismatch p|g| where no bound holds the pressure, and 1 in cells at the hardness.
+pub(super) fn works(p: Lanes, limit: Lanes, u: Lanes, overlap: Lanes) -> [Lanes; 3] {
+    // The gap is infinite only where there is no pressure.
+    let mismatch = where_positive(p, p * residual(p, limit, overlap).abs());
+    [p * u, mismatch, p.simd_ge(limit) & ONE]
 }
 
 /// Multipliers λ in two parts: at small loads h − Bλ is far smaller than either term, and taking the larger

@@ -1,17 +1,14 @@
 //! The solution of a contact.
 
-pub(super) mod carried;
 pub(super) mod gap;
 mod outline;
 pub(super) mod report;
-mod stiffness;
 pub(super) mod tangent;
 pub(super) mod warnings;
 
 use ndarray::{Array1, Array2};
 
 use super::hardness::{Hardness, check_indentation};
-use super::problem::constraint::NonNegative;
 use crate::error::{Error, Result, finite};
 use crate::model::grid::Grid;
 use gap::Gap;
@@ -169,7 +166,7 @@ impl Solution {
 
     /// Whether each cell is in contact, p > 0.
     pub fn in_contact(&self) -> Array2<bool> {
-        self.pressure.mapv(|p| NonNegative.is_free(p))
+        self.pressure.mapv(|p| p > 0.0)
     }
 
     /// Normal force Σ p dA \[N\].
@@ -197,7 +194,7 @@ impl Solution {
     /// Area of the cells in contact \[m²\].
     pub fn contact_area(&self) -> f64 {
         let cells = self.pressure.iter();
-        cells.filter(|p| NonNegative.is_free(**p)).count() as f64 * self.grid().cell_area()
+        cells.filter(|p| **p > 0.0).count() as f64 * self.grid().cell_area()
     }
 
     /// Energy that the permanent indentation w has taken \[J\], Σ H w dA; 0 where the surfaces do not yield.
@@ -294,8 +291,8 @@ impl Solution {
 
 /// Ends of the contact on one line of cells, in cells from the centre of the first.
 fn line_ends(pressure: ndarray::ArrayView1<f64>) -> Option<[f64; 2]> {
-    let first = pressure.iter().position(|&p| NonNegative.is_free(p))?;
-    let last = pressure.iter().rposition(|&p| NonNegative.is_free(p))?;
+    let first = pressure.iter().position(|&p| p > 0.0)?;
+    let last = pressure.iter().rposition(|&p| p > 0.0)?;
     let width = last - first + 1;
     let square = |k: usize| pressure[k] * pressure[k];
     Some([

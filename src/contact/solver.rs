@@ -1,7 +1,6 @@
 //! Algorithms that solve a contact problem, and what they have in common.
 
 pub(super) mod active_set;
-mod conjugacy;
 pub(super) mod linear_cg;
 pub(super) mod polonsky_keer;
 pub(super) mod preconditioned;
@@ -38,28 +37,39 @@ pub enum Solver {
     PolonskyKeer,
 }
 
-/// The end of an iteration, with its counts.
+/// The end of an iteration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Outcome {
     pub(super) solver: Solver,
     pub(super) termination: Termination,
-    pub(super) iterations: usize,
-    /// Work done, in the unit of `Convolution::work`.
-    pub(super) work: f64,
     /// Multipliers of the loaded degrees of freedom.
     pub(super) lambda: [f64; 3],
 }
 
-impl Outcome {
-    /// This outcome with what was done before: iterations and work.
-    pub(super) fn after(self, iterations: usize, work: f64) -> Self {
-        Self {
-            iterations: iterations + self.iterations,
-            work: work + self.work,
-            ..self
-        }
-    }
+/// What was done so far, and the caller, who is told of each iteration and may stop it.
+pub(super) struct Tally<'a> {
+    /// Iterations on the grid that is being solved.
+    pub(super) iterations: usize,
+    /// Work on all grids, in the unit of `Convolution::work`.
+    pub(super) work: f64,
+    caller: &'a mut Caller<'a>,
 }
 
-/// Callback that gets the number of an iteration, the work done and the quality, and breaks to stop.
-pub(super) type Watch<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
+/// Callback that gets the iterations, the work and the quality, and breaks to stop.
+type Caller<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
+
+impl<'a> Tally<'a> {
+    /// Nothing is done yet.
+    pub(super) fn new(caller: &'a mut Caller<'a>) -> Self {
+        Self {
+            iterations: 0,
+            work: 0.0,
+            caller,
+        }
+    }
+
+    /// Tells the caller of a pressure of this quality; a break ends the solve.
+    pub(super) fn tell(&mut self, quality: Quality) -> ControlFlow<()> {
+        (self.caller)(self.iterations, self.work, quality)
+    }
+}

@@ -135,24 +135,48 @@ pub(super) fn given_pressure(
     let mut p: Vec<f64> = cells
         .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
         .collect();
-    Ok(problem.freedoms.balance(&mut p).then(|| array(expected, p)))
+    let balanced = problem.freedoms.balance(&mut p, problem.bounds);
+    Ok(balanced.then(|| array(expected, p)))
 }
 
 /// A balanced pressure on all cells that can touch.
 pub(super) fn uniform_pressure(problem: &Problem) -> Result<Array2<f64>> {
     let shape = problem.convolution.shape();
     let mut p = vec![0.0; problem.gap.len()];
-    if problem.freedoms.balance(&mut p) {
+    if problem.freedoms.balance(&mut p, problem.bounds) {
         return Ok(array(shape, p));
     }
     let uniform = problem.freedoms.typical_pressure(p.len());
     for (p, h) in p.iter_mut().zip(problem.gap) {
         *p = if h.is_finite() { uniform } else { 0.0 };
     }
-    if problem.freedoms.balance(&mut p) {
+    if problem.bounds.is_limited() {
+        return yielding_pressure(problem, &p, problem.gap);
+    }
+    if problem.freedoms.balance(&mut p, problem.bounds) {
         return Ok(array(shape, p));
     }
     Err(Error::Inconsistent(
         "eccentricity or moment is too near the rim of the cells that can touch",
     ))
+}
+
+/// A balanced pressure up to the hardness near an elastic solution of this `pressure` and gap `g`.
+///
+/// # Errors
+/// Eccentricity or moment that no pressure up to the hardness has.
+pub(super) fn yielding_pressure(
+    problem: &Problem,
+    pressure: &[f64],
+    g: &[f64],
+) -> Result<Array2<f64>> {
+    let mut p = pressure.to_vec();
+    if !problem.freedoms.any_loaded() {
+        (p.iter_mut().enumerate()).for_each(|(k, p)| *p = problem.bounds.nearest(k, *p));
+    } else if !problem.press_springs(&mut p, g) {
+        return Err(Error::Inconsistent(
+            "no pressure up to the hardness has this eccentricity or moment: give a larger hardness or a smaller load",
+        ));
+    }
+    Ok(array(problem.convolution.shape(), p))
 }

@@ -49,7 +49,7 @@ use single::{Call, setup};
 /// ValueError
 ///     If an argument is out of range.
 /// MemoryError
-///     If the grid does not fit into memory: a plan and a solve take up to 170 bytes a cell, with a hardness 230.
+///     If the grid does not fit into memory: a plan and a solve take up to 170 bytes a cell, with a hardness 210.
 ///
 /// Examples
 /// --------

@@ -474,7 +474,7 @@ fn a_break_stops_yielding() -> Result<()> {
     let mut calls = 0;
     let mut progress = |_: &nacre::Report| {
         calls += 1;
-        match calls > elastic.report.iterations + 20 {
+        match calls > elastic.report.iterations + 4 {
             true => std::ops::ControlFlow::Break(()),
             false => std::ops::ControlFlow::Continue(()),
         }

@@ -1,6 +1,5 @@
 //! Finer cells where the peak pressure needs them.
 
-use crate::contact::problem::constraint::NonNegative;
 use crate::contact::solution::Solution;
 use crate::contact::solution::warnings::Warning;
 use crate::error::Result;
@@ -124,10 +123,7 @@ fn edges(solution: &Solution, shape: &dyn Surface) -> [Edge; 2] {
     }
     let (grid, pressure) = (solution.grid(), &solution.pressure);
     let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
-    for ((i, j), _) in pressure
-        .indexed_iter()
-        .filter(|(_, p)| NonNegative.is_free(**p))
-    {
+    for ((i, j), _) in pressure.indexed_iter().filter(|(_, p)| **p > 0.0) {
         for (axis, side) in [(0, -1_isize), (0, 1), (1, -1), (1, 1)] {
             let beside = if axis == 0 {
                 [i.checked_add_signed(side), Some(j)]
@@ -135,9 +131,7 @@ fn edges(solution: &Solution, shape: &dyn Surface) -> [Edge; 2] {
                 [Some(i), j.checked_add_signed(side)]
             };
             let in_contact = match beside {
-                [Some(i), Some(j)] => pressure
-                    .get([i, j])
-                    .is_some_and(|p| NonNegative.is_free(*p)),
+                [Some(i), Some(j)] => pressure.get([i, j]).is_some_and(|p| *p > 0.0),
                 _ => false,
             };
             if in_contact {
@@ -209,7 +203,7 @@ fn around_peak(solution: &Solution) -> ([bool; 2], [bool; 2]) {
         near.map(second).fold(0.0, f64::max)
     });
     let narrow = lines.map(|(line, at)| {
-        let free = |k: &usize| line.get(*k).is_some_and(|p| NonNegative.is_free(*p));
+        let free = |k: &usize| line.get(*k).is_some_and(|p| *p > 0.0);
         let above = (at..line.len()).take_while(free).count();
         let below = (0..at).rev().take_while(free).count();
         above + below < NARROW

@@ -1,10 +1,9 @@
 //! The contact that is solved on one grid after another, and rectangles.
 
 use crate::compliance::response::Body;
-use crate::contact::motion::Motion;
+use crate::contact::options::Motion;
 use crate::contact::options::{Options, Setup};
 use crate::contact::plan::Plan;
-use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::bounds;
 use crate::contact::solution::Solution;
 use crate::contact::solution::report::Progress;
@@ -31,7 +30,7 @@ pub(super) fn frame_of(grid: &Grid) -> Frame {
 
 /// The smallest window that holds all cells in contact; `None` where nothing touches.
 pub(super) fn cells_in_contact(solution: &Solution) -> Option<Window> {
-    let touches = |i: usize, j: usize| NonNegative.is_free(solution.pressure[[i, j]]);
+    let touches = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
     bounds(&full_window(solution.grid().shape()), touches)
 }
 

@@ -10,11 +10,12 @@ use ndarray::Array2;
 use super::discretisation::GridResult;
 use crate::compliance::convolution::{Addition, Convolution};
 use crate::contact::problem::Problem;
+use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, copied, enclosing, widened};
 use crate::contact::problem::scale::LocalDisplacement;
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
-use crate::contact::solver::{Outcome, StopCriteria, Termination, Watch, active_set};
+use crate::contact::solver::{Outcome, StopCriteria, Tally, Termination, active_set};
 use crate::contact::start::checked_gaps;
 use crate::error::Result;
 use crate::model::grid::{Grid, full_window, repeating};
@@ -118,6 +119,7 @@ impl Levels {
             grid: &self.grids[0],
             freedoms: problem.freedoms.clone(),
             gap: Cow::Borrowed(gap),
+            bounds: problem.bounds.clone(),
             memory: self.memory(),
         }
     }
@@ -158,6 +160,7 @@ impl Levels {
                 grid,
                 freedoms,
                 gap: Cow::Owned(gap),
+                bounds: Bounds::none(grid.shape()[1]),
                 memory: self.memory(),
             });
         }
@@ -205,6 +208,7 @@ pub(crate) struct Level<'a> {
     grid: &'a Grid,
     pub(crate) freedoms: Freedoms,
     pub(crate) gap: Cow<'a, Array2<f64>>,
+    bounds: Bounds<'a>,
     /// Memory of iterations, and the largest number of cells of one.
     memory: (&'a Pool<Memory>, usize),
 }
@@ -240,7 +244,7 @@ impl Level<'_> {
         }
         self.freedoms
             .in_window(patch.window.clone())
-            .balance(&mut patch.values)
+            .balance(&mut patch.values, &self.bounds.in_window(&patch.window))
     }
 
     /// Solves in the window of `patch`, and in larger windows while the contact reaches the edge; `patch`
@@ -249,17 +253,16 @@ impl Level<'_> {
         &self,
         patch: &mut Patch,
         criteria: StopCriteria,
-        work: &mut f64,
-        watch: &mut Watch,
+        tally: &mut Tally,
     ) -> Outcome {
         let shape = self.shape();
-        let mut done = 0;
         loop {
             let window = &patch.window;
             let whole = *window == full_window(shape);
             let corner = block(self.coefficients, &[0..window[0].len(), 0..window[1].len()]);
             let repeats = repeating(self.grid, window);
             let freedoms = self.freedoms.in_window(window.clone());
+            let bounds = self.bounds.in_window(window);
             let rows = Rows::new(&freedoms.columns, self.convolution.own_threads());
             // Planning transforms does not keep all threads busy: meanwhile they fetch the memory.
             let ((windowed, [periodic, inverse]), (gap, memory)) = rows.both(
@@ -281,38 +284,26 @@ impl Level<'_> {
                 freedoms: &freedoms,
                 gap: &gap,
                 local: self.local,
-                dent: 0.0,
+                bounds: &bounds,
             };
             let mut solver = Preconditioned::new(&problem, &approximation, memory);
-            let before = *work;
-            let mut outcome = solver.solve(
-                &mut patch.values,
-                criteria.after(done),
-                &mut |iterations, spent, quality| watch(done + iterations, before + spent, quality),
-            );
-            *work += solver.work;
-            done += outcome.iterations;
+            let mut outcome = solver.solve(&mut patch.values, criteria, tally);
             // The next solver reuses its workspace.
             drop(solver);
             let limited = outcome.termination == Termination::IterationLimit;
-            if limited && done < criteria.max_iterations && active_set::is_small(&patch.values) {
-                let before = *work;
+            if limited
+                && tally.iterations < criteria.max_iterations
+                && active_set::is_small(&problem, &patch.values)
+            {
                 outcome = active_set::solve(
                     &problem,
                     &corner,
                     &mut patch.values,
                     outcome.lambda,
-                    criteria.after(done),
-                    &mut |more, spent, quality| watch(done + more, before + spent, quality),
+                    criteria,
+                    tally,
                 );
-                *work += outcome.work;
-                done += outcome.iterations;
             }
-            let outcome = Outcome {
-                iterations: done,
-                work: *work,
-                ..outcome
-            };
             let Some(contact) = patch.contact() else {
                 return outcome;
             };

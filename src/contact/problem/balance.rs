@@ -1,8 +1,9 @@
 //! Force and moments brought to their targets: a method of nacre's own.
 
+use super::bounds::{Bounds, clip, is_free};
 use super::fit::{add_gram, add_moments};
 use super::freedoms::Freedoms;
-use crate::numerics::parallel::{all, sum, where_positive};
+use crate::numerics::parallel::{Lanes, ONE, all, sum};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
@@ -14,6 +15,9 @@ const STEPS: usize = 100;
 /// Smallest fraction of a Newton step that is tried. Where no fraction helps, only rounding is left, or the cells
 /// cannot carry the moments; chosen by trial.
 const SHORTEST_STEP: f64 = 1e-9;
+
+/// Bμ beyond which a force is given up.
+const FARTHEST: f64 = 1e30;
 
 impl Freedoms {
     /// Whether a pressure of these `moments` is on target, within rounding.
@@ -31,15 +35,13 @@ impl Freedoms {
         (self.loaded[0] && force > 0.0 && factor > 0.0 && factor.is_finite()).then_some(factor)
     }
 
-    /// Restores balance: p ← \[p (1 + Bμ)\]₊ with Bᵀp on target. Returns whether it succeeded.
-    ///
-    /// μ maximises the concave function μᵀF − ½ Σ p \[1 + Bμ\]₊². Its gradient is the mismatch of force and
-    /// moments. Newton's method is used, with steps halved until the mismatch falls.
-    pub(crate) fn balance(&self, pressure: &mut [f64]) -> bool {
+    /// Restores balance: p ← \[p (1 + Bμ)\]₊ with Bᵀp on target, up to the bounds; pressures at their upper bound stay.
+    /// Returns whether it succeeded.
+    pub(crate) fn balance(&self, pressure: &mut [f64], bounds: &Bounds) -> bool {
         if !self.any_loaded() {
             return true;
         }
-        if self.loaded[0] {
+        if self.loaded[0] && !bounds.is_limited() {
             // The force alone comes first, so that μ stays small compared with 1.
             let Some(factor) = self.to_load(self.moments(pressure)[0]) else {
                 return false;
@@ -49,19 +51,65 @@ impl Freedoms {
                 return true;
             }
         }
+        self.bring_on_target(pressure, bounds, [0.0; 3], |p, limit, factor| {
+            let free = is_free(p, limit);
+            let new = clip(p * factor, limit);
+            [free.bitselect(new, p), free & is_free(new, limit) & p]
+        })
+    }
+
+    /// Restores balance by a pressure on all cells: p ← `p` + `rise` Bμ up to the bounds, where a `p` of −∞ stays 0.
+    /// Returns whether it succeeded.
+    pub(crate) fn spread(&self, p: &mut [f64], bounds: &Bounds, rise: f64) -> bool {
+        let rise = all(rise);
+        let raised = |p, limit, factor| {
+            let new = p + rise * (factor - ONE);
+            [clip(new, limit), is_free(new, limit) & rise]
+        };
         let mut mu = [0.0; 3];
-        let (mut force, mut mismatch) = self.mismatch(pressure, mu);
+        if self.loaded[0] {
+            // By bisection for the force alone, since at first no pressure may be free.
+            let carries = |mu| self.mismatch(p, bounds, [mu, 0.0, 0.0], &raised).1[0] <= 0.0;
+            let [mut low, mut high] = [-1.0, 1.0];
+            while high < FARTHEST && !carries(high) {
+                high *= 2.0;
+            }
+            while low > -FARTHEST && carries(low) {
+                low *= 2.0;
+            }
+            for _ in 0..STEPS {
+                let middle = 0.5 * (low + high);
+                *(if carries(middle) { &mut high } else { &mut low }) = middle;
+            }
+            mu[0] = high;
+        }
+        self.bring_on_target(p, bounds, mu, raised)
+    }
+
+    /// Brings Bᵀp on target by p ← `answer`(p, bound, 1 + Bμ), which also returns the derivative of p with respect to
+    /// Bμ. It starts from `mu`, and returns whether it succeeded.
+    ///
+    /// The answer grows with Bμ: μ maximises a concave function whose gradient is the mismatch of force and moments.
+    /// Newton's method is used, with steps halved until the mismatch falls.
+    fn bring_on_target(
+        &self,
+        pressure: &mut [f64],
+        bounds: &Bounds,
+        mut mu: [f64; 3],
+        answer: impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
+    ) -> bool {
+        let (mut force, mut mismatch) = self.mismatch(pressure, bounds, mu, &answer);
         let rounding = |force: f64| 4.0 * f64::EPSILON * force.max(largest(self.target));
         let mut descends = true;
         for _ in 0..STEPS {
             if largest(mismatch) <= rounding(force) || !descends {
                 break;
             }
-            let step = self.solve(&self.curvature(pressure, mu), mismatch);
+            let step = self.solve(&self.curvature(pressure, bounds, mu, &answer), mismatch);
             let mut length = 1.0;
             descends = loop {
                 let trial = [0, 1, 2].map(|k| mu[k] + length * step[k]);
-                let (trial_force, trial_mismatch) = self.mismatch(pressure, trial);
+                let (trial_force, trial_mismatch) = self.mismatch(pressure, bounds, trial, &answer);
                 if largest(trial_mismatch) < largest(mismatch) {
                     (mu, force, mismatch) = (trial, trial_force, trial_mismatch);
                     break true;
@@ -77,20 +125,27 @@ impl Freedoms {
         let balanced = largest(mismatch) <= ROUNDINGS * rounding(force);
         if balanced || descends {
             self.for_each(mu, |k, b| {
-                pressure[k] *= (1.0 + b).max(0.0);
+                let [new, _] = answer(all(pressure[k]), all(bounds.limit(k)), all(1.0 + b));
+                [pressure[k], ..] = new.to_array();
             });
         }
         balanced
     }
 
-    /// Force of \[p (1 + Bμ)\]₊, and target less Bᵀ of it.
-    fn mismatch(&self, p: &[f64], mu: [f64; 3]) -> (f64, [f64; 3]) {
+    /// Force of the answer to Bμ, and target less Bᵀ of it.
+    fn mismatch(
+        &self,
+        p: &[f64],
+        bounds: &Bounds,
+        mu: [f64; 3],
+        answer: &impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
+    ) -> (f64, [f64; 3]) {
         let mut sums = [0.0; 3];
-        for (x, row) in self.rows() {
-            let along = 1.0 + mu[0] + mu[1] * x;
-            let row = sum([&p[row], &self.columns[1]], |[p, y]| {
-                let factor = all(along) + all(mu[2]) * y;
-                let p = where_positive(factor, p * factor);
+        for (number, (x, row)) in self.rows().enumerate() {
+            let (along, slope) = (all(1.0 + mu[0] + mu[1] * x), all(mu[2]));
+            let fields = [&p[row], bounds.row(number), &self.columns[1]];
+            let row = sum(fields, |[p, limit, y]| {
+                let [p, _] = answer(p, limit, along + slope * y);
                 [p, p * y]
             });
             add_moments(&mut sums, x, row);
@@ -105,13 +160,20 @@ impl Freedoms {
         (sums[0], [0, 1, 2].map(missing))
     }
 
-    /// Second derivatives Σ p b bᵀ over the cells where 1 + Bμ > 0.
-    fn curvature(&self, p: &[f64], mu: [f64; 3]) -> [[f64; 3]; 3] {
+    /// Derivative of Bᵀ of the answer to Bμ.
+    fn curvature(
+        &self,
+        p: &[f64],
+        bounds: &Bounds,
+        mu: [f64; 3],
+        answer: &impl Fn(Lanes, Lanes, Lanes) -> [Lanes; 2],
+    ) -> [[f64; 3]; 3] {
         let mut gram = [[0.0; 3]; 3];
-        for (x, row) in self.rows() {
-            let along = 1.0 + mu[0] + mu[1] * x;
-            let row = sum([&p[row], &self.columns[1]], |[p, y]| {
-                let p = where_positive(all(along) + all(mu[2]) * y, p);
+        for (number, (x, row)) in self.rows().enumerate() {
+            let (along, slope) = (all(1.0 + mu[0] + mu[1] * x), all(mu[2]));
+            let fields = [&p[row], bounds.row(number), &self.columns[1]];
+            let row = sum(fields, |[p, limit, y]| {
+                let [_, p] = answer(p, limit, along + slope * y);
                 [p, p * y, p * y * y]
             });
             add_gram(&mut gram, x, row);
@@ -127,7 +189,8 @@ fn largest(values: [f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::contact::motion::Motion;
+    use crate::contact::options::Motion;
+    use crate::contact::problem::bounds::Bounds;
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
     use crate::model::grid::Grid;
@@ -161,12 +224,12 @@ mod tests {
         let freedoms = freedoms([None, None])?;
         let before = pressure();
         let mut p = before.clone();
-        assert!(freedoms.balance(&mut p));
+        assert!(freedoms.balance(&mut p, &Bounds::none(CELLS[1])));
         let factor = 2.0 / (freedoms.cell_area * before.iter().sum::<f64>());
         for (p, before) in p.iter().zip(&before) {
             assert!((p - factor * before).abs() <= 1e-13 * factor * before);
         }
-        assert!(!freedoms.balance(&mut vec![0.0; before.len()]));
+        assert!(!freedoms.balance(&mut vec![0.0; before.len()], &Bounds::none(CELLS[1])));
         Ok(())
     }
 
@@ -178,7 +241,7 @@ mod tests {
         let freedoms = freedoms(at.map(Some))?;
         let before = pressure();
         let mut p = before.clone();
-        assert!(freedoms.balance(&mut p));
+        assert!(freedoms.balance(&mut p, &Bounds::none(CELLS[1])));
         let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.4, -0.3])?;
         let (x, y) = (grid.x(), grid.y());
         let place = |k: usize| [x[k / CELLS[1]], y[k % CELLS[1]]];
@@ -215,10 +278,10 @@ mod tests {
         let half = CELLS[0] / 2 * CELLS[1];
         let mut p = pressure();
         p[half..].fill(0.0);
-        assert!(!freedoms([Some(0.5), None])?.balance(&mut p.clone()));
-        assert!(freedoms([Some(0.0), Some(0.1)])?.balance(&mut p.clone()));
+        assert!(!freedoms([Some(0.5), None])?.balance(&mut p.clone(), &Bounds::none(CELLS[1])));
+        assert!(freedoms([Some(0.0), Some(0.1)])?.balance(&mut p.clone(), &Bounds::none(CELLS[1])));
         p[CELLS[1]..].fill(0.0);
-        assert!(!freedoms([Some(0.0), None])?.balance(&mut p));
+        assert!(!freedoms([Some(0.0), None])?.balance(&mut p, &Bounds::none(CELLS[1])));
         Ok(())
     }
 

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::constraint::NonNegative;
+use super::bounds::{Bounds, in_contact, is_free};
 use super::freedoms::Freedoms;
-use crate::numerics::parallel::{Lanes, ONE, Row, Total, sum, update};
+use crate::numerics::parallel::{Lanes, ONE, Row, Total, sum, update, where_positive};
 
 /// Sums over cells from which [`Freedoms::fitted`] finds the multipliers of the rigid motion.
 ///
@@ -22,7 +22,7 @@ pub(crate) struct FitSums {
 }
 
 impl FitSums {
-    /// Number of cells of the contact.
+    /// Number of cells whose pressure is free.
     pub(crate) fn cells(&self) -> f64 {
         self.gram[0]
     }
@@ -115,26 +115,27 @@ impl Freedoms {
         [s, s * row.x, sy]
     }
 
-    /// Sums over the contact cells of one row of a field; `p` is the pressure, `r` the residual and
-    /// `before` the residual of the iteration before.
+    /// Sums over the contact cells of one row of a field; `p` is the pressure and `limit` its bound, `r` the residual
+    /// and `before` the residual of the iteration before.
     pub(crate) fn products(
         &self,
         row: Row,
-        [p, r, before]: [&[f64]; 3],
+        [p, limit, r, before]: [&[f64]; 4],
         values: &[f64],
     ) -> Products {
-        let inside = |p, r, v| NonNegative.where_in_contact(p, r, v);
-        let [s, sy, with_residual, with_last] = if self.loaded[2] {
-            sum([p, r, before, values, row.y], |[p, r, before, v, y]| {
-                let v = inside(p, r, v);
-                [v, v * y, r * v, before * v]
-            })
+        let inputs = [p, limit, r, before, values, row.y];
+        let terms = |[p, limit, r, before, v, y]: [Lanes; 6]| {
+            let v = in_contact(p, limit, r) & v;
+            [v, r * v, before * v, v * y]
+        };
+        let [s, with_residual, with_last, sy] = if self.loaded[2] {
+            sum(inputs, terms)
         } else {
-            let [s, now, last] = sum([p, r, before, values], |[p, r, before, v]| {
-                let v = inside(p, r, v);
-                [v, r * v, before * v]
+            let [s, now, last] = sum(inputs, |fields| {
+                let [s, now, last, _] = terms(fields);
+                [s, now, last]
             });
-            [s, 0.0, now, last]
+            [s, now, last, 0.0]
         };
         Products {
             moments: [s, s * row.x, sy],
@@ -143,27 +144,28 @@ impl Freedoms {
         }
     }
 
-    /// Updates `fields` of one row by `step`, and returns the row's sums for a fit over the cells with
-    /// pressure.
+    /// Updates `fields` of one row by `step`, and returns the row's sums for a fit over the cells whose pressure is
+    /// free below its `limit`.
     ///
-    /// `step` gets the cells of three inputs and y. It returns the new fields, and pressure, value to be
+    /// `step` gets the cells of three inputs, `limit` and y. It returns the new fields, and pressure, value to be
     /// fitted, and a number to be counted.
     pub(crate) fn fit_row<const N: usize>(
         &self,
         row: Row,
+        limit: &[f64],
         [a, b, c]: [&[f64]; 3],
         fields: [&mut [f64]; N],
-        step: impl Fn([Lanes; 4], [Lanes; N]) -> ([Lanes; N], [Lanes; 3]),
+        step: impl Fn([Lanes; 5], [Lanes; N]) -> ([Lanes; N], [Lanes; 3]),
     ) -> FitSums {
-        let terms = |from, old| {
+        let terms = |from: [Lanes; 5], old| {
             let (new, [p, value, counted]) = step(from, old);
-            let [weight, value] = [ONE, value].map(|value| NonNegative.where_free(p, value));
+            let [weight, value] = [ONE, value].map(|value| is_free(p, from[3]) & value);
             (new, [counted, p, weight, value])
         };
-        let inputs = [a, b, c, row.y];
+        let inputs = [a, b, c, limit, row.y];
         let [counted, p, py, s, sy, syy, v, vy] = if self.loaded[2] {
             update(inputs, fields, |from, old| {
-                let y = from[3];
+                let y = from[4];
                 let (new, [counted, p, weight, value]) = terms(from, old);
                 let [sy, syy] = [weight * y, weight * y * y];
                 (new, [counted, p, p * y, weight, sy, syy, value, value * y])
@@ -191,7 +193,12 @@ impl Freedoms {
 
     /// Subtracts from the residual `values` their best fit Bλ over the contact cells of pressure `p`, and
     /// makes all others 0.
-    pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64]) {
+    pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64], bounds: &Bounds) {
+        let inside = |k: usize| bounds.is_free(k, p[k]) || r[k] != 0.0;
+        let member: Vec<f64> = (0..p.len())
+            .map(|k| f64::from(u8::from(inside(k))))
+            .collect();
+        let no_limit = vec![f64::INFINITY; self.columns[1].len()];
         let mut sums = FitSums::ZERO;
         for (number, (x, cells)) in self.rows().enumerate() {
             let row = Row {
@@ -199,17 +206,16 @@ impl Freedoms {
                 x,
                 y: &self.columns[1],
             };
-            let inputs = [&p[cells.clone()], &r[cells.clone()], row.y];
-            let here = self.fit_row(row, inputs, [&mut values[cells]], |[p, r, ..], [value]| {
-                let [member, value] =
-                    [ONE, value].map(|value| NonNegative.where_in_contact(p, r, value));
+            let (inputs, values) = ([&member[cells.clone()], row.y, row.y], &mut values[cells]);
+            let here = self.fit_row(row, &no_limit, inputs, [values], |[member, ..], [value]| {
+                let value = where_positive(member, value);
                 ([value], [member, value, member])
             });
             sums = sums.joined(here);
         }
         let mean = self.fitted(sums);
         self.for_each(mean, |k, b| {
-            if NonNegative.is_in_contact(p[k], r[k]) {
+            if inside(k) {
                 values[k] -= b;
             }
         });
@@ -267,11 +273,12 @@ pub(crate) fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3])
 
 #[cfg(test)]
 mod tests {
-    use crate::contact::motion::Motion;
+    use crate::contact::options::Motion;
+    use crate::contact::problem::bounds::Bounds;
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
     use crate::model::grid::Grid;
-    use crate::numerics::parallel::{Rows, Threads, ZERO};
+    use crate::numerics::parallel::{Lanes, Rows, Threads, ZERO};
 
     const CELLS: [usize; 2] = [9, 14];
 
@@ -289,8 +296,10 @@ mod tests {
     fn fit(freedoms: &Freedoms, p: &[f64], values: &[f64]) -> Result<[f64; 3]> {
         let threads = Threads::new(Some(1))?;
         let rows = Rows::new(&freedoms.columns, &threads);
+        let bounds = Bounds::none(CELLS[1]);
         let sums = rows.each([p, values, values], [], |row, fields, []| {
-            freedoms.fit_row(row, fields, [], |[p, v, _, _], []| ([], [p, v, ZERO]))
+            let step = |[p, v, ..]: [Lanes; 5], []: [Lanes; 0]| ([], [p, v, ZERO]);
+            freedoms.fit_row(row, bounds.row(row.number), fields, [], step)
         });
         Ok(freedoms.fitted(sums))
     }
@@ -315,7 +324,8 @@ mod tests {
         for (value, p) in values.iter_mut().zip(&p) {
             *value = if *p > 0.0 { *value } else { 3.0 };
         }
-        freedoms.project(&mut values, &member, &vec![0.0; cells]);
+        let bounds = Bounds::none(CELLS[1]);
+        freedoms.project(&mut values, &member, &vec![0.0; cells], &bounds);
         assert!(values.iter().all(|v| v.abs() < 1e-14));
         Ok(())
     }
@@ -338,7 +348,8 @@ mod tests {
         }
         let lambda = fit(&freedoms, &p, &values)?;
         let mut projected = values.clone();
-        freedoms.project(&mut projected, &p, &vec![0.0; cells]);
+        let bounds = Bounds::none(CELLS[1]);
+        freedoms.project(&mut projected, &p, &vec![0.0; cells], &bounds);
         freedoms.for_each(lambda, |k, b| values[k] -= b);
         for moment in freedoms.moments(&values) {
             assert!(moment.abs() < 1e-11, "{moment:e}");

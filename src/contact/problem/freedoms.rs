@@ -1,10 +1,11 @@
-//! Degrees of freedom of the rigid motion on a grid: a [`Motion`] that was checked.
+//! Degrees of freedom of the rigid motion on a grid: a [`Motion`] that was checked. The load must act inside the convex
+//! hull of the cells that can touch.
 
 use std::ops::Range;
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayRef2};
 
-use crate::contact::motion::Motion;
+use crate::contact::options::Motion;
 use crate::error::{Error, Result, finite, positive};
 use crate::model::grid::Grid;
 
@@ -199,5 +200,241 @@ impl Freedoms {
     /// Whether the force is the only loaded degree of freedom.
     pub(crate) fn only_force(&self) -> bool {
         self.loaded == [true, false, false]
+    }
+}
+
+/// Distance from the rim, in half sides of the grid, below which a load point counts as being on it: some
+/// units of rounding of scaled coordinates.
+const RIM: f64 = 4.0 * f64::EPSILON;
+
+/// Twice the area, in half sides of the grid, of a triangle whose corners count as lying on a line:
+/// rounding of products of scaled coordinates, 45 ε.
+const COLLINEAR_AREA: f64 = 1e-14;
+
+/// The half-plane n · v > c, as (n_x, n_y, c).
+type HalfPlane = [f64; 3];
+
+impl Freedoms {
+    /// An error unless some p ≥ 0 on the cells of finite `gap` carries the load and the moments,
+    /// with room on every side.
+    ///
+    /// The load point M/W must lie strictly inside the convex hull of those cells. Where there are
+    /// moments without a load, the ray along M must cross its inside.
+    pub(crate) fn check_feasible(&self, gap: &ArrayRef2<f64>) -> Result<()> {
+        let points = outline(gap, &self.columns);
+        if points.is_empty() {
+            return Err(Error::Inconsistent(
+                "no cell of the grid can touch: the gap is infinite",
+            ));
+        }
+        let half_planes = match (self.loaded[1], self.loaded[2]) {
+            (false, false) => return Ok(()),
+            (true, true) => convex_hull(&points),
+            (true, false) => interval(points.iter().map(|p| p[0]))
+                .map(|(s, c)| [s, 0.0, c])
+                .into(),
+            (false, true) => interval(points.iter().map(|p| p[1]))
+                .map(|(s, c)| [0.0, s, c])
+                .into(),
+        };
+        // n · (t M) > c for some t > 0, or at t = 1/W.
+        let (mut low, mut high) = if self.loaded[0] {
+            (1.0 / self.target[0], 1.0 / self.target[0])
+        } else {
+            (0.0, f64::MAX)
+        };
+        let mut inside = !half_planes.is_empty();
+        for [nx, ny, c] in half_planes {
+            let slope = nx * self.target[1] + ny * self.target[2];
+            if self.loaded[0] || slope.abs() <= f64::MIN_POSITIVE {
+                inside &= slope * low > c + RIM * c.abs().max(1.0);
+            } else if slope > 0.0 {
+                low = low.max(c / slope);
+            } else {
+                high = high.min(c / slope);
+            }
+        }
+        if inside && (self.loaded[0] || low < high) {
+            return Ok(());
+        }
+        let range = |k: usize| {
+            let at = |c: f64| self.origin[k] + self.scale[k] * c;
+            points
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+                    [a.min(at(p[k])), b.max(at(p[k]))]
+                })
+        };
+        let [x_range, y_range] = [range(0), range(1)];
+        if !self.loaded[0] {
+            let moment = |k: usize| self.target[k + 1] * self.scale[k] * self.cell_area;
+            return Err(Error::Moment {
+                moment: [moment(0), moment(1)],
+                x_range,
+                y_range,
+            });
+        }
+        let at = |k: usize| self.origin[k] + self.scale[k] * self.target[k + 1] / self.target[0];
+        Err(Error::LoadPoint {
+            x: at(0),
+            y: at(1),
+            x_range,
+            y_range,
+        })
+    }
+}
+
+/// First and last cell of finite gap in each row, as scaled coordinates.
+fn outline(gap: &ArrayRef2<f64>, [x, y]: &[Vec<f64>; 2]) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    for (row, &x) in gap.rows().into_iter().zip(x) {
+        let touches = |h: &f64| h.is_finite();
+        let (Some(first), Some(last)) =
+            (row.iter().position(touches), row.iter().rposition(touches))
+        else {
+            continue;
+        };
+        points.push([x, y[first]]);
+        if last > first {
+            points.push([x, y[last]]);
+        }
+    }
+    points
+}
+
+/// The inside of the interval that holds `values`, as s · v > c from both ends.
+fn interval(values: impl Iterator<Item = f64>) -> [(f64, f64); 2] {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+        (a.min(v), b.max(v))
+    });
+    [(1.0, low), (-1.0, -high)]
+}
+
+/// The inside of the convex hull of `points`, as one half-plane for each edge; none where the hull has no
+/// inside. Points come in order of x, then y.
+///
+/// Andrew, Inf. Process. Lett. 9 (1979) 216, doi:10.1016/0020-0190(79)90072-3.
+fn convex_hull(points: &[[f64; 2]]) -> Vec<HalfPlane> {
+    let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain[..] {
+                if turn(a, b, point) > COLLINEAR_AREA {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain
+    };
+    let lower = chain(&mut points.iter().copied());
+    let upper = chain(&mut points.iter().rev().copied());
+    if lower.len() + upper.len() < 5 {
+        return Vec::new();
+    }
+    let edges = lower.windows(2).chain(upper.windows(2));
+    edges
+        .map(|edge| {
+            // Counter-clockwise: the inside is to the left.
+            let [a, b] = [edge[0], edge[1]];
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+            let n = [-(b[1] - a[1]) / length, (b[0] - a[0]) / length];
+            [n[0], n[1], n[0] * a[0] + n[1] * a[1]]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::array;
+
+    use super::{convex_hull, interval, outline};
+
+    /// The triangle of sides 3, 4, 5 has an inscribed circle of radius 1 around (1, 1); points inside it, and on
+    /// its sides, change nothing.
+    #[test]
+    fn half_planes_of_a_triangle() {
+        let corners = [[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]];
+        let more = [
+            [0.0, 0.0],
+            [0.0, 1.0],
+            [0.0, 3.0],
+            [1.0, 1.0],
+            [2.0, 0.0],
+            [4.0, 0.0],
+        ];
+        for points in [&corners[..], &more] {
+            let half_planes = convex_hull(points);
+            assert_eq!(half_planes.len(), 3);
+            for [nx, ny, c] in half_planes {
+                assert!((nx.hypot(ny) - 1.0).abs() < 1e-15);
+                assert!((nx + ny - c - 1.0).abs() < 1e-15, "{nx} {ny} {c}");
+            }
+        }
+    }
+
+    /// A regular hexagon of circumradius 1, with its centre: six sides at a distance √3/2.
+    #[test]
+    fn half_planes_of_a_hexagon() {
+        let corner = |k: i32| (std::f64::consts::FRAC_PI_3 * f64::from(k)).sin_cos();
+        let mut points: Vec<[f64; 2]> = (0..6).map(|k| corner(k).into()).collect();
+        points.push([0.0, 0.0]);
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        let half_planes = convex_hull(&points);
+        assert_eq!(half_planes.len(), 6);
+        for [_, _, c] in half_planes {
+            assert!((c + 0.75_f64.sqrt()).abs() < 1e-14, "{c}");
+        }
+    }
+
+    #[test]
+    fn without_an_inside_there_is_none() {
+        let line: Vec<[f64; 2]> = (0..5).map(|k| [f64::from(k), 0.5 * f64::from(k)]).collect();
+        for points in [&line[..], &line[..2], &line[..1], &[]] {
+            assert!(convex_hull(points).is_empty());
+        }
+    }
+
+    #[test]
+    fn interval_from_both_ends() {
+        let inside = |v: f64| {
+            interval([2.0, -1.0, 0.5].into_iter())
+                .iter()
+                .all(|(s, c)| s * v > *c)
+        };
+        let expected = [
+            (-1.01, false),
+            (-1.0, false),
+            (-0.99, true),
+            (1.99, true),
+            (2.01, false),
+        ];
+        for (v, expected) in expected {
+            assert_eq!(inside(v), expected, "{v}");
+        }
+    }
+
+    #[test]
+    fn outline_of_the_cells_that_touch() {
+        const NO: f64 = f64::INFINITY;
+        let gap = array![
+            [NO, 1.0, 1.0, 1.0],
+            [NO, NO, NO, NO],
+            [0.0, 2.0, NO, NO],
+            [NO, NO, -1.0, NO]
+        ];
+        let columns = [vec![0.0, 1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0, 40.0]];
+        let expected = [
+            [0.0, 20.0],
+            [0.0, 40.0],
+            [2.0, 10.0],
+            [2.0, 20.0],
+            [3.0, 30.0],
+        ];
+        assert_eq!(outline(&gap, &columns), expected);
     }
 }

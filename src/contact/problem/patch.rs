@@ -2,7 +2,6 @@
 
 use ndarray::{Array2, ArrayRef2, ArrayView2, Axis, Slice};
 
-use crate::contact::problem::constraint::NonNegative;
 use crate::model::grid::{Window, full_window};
 use crate::numerics::parallel::each_row;
 
@@ -108,7 +107,7 @@ impl Patch {
 
     /// The smallest window around its contact.
     pub(crate) fn contact(&self) -> Option<Window> {
-        bounds(&self.window, |i, j| NonNegative.is_free(self.at(i, j)))
+        bounds(&self.window, |i, j| self.at(i, j) > 0.0)
     }
 
     /// This pressure in another window.
@@ -166,7 +165,7 @@ impl Patch {
             for (fine, [(j, a), (k, b)]) in row.iter_mut().zip(&columns) {
                 let here = value(near, *j);
                 // Interpolation would widen the contact by half a cell on every side.
-                if NonNegative.is_free(here) {
+                if here > 0.0 {
                     *fine = wide * (a * here + b * value(near, *k))
                         + narrow * (a * value(next, *j) + b * value(next, *k));
                 }

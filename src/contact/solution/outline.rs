@@ -3,10 +3,9 @@
 
 use ndarray::Array2;
 
-use crate::contact::problem::constraint::NonNegative;
 use crate::contact::problem::patch::rows;
 use crate::model::grid::Window;
-use crate::numerics::parallel::{Lanes, ONE, all, sum, update_with_largest};
+use crate::numerics::parallel::{Lanes, ONE, all, sum, update_with_largest, where_positive};
 
 /// Outline of the cells in contact.
 pub(super) struct Outline {
@@ -44,9 +43,9 @@ impl Outline {
         let contact = window[0].clone().zip(rows(pressure, window));
         for ((i, row), gap) in contact.zip(rows(gap, window)) {
             let mut start = 0;
-            for run in row.chunk_by(|a, b| NonNegative.is_free(*a) == NonNegative.is_free(*b)) {
+            for run in row.chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
                 let end = start + run.len();
-                if NonNegative.is_free(run[0]) {
+                if run[0] > 0.0 {
                     let [force] = sum([run], |[p]| [p]);
                     carried += force;
                     along_y += force * run.len() as f64;
@@ -61,8 +60,8 @@ impl Outline {
                 [row, gap, gap_before],
                 [&mut cells, &mut begun, &mut highest],
                 |[p, h, before], [n, force, highest]| {
-                    let inside = |value| NonNegative.where_free(p, value);
-                    let edges = inside(beyond(before)) + NonNegative.where_free(n, beyond(h));
+                    let inside = |value| where_positive(p, value);
+                    let edges = inside(beyond(before)) + where_positive(n, beyond(h));
                     let product = n * force;
                     let new = [inside(n + ONE), inside(force + p), highest.fast_max(p)];
                     (new, [edges], [product - inside(product)])
@@ -75,7 +74,7 @@ impl Outline {
         let [last] = sum([&cells, &begun], |[n, force]| [n * force]);
         along_x += last;
         for (line, p) in lines[1][window[1].clone()].iter_mut().zip(highest) {
-            *line = NonNegative.is_free(p);
+            *line = p > 0.0;
         }
         let mean = |weighted: f64| {
             if carried > 0.0 {

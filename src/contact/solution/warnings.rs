@@ -6,7 +6,6 @@ use ndarray::Array2;
 
 use super::outline::Outline;
 use crate::compliance::ends::Ends;
-use crate::contact::problem::constraint::NonNegative;
 use crate::model::grid::{Grid, Window};
 use crate::model::surface::{Extent, Surface};
 
@@ -309,7 +308,7 @@ impl Rim {
         let (x, y) = (grid.x(), grid.y());
         let mut rim = Self::default();
         let mut look = |i: usize, j: usize, [beyond_x, beyond_y]: [f64; 2]| {
-            if NonNegative.is_free(pressure[[i, j]]) {
+            if pressure[[i, j]] > 0.0 {
                 let goes_on = shape.gap(x[i] + beyond_x, y[j] + beyond_y).is_finite();
                 rim.goes_on |= goes_on;
                 rim.ends |= !goes_on;

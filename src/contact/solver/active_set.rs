@@ -8,6 +8,9 @@
 //!    far as no pressure is negative, and drop the cells that reach zero;
 //! 2. add the cell that overlaps most; end where none overlaps.
 //!
+//! With a hardness, cells drop at either bound and are added from either (Stark & Parker, Comput. Stat. 10 (1995)
+//! 129); what the cells at the hardness displace and carry is part of h and F.
+//!
 //! Each solution of step 1 has less energy than the one before, so that no contact comes twice and the
 //! iteration ends.
 //!
@@ -24,9 +27,9 @@
 
 use ndarray::ArrayRef2;
 
-use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use super::{Outcome, Solver, StopCriteria, Tally, Termination};
+use crate::compliance::convolution::Workspace;
 use crate::contact::problem::Problem;
-use crate::contact::problem::constraint::NonNegative;
 use crate::model::grid::full_window;
 use crate::numerics::dense::{backward, cholesky, forward};
 use crate::numerics::parallel::dot;
@@ -35,10 +38,14 @@ use crate::numerics::parallel::dot;
 /// convolution on 64 × 64 cells.
 const LARGEST_CONTACT: usize = 100;
 
-/// Whether so few cells carry the pressure `p` that this method may solve the problem.
-pub(crate) fn is_small(p: &[f64]) -> bool {
-    let loaded = p.iter().filter(|&&p| NonNegative.is_free(p));
-    loaded.take(LARGEST_CONTACT + 1).count() <= LARGEST_CONTACT
+/// Whether so few cells have a free pressure that this method may solve the problem.
+pub(crate) fn is_small(problem: &Problem, p: &[f64]) -> bool {
+    free_cells(problem, p).take(LARGEST_CONTACT + 1).count() <= LARGEST_CONTACT
+}
+
+/// Cells whose pressure is free.
+fn free_cells(problem: &Problem, p: &[f64]) -> impl Iterator<Item = usize> {
+    (0..p.len()).filter(|&k| problem.bounds.is_free(k, p[k]))
 }
 
 /// ε times the displacement of a cell under its own unit pressure. Each renewal of λ₀ brings the balance
@@ -60,63 +67,72 @@ pub(crate) fn solve(
     p: &mut [f64],
     lambda: [f64; 3],
     criteria: StopCriteria,
-    watch: &mut Watch,
+    tally: &mut Tally,
 ) -> Outcome {
+    let before = tally.work;
     let mut system = System {
         problem,
         coefficients,
         softness: SOFTNESS / problem.self_influence(),
-        contact: (0..p.len())
-            .filter(|&k| NonNegative.is_free(p[k]))
-            .collect(),
+        contact: free_cells(problem, p).collect(),
         lambda,
+        held: vec![0.0; p.len()],
+        displaced: vec![0.0; p.len()],
+        workspace: problem.convolution.workspace(),
+        work: 0.0,
     };
+    system.hold(p);
     let mut workspace = problem.convolution.workspace();
     let (mut u, mut g) = (vec![0.0; p.len()], vec![0.0; p.len()]);
     let everywhere = full_window(problem.convolution.shape());
-    let (mut work, mut renewals) = (0.0, 0);
-    for iterations in 0.. {
+    let mut renewals = 0;
+    loop {
         let Some(lambda) = system.descend(p) else {
+            tally.work = before + system.work;
             return Outcome {
                 solver: Solver::ActiveSet,
                 termination: Termination::IterationLimit,
-                iterations,
-                work,
                 lambda: system.lambda,
             };
         };
         let (multipliers, quality) = problem.judge(p, &everywhere, &mut u, lambda, &mut workspace);
-        work += problem.convolution.work();
+        system.work += problem.convolution.work();
+        tally.work = before + system.work;
         let lambda = multipliers.lambda();
         problem.gap_into(&u, multipliers, &mut g);
         let termination = if quality.meets(criteria.tolerance) {
             Some(Termination::Converged)
-        } else if watch(iterations, work, quality).is_break() {
+        } else if tally.tell(quality).is_break() {
             Some(Termination::Stopped)
         } else {
-            let limited = renewals == RENEWALS || iterations >= criteria.max_iterations;
+            let limited = renewals == RENEWALS || tally.iterations >= criteria.max_iterations;
             (limited || quality.overflows()).then_some(Termination::IterationLimit)
         };
         if let Some(termination) = termination {
             return Outcome {
                 solver: Solver::ActiveSet,
                 termination,
-                iterations,
-                work,
                 lambda,
             };
         }
-        if quality.overlap > criteria.tolerance {
-            let outside = (0..p.len()).filter(|&k| !NonNegative.is_free(p[k]));
-            let deepest = outside.min_by(|&a, &b| g[a].total_cmp(&g[b]));
-            system.contact.extend(deepest);
+        // What is wrong with the cell where most is: it overlaps, or parts at the hardness.
+        let wrong = |k: usize| problem.bounds.wrong(k, p[k], g[k]);
+        let held = (0..p.len()).filter(|&k| !problem.bounds.is_free(k, p[k]));
+        let worst = held.min_by(|&a, &b| wrong(b).total_cmp(&wrong(a)));
+        let parts = worst.is_some_and(|k| p[k] > 0.0 && wrong(k) > 0.0);
+        if quality.overlap > criteria.tolerance || (parts && quality.residual > criteria.tolerance)
+        {
+            system.contact.extend(worst);
             renewals = 0;
+            if parts {
+                system.hold(p);
+            }
         } else {
             system.renew(lambda, &g);
             renewals += 1;
         }
+        tally.iterations += 1;
     }
-    unreachable!("the loop ends by its limit")
 }
 
 /// The problem on the cells of a contact.
@@ -129,6 +145,13 @@ struct System<'a> {
     contact: Vec<usize>,
     /// λ₀
     lambda: [f64; 3],
+    /// Pressure of the cells that stay at the hardness, 0 elsewhere.
+    held: Vec<f64>,
+    /// Displacement under it.
+    displaced: Vec<f64>,
+    workspace: Workspace,
+    /// Work done so far.
+    work: f64,
 }
 
 impl System<'_> {
@@ -163,6 +186,20 @@ impl System<'_> {
         self.lambda = [0, 1, 2].map(|k| lambda[k] + further * change[k]);
     }
 
+    /// Holds the cells outside the contact at their pressure `p`.
+    fn hold(&mut self, p: &[f64]) {
+        if !self.problem.bounds.is_limited() {
+            return;
+        }
+        self.held.copy_from_slice(p);
+        for &k in &self.contact {
+            self.held[k] = 0.0;
+        }
+        self.problem
+            .apply(&self.held, &mut self.displaced, &mut self.workspace);
+        self.work += self.problem.convolution.work();
+    }
+
     /// Step 1: from `p` to the solution on the contact, without the cells that lose their pressure on the
     /// way. Returns λ, or `None` where there are too many cells or rounding is all that is left.
     fn descend(&mut self, p: &mut [f64]) -> Option<[f64; 3]> {
@@ -171,10 +208,12 @@ impl System<'_> {
         }
         loop {
             let (aim, lambda) = self.solve()?;
-            // Fraction of the way to the solution after which the pressure of each cell is 0.
+            // Fraction of the way to the solution after which the pressure of each cell is at a bound.
+            let bounds = self.problem.bounds;
             let ends = self.contact.iter().zip(&aim).map(|(&k, &aim)| match p[k] {
-                _ if NonNegative.is_free(aim) => f64::INFINITY,
-                p => p / (p - aim).max(f64::MIN_POSITIVE),
+                _ if bounds.is_free(k, aim) => f64::INFINITY,
+                p if aim <= 0.0 => p / (p - aim).max(f64::MIN_POSITIVE),
+                p => (bounds.limit(k) - p) / (aim - p).max(f64::MIN_POSITIVE),
             });
             let ends: Vec<f64> = ends.collect();
             let length = ends.iter().fold(1.0, |a: f64, &b| a.min(b));
@@ -183,16 +222,22 @@ impl System<'_> {
                 return None;
             }
             for ((&k, aim), &end) in self.contact.iter().zip(aim).zip(&ends) {
-                p[k] = if end <= length {
-                    0.0
-                } else {
+                p[k] = if end > length {
                     p[k] + length * (aim - p[k])
+                } else if aim > 0.0 {
+                    bounds.limit(k)
+                } else {
+                    0.0
                 };
             }
             if ends.iter().all(|end| end.is_infinite()) {
                 return Some(lambda);
             }
-            self.contact.retain(|&k| NonNegative.is_free(p[k]));
+            let held = self.contact.iter().any(|&k| p[k] >= bounds.limit(k));
+            self.contact.retain(|&k| bounds.is_free(k, p[k]));
+            if held {
+                self.hold(p);
+            }
         }
     }
 
@@ -218,13 +263,14 @@ impl System<'_> {
             .map(|&[i, j]| [1.0, freedoms.columns[0][i], freedoms.columns[1][j]]);
         let b: Vec<[f64; 3]> = b.collect();
         let gap = self.contact.iter().zip(&b);
-        let gap = gap.map(|(&k, b)| self.problem.gap[k] - dot(b, &self.lambda));
+        let gap = gap.map(|(&k, b)| self.problem.gap[k] + self.displaced[k] - dot(b, &self.lambda));
         let gap = forward(&lower, gap.collect());
         let images = [0, 1, 2].map(|k| forward(&lower, b.iter().map(|b| b[k]).collect()));
         let mut matrix = images
             .each_ref()
             .map(|row| images.each_ref().map(|column| dot(row, column)));
-        let mut right = freedoms.target;
+        let held = freedoms.moments(&self.held);
+        let mut right = [0, 1, 2].map(|k| freedoms.target[k] - held[k]);
         for k in 0..3 {
             matrix[k][k] += self.softness;
             right[k] += dot(&images[k], &gap);

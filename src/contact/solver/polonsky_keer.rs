@@ -5,13 +5,13 @@
 //! - the mean gap over the contact is one of up to three multipliers, found together by least
 //!   squares: force and moments are balanced in the same iteration;
 //! - scaling p to the load becomes p ← [p (1 + Bμ)]₊, which restores force and moments;
+//! - a pressure at the hardness leaves it where the gap opens;
 //! - the iteration ends on complementarity and overlap, not on the change of pressure;
 //! - where a direction does not descend, as after a change of the contact it may not, the gradient takes
 //!   its place.
 
-use super::conjugacy::Conjugacy;
-use super::{Outcome, Solver, StopCriteria, Termination, Watch};
-use crate::contact::problem::constraint::NonNegative;
+use super::linear_cg::Conjugacy;
+use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::contact::problem::fields::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Problem};
 use crate::error::Result;
@@ -31,7 +31,7 @@ pub(crate) fn solve(
     problem: &Problem,
     fields: &mut Fields,
     criteria: StopCriteria,
-    watch: &mut Watch,
+    tally: &mut Tally,
 ) -> Result<Outcome> {
     let freedoms = problem.freedoms;
     let Fields {
@@ -52,12 +52,11 @@ pub(crate) fn solve(
     let mut response = vec![0.0; cells];
     let no_gap = vec![0.0; cells];
     let mut conjugacy = Conjugacy::default();
-    let mut work = 0.0;
 
-    for iterations in 0.. {
+    loop {
         let mut near = multipliers.lambda();
         let (mut found, mut now) = problem.judge(p, &window, u, near, workspace);
-        work += problem.convolution.work();
+        tally.work += problem.convolution.work();
         // A tilt that the contact does not determine is 0, and not what it was before.
         let stale = [1, 2].map(|k| near[k].abs() > 0.0 && found.change[k].abs() <= 0.0);
         if stale[0] || stale[1] {
@@ -65,12 +64,12 @@ pub(crate) fn solve(
                 near[k] *= f64::from(!stale[k - 1]);
             }
             (found, now) = problem.judge(p, &window, u, near, workspace);
-            work += problem.convolution.work();
+            tally.work += problem.convolution.work();
         }
         if now.meets(criteria.tolerance) {
             // Gaps are exact only near the multipliers that they are counted from.
             (found, now) = problem.judge(p, &window, u, found.lambda(), workspace);
-            work += problem.convolution.work();
+            tally.work += problem.convolution.work();
         }
         (*multipliers, *quality) = (found, Some(now));
         problem.gap_into(u, found, &mut g);
@@ -78,27 +77,28 @@ pub(crate) fn solve(
             Ok(Outcome {
                 solver: Solver::PolonskyKeer,
                 termination,
-                iterations,
-                work,
                 lambda: found.lambda(),
             })
         };
         if now.meets(criteria.tolerance) {
             return end(Termination::Converged);
         }
-        if watch(iterations, work, now).is_break() {
+        if tally.tell(now).is_break() {
             return end(Termination::Stopped);
         }
-        if now.overflows() || iterations == criteria.max_iterations {
+        if now.overflows() || tally.iterations >= criteria.max_iterations {
             return end(Termination::IterationLimit);
         }
 
         // Where nothing touches yet, the cells that overlap are the contact.
-        let empty = !p.iter().any(|&p| NonNegative.is_free(p));
-        let in_contact = |p: f64, g: f64| NonNegative.is_free(p) || (empty && g < 0.0);
+        let bounds = problem.bounds;
+        let empty = !p.iter().enumerate().any(|(k, &p)| bounds.is_free(k, p));
+        let in_contact = |k: usize, p: f64, g: f64| {
+            bounds.is_free(k, p) || (empty && bounds.wrong(k, p, g) > 0.0)
+        };
         let mut steepness = 0.0;
-        for (&p, &g) in p.iter().zip(&g) {
-            if in_contact(p, g) {
+        for (k, (&p, &g)) in p.iter().zip(&g).enumerate() {
+            if in_contact(k, p, g) {
                 steepness += g * g;
             }
         }
@@ -106,8 +106,8 @@ pub(crate) fn solve(
         // The direction g + βt on the contact, and the step to the least energy along it.
         let step = loop {
             let (mut slope, mut size, mut energy) = (0.0, 0.0_f64, 0.0);
-            for ((t, &p), &g) in direction.iter_mut().zip(&*p).zip(&g) {
-                *t = if in_contact(p, g) {
+            for (k, ((t, &p), &g)) in direction.iter_mut().zip(&*p).zip(&g).enumerate() {
+                *t = if in_contact(k, p, g) {
                     let next = g + beta * *t;
                     slope += g * next;
                     size += next.abs();
@@ -118,7 +118,7 @@ pub(crate) fn solve(
             }
             if slope > 0.0 || beta <= 0.0 {
                 problem.apply(&direction, &mut response, workspace);
-                work += problem.convolution.work();
+                tally.work += problem.convolution.work();
                 energy = dot(&direction, &response);
                 let mean = problem.fit(p, &response, &no_gap);
                 freedoms.for_each(mean, |k, b| response[k] -= b);
@@ -143,20 +143,23 @@ pub(crate) fn solve(
 
         let mut joined = false;
         for (k, p) in p.iter_mut().enumerate() {
-            let inside = in_contact(*p, g[k]);
+            let inside = in_contact(k, *p, g[k]);
             if inside {
-                *p = NonNegative.nearest(*p - step * direction[k]);
+                *p = bounds.nearest(k, *p - step * direction[k]);
             }
-            // A step is above 0, so that no cell joins with a pressure below 0.
-            if !NonNegative.is_free(*p) && g[k] < 0.0 && problem.gap[k].is_finite() {
+            if bounds.wrong(k, *p, g[k]) > 0.0 && problem.gap[k].is_finite() {
                 joined |= !inside;
-                *p = -step * g[k];
+                *p = bounds.nearest(k, *p - step * g[k]);
             }
         }
         if joined {
             conjugacy.restart();
         }
-        problem.rebalance(p);
+        if bounds.is_limited() {
+            problem.rebalance_within(p, u, found.lambda());
+        } else {
+            problem.rebalance(p);
+        }
+        tally.iterations += 1;
     }
-    unreachable!("the loop ends by its limit")
 }

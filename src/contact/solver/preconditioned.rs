@@ -26,12 +26,12 @@ mod textbook;
 use std::mem;
 
 use super::active_set;
-use super::conjugacy::Conjugacy;
-use super::{Outcome, Solver, StopCriteria, Termination, Watch};
+use super::linear_cg::Conjugacy;
+use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::{Convolution, Workspace};
-use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::bounds::{in_contact, is_free, residual};
 use crate::contact::problem::fit::FitSums;
-use crate::contact::problem::{Problem, Quality, QualitySums, depths};
+use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
 use crate::numerics::parallel::{
     Lanes, Lease, ONE, Rows, ZERO, all, update, update_with_largest, where_positive,
 };
@@ -59,11 +59,13 @@ pub(crate) struct Preconditioned<'a> {
     conjugacy: Conjugacy,
     /// Number of cells in the contact.
     members: f64,
+    /// λ of the last assessment.
+    lambda: [f64; 3],
     /// Curvature of the energy by the exact convolution, relative to that by the periodic one, in the last
     /// step that used both.
     curvature_ratio: f64,
     /// Work done so far, in the unit of [`Convolution::work`].
-    pub(crate) work: f64,
+    work: f64,
 }
 
 /// Iterations by which most contacts have converged. After them a contact of a few cells is left to
@@ -125,6 +127,7 @@ impl<'a> Preconditioned<'a> {
             images: Images::Current,
             conjugacy: Conjugacy::default(),
             members: 0.0,
+            lambda: [0.0; 3],
             curvature_ratio: 1.0,
             work: 0.0,
         }
@@ -138,8 +141,9 @@ impl<'a> Preconditioned<'a> {
         &mut self,
         p: &mut [f64],
         criteria: StopCriteria,
-        watch: &mut Watch,
+        tally: &mut Tally,
     ) -> Outcome {
+        let before = tally.work;
         let mut last = Step::Truncated;
         let mut course = Course::new();
         self.start(p);
@@ -149,22 +153,20 @@ impl<'a> Preconditioned<'a> {
                 quality,
                 contact_changed,
             } = self.assess(p);
-            let work = self.work;
+            tally.work = before + self.work;
             let end = |termination| Outcome {
                 solver: Solver::Preconditioned,
                 termination,
-                iterations,
-                work,
                 lambda,
             };
             if quality.meets(criteria.tolerance) {
                 return end(Termination::Converged);
             }
-            if watch(iterations, work, quality).is_break() {
+            if tally.tell(quality).is_break() {
                 return end(Termination::Stopped);
             }
-            let limited = iterations == criteria.max_iterations || quality.overflows();
-            if limited || (iterations >= PATIENCE && active_set::is_small(p)) {
+            let limited = tally.iterations >= criteria.max_iterations || quality.overflows();
+            if limited || (iterations >= PATIENCE && active_set::is_small(self.problem, p)) {
                 return end(Termination::IterationLimit);
             }
             if course.stagnates(iterations, quality, p) {
@@ -173,9 +175,11 @@ impl<'a> Preconditioned<'a> {
             }
             self.prepare_images(p, contact_changed, iterations);
             last = self.step(p, last);
+            tally.work = before + self.work;
             if last == Step::Stalled {
                 return end(Termination::IterationLimit);
             }
+            tally.iterations += 1;
         }
         unreachable!("the loop ends by its limit")
     }
@@ -183,9 +187,10 @@ impl<'a> Preconditioned<'a> {
     /// Takes the cells with a pressure for the contact.
     fn start(&mut self, p: &[f64]) {
         let Arrays { r, .. } = self.memory.arrays(p.len());
-        [self.members] = self.rows.each([p], [r], |_, [p], [r]| {
-            update([p], [r], |[p], _| {
-                ([ZERO], [NonNegative.where_free(p, ONE)])
+        let bounds = self.problem.bounds;
+        [self.members] = self.rows.each([p], [r], |row, [p], [r]| {
+            update([p, bounds.row(row.number)], [r], |[p, limit], _| {
+                ([ZERO], [is_free(p, limit) & ONE])
             })
         });
         self.invert_freedoms(p);
@@ -205,13 +210,15 @@ impl<'a> Preconditioned<'a> {
     fn assess(&mut self, p: &[f64]) -> Assessment {
         // Pressed cells per joining cell below which the directions so far say little; chosen by trial.
         const PRESSED_PER_JOINING: f64 = 10.0;
-        let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        let (problem, bounds) = (self.problem, self.problem.bounds);
+        let freedoms = problem.freedoms;
         self.memory.keep_residual();
         let Arrays { u, r, response, .. } = self.memory.arrays(p.len());
         let mut catch_up = |factor: f64| {
             let (factor, inputs) = (all(factor), [p, response, problem.gap]);
             self.rows.each(inputs, [&mut *u], |row, inputs, [u]| {
-                freedoms.fit_row(row, inputs, [u], |[p, response, h, _], [u]| {
+                let limit = bounds.row(row.number);
+                freedoms.fit_row(row, limit, inputs, [u], |[p, response, h, ..], [u]| {
                     // At a factor of 0 the response may hold anything.
                     let u = u + where_positive(factor, factor * response);
                     ([u], [p, u + h, ZERO])
@@ -223,28 +230,34 @@ impl<'a> Preconditioned<'a> {
             Displacement::Current => catch_up(0.0),
             Displacement::Behind(factor) => catch_up(factor),
         };
-        let lambda = freedoms.fitted(fit);
+        let lambda = match fit.cells() > 0.0 {
+            true => freedoms.fitted(fit),
+            false => problem.until_touching(p, u, self.lambda),
+        };
+        self.lambda = lambda;
         let inputs = [p, u, problem.gap];
         let (sums, [free, inside]) = self.rows.each(inputs, [r], |row, [p, u, h], [r]| {
             let (base, slope) = (all(lambda[0] + lambda[1] * row.x), all(lambda[2]));
-            let step = |p: Lanes, u: Lanes, h: Lanes, motion: Lanes| {
+            let step = |[p, limit, u, h]: [Lanes; 4], motion: Lanes| {
                 let overlap = motion - (h + u);
-                let residual = NonNegative.where_in_contact(p, overlap, overlap);
-                let free = NonNegative.where_free(p, ONE);
-                let inside = NonNegative.where_in_contact(p, overlap, ONE);
-                let sums = [p * u, p * residual.abs(), free, inside];
-                ([residual], depths(u, overlap), sums)
+                let residual = residual(p, limit, overlap);
+                let free = is_free(p, limit) & ONE;
+                let inside = in_contact(p, limit, residual) & ONE;
+                let [work, mismatch, held] = works(p, limit, u, overlap);
+                let sums = [work, mismatch, held, free, inside];
+                ([residual], depths(p, limit, u, overlap), sums)
             };
+            let limit = bounds.row(row.number);
             let (extremes, sums) = if freedoms.loaded[2] {
-                let inputs = [p, u, h, row.y];
-                update_with_largest(inputs, [r], |[p, u, h, y], _| {
-                    step(p, u, h, base + slope * y)
+                let inputs = [p, limit, u, h, row.y];
+                update_with_largest(inputs, [r], |[p, limit, u, h, y], _| {
+                    step([p, limit, u, h], base + slope * y)
                 })
             } else {
-                update_with_largest([p, u, h], [r], |[p, u, h], _| step(p, u, h, base))
+                update_with_largest([p, limit, u, h], [r], |fields, _| step(fields, base))
             };
-            let [work, mismatch, free, inside] = sums;
-            let sums = QualitySums::of_row(extremes, [work, mismatch]);
+            let [work, mismatch, held, free, inside] = sums;
+            let sums = QualitySums::of_row(extremes, [work, mismatch, held]);
             (sums, [free, inside])
         });
         let joined = inside - free;

@@ -9,8 +9,9 @@ use super::{Approximation, Assessment, Memory, PATIENCE, Preconditioned, Step};
 use crate::compliance::convolution::Convolution;
 use crate::compliance::influence::{Method, influence_coefficients};
 use crate::compliance::response::Body;
-use crate::contact::motion::Motion;
+use crate::contact::options::Motion;
 use crate::contact::problem::Problem;
+use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::scale::LocalDisplacement;
 use crate::error::Result;
@@ -124,14 +125,14 @@ fn with_both<R>(case: &Case, work: impl FnOnce(Preconditioned, Textbook, Field) 
         freedoms: &freedoms,
         gap: &gap,
         local: &LocalDisplacement::new(&[&case.body], &case.grid),
-        dent: 0.0,
+        bounds: &Bounds::none(case.grid.shape()[1]),
     };
     let pressed = |(i, j): (usize, usize)| x[i].hypot(y[j]) < case.start;
     let pressed = Array2::from_shape_fn(coefficients.dim(), pressed);
     let mut p: Field = (pressed.iter().zip(&gap))
         .map(|(&pressed, h)| if pressed && h.is_finite() { 1e-3 } else { 0.0 })
         .collect();
-    assert!(freedoms.balance(&mut p));
+    assert!(freedoms.balance(&mut p, problem.bounds));
     let mut memory = Pool::<Memory>::default().lease();
     memory.reserve(&problem.rows(), gap.len(), freedoms.loaded);
     let mut fused = Preconditioned::new(&problem, &approximation, memory);

@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use super::{Images, PATIENCE, Preconditioned};
 use crate::compliance::convolution::Convolution;
-use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::bounds::in_contact;
 use crate::contact::problem::fit::Products;
 use crate::numerics::parallel::{ONE, Total, all, dot, update, where_positive};
 
@@ -45,12 +45,13 @@ impl Preconditioned<'_> {
     pub(super) fn invert_freedoms(&mut self, p: &[f64]) {
         let inverse = &self.approximation.inverse;
         let Arrays { r, z, images, .. } = self.memory.arrays(p.len());
-        let loaded = self.problem.freedoms.loaded;
+        let (loaded, bounds) = (self.problem.freedoms.loaded, self.problem.bounds);
         for (freedom, image) in images.into_iter().enumerate().filter(|(k, _)| loaded[*k]) {
             self.rows.each([p, r], [&mut *z], |row, [p, r], [z]| {
-                update([p, r, row.y], [z], |[p, r, y], _| {
+                let inputs = [p, bounds.row(row.number), r, row.y];
+                update(inputs, [z], |[p, limit, r, y], _| {
                     let column = [ONE, all(row.x), y][freedom];
-                    ([NonNegative.where_in_contact(p, r, column)], [])
+                    ([in_contact(p, limit, r) & column], [])
                 })
             });
             inverse.apply_slices(z, image, &mut self.workspace);
@@ -82,7 +83,7 @@ impl Preconditioned<'_> {
     /// z ← z − (MB)_C [B_Cᵀ (MB)_C]⁻¹ B_Cᵀ z
     /// ```
     fn deflate(&mut self, p: &[f64]) -> Deflated {
-        let freedoms = self.problem.freedoms;
+        let (freedoms, bounds) = (self.problem.freedoms, self.problem.bounds);
         let Arrays {
             r,
             r_before,
@@ -104,10 +105,11 @@ impl Preconditioned<'_> {
             let inputs = [p, r, before, z, i0, i1, i2];
             block.each(inputs, [], |row, [p, r, before, z, images @ ..], []| {
                 let mut products: [Products; 4] = Total::ZERO;
-                products[0] = freedoms.products(row, [p, r, before], z);
+                let fields = [p, bounds.row(row.number), r, before];
+                products[0] = freedoms.products(row, fields, z);
                 for (k, image) in images.into_iter().enumerate() {
                     if freedoms.loaded[k] {
-                        products[k + 1] = freedoms.products(row, [p, r, before], image);
+                        products[k + 1] = freedoms.products(row, fields, image);
                     }
                 }
                 products
@@ -126,7 +128,7 @@ impl Preconditioned<'_> {
         if descent <= 0.0 {
             // The oblique projection failed: steepest descent, projected orthogonally.
             z.copy_from_slice(r);
-            freedoms.project(z, p, r);
+            freedoms.project(z, p, r, bounds);
             self.conjugacy.restart();
             return Deflated {
                 factors: [0.0; 3],
@@ -152,17 +154,20 @@ impl Preconditioned<'_> {
         } = self.memory.arrays(p.len());
         let [i0, i1, i2] = loaded_images(self.problem.freedoms.loaded, images, r);
         let ([f0, f1, f2], beta) = (factors.map(all), all(beta));
+        let bounds = self.problem.bounds;
         let (inwards, halves) = convolution.inwards(&mut self.workspace);
         let (inputs, outputs) = ([p, &*r, z, i0, i1, i2], ([direction], halves));
         let [slope] = self
             .rows
             .blocks(inputs, outputs, |block, inputs, ([direction], halves)| {
-                let slope = block.each(inputs, [&mut *direction], |_, inputs, [direction]| {
-                    update(inputs, [direction], |[p, r, z, a, b, c], [d]| {
+                let slope = block.each(inputs, [&mut *direction], |row, inputs, [direction]| {
+                    let [p, r, z, i0, i1, i2] = inputs;
+                    let inputs = [p, bounds.row(row.number), r, z, i0, i1, i2];
+                    update(inputs, [direction], |[p, limit, r, z, a, b, c], [d]| {
                         let z = z - f0 * a - f1 * b - f2 * c;
                         // At a β of 0 the last direction may hold anything.
                         let last = where_positive(beta, beta * d);
-                        let d = NonNegative.where_in_contact(p, r, z + last);
+                        let d = in_contact(p, limit, r) & (z + last);
                         ([d], [r * d])
                     })
                 });

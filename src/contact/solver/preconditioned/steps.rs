@@ -11,7 +11,7 @@ use super::arrays::Arrays;
 use super::{Displacement, Preconditioned, Step};
 use crate::compliance::convolution::Convolution;
 use crate::contact::problem::Problem;
-use crate::contact::problem::constraint::NonNegative;
+use crate::contact::problem::bounds::{clip, not_allowed};
 use crate::numerics::parallel::{all, sum, update};
 
 impl Preconditioned<'_> {
@@ -58,6 +58,7 @@ impl Preconditioned<'_> {
     /// A step of exact length. Where cells leave, the displacement is computed afresh.
     fn exact_step(&mut self, p: &mut [f64], slope: f64) -> Step {
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
+        let bounds = problem.bounds;
         let curvature = self.respond(problem.convolution);
         let Some(length) = best_length(slope, curvature).map(all) else {
             return Step::Stalled;
@@ -70,13 +71,22 @@ impl Preconditioned<'_> {
         } = self.memory.arrays(p.len());
         let (inputs, outputs) = ([&*direction, response, problem.gap], [&mut *p, u]);
         let fit = self.rows.each(inputs, outputs, |row, inputs, fields| {
-            freedoms.fit_row(row, inputs, fields, |[d, response, h, _], [p, u]| {
-                let (p, lost) = NonNegative.clip(p + length * d);
-                let u = u + length * response;
-                ([p, u], [p, u + h, lost])
-            })
+            let limit = bounds.row(row.number);
+            freedoms.fit_row(
+                row,
+                limit,
+                inputs,
+                fields,
+                |[d, response, h, limit, _], [p, u]| {
+                    let trial = p + length * d;
+                    let (p, lost) = (clip(trial, limit), not_allowed(trial, limit));
+                    let u = u + length * response;
+                    ([p, u], [p, u + h, lost])
+                },
+            )
         });
-        let (done, factor) = balance(problem, p, fit.counted, fit.moments);
+        let near = (&*u, self.lambda);
+        let (done, factor) = balance(problem, p, near, fit.counted, fit.moments);
         if done == Step::Whole {
             self.displacement = Displacement::Fitted(fit);
             return done;
@@ -103,6 +113,7 @@ impl Preconditioned<'_> {
             return Step::Stalled;
         };
         let Arrays {
+            u,
             direction,
             trial,
             r,
@@ -112,13 +123,14 @@ impl Preconditioned<'_> {
         let (lost, moments) =
             self.rows
                 .each([&*direction, p], [&mut *trial], |row, [d, p], [trial]| {
-                    let [lost] = update([d, p], [&mut *trial], |[d, p], _| {
-                        let (trial, lost) = NonNegative.clip(p + length * d);
-                        ([trial], [lost])
+                    let inputs = [d, p, problem.bounds.row(row.number)];
+                    let [lost] = update(inputs, [&mut *trial], |[d, p, limit], _| {
+                        let trial = p + length * d;
+                        ([clip(trial, limit)], [not_allowed(trial, limit)])
                     });
                     (lost, freedoms.moments_of(row, trial))
                 });
-        let (done, factor) = balance(problem, trial, lost, moments);
+        let (done, factor) = balance(problem, trial, (u, self.lambda), lost, moments);
         let (inwards, halves) = problem.convolution.inwards(&mut self.workspace);
         let outputs = ([&mut *p, &mut *trial], halves);
         self.rows
@@ -179,12 +191,23 @@ impl Preconditioned<'_> {
 }
 
 /// [`Step::Whole`] where a pressure of these `moments`, from which `lost` cells were clipped, is balanced.
-/// Otherwise restores balance up to a factor on `p`, which is returned with [`Step::Truncated`].
-fn balance(problem: &Problem, p: &mut [f64], lost: f64, moments: [f64; 3]) -> (Step, f64) {
+/// Otherwise restores balance up to a factor on `p`, which is returned with [`Step::Truncated`]. The displacement and λ
+/// before the step are `near`.
+fn balance(
+    problem: &Problem,
+    p: &mut [f64],
+    near: (&[f64], [f64; 3]),
+    lost: f64,
+    moments: [f64; 3],
+) -> (Step, f64) {
     let freedoms = problem.freedoms;
     // A direction that lost cells since it was made is out of balance, too.
     if lost <= 0.0 && freedoms.on_target(moments) {
         return (Step::Whole, 1.0);
+    }
+    if problem.bounds.is_limited() {
+        problem.rebalance_within(p, near.0, near.1);
+        return (Step::Truncated, 1.0);
     }
     let factor = freedoms.to_load(moments[0]);
     let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {

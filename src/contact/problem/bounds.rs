@@ -1,0 +1,136 @@
+//! Pressures that a cell can carry: surfaces that touch push each other and never pull, up to a hardness.
+//!
+//! ```text
+//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0
+//! ```
+//!
+//! A pressure between the bounds is free to change. One at a bound is held there until the gap has the wrong sign. The
+//! contact that an iteration works on is made of the cells that are free or have that gap.
+
+use std::borrow::Cow;
+
+use crate::contact::hardness::Hardness;
+use crate::model::grid::Window;
+use crate::numerics::parallel::{Lanes, ONE, ZERO, where_positive};
+
+/// The bounds 0 ≤ p ≤ H of the cells of a grid or window.
+#[derive(Debug, Clone)]
+pub(crate) struct Bounds<'a> {
+    /// H of all cells in C order, or of one row where all rows are alike.
+    limits: Cow<'a, [f64]>,
+    columns: usize,
+    is_limited: bool,
+}
+
+impl<'a> Bounds<'a> {
+    /// p ≥ 0 alone.
+    pub(crate) fn none(columns: usize) -> Self {
+        Self {
+            limits: vec![f64::INFINITY; columns].into(),
+            columns,
+            is_limited: false,
+        }
+    }
+
+    /// The bounds of surfaces with this hardness on rows of so many `columns`.
+    pub(crate) fn of(hardness: &'a Hardness, columns: usize) -> Self {
+        let limits = match hardness {
+            Hardness::Uniform(limit) => vec![*limit; columns].into(),
+            Hardness::Cells(limits) => match limits.as_slice() {
+                Some(limits) => limits.into(),
+                None => limits.iter().copied().collect(),
+            },
+        };
+        Self {
+            limits,
+            columns,
+            is_limited: true,
+        }
+    }
+
+    /// The bounds in a window.
+    pub(crate) fn in_window(&self, window: &Window) -> Bounds<'static> {
+        let limits = if self.limits.len() == self.columns {
+            self.limits[window[1].clone()].to_vec()
+        } else {
+            let rows = window[0]
+                .clone()
+                .flat_map(|i| &self.row(i)[window[1].clone()]);
+            rows.copied().collect()
+        };
+        Bounds {
+            limits: limits.into(),
+            columns: window[1].len(),
+            is_limited: self.is_limited,
+        }
+    }
+
+    /// Whether pressures have an upper bound.
+    pub(crate) fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+
+    /// H along a row.
+    pub(crate) fn row(&self, number: usize) -> &[f64] {
+        let first = if self.limits.len() == self.columns {
+            0
+        } else {
+            number * self.columns
+        };
+        &self.limits[first..first + self.columns]
+    }
+
+    /// H of a cell.
+    pub(crate) fn limit(&self, cell: usize) -> f64 {
+        self.limits[cell % self.limits.len()]
+    }
+
+    /// Whether the pressure `p` of a cell is free to change.
+    pub(crate) fn is_free(&self, cell: usize, p: f64) -> bool {
+        p > 0.0 && p < self.limit(cell)
+    }
+
+    /// The gap of a cell, positive where it is of the wrong sign for the bound that holds the pressure `p`; 0 where the
+    /// pressure is free.
+    pub(crate) fn wrong(&self, cell: usize, p: f64, gap: f64) -> f64 {
+        if p <= 0.0 {
+            -gap
+        } else if p >= self.limit(cell) {
+            gap
+        } else {
+            0.0
+        }
+    }
+
+    /// The allowed pressure nearest to `p`.
+    pub(crate) fn nearest(&self, cell: usize, p: f64) -> f64 {
+        p.max(0.0).min(self.limit(cell))
+    }
+}
+
+/// A mask of the cells whose pressure is free to change.
+pub(crate) fn is_free(p: Lanes, limit: Lanes) -> Lanes {
+    p.simd_gt(ZERO) & p.simd_lt(limit)
+}
+
+/// A mask of the cells in the contact; `r` is the residual, 0 outside it.
+pub(crate) fn in_contact(p: Lanes, limit: Lanes, r: Lanes) -> Lanes {
+    is_free(p, limit) | r.simd_ne(ZERO)
+}
+
+/// The residual of cells with this `overlap`: 0 where a bound holds the pressure.
+pub(crate) fn residual(p: Lanes, limit: Lanes, overlap: Lanes) -> Lanes {
+    let rises = p.simd_lt(limit) & overlap.simd_gt(ZERO);
+    let falls = p.simd_gt(ZERO) & overlap.simd_lt(ZERO);
+    (rises | falls) & overlap
+}
+
+/// The allowed pressures nearest to `p`.
+pub(crate) fn clip(p: Lanes, limit: Lanes) -> Lanes {
+    where_positive(p, p).fast_min(limit)
+}
+
+/// 1 in cells where `p` is not allowed, 0 in the others.
+pub(crate) fn not_allowed(p: Lanes, limit: Lanes) -> Lanes {
+    (p.simd_lt(ZERO) | p.simd_gt(limit)) & ONE
+}
