@@ -30,7 +30,6 @@ pub use options::{Algorithm, Motion, Options, Setup};
 pub(crate) use problem::freedoms::OVERFLOW;
 pub(crate) use problem::patch::{block, bounds};
 pub use solution::Solution;
-pub use solution::report::Balance;
 pub use solution::report::{Balance, Progress, Report};
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::Warning;

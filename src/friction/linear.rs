@@ -5,7 +5,7 @@
 //! ```
 //!
 //! M approximates A⁻¹. With S = Cᵀ M C, the operator G = M − M C S⁻¹ Cᵀ M makes nothing that has a force, Cᵀ G = 0, and
-//! G C = 0: GMRES on G A d = G b leaves C δ free and keeps Cᵀ d. Saad, Iterative Methods for Sparse NewtonSystem Systems,
+//! G C = 0: GMRES on G A d = G b leaves C δ free and keeps Cᵀ d. Saad, Iterative Methods for Sparse Linear Systems,
 //! 2nd ed., SIAM (2003), §6.5 and §14; the preconditioner for rolling is derived here.
 
 use std::ops::ControlFlow;
