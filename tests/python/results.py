@@ -49,7 +49,7 @@ NORMAL: dict[str, Callable[[], nacre.Solution]] = {
     ),
 }
 FRICTIONS = np.linspace(0.1, 0.5, 40 * 36).reshape(40, 36)
-FRICTION: dict[str, Callable[[], nacre.FrictionSolution]] = {
+FRICTION: dict[str, Callable[[], nacre.types.FrictionSolution]] = {
     "slid": lambda: CONTACT.slide(BALL, **HELD, force=(2.0, 1.0), torque=1e-5),
     "cells, coupled": lambda: nacre.Contact(COATED, CELLS, STEEL).slide(
         BALL, load=10.0, friction=FRICTIONS, shift=(1e-7, None)

@@ -11,11 +11,7 @@ import pytest
 
 import nacre
 import nacre.cli
-<<<<<<< HEAD
-from nacre.paper import cases
 from support import Capture, Patch, command, interrupted, python, written
-=======
->>>>>>> py
 
 
 def run(*arguments: object) -> tuple[int, str, str]:
@@ -24,17 +20,13 @@ def run(*arguments: object) -> tuple[int, str, str]:
     return done.returncode, done.stdout, done.stderr
 
 
-def test_help_names_the_commands_and_info_the_versions(capsys: Capture) -> None:
+def test_help_names_the_commands() -> None:
     code, out, err = run("--help")
     assert (code, err) == (0, "")
-<<<<<<< HEAD
-    assert [name for name in ("info", "paper", "solve", "sweep") if f" {name} " not in out] == []
-=======
     assert [name for name in ("info", "indent", "solve", "sweep") if f" {name} " not in out] == []
 
 
-def test_version_is_one_line() -> None:
->>>>>>> py
+def test_version_is_one_line_and_info_prints_the_versions(capsys: Capture) -> None:
     assert run("--version") == (0, f"nacre {nacre.__version__}\n", "")
     assert command("info") == 0
     assert nacre.__version__ in capsys.readouterr().out
@@ -67,76 +59,15 @@ def test_bad_input_leaves_no_traceback_in_a_process() -> None:
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
-<<<<<<< HEAD
-@pytest.mark.parametrize(
-    ("missing", "extra", "arguments"),
-    [
-        ("typer", "cli", ["info"]),
-        ("rich", "cli", ["info"]),
-        ("matplotlib", "plot", ["paper", "--out", "out"]),  # before anything is solved
-    ],
-)
-def test_a_missing_extra_is_named(
-    missing: str, extra: str, arguments: list[str], tmp_path: Path
-) -> None:
-    code = f"import sys; sys.modules[{missing!r}] = None; import nacre.cli"
-    done = python("-c", f"{code}; nacre.cli.main({arguments})", folder=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert f"nacre-contact[{extra}]" in done.stderr
-    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
-
-
-def test_paper_prints_table_claim_and_reference(tmp_path: Path) -> None:
-    code, out, err = run("paper", "--quick", "--out", str(tmp_path))
-    assert (code, err) == (0, "")
-    assert max(map(len, out.splitlines())) <= 80 + len(str(tmp_path))
-    for series in cases.SERIES:
-        assert series.title in out
-    rows = [line.split() for line in out.splitlines()]
-    peaks = [row[1] for row in rows if row[:1] == ["1"] and len(row) == 12]
-    assert peaks == ["1468", "823", "986", "823", "986"]  # MPa, E1 = E2
-    assert "holds" in out
-    assert "Largest deviations" in out
-    assert (tmp_path / "table.csv").exists()
-
-
-def test_a_solve_that_does_not_converge_is_exit_code_1(
-    tmp_path: Path, monkeypatch: Patch, capsys: Capture
-) -> None:
-    class Contact:
-        def __init__(self, *arguments: object, **options: object) -> None: ...
-
-        def solve(self, *arguments: object, **options: object) -> None:
-            raise nacre.ConvergenceError("residual 1e-3 after 9 iterations")
-
-    monkeypatch.setattr(nacre, "Contact", Contact)
-    assert command("paper", "--out", str(tmp_path)) == 1
-    err = capsys.readouterr().err
-    assert err.startswith("nacre: ")
-    assert "sphere, h = 0.1 mm, E1/E2 = " in err
-    assert "residual 1e-3" in err
-    assert err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
-def test_interrupt_is_exit_code_130_without_traceback(tmp_path: Path) -> None:
-    ended = interrupted("-m", "nacre.cli", "paper", "--out", tmp_path)  # it is about to solve
-    assert ended.code == 130
-    assert "Traceback" not in ended.errors
-    assert list(tmp_path.iterdir()) == []
-=======
 @pytest.mark.parametrize(("missing", "extra"), [("typer", "cli"), ("pydantic", "cli")])
 def test_a_missing_extra_is_named(missing: str, extra: str) -> None:
     code = (
         f"import sys; sys.modules[{missing!r}] = None; import nacre.cli; nacre.cli.main(['info'])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    done = python("-c", code)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert f"nacre-contact[{extra}]" in done.stderr
->>>>>>> py
 
 
 SPHERE = """

@@ -17,7 +17,7 @@ import nacre
 from bodies import BALL, STEEL
 from nacre import values
 from nacre.case import Case
-from support import DATA, Capture, command
+from support import DATA
 
 LAYERS = [nacre.Layer(nacre.Elastic(420e9, 0.25), 2e-6)]
 COATED = nacre.HalfSpace(STEEL, LAYERS)
@@ -262,18 +262,11 @@ def test_the_ends_of_a_case_can_be_swept(tmp_path: Path) -> None:
     assert single.approach.values.tolist() == [both, one]
 
 
-<<<<<<< HEAD
-def test_the_reference_of_case_files_has_the_ends(capsys: Capture) -> None:
-    assert command("schema") == 0
-    told = "ends: pair of numbers, or of -inf and inf where the body goes on [m]"
-    assert told in capsys.readouterr().out
-=======
 def test_the_reference_of_case_files_has_the_ends() -> None:
     from nacre import _reference
 
     told = " ".join(_reference.text().split())
     assert "`ends`: pair of numbers, or of -inf and inf where the body goes on [m]" in told
->>>>>>> py
 
 
 def test_no_warning_without_contact_at_the_ends() -> None:

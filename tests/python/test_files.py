@@ -28,7 +28,7 @@ from support import Patch, python, resealed
 SAVED = {**results.NORMAL, **results.FRICTION, **results.INDENT, **results.FITS}
 FIELDS: dict[type, tuple[str, ...]] = {
     nacre.Solution: ("pressure", "gap", "displacement", "x", "y", "line_load"),
-    nacre.FrictionSolution: (
+    nacre.types.FrictionSolution: (
         *("traction", "displacement", "slip", "stick", "bound", "dissipation", "pressure"),
     ),
     nacre.indent.IndentSolution: ("load", "approach", "radius"),
@@ -54,7 +54,7 @@ def same(found: Any, expected: Any) -> None:
             assert getattr(found, name) == getattr(expected, name)
         # The same program solves the same problem: no bit differs.
         np.testing.assert_array_equal(found.state.load, expected.load)
-    elif isinstance(expected, nacre.FrictionSolution):
+    elif isinstance(expected, nacre.types.FrictionSolution):
         for name in ("force", "shift", "twist", "creepage", "spin", "direction", "report"):
             assert getattr(found, name) == getattr(expected, name)
     else:

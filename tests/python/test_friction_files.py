@@ -16,52 +16,8 @@ import results
 from bodies import BALL, HELD, STEEL
 from results import CONTACT, solved
 
-<<<<<<< HEAD
 ROLLED = ("rolled", "line rolled")
 every = pytest.mark.parametrize("kind", results.FRICTION)
-=======
-STEEL, DLC = nacre.Elastic(210e9, 0.3), nacre.Elastic(420e9, 0.25)
-COATED = nacre.HalfSpace(STEEL, [nacre.Layer(DLC, 2e-5)])
-BALL = nacre.Sphere(5e-3)
-GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4), (1e-6, -2e-6))
-CONTACT = nacre.Contact(STEEL, GRID, STEEL)
-LINE = nacre.Contact(STEEL, nacre.Grid.line(64, 2e-4), STEEL)
-ROD = nacre.Cylinder(5e-3)
-HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
-FIELDS = ("traction", "displacement", "slip", "stick", "bound", "dissipation", "pressure")
-
-
-def solutions() -> dict[str, nacre.types.FrictionSolution]:
-    coated = nacre.Contact(COATED, GRID, STEEL)
-    cells = np.linspace(0.1, 0.5, 40 * 36).reshape(40, 36)
-    return {
-        "slid": CONTACT.slide(BALL, **HELD, force=(2.0, 1.0), torque=1e-5),
-        "cells, coupled": coated.slide(BALL, load=10.0, friction=cells, shift=(1e-7, None)),
-        "rolled": CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
-        "line": LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),
-        "line rolled": LINE.roll(ROD, load=1e4, friction=0.3, creepage=(1e-4, None)),
-        "apart": CONTACT.slide(BALL, approach=-1e-6, friction=0.3),
-        "not converged": CONTACT.slide(
-            BALL, **HELD, force=(2.0, None), max_convolutions=2, check=False
-        ),
-    }
-
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore", nacre.NacreWarning)
-    SOLVED = solutions()
-ROLLED = ("rolled", "line rolled")
-
-every = pytest.mark.parametrize("kind", SOLVED)
-
-
-def same(found: Any, expected: nacre.types.FrictionSolution) -> None:
-    assert found == expected  # every field and the whole report
-    for name in FIELDS:
-        assert getattr(found, name).tobytes() == getattr(expected, name).tobytes()
-    for name in ("force", "shift", "twist", "creepage", "spin", "direction", "report"):
-        assert getattr(found, name) == getattr(expected, name)
->>>>>>> py
 
 
 def shift_of(solution: nacre.types.FrictionSolution) -> tuple[float, float]:
@@ -69,26 +25,6 @@ def shift_of(solution: nacre.types.FrictionSolution) -> tuple[float, float]:
     return solution.shift
 
 
-<<<<<<< HEAD
-=======
-# Copies.
-
-
-@every
-def test_copies_are_the_same(kind: str) -> None:
-    solution = SOLVED[kind]
-    for found in (
-        pickle.loads(pickle.dumps(solution)),
-        copy.deepcopy(solution),
-        nacre.types.FrictionSolution.from_dict(solution.to_dict()),
-        values.decode(json.loads(json.dumps(values.encode(solution)))),
-    ):
-        same(found, solution)
-    assert pickle.loads(pickle.dumps(solution.report)) == solution.report
-    assert nacre.types.FrictionReport.from_dict(solution.report.to_dict()) == solution.report
-
-
->>>>>>> py
 def test_a_history_goes_on_from_a_copy_to_the_bit() -> None:
     solution = solved("slid")
     back = pickle.loads(pickle.dumps(solution))
@@ -97,52 +33,8 @@ def test_a_history_goes_on_from_a_copy_to_the_bit() -> None:
 
 
 @every
-<<<<<<< HEAD
 def test_the_dataset_has_units_and_the_numbers(kind: str) -> None:
     solution = solved(kind)
-=======
-def test_a_state_says_its_version_and_refuses_what_is_wrong(kind: str) -> None:
-    solution = SOLVED[kind]
-    state = solution.to_dict()
-    assert (state["format"], state["nacre"], state["kind"]) == (
-        values.FORMAT,
-        nacre.__version__,
-        "FrictionSolution",
-    )
-    restore = nacre.types.FrictionSolution.from_dict
-    with pytest.raises(ValueError, match=r"has format 2, written by nacre 7\.3\.1"):
-        restore(state | {"format": values.FORMAT + 1, "nacre": "7.3.1"})
-    for key in state:
-        less = {name: value for name, value in state.items() if name != key}
-        with pytest.raises(ValueError, match=rf'FrictionSolution: the key "{key}" is missing'):
-            restore(less)
-        with pytest.raises(ValueError, match=key):
-            restore(state | {key: object()})
-    with pytest.raises(ValueError, match="FrictionSolution: the key 'colour' is unknown"):
-        restore(state | {"colour": "red"})
-    with pytest.raises(ValueError, match=r"traction: expected shape .*, got \[3, 3\]"):
-        restore(state | {"traction": np.zeros((2, 3, 3))})
-    with pytest.raises(ValueError, match="2 components, got 3"):
-        restore(state | {"slip": np.zeros((3, *solution.grid.shape))})
-    with pytest.raises(ValueError, match="slip is not finite at"):
-        restore(state | {"slip": np.full((2, *solution.grid.shape), np.nan)})
-    with pytest.raises(ValueError, match="friction must be finite and at least 0, got -1"):
-        restore(state | {"friction": -1.0})
-
-
-# Files.
-
-
-@every
-def test_netcdf_comes_back_bit_for_bit(kind: str, tmp_path: Path) -> None:
-    same(nacre.load(SOLVED[kind].save(tmp_path / "a.nc")), SOLVED[kind])
-    assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
-
-
-@every
-def test_the_dataset_has_units_and_the_numbers(kind: str, tmp_path: Path) -> None:
-    solution = SOLVED[kind]
->>>>>>> py
     dataset = solution.to_xarray()
     rolls = kind in ROLLED
     units = {str(name): dataset[name].attrs["units"] for name in ("x", "y", *dataset.data_vars)}

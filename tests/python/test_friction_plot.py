@@ -16,23 +16,7 @@ from nacre import plot
 from nacre.units import Scale
 from results import CELLS, CONTACT, solved
 
-<<<<<<< HEAD
 SOLVED = {name: solved(name) for name in results.FRICTION if "not" not in name}
-=======
-STEEL = nacre.Elastic(210e9, 0.3)
-BALL, ROD = nacre.Sphere(5e-3), nacre.Cylinder(5e-3)
-GRID = nacre.Grid((40, 36), (2.4e-4, 2.2e-4), (1e-6, -2e-6))
-CONTACT = nacre.Contact(STEEL, GRID, STEEL)
-LINE = nacre.Contact(STEEL, nacre.Grid.line(64, 2e-4), STEEL)
-HELD: dict[str, Any] = {"load": 10.0, "friction": 0.3}
-SOLVED: dict[str, nacre.types.FrictionSolution] = {
-    "slid": CONTACT.slide(BALL, **HELD, force=(2.0, 1.0), torque=1e-5),
-    "rolled": CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
-    "line": LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),
-    "line rolled": LINE.roll(ROD, load=1e4, friction=0.3, creepage=(1e-4, None)),
-    "apart": CONTACT.slide(BALL, approach=-1e-6, friction=0.3),
-}
->>>>>>> py
 every = pytest.mark.parametrize("kind", SOLVED)
 
 

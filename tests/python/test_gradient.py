@@ -77,7 +77,7 @@ def test_the_shear_of_an_interface_has_the_derivatives_of_differences() -> None:
     shear = {"stress": "plane_shear", "interface": 0, "sharpness": 200.0}
     numbers = {"body.layers[0].thickness": 2e-5, "body.substrate.young": 2e11, "shape.radius": 5e-3}
 
-    def found(values: dict[str, float]) -> nacre.Gradient:
+    def found(values: dict[str, float]) -> nacre.types.Gradient:
         thickness, young, radius = values.values()
         layer = nacre.Layer(nacre.Elastic(400e9, 0.2), thickness)
         body = nacre.HalfSpace(nacre.Elastic(young, 0.3), [layer])

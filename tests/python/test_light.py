@@ -32,17 +32,11 @@ def test_nothing_but_numpy_is_imported() -> None:
     # Compiled modules of NumPy register helpers without a package.
     others = packages - sys.stdlib_module_names - {"nacre", "numpy", "cython_runtime"}
     assert {name for name in others if not name.startswith("_")} == set()
-<<<<<<< HEAD
-    # The parts that plot and talk wait until they are used.
-    later = {"paper", "cli", "plot", "case", "design", "surfaces"}
-    assert {f"nacre.{name}" for name in later} & set(modules) == set()
-=======
 
 
 def test_the_parts_that_plot_and_talk_wait_until_they_are_used() -> None:
     later = {"cli", "plot", "case", "design", "surfaces"}
     assert {f"nacre.{name}" for name in later} & set(imported()) == set()
->>>>>>> py
 
 
 def test_modules_are_attributes_that_are_imported_when_they_are_used() -> None:

@@ -158,15 +158,9 @@ def test_bodies_are_half_spaces_that_can_be_exchanged() -> None:
 
 # The grid that is chosen.
 
-<<<<<<< HEAD
-WITHOUT_GRID: dict[str, tuple[nacre.Shape, float]] = {
+WITHOUT_GRID: dict[str, tuple[nacre.types.Shape, float]] = {
     "sphere": (BALL, 10.0),
     "sphere elsewhere": (BALL.shifted(1e-3, -2e-3), 10.0),
-=======
-WITHOUT_GRID: dict[str, tuple[nacre.types.Shape, float]] = {
-    "sphere": (SPHERE, 10.0),
-    "sphere elsewhere": (SPHERE.shifted(1e-3, -2e-3), 10.0),
->>>>>>> py
     "paraboloid": (PARABOLOID, 1.0),
     "elliptic": (nacre.Paraboloid(50e-3, 5e-3), 10.0),
     "roller": (nacre.Roller(5e-3, flat_length=1e-3, crown_radius=1.0), 20.0),
@@ -282,15 +276,9 @@ def test_a_report_holds_what_repeats_the_run() -> None:
 
 
 def test_progress_is_told_of_each_iteration() -> None:
-<<<<<<< HEAD
-    told: list[nacre.Report] = []
-    solution = CONTACT.solve(BALL, load=LOAD, progress=told.append)
-    assert all(type(report) is nacre.Report for report in told)
-=======
     told: list[nacre.types.Report] = []
-    solution = CONTACT.solve(SPHERE, load=LOAD, progress=told.append)
+    solution = CONTACT.solve(BALL, load=LOAD, progress=told.append)
     assert all(type(report) is nacre.types.Report for report in told)
->>>>>>> py
     assert len(told) > 2
     assert {report.termination for report in told} == {"running"}
     assert told[-1].residual < told[0].residual

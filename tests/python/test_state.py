@@ -198,8 +198,7 @@ def test_a_newer_journal_is_refused_by_the_version_that_wrote_it(tmp_path: Path)
 )
 def test_a_stress_with_wrong_axes_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-<<<<<<< HEAD
-        nacre.Stress.from_dict(STRESS.to_dict() | changes)
+        nacre.types.Stress.from_dict(STRESS.to_dict() | changes)
 
 
 @pytest.mark.parametrize(
@@ -213,7 +212,4 @@ def test_a_stress_with_wrong_axes_is_refused(changes: dict[str, Any], message: s
 )
 def test_friction_with_wrong_fields_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        nacre.FrictionSolution.from_dict(solved("slid").to_dict() | changes)
-=======
-        nacre.types.Stress.from_dict(RESULTS["Stress"].to_dict() | changes)
->>>>>>> py
+        nacre.types.FrictionSolution.from_dict(solved("slid").to_dict() | changes)

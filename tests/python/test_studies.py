@@ -478,16 +478,6 @@ def identities(folder: Path, sources: dict[str, str], seed: int) -> dict[str, An
     return {kind: found[name] for kind, name in names.items()}
 
 
-<<<<<<< HEAD
-def test_modules_of_the_user_count_and_the_key_is_the_same_in_every_process(tmp_path: Path) -> None:
-    (tmp_path / "script.py").write_text(
-        "import helpers\nfrom nacre._identity import identified\n"
-        "def f(s):\n"
-        "    from helpers import k\n"
-        "    return helpers.g(s) if s in {'a', 'b', 'c', 'd'} else k\n"
-        "print(identified({'f': f}, {}))\n"
-    )
-=======
 def test_a_changed_function_is_another_one_and_the_same_is_so_in_every_process(
     tmp_path: Path,
 ) -> None:
@@ -500,7 +490,6 @@ def test_a_changed_function_is_another_one_and_the_same_is_so_in_every_process(
     for kind in CHANGES:
         assert first[kind][1] == others[kind][1] == [], kind
         assert json.dumps(first[kind][0]) != json.dumps(others[kind][0]), kind
->>>>>>> py
 
 
 def test_what_a_function_hides_is_known_to_be_unknown(tmp_path: Path) -> None:
