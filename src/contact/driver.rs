@@ -9,9 +9,8 @@ use ndarray::Array2;
 
 use super::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
 use super::cascade::{Cascade, Coarser};
-use super::hardness::{Hardness, check_indentation, check_load};
-use super::options::Motion;
-use super::options::{Algorithm, Options};
+use super::hardness::{Hardness, check_indentation};
+use super::options::{Algorithm, Motion, Options};
 use super::plan::{Plan, bodies};
 use super::problem::bounds::Bounds;
 use super::problem::fields::{Fields, slice};
@@ -19,15 +18,14 @@ use super::problem::freedoms::{Freedoms, OVERFLOW};
 use super::problem::{Problem, Quality};
 use super::solution::Solution;
 use super::solution::gap::Gap;
-use super::solution::report::Carried;
-use super::solution::report::{Progress, Report};
+use super::solution::report::{Carried, Progress, Report};
 use super::solution::warnings::{Warning, warnings};
 use super::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
 use super::start::{
     Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
 };
 use crate::compliance::ends::check_carried;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::surface::{Lifted, Surface};
 use crate::numerics::parallel::Rows;
 
@@ -350,12 +348,65 @@ impl<'a> Steps<'a> {
     }
 }
 
+/// An error where the load, or a moment along one axis, is above what the cells that can touch bear.
+///
+/// # Errors
+/// [`Error::Overload`], [`Error::Overturned`].
+fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
+    let touching = (0..problem.gap.len()).filter(|&k| problem.gap[k].is_finite());
+    let bears: f64 = touching.map(|k| hardness.at(k)).sum();
+    let freedoms = problem.freedoms;
+    if freedoms.loaded[0] && freedoms.target[0] >= bears {
+        return Err(Error::Overload {
+            load: freedoms.target[0] * freedoms.cell_area,
+            bears: bears * freedoms.cell_area,
+        });
+    }
+    for axis in (0..2).filter(|axis| freedoms.loaded[axis + 1]) {
+        let (asked, at) = (freedoms.target[axis + 1], &freedoms.columns[axis]);
+        let mut lines = vec![0.0; at.len()];
+        let columns = freedoms.columns[1].len();
+        for cell in (0..problem.gap.len()).filter(|&cell| problem.gap[cell].is_finite()) {
+            lines[[cell / columns, cell % columns][axis]] += hardness.at(cell);
+        }
+        let load = freedoms.loaded[0].then_some(freedoms.target[0]);
+        let lines: Vec<[f64; 2]> = at.iter().copied().zip(lines).map(Into::into).collect();
+        let [low, high] = [-1.0, 1.0].map(|side| side * farthest(&lines, side, load));
+        if asked <= low || asked >= high {
+            return Err(Error::Overturned {
+                axis: ["x", "y"][axis],
+                moment: freedoms.moment(axis, asked),
+                range: [low, high].map(|bound| freedoms.moment(axis, bound)),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The largest moment Σ p (side · x) of a load that lines of cells bear up to their limit, each given as its coordinate x
+/// and its limit; of any load where none is given.
+fn farthest(lines: &[[f64; 2]], side: f64, load: Option<f64>) -> f64 {
+    let mut rest = load.unwrap_or(f64::INFINITY);
+    let mut lines: Vec<[f64; 2]> = lines.iter().map(|[x, most]| [side * x, *most]).collect();
+    lines.sort_by(|a, b| b[0].total_cmp(&a[0]));
+    let mut moment = 0.0;
+    for [x, most] in lines {
+        let borne = most.min(rest);
+        // A load that is not given stays on its side of the origin.
+        if borne > 0.0 && (load.is_some() || x > 0.0) {
+            moment += borne * x;
+            rest -= borne;
+        }
+    }
+    moment
+}
+
 #[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
 
     use crate::contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solver, Termination};
-    use crate::error::Result;
+    use crate::error::{Error, Result};
     use crate::model::grid::Grid;
     use crate::model::material::Elastic;
     use crate::model::surface::Paraboloid;

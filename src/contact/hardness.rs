@@ -1,21 +1,15 @@
 //! A limit of the pressure: elastic, perfectly plastic surfaces, which yield at their hardness.
 //!
 //! ```text
-//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0, and −g is the permanent indentation
+//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0, and −g is the depth of the permanent dent
 //! ```
 //!
 //! Polonsky & Keer, Wear 231 (1999) 206, §2.3, doi:10.1016/S0043-1648(99)00113-1; Almqvist, Sahlin, Larsson &
-//! Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008. The algorithm is nacre's own.
-//!
-//! Cells that yield bear H. The others are an elastic contact, under the rest of the load, with the surface that
-//! the yielding cells have displaced. From the elastic solution on, cells that bear more than H yield, until there are
-//! none. On a half-space no cell yields too early: the others can only come to bear more while cells yield. Cells that
-//! part nevertheless, as they may on layers, bear less than H again.
+//! Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008. The iteration holds a cell at the hardness
+//! as it holds one at 0 (`problem/bounds.rs`).
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::problem::Problem;
-use super::problem::fields::slice;
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
 
@@ -56,7 +50,7 @@ impl Hardness {
     pub(crate) fn at(&self, cell: usize) -> f64 {
         match self {
             Self::Uniform(value) => *value,
-            Self::Cells(values) => slice(values)[cell],
+            Self::Cells(values) => values.as_slice().unwrap_or(&[])[cell],
         }
     }
 
@@ -105,57 +99,4 @@ pub(super) fn check_indentation(indentation: &ArrayRef2<f64>, grid: &Grid) -> Re
         }),
         None => Ok(()),
     }
-}
-
-/// An error where the load, or a moment along one axis, is above what the cells that can touch bear.
-///
-/// # Errors
-/// [`Error::Overload`], [`Error::Overturned`].
-pub(super) fn check_load(problem: &Problem, hardness: &Hardness) -> Result<()> {
-    let touching = (0..problem.gap.len()).filter(|&k| problem.gap[k].is_finite());
-    let bears: f64 = touching.map(|k| hardness.at(k)).sum();
-    let freedoms = problem.freedoms;
-    if freedoms.loaded[0] && freedoms.target[0] >= bears {
-        return Err(Error::Overload {
-            load: freedoms.target[0] * freedoms.cell_area,
-            bears: bears * freedoms.cell_area,
-        });
-    }
-    for axis in (0..2).filter(|axis| freedoms.loaded[axis + 1]) {
-        let (asked, at) = (freedoms.target[axis + 1], &freedoms.columns[axis]);
-        let mut lines = vec![0.0; at.len()];
-        let columns = freedoms.columns[1].len();
-        for cell in (0..problem.gap.len()).filter(|&cell| problem.gap[cell].is_finite()) {
-            lines[[cell / columns, cell % columns][axis]] += hardness.at(cell);
-        }
-        let load = freedoms.loaded[0].then_some(freedoms.target[0]);
-        let lines: Vec<[f64; 2]> = at.iter().copied().zip(lines).map(Into::into).collect();
-        let [low, high] = [-1.0, 1.0].map(|side| side * farthest(&lines, side, load));
-        if asked <= low || asked >= high {
-            return Err(Error::Overturned {
-                axis: ["x", "y"][axis],
-                moment: freedoms.moment(axis, asked),
-                range: [low, high].map(|bound| freedoms.moment(axis, bound)),
-            });
-        }
-    }
-    Ok(())
-}
-
-/// The largest moment Σ p (side · x) of a load that lines of cells bear up to their limit, each given as its coordinate x
-/// and its limit; of any load where none is given.
-fn farthest(lines: &[[f64; 2]], side: f64, load: Option<f64>) -> f64 {
-    let mut rest = load.unwrap_or(f64::INFINITY);
-    let mut lines: Vec<[f64; 2]> = lines.iter().map(|[x, most]| [side * x, *most]).collect();
-    lines.sort_by(|a, b| b[0].total_cmp(&a[0]));
-    let mut moment = 0.0;
-    for [x, most] in lines {
-        let borne = most.min(rest);
-        // A load that is not given stays on its side of the origin.
-        if borne > 0.0 && (load.is_some() || x > 0.0) {
-            moment += borne * x;
-            rest -= borne;
-        }
-    }
-    moment
 }
