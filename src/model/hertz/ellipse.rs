@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::shear::{self, Shear, carlson_rd};
+use super::shear::{self, Shear};
 use crate::error::{Error, Result, positive};
+use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 
 /// Iterations for the ratio of the semi-axes, each of which divides its error by four at least; 27 give
 /// all digits.
@@ -61,7 +62,7 @@ impl Ellipse {
         let a = (load / contact_modulus * longer * rd / PI).cbrt();
         let b = k * a;
         let peak_pressure = 1.5 * load / (PI * a * b);
-        let approach = 0.75 * load / (contact_modulus * mean(1.0, k) * a);
+        let approach = 0.75 * load / (contact_modulus * arithmetic_geometric_mean(1.0, k) * a);
         let made = [a, b, peak_pressure, approach];
         if !made.iter().all(|value| value.is_finite() && *value > 0.0) {
             return Err(Error::Inconsistent(
@@ -113,18 +114,6 @@ fn axis_ratio(radii: f64) -> f64 {
     k
 }
 
-/// Arithmetic-geometric mean of two numbers above 0.
-fn mean(mut a: f64, mut g: f64) -> f64 {
-    // The number of digits doubles with each step; the first steps halve the exponent of a/g.
-    for _ in 0..64 {
-        if (a - g).abs() <= f64::EPSILON * a {
-            break;
-        }
-        (a, g) = (0.5 * (a + g), (a * g).sqrt());
-    }
-    a
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,7 +130,7 @@ mod tests {
             (0.5, 1.854_074_677_301_372),
             (0.9, 2.578_092_113_348_173),
         ] {
-            let k = 0.5 * PI / mean(1.0, f64::sqrt(1.0 - m));
+            let k = 0.5 * PI / arithmetic_geometric_mean(1.0, f64::sqrt(1.0 - m));
             assert!((k / exact - 1.0).abs() < ROUNDING, "{m}: {k}");
         }
     }
