@@ -220,7 +220,9 @@ impl Freedoms {
     /// no tilt) stays 0.
     pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
         let (mut matrix, mut solution) = (*matrix, right);
-        eliminate(&mut matrix, &mut solution, |k, pivot| self.loaded[k] && pivot > 0.0);
+        eliminate(&mut matrix, &mut solution, |k, pivot| {
+            self.loaded[k] && pivot > 0.0
+        });
         solution
     }
 }
