@@ -125,7 +125,7 @@ impl Table {
         let n = self.rows.len() - 1;
         let node = |k: usize| {
             let end = if k == 0 || k == n { 0.5 } else { 1.0 };
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
             [(PI * k as f64 / n as f64).cos(), sign * end]
         };
         let nodes: Vec<[f64; 2]> = (0..=n).map(node).collect();
