@@ -22,7 +22,7 @@ TITLES = {
     "batch": "1000 coated spheres, load by load; on several threads by `Contact.solve_many`",
     "roller": "Roller of Spinu et al., E1/E2 = 4, e/L = 0.3, with an eighth of the cells across",
 }
-FRICTION = "A ball pulled by half of the force that friction bears"
+FRICTION = "A ball pulled by half of the force that friction can carry"
 CONVOLUTION = "One zero-padded convolution"
 
 
@@ -48,9 +48,10 @@ def markdown(bench: Bench, image: str, data: str) -> str:
     lines = [
         "# nacre compared with other solvers",
         "",
-        "`make peers` wrote this page in one run; [`benches/README.md`](../benches/README.md)",
-        f"describes the measurement. {datetime.now(UTC):%d %B %Y}, {machine()}, load average",
-        f"before the run {bench.load:.2f}: {versions}. All numbers: [`{data}`]({data}).",
+        "This page compares nacre with other solvers on equal problems, solved to equal residuals.",
+        "`make peers` wrote it in one run; [`benches/README.md`](../benches/README.md) describes",
+        f"the measurement. {datetime.now(UTC):%d %B %Y}, {machine()}, load average before the run",
+        f"{bench.load:.2f}: {versions}. All numbers: [`{data}`]({data}).",
         "",
         f"![Time of a solve as a function of the number of cells]({image})",
         "",
@@ -65,7 +66,7 @@ def markdown(bench: Bench, image: str, data: str) -> str:
         ),
         "",
         "The time outside transforms is the share of a solve that is not spent in kernels,",
-        "transforms and products, in the fastest of some hundred solves",
+        "transforms and products, for the fastest of some hundred solves",
         "(`benches/convolution.rs`).",
         *shared(bench),
     ]
@@ -97,9 +98,9 @@ def shared(bench: Bench) -> list[str]:
         return []
     return [
         "",
-        f"Two simultaneous processes, on one thread each, take {longer:.2f} times as long for a",
-        f"solve as one process alone. An ideal solve on two threads would take {longer / 2:.2f} of",
-        "the time on one thread.",
+        f"Two processes at once, each on one thread, take {longer:.2f} times as long per solve as",
+        f"one process alone. An ideal solve on two threads would take {longer / 2:.2f} of the time",
+        "on one thread.",
     ]
 
 

@@ -2,9 +2,9 @@
 The best profile of a coated roller
 ===================================
 
-A straight roller has peaks of pressure at its ends. Which profile keeps the pressure lowest? Here
-the drop rises from each column of cells to the next by a parameter of its own, so that the profile
-is free, and `nacre.design.optimise` minimises a norm that comes close to the largest pressure.
+A straight roller has pressure peaks at its ends. Which profile keeps the pressure lowest? Here the
+profile is free: the drop rises from each column of cells to the next by a parameter of its own, and
+`nacre.design.optimise` minimises a norm that comes close to the largest pressure.
 """
 
 import warnings
@@ -60,8 +60,8 @@ def best_drop(
 
 
 # %%
-# Without tilt, the best profile is close to Lundberg's at the same load, and the pressure is equal
-# along the roller. The two differ near the ends, where Lundberg's drop has no limit.
+# # Without tilt, the best profile is close to Lundberg's at the same load, and the pressure is
+# uniform along the roller. The two differ near the ends, where Lundberg's drop has no limit.
 load = 1e3
 grid = nacre.Grid((64, 25), (length, 2e-4))
 x, drop, (solution,) = best_drop(grid, load, steel, [0.0], [16.0, 64.0, 256.0])
@@ -80,8 +80,8 @@ right.set(xlabel="x [mm]", ylabel="largest pressure across [GPa]", ylim=(0, None
 right.legend()
 
 # %%
-# Now the roller tilts by up to 1 mrad, and a polymer of 100 µm is on it. It gives way, so that the
-# middle need not be as straight as that of a bare roller. More of a crown lowers the pressure at
+# # Now the roller tilts by up to 1 mrad and carries 100 µm of a polymer. The polymer is compliant,
+# so the middle need not be as straight as that of a bare roller. More crown lowers the pressure at
 # the largest tilt, and raises it without tilt.
 load, tilts = 500.0, [0.0, 0.5e-3, 1e-3]
 layer = nacre.Layer(nacre.Elastic(young=3.5e9, poisson=0.4), thickness=100e-6)

@@ -26,8 +26,9 @@ axes = plot.chart(study)
 axes.set_title("peak pressure under a ball of 5 mm, 20 N")
 
 # %%
-# The study also has the largest tension in the coating. In a thin coating it is beside the
-# contact; in a thicker and stiff coating it is at the interface below the middle, by bending.
+# # The study also has the largest tension in the coating. In a thin coating it is beside the
+# contact; in a thick, stiff coating it is at the interface below the middle, because the coating
+# bends.
 axes = plot.chart(study, "coating_tension")
 
 # %%

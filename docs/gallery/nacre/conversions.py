@@ -2,9 +2,9 @@
 Errors of the conversions by inverse FFT
 ========================================
 
-Spinu et al. obtain influence coefficients by transforming the frequency response back on a mesh
-of finite extent. nacre's ``exact`` coefficients do not have the error of this conversion. The
-picture shows the error relative to ``exact``, as a function of the offset along x, for a coating
+Spinu et al. obtain influence coefficients by transforming the frequency response back on a mesh of
+finite extent. The ``exact`` coefficients of nacre are free of the error of this conversion. The
+picture shows the error relative to ``exact`` as a function of the offset along x, for a coating
 four times as stiff as its substrate and eight cells thick (:ref:`conversions`).
 """
 

@@ -2,9 +2,9 @@
 Creep curves of a coated wheel
 ==============================
 
-A crowned steel wheel of 20 mm radius rolls on steel under 200 N and transmits a force. It has a
-coating of 50 µm, or none. A wheel that transmits a force turns a little faster or slower than it
-rolls: the creepage is the difference of the velocities over that of rolling.
+A crowned steel wheel of 20 mm radius rolls on steel under 200 N and transmits a force, with a
+coating of 50 µm or without. A wheel that transmits a force turns a little faster or slower than it
+rolls: the creepage is the difference of the velocities divided by that of rolling.
 """
 
 import matplotlib.pyplot as plt
@@ -20,8 +20,8 @@ for name, young in {"soft coating, E₁ = E₂/4": 52.5e9, "hard coating, E₁ =
     wheels[name] = nacre.HalfSpace(steel, layers=[layer])
 
 # %%
-# Dashed lines have the slope of Kalker's coefficient C11 of the same bodies: the force of a contact
-# that sticks everywhere.
+# # Dashed lines have the slope of Kalker's coefficient C11 of the same bodies: the force on a
+# contact that sticks everywhere.
 load, friction = 200.0, 0.3
 creepages = np.linspace(-4e-3, 4e-3, 17)
 figure, axes = plt.subplots(figsize=(6.2, 4.0), layout="constrained")
@@ -48,9 +48,9 @@ axes.legend(frameon=False)
 axes.grid(alpha=0.3)
 
 # %%
-# The soft coating makes the curve flatter, the hard one steeper. With a coating, the bodies differ:
-# pressure moves their surfaces by different amounts, and the wheel rolls freely at a creepage that
-# is not 0. At half of the force that friction bears, the leading part of the contact sticks. The
-# wheel rolls towards +y.
+# # The soft coating makes the curve flatter, the hard one steeper. With a coating the bodies are
+# dissimilar: pressure stretches their surfaces by different amounts, and the wheel rolls freely at
+# a creepage other than 0. At half of the force that friction can carry, the leading part of the
+# contact sticks. The wheel rolls towards +y.
 rolling = nacre.roll(wheel, steel, steel, load=load, friction=friction, force=(30.0, None))
 axes = rolling.plot()

@@ -2,9 +2,9 @@
 A dent that stays
 =================
 
-A ball is pressed into steel and taken away. Where the pressure would be above the hardness, the
-surface yields, and a dent stays. Unloading is elastic; the area of the loop is the energy that the
-dent has taken.
+A ball is pressed into steel and removed. Where the pressure would exceed the hardness, the surface
+yields and a dent remains. Unloading is elastic; the area of the loop is the energy that the dent
+has absorbed.
 """
 
 import matplotlib.pyplot as plt

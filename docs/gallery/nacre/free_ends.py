@@ -2,9 +2,10 @@
 Free ends of a roller
 =====================
 
-A straight steel roller of 10 mm with sharp ends on a wider race, under 2 kN. As a half-space, the
-roller has the pressure of a sharp punch at its ends. With free ends, its body yields there, and
-most of that peak is gone. Where the race ends flush with the roller, there is no peak at all.
+A straight steel roller of 10 mm with sharp ends lies on a wider race under 2 kN. As a half-space,
+the roller has the pressure of a sharp punch at its ends. With free ends its body is more compliant
+there, and most of that peak is gone. Where the race ends flush with the roller, there is no peak at
+all.
 """
 
 import warnings

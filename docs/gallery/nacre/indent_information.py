@@ -2,8 +2,9 @@
 What can an indentation curve tell of a layer?
 ==============================================
 
-Least standard deviations of modulus and thickness of a layer twice as stiff as its substrate, from
-one curve of 60 points with a noise of 1 %, over the contact radius that the curve reaches.
+Smallest standard deviations of the modulus and thickness of a layer twice as stiff as its
+substrate, from one curve of 60 points with 1 % noise, as a function of the contact radius that the
+curve reaches.
 """
 
 import numpy as np

@@ -2,8 +2,8 @@
 How deep may I indent a coating?
 ================================
 
-Largest contact radius over thickness at which formulae for bare bodies give the modulus of the
-layer within 1 %. There is no limit where both moduli are equal.
+Largest contact radius, relative to the thickness, at which formulae for bare bodies give the
+modulus of the layer within 1 %. There is no limit where both moduli are equal.
 """
 
 import numpy as np

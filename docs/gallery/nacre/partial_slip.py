@@ -4,8 +4,8 @@ Cattaneo and Mindlin on coated bodies
 
 A ball of 5 mm radius is pressed by 20 N on a plate, both of steel, and pulled along it by half of
 the force at which it would slide. Cattaneo and Mindlin give the shift and the radius of the stick
-zone for bodies without coatings. The pictures show how far they are off with a coating, although
-they are given the contact radius and the approach of the coated bodies.
+zone for bare bodies. The pictures show how far they are off with a coating, even when they are
+given the contact radius and the approach of the coated bodies.
 """
 
 import matplotlib.pyplot as plt
@@ -40,12 +40,12 @@ def ratios(body: nacre.HalfSpace, counterbody: nacre.HalfSpace) -> tuple[float, 
 
 
 # %%
-# Solid lines: a coated plate and a bare ball. Dashed lines: both bodies have the coating. Seen from
-# its approach, a soft coating yields more along the surface than Cattaneo and Mindlin say, and a
-# hard one less; most of all where it is a third of the contact radius thick. Bodies that are coated
-# alike have the stick radius to some per cent, and come back to Cattaneo and Mindlin for thick
-# coatings. A thick coating on one body makes the bodies different: pressure alone then makes the
-# edge of the contact slip, and less of it sticks.
+# # Solid lines: a coated plate and a bare ball. Dashed lines: both bodies have the coating. Judged
+# by its approach, a soft coating deforms more along the surface than Cattaneo and Mindlin predict,
+# and a hard one less, most of all where it is a third of the contact radius thick. Bodies with the
+# same coating have the predicted stick radius to some per cent, and return to Cattaneo and Mindlin
+# for thick coatings. A thick coating on one body makes the bodies dissimilar: pressure alone then
+# makes the edge of the contact slip, and less of it sticks.
 figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.2, 6.6), sharex=True, layout="constrained")
 colours = {0.1: "#D55E00", 0.25: "#E69F00", 2.0: "#56B4E9", 4.0: "#0072B2"}
 for stiffness, colour in colours.items():

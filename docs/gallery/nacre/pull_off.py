@@ -2,8 +2,8 @@
 How does a coating change the force of pull-off?
 ================================================
 
-Pull-off of a sphere by Johnson, Kendall and Roberts over the thickness of a layer, whose unit is
-the pull-off radius on the bare substrate. A bare body gives 1.5.
+JKR pull-off force of a sphere (Johnson, Kendall and Roberts) as a function of the thickness of a
+layer in units of the pull-off radius on the bare substrate. A bare body gives 1.5.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 A rough surface on bare, coated and graded bodies
 =================================================
 
-The same random surface pressed with the same mean pressure into three bodies: bare steel, a hard
-coat, and a coating whose modulus rises from that of the steel to that of the coat. The titles state
-the share of the area in contact.
+The same random surface is pressed with the same mean pressure into three bodies: bare steel, a hard
+coating, and a graded coating whose modulus falls from that of the hard coating at the surface to
+that of the steel. The titles state the share of the area in contact.
 """
 
 import matplotlib.pyplot as plt
@@ -22,7 +22,7 @@ graded = nacre.graded_layers(
 )
 bodies = {
     "bare": nacre.HalfSpace(steel),
-    "coat of 10 µm": nacre.HalfSpace(steel, [nacre.Layer(hard, 10e-6)]),
+    "coating of 10 µm": nacre.HalfSpace(steel, [nacre.Layer(hard, 10e-6)]),
     "graded over 10 µm": nacre.HalfSpace(steel, graded),
 }
 

@@ -2,8 +2,8 @@
 A rough surface in contact
 ==========================
 
-A ball with a rough surface. The heights, of 5 nm rms, are noise without short waves, in place of a
-measurement. The picture is ``solution.plot()``.
+A ball with a rough surface in contact with a coated body. In place of a measurement, the heights
+are noise of 5 nm rms without short wavelengths. The picture is ``solution.plot()``.
 """
 
 import numpy as np

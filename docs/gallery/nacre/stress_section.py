@@ -2,9 +2,9 @@
 Stresses below a coated sphere
 ==============================
 
-A ball on a coating twice as stiff as the steel below it. The stiff coating has higher stresses:
-the von Mises stress jumps at the interface and is largest just above it, where the coating bends.
-The cross marks the largest value.
+A ball is pressed on a coating twice as stiff as the steel below it. Stresses are higher in the
+stiff coating: the von Mises stress jumps at the interface and is largest just above it, where the
+coating bends. The cross marks the largest value.
 """
 
 import nacre
@@ -17,8 +17,8 @@ solution = nacre.solve(nacre.Sphere(5e-3), body, load=100.0)
 axes = plot.stress_section(solution)
 
 # %%
-# In-plane stresses jump at the interface, and tractions on the interface are continuous. Below the
-# middle of the contact:
+# # In-plane stresses jump at the interface; tractions are continuous across it. Below the middle of
+# the contact:
 axes = plot.stress_depth(solution, ("xx", "zz", "von_mises"))
 
 # %%
@@ -27,13 +27,13 @@ axes = plot.stress_depth(solution, ("xx", "zz", "von_mises"))
 axes = plot.interface_map(solution)
 
 # %%
-# A ball that slides with μ = 0.25 causes tension at the surface behind it. The picture shows the
-# largest principal stress in the same section, tension in red.
+# # A ball that slides with μ = 0.25 causes tension at the surface behind it. The picture shows the
+# largest principal stress in the same section, with tension in red.
 axes = plot.stress_section(solution, "tension", friction=0.25, direction=(1, 0))
 
 # %%
-# The summary has the peaks, and safety factors against limits that are given; ``print(summary)``
-# shows the whole table, with the place of each peak.
+# # The summary has the peaks, and safety factors against given limits; ``print(summary)`` prints
+# the whole table, with the location of each peak.
 summary = solution.stress_summary(
     friction=0.25, direction=(1, 0), yield_stress={0: 8e9, "substrate": 2.2e9}
 )

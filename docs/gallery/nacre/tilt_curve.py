@@ -24,8 +24,8 @@ grid = nacre.Grid(shape=(384, 64), size=(32e-3, 0.16e-3))
 tilts = np.linspace(0, 6e-5, 13)
 
 # %%
-# The thin lines are tangents, each from one solution of the roller without tilt. Since the force is
-# constant and the approach is free, the tilting stiffness is a Schur complement.
+# # The thin lines are tangents, each from one solution of the roller without tilt. Because the
+# force is constant and the approach is free, the tilting stiffness is a Schur complement.
 figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
 for (name, body), colour in zip(bodies.items(), ("#0072B2", "#D55E00"), strict=True):
     curve = design.tilt_curve(roller, body, tilts, load=1e3, grid=grid, progress=False)

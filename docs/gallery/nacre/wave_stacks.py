@@ -2,9 +2,9 @@
 Full contact of a wave on three bodies
 ======================================
 
-A wavy surface is pressed flat against a bare body, a body with a hard coat and a soft layer on a
-rigid base. The pressure at which the last gap closes is the height of the wave over the response of
-the body to it: p* = Δ / (û/p̂), with waves Δ cos(2πx/λ).
+A wavy surface is pressed flat against a bare body, a body with a hard coating, and a soft layer on
+a rigid base. The pressure at which the last gap closes is the height of the wave divided by the
+response of the body to it: p* = Δ / (û/p̂), with waves Δ cos(2πx/λ).
 """
 
 import matplotlib.pyplot as plt
@@ -22,7 +22,7 @@ hard = nacre.Layer(nacre.Elastic(young=420e9, poisson=0.3), thickness=10e-6)
 soft = nacre.Layer(nacre.Elastic(young=3e9, poisson=0.4), thickness=20e-6)
 bodies = {
     "bare steel": nacre.HalfSpace(steel),
-    "hard coat of λ/10": nacre.HalfSpace(steel, [hard]),
+    "hard coating of λ/10": nacre.HalfSpace(steel, [hard]),
     "polymer of λ/5 on a rigid base": nacre.HalfSpace(nacre.RIGID, [soft]),
 }
 

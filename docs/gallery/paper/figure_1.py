@@ -2,10 +2,10 @@
 Figure 1: a coated sphere
 =========================
 
-Pressure as a function of the radius under a rigid sphere, for coatings from a quarter to four
-times as stiff as the substrate, and as thick as the contact radius of Hertz. Circles are reference
-values from the :ref:`Fredholm equation <sphere-by-fredholm>` of the axisymmetric problem, solved to
-eleven digits.
+Pressure as a function of the radius under a rigid sphere, for coatings from a quarter to four times
+as stiff as the substrate and as thick as the Hertzian contact radius. Circles are reference values
+from the :ref:`Fredholm equation <sphere-by-fredholm>` of the axisymmetric problem, solved to eleven
+digits.
 """
 
 from nacre import paper
@@ -15,8 +15,8 @@ results = paper.solve()
 drawing = figures.figure(1, results)
 
 # %%
-# Errors of peak and approach relative to the reference, and the largest error of the pressure
-# within 95 % of the contact radius, relative to the peak pressure of Hertz.
+# # Errors of peak and approach relative to the reference, and the largest error of the pressure
+# within 95 % of the contact radius, relative to the Hertzian peak pressure.
 print("E1/E2      peak   approach   pressure")
 for deviation in paper.deviations(results):
     print(

@@ -186,8 +186,8 @@ impl PyIndentation {
     /// Raises
     /// ------
     /// ValueError
-    ///     If not exactly one is given, where nothing touches, and where the contact would be larger than the tip or than 1024 times the
-    ///     thickness of the top layer.
+    ///     If not exactly one is given, where nothing touches, where the contact would be larger than the tip or than 1024 times the
+    ///     thickness of the top layer, and where it is a ring: pressure and gap of every state are checked.
     #[pyo3(signature = (*, load=None, approach=None, radius=None, branch="stable"))]
     fn at(
         &self,
@@ -254,7 +254,7 @@ impl PyIndentation {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the adhesion is Maugis's, or the largest approach needs too large a contact.
+    ///     If the adhesion is Maugis's, the largest approach needs too large a contact, or a contact is a ring.
     #[pyo3(signature = (*, approach, wrt=vec![]))]
     fn curve(
         &self,
