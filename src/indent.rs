@@ -27,13 +27,7 @@ mod change;
 mod cohesion;
 mod curve;
 mod density;
-mod equation {
-    pub(super) mod basis;
-    pub(super) mod root;
-    pub(super) mod stack;
-    pub(super) mod system;
-    pub(super) mod waves;
-}
+mod equation;
 mod indenter;
 mod point;
 mod pull_off;

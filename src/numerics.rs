@@ -3,3 +3,6 @@
 pub(crate) mod dense;
 pub(crate) mod fft;
 pub(crate) mod parallel;
+pub(crate) mod quadrature;
+pub(crate) mod roots;
+pub(crate) mod special;

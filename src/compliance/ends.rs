@@ -24,7 +24,6 @@
 mod bodies;
 mod cells;
 mod layers;
-mod linear;
 mod mesh;
 mod plate;
 mod point;

@@ -12,13 +12,13 @@
 //! along each direction. What the differences leave falls as M⁻⁹. A constant is left, which the response to a uniform
 //! load fixes.
 
-use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, ArrayView1, Axis};
 use rayon::prelude::*;
 
 use crate::model::grid::Grid;
+use crate::numerics::special::{barycentric, chebyshev_nodes};
 
 /// Chebyshev nodes along each direction. Images that are summed lie as far away as the interval is long, so that the
 /// interpolation errs by 10⁻¹⁴ of them.
@@ -35,7 +35,6 @@ pub(crate) struct Images {
     near: [i64; 2],
     all: [i64; 2],
     rings: f64,
-    nodes: [Vec<f64>; 2],
     /// From the nodes to the offsets that are computed.
     interpolations: [Array2<f64>; 2],
 }
@@ -51,11 +50,6 @@ impl Images {
                 false => 0,
             })
         };
-        let span = |k: usize| match periodic[k] {
-            true => 0.5 * size[k],
-            false => size[k],
-        };
-        let nodes = [0, 1].map(|k| chebyshev(span(k)));
         let mut images = Self {
             spacing,
             size,
@@ -65,12 +59,11 @@ impl Images {
             all: images(rings * longest),
             rings,
             interpolations: [0, 1].map(|_| Array2::zeros((0, 0))),
-            nodes,
         };
         let kept = images.kept();
         images.interpolations = [0, 1].map(|k| {
             let offsets: Vec<f64> = (0..kept[k]).map(|i| i as f64 * spacing[k]).collect();
-            interpolation(&images.nodes[k], &offsets, spacing[k])
+            interpolation(images.span(k), &offsets)
         });
         images
     }
@@ -78,8 +71,16 @@ impl Images {
     /// The images of these cells where their sums are needed at other `offsets` along x, which is open, up to the length
     /// of the grid.
     pub(crate) fn at_offsets(mut self, offsets: &[f64]) -> Self {
-        self.interpolations[0] = interpolation(&self.nodes[0], offsets, self.spacing[0]);
+        self.interpolations[0] = interpolation(self.span(0), offsets);
         self
+    }
+
+    /// Length of the interval from whose nodes sums are interpolated: half a period, or the grid.
+    fn span(&self, axis: usize) -> f64 {
+        match self.periodic[axis] {
+            true => 0.5 * self.size[axis],
+            false => self.size[axis],
+        }
     }
 
     /// Numbers of offsets that are computed: half a period, or all. The others mirror them.
@@ -139,8 +140,13 @@ impl Images {
         cell: impl Fn([f64; 2]) -> [f64; C] + Sync,
         block: impl Fn([f64; 2]) -> [f64; C] + Sync,
     ) -> Vec<Array2<f64>> {
+        let nodes = chebyshev_nodes::<NODES>();
         let at = |node: usize| {
-            let at = [self.nodes[0][node / NODES], self.nodes[1][node % NODES]];
+            let [[x, _], [y, _]] = [nodes[node / NODES], nodes[node % NODES]];
+            let at = [
+                0.5 * self.span(0) * (1.0 + x),
+                0.5 * self.span(1) * (1.0 + y),
+            ];
             let mut sums = self.beyond(&block, at).map(|value| -value);
             for k in -self.all[0]..=self.all[0] {
                 for l in -self.all[1]..=self.all[1] {
@@ -237,38 +243,15 @@ fn stencil(r: f64) -> [f64; 7] {
     [sixth, next, first, middle, first, next, sixth]
 }
 
-/// Chebyshev nodes on \[0, span\].
-fn chebyshev(span: f64) -> Vec<f64> {
-    let angle = |k: usize| PI * (k as f64 + 0.5) / NODES as f64;
-    (0..NODES)
-        .map(|k| 0.5 * span * (1.0 - angle(k).cos()))
-        .collect()
-}
-
-/// Matrix (offsets, nodes) from values at the nodes to those at `offsets`, in barycentric form.
-fn interpolation(nodes: &[f64], offsets: &[f64], spacing: f64) -> Array2<f64> {
-    let weight = |k: usize| {
-        let angle = PI * (k as f64 + 0.5) / NODES as f64;
-        if k.is_multiple_of(2) {
-            angle.sin()
-        } else {
-            -angle.sin()
-        }
-    };
-    let mut matrix = Array2::zeros((offsets.len(), nodes.len()));
-    for (x, mut row) in offsets.iter().zip(matrix.axis_iter_mut(Axis(0))) {
-        if let Some(k) = nodes
-            .iter()
-            .position(|node| (node - x).abs() < 1e-14 * spacing)
-        {
-            row[k] = 1.0;
-            continue;
-        }
-        for (k, value) in row.iter_mut().enumerate() {
-            *value = weight(k) / (x - nodes[k]);
-        }
-        let sum = row.sum();
-        row /= sum;
+/// Matrix (offsets, nodes) from values at the nodes on \[0, span\] to those at `offsets`.
+fn interpolation(span: f64, offsets: &[f64]) -> Array2<f64> {
+    let nodes = chebyshev_nodes::<NODES>();
+    let mut matrix = Array2::zeros((offsets.len(), NODES));
+    for (offset, mut row) in offsets.iter().zip(matrix.rows_mut()) {
+        row.assign(&ArrayView1::from(&barycentric(
+            &nodes,
+            2.0 * offset / span - 1.0,
+        )));
     }
     matrix
 }

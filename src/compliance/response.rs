@@ -17,16 +17,15 @@ use crate::error::{Error, Result, positive};
 use crate::model::body::{HalfSpace, Interface, Substrate};
 
 mod body;
-mod compliance;
 mod derivatives;
 pub(crate) mod interior;
 mod layer;
 
 pub use body::{Body, Response};
 pub(crate) use body::{check, size};
-pub use compliance::Compliance;
 pub(crate) use derivatives::ResponseSlope;
 pub use derivatives::{asymptote_derivatives, normal_derivatives};
+pub use layer::Compliance;
 
 use layer::Slab;
 

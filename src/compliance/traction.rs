@@ -14,7 +14,6 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `bare` | coefficients of a body without layers |
 //! | `coefficients` | coefficients of one body, and of a pair |
 //! | `convolution` | tractions to displacements, by FFT |
 
@@ -22,7 +21,6 @@
 pub(crate) const GO_ON: &str =
     "friction needs bodies that go on along x: what tractions do near free ends is not known";
 
-mod bare;
 mod coefficients;
 mod convolution;
 

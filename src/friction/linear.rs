@@ -13,6 +13,7 @@ use std::ops::ControlFlow;
 use super::law::{CellState, restrict};
 use super::step::RollingDirection;
 use crate::compliance::traction::TangentialWindow;
+use crate::numerics::dense::eliminate;
 use crate::numerics::parallel::dot;
 
 /// From tractions to what must be given: displacements, or in rolling the change of displacement over a cell.
@@ -288,40 +289,12 @@ impl<'a> NewtonSystem<'a> {
     }
 }
 
-/// Coefficients y with Σ_l (c_k · z_l) y_l = `right`_k, by Gauss's elimination; 0 for columns that are 0. The matrix is
-/// near a symmetric and positive one.
+/// Coefficients y with Σ_l (c_k · z_l) y_l = `right`_k; 0 for columns that are 0.
 pub(super) fn small_system(z: &[Vec<f64>], columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
-    let n = columns.len();
     let row = |c: &Vec<f64>| z.iter().map(|z| dot(c, z)).collect();
     let mut matrix: Vec<Vec<f64>> = columns.iter().map(row).collect();
     let mut y = right.to_vec();
-    let scales: Vec<f64> = (0..n).map(|k| matrix[k][k].abs()).collect();
-    for k in 0..n {
-        let pivot = matrix[k][k];
-        if pivot.abs() <= 1e-13 * scales[k] || pivot == 0.0 {
-            y[k] = 0.0;
-            for (l, row) in matrix.iter_mut().enumerate() {
-                row[k] = if l == k { 1.0 } else { 0.0 };
-            }
-            matrix[k]
-                .iter_mut()
-                .enumerate()
-                .for_each(|(l, v)| *v = if l == k { 1.0 } else { 0.0 });
-            continue;
-        }
-        let (above, below) = matrix.split_at_mut(k + 1);
-        for (row, l) in below.iter_mut().zip(k + 1..) {
-            let factor = row[k] / pivot;
-            row.iter_mut()
-                .zip(&above[k])
-                .for_each(|(to, from)| *to -= factor * from);
-            y[l] -= factor * y[k];
-        }
-    }
-    for k in (0..n).rev() {
-        let rest: f64 = (k + 1..n).map(|m| matrix[k][m] * y[m]).sum();
-        y[k] = (y[k] - rest) / matrix[k][k];
-    }
+    eliminate(&mut matrix, &mut y, |_, _| true);
     y
 }
 

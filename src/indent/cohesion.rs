@@ -18,7 +18,7 @@ use spec_math::cephes64::j1;
 
 use super::adhesion::Adhesion;
 use super::density::bessel_sum;
-use super::equation::root::bracketed;
+use super::equation::bracketed;
 use super::equation::stack::Stack;
 use super::equation::system::Parts;
 use super::equation::system::times;

@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
 use super::change::{Held, Variable};
-use super::equation::root::newton;
 use super::equation::stack::Parameter;
 use super::indenter::Indent;
 use super::point::{Point, Warning};
 use crate::error::{Error, Result, finite};
+use crate::numerics::roots::newton;
+use crate::numerics::special::barycentric;
 
 /// Last Chebyshev coefficients of the logarithms at which a table counts as resolved.
 const RESOLVED: f64 = 1e-9;
@@ -119,21 +120,14 @@ impl CurveTable {
     fn weights(&self, log: f64) -> Vec<f64> {
         let part = ((log - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
         let part = if self.has_root { part.sqrt() } else { part };
-        let (x, n) = (2.0 * part - 1.0, self.rows.len() - 1);
-        let mut weights = Vec::with_capacity(n + 1);
-        for k in 0..=n {
-            let distance = x - chebyshev(k, n);
-            if distance.abs() < 1e-15 {
-                let one = |j| if j == k { 1.0 } else { 0.0 };
-                return (0..=n).map(one).collect();
-            }
+        let n = self.rows.len() - 1;
+        let node = |k: usize| {
             let end = if k == 0 || k == n { 0.5 } else { 1.0 };
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            weights.push(sign * end / distance);
-        }
-        let sum: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|w| *w /= sum);
-        weights
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+            [chebyshev(k, n), sign * end]
+        };
+        let nodes: Vec<[f64; 2]> = (0..=n).map(node).collect();
+        barycentric(&nodes, 2.0 * part - 1.0)
     }
 
     fn column(&self, weights: &[f64], column: usize) -> f64 {

@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use spec_math::cephes64::{j0, j1};
 
-use super::equation::basis::{Break, Panel, rule};
+use super::equation::basis::{Break, Panel};
 use super::equation::system::Parts;
 use super::equation::waves::Waves;
 use super::tip::{FEW_KINKS, TipParameter};
+use crate::numerics::quadrature::Rule;
 
 /// Nodes of the integrals of the pressure, beside four for each thickness of the top layer in the radius.
 const PRESSURE: usize = 48;
@@ -113,7 +114,8 @@ impl Density<'_> {
         let r = if r > 0.0 { r.max(1e-200 * a) } else { r };
         let singular = self.edge / ((a - r) * (a + r)).sqrt();
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
-        let rule = rule((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
+        let rule =
+            Rule::kept((parts.stack.finer() * (PRESSURE as f64 + 4.0 * ratio)).ceil() as usize);
         let breaks = self.breaks();
         // t = r cosh θ takes the root away.
         let (panels, is_axis) = match r > 0.0 {
@@ -159,7 +161,8 @@ impl Density<'_> {
         let parts = self.parts;
         let a = parts.system.radius;
         let ratio = parts.stack.thickness().map_or(0.0, |h| a / h);
-        let rule = rule((parts.stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
+        let rule =
+            Rule::kept((parts.stack.finer() * (SURFACE as f64 + 4.0 * ratio)).ceil() as usize);
         let angle = |t: f64| (t / r).min(1.0).asin();
         let breaks = mapped(&self.breaks(), angle);
         let panels = Panel::between(0.0, &breaks, angle(a)).into_iter();

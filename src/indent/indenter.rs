@@ -4,12 +4,13 @@ use std::sync::{Arc, OnceLock};
 
 use super::adhesion::{Adhesion, Branch, Control};
 use super::cohesion;
-use super::equation::root::{bracketed, newton};
+use super::equation::bracketed;
 use super::equation::stack::Stack;
 use super::equation::system::Parts;
 use super::point::{Point, PullOff};
 use super::tip::Tip;
 use crate::error::{Error, Result, finite, require};
+use crate::numerics::roots::newton;
 
 /// Smallest contact radius, in end radii or thicknesses, at which a contact is looked for.
 const SMALLEST: f64 = 1e-9;

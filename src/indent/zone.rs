@@ -10,9 +10,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use spec_math::cephes64::{j0, j1};
 
-use super::equation::basis::rule;
 use super::equation::system::{Parts, add, times};
 use super::equation::waves::Waves;
+use crate::numerics::quadrature::Rule;
 
 /// Nodes of the integral over a panel of a zone, beside half of the phase of the shortest wave over it.
 const NODES: usize = 24;
@@ -174,7 +174,7 @@ impl Zone {
         let (mut cos, mut sin) = (sums.clone(), sums.clone());
         for panel in 0..panels as usize {
             let middle = low + (2 * panel + 1) as f64 * half;
-            for (angle, w) in rule(count).nodes(middle, half) {
+            for (angle, w) in Rule::kept(count).nodes(middle, half) {
                 waves.circular(self.outer * angle.cos(), &mut cos, &mut sin);
                 let rate = stress * (self.outer * angle.sin()).powi(2) + outer * self.outer;
                 let weight = -2.0 / PI * self.strength * w * rate;
@@ -214,7 +214,7 @@ impl Zone {
             };
             (stress * value + outer * c / larger) * size * x.cosh()
         };
-        factor * rule(ROOT_NODES).over_panels(0.0, (most / size).asinh(), integrand)
+        factor * Rule::kept(ROOT_NODES).over_panels(0.0, (most / size).asinh(), integrand)
     }
 
     /// Part of the pressure within the contact, r ≤ a, that is due to the zone; at its edge −σ₀.

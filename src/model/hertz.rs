@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use crate::error::{Error, Result, finite, positive, require};
 use crate::model::material::Elastic;
+use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 
 /// Equivalent radius R \[m\] of two surfaces in contact, in one direction.
 ///
@@ -245,7 +246,7 @@ impl Ellipse {
         let a = (load / contact_modulus * longer * rd / PI).cbrt();
         let b = k * a;
         let peak_pressure = 1.5 * load / (PI * a * b);
-        let approach = 0.75 * load / (contact_modulus * mean(1.0, k) * a);
+        let approach = 0.75 * load / (contact_modulus * arithmetic_geometric_mean(1.0, k) * a);
         let made = [a, b, peak_pressure, approach];
         if !made.iter().all(|value| value.is_finite() && *value > 0.0) {
             return Err(Error::Inconsistent(
@@ -297,18 +298,6 @@ fn axis_ratio(radii: f64) -> f64 {
     k
 }
 
-/// Arithmetic-geometric mean of two numbers above 0.
-fn mean(mut a: f64, mut g: f64) -> f64 {
-    // The number of digits doubles with each step; the first steps halve the exponent of a/g.
-    for _ in 0..64 {
-        if (a - g).abs() <= f64::EPSILON * a {
-            break;
-        }
-        (a, g) = (0.5 * (a + g), (a * g).sqrt());
-    }
-    a
-}
-
 /// Largest shear stress, and the depth at which it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -317,49 +306,6 @@ pub struct Shear {
     pub stress: f64,
     /// Depth below the surface \[m\].
     pub depth: f64,
-}
-
-/// Carlson's integral of the second kind, for x + y > 0 and z > 0:
-///
-/// ```text
-/// R_D(x, y, z) = 3/2 ∫_0^∞ dt / [(t + x)^{1/2} (t + y)^{1/2} (t + z)^{3/2}]
-/// ```
-///
-/// By duplication, until the arguments differ by so little that a series of the fifth order has all
-/// digits. Carlson, Numer. Algorithms 10 (1995) 13, doi:10.1007/BF02198293, algorithm 4.
-pub(super) fn carlson_rd(arguments: [f64; 3]) -> f64 {
-    let [mut x, mut y, mut z] = arguments;
-    let (mut sum, mut factor) = (0.0, 1.0);
-    // The largest relative difference is divided by four each time, after as many steps as the arguments'
-    // ratio has powers of four.
-    for _ in 0..600 {
-        let mean = 0.2 * (x + y + 3.0 * z);
-        let spread = (mean - x).abs().max((mean - y).abs()).max((mean - z).abs());
-        if spread <= 1.5e-3 * mean {
-            break;
-        }
-        let [rx, ry, rz] = [x.sqrt(), y.sqrt(), z.sqrt()];
-        let lambda = rx * ry + ry * rz + rz * rx;
-        sum += factor / (rz * (z + lambda));
-        factor *= 0.25;
-        (x, y, z) = (
-            0.25 * (x + lambda),
-            0.25 * (y + lambda),
-            0.25 * (z + lambda),
-        );
-    }
-    let mean = 0.2 * (x + y + 3.0 * z);
-    let [dx, dy] = [(mean - x) / mean, (mean - y) / mean];
-    let dz = -(dx + dy) / 3.0;
-    let e2 = dx * dy - 6.0 * dz * dz;
-    let e3 = (3.0 * dx * dy - 8.0 * dz * dz) * dz;
-    let e4 = 3.0 * (dx * dy - dz * dz) * dz * dz;
-    let e5 = dx * dy * dz * dz * dz;
-    let series = 1.0 - 3.0 / 14.0 * e2 + e3 / 6.0 + 9.0 / 88.0 * e2 * e2
-        - 3.0 / 22.0 * e4
-        - 9.0 / 52.0 * e2 * e3
-        + 3.0 / 26.0 * e5;
-    3.0 * sum + factor * series / (mean * mean.sqrt())
 }
 
 /// Largest shear stress on the axis of an ellipse of pressure, in a body of Poisson's ratio `poisson`.
@@ -473,7 +419,7 @@ mod tests {
             (0.5, 1.854_074_677_301_372),
             (0.9, 2.578_092_113_348_173),
         ] {
-            let k = 0.5 * PI / mean(1.0, f64::sqrt(1.0 - m));
+            let k = 0.5 * PI / arithmetic_geometric_mean(1.0, f64::sqrt(1.0 - m));
             assert!((k / exact - 1.0).abs() < ROUNDING, "{m}: {k}");
         }
     }

@@ -14,18 +14,17 @@ use rustfft::{Fft, FftPlanner};
 use crate::numerics::parallel::{Threads, each_chunk, number};
 
 mod cosine;
-mod even;
 mod parity;
-mod quarter;
 mod series;
+mod spectrum;
 mod stages;
 mod tensor;
 
-pub(crate) use parity::Transformed;
-pub(crate) use quarter::{Keep, KernelRows, QuarterTransform};
+pub(crate) use parity::{Keep, KernelRows, QuarterTransform, Transformed};
 pub(crate) use series::{fourier_coefficients, inverse_even};
+pub(crate) use spectrum::{EvenSpectrum, ParitySpectrum};
 pub(crate) use stages::HalfSpectra;
-pub(crate) use tensor::{ParitySpectrum, Term};
+pub(crate) use tensor::Term;
 
 /// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
 /// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value
@@ -71,11 +70,6 @@ impl fmt::Debug for PaddedTransform {
     }
 }
 
-/// The transform of a kernel that is even along x and along y, scaled by 1/(mx my). It is real and
-/// even, so that only a quarter is stored, by blocks of columns.
-#[derive(Debug)]
-pub(crate) struct EvenSpectrum(Vec<f64>);
-
 /// Memory for one convolution at a time; it may be larger than a transform needs.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
@@ -119,28 +113,30 @@ fn block_rows(rows: usize) -> usize {
 impl PaddedTransform {
     /// Transforms padded to lengths ≥ 2n − 1, so that convolutions have no periodic images.
     pub(crate) fn plan(shape: [usize; 2], threads: &Threads) -> Self {
-        Self::on(shape, shape.map(|n| fast_length(2 * n - 1)), threads)
-    }
-
-    /// Transforms that are not padded. Convolutions are periodic, with the fast length ≥ n as period.
-    pub(crate) fn plan_periodic(shape: [usize; 2], threads: &Threads) -> Self {
-        Self::on(shape, shape.map(fast_length), threads)
-    }
-
-    /// [`Self::plan_periodic`] with n as the period along directions that repeat.
-    pub(crate) fn plan_unpadded(shape: [usize; 2], repeats: [bool; 2], threads: &Threads) -> Self {
-        let length = |k: usize| match repeats[k] {
-            true => shape[k],
-            false => fast_length(shape[k]),
-        };
-        Self::on(shape, [length(0), length(1)], threads)
+        Self::plan_repeated(shape, [false; 2], threads)
     }
 
     /// Transforms that are padded, but along directions that are `periodic`, with n as the period.
     pub(crate) fn plan_repeated(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
+        Self::with_periods(shape, shape.map(|n| 2 * n - 1), periodic, threads)
+    }
+
+    /// Transforms that are not padded. Convolutions are periodic, with n as the period along directions
+    /// that are `periodic`, and the fast length ≥ n along others.
+    pub(crate) fn plan_unpadded(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
+        Self::with_periods(shape, shape, periodic, threads)
+    }
+
+    /// Transforms of fast lengths of at `least` so many points, but along directions that are `periodic`.
+    fn with_periods(
+        shape: [usize; 2],
+        least: [usize; 2],
+        periodic: [bool; 2],
+        threads: &Threads,
+    ) -> Self {
         let length = |k: usize| match periodic[k] {
             true => shape[k],
-            false => fast_length(2 * shape[k] - 1),
+            false => fast_length(least[k]),
         };
         Self::on(shape, [length(0), length(1)], threads)
     }
@@ -171,8 +167,7 @@ impl PaddedTransform {
 
     /// Cost of a transform, in arbitrary units: points of the mesh times their logarithm.
     pub(crate) fn work(&self) -> f64 {
-        let points = self.padded[0] as f64 * self.padded[1] as f64;
-        points * points.ln()
+        self.points() * self.points().ln()
     }
 
     /// Bytes of the workspace and one spectrum of a padded transform of `shape`.
@@ -254,25 +249,6 @@ impl PaddedTransform {
             at_least(&mut scratch.columns, BLOCK * self.padded[0], ZERO);
             at_least(&mut scratch.fft, fft, ZERO);
         }
-    }
-
-    /// Transforms the rows of `input` along y into `rows`.
-    fn rows_forward(
-        &self,
-        input: &[f64],
-        rows: &mut [Complex64],
-        scratches: &Scratches,
-        threads: &Threads,
-    ) {
-        let ([nx, ny], columns) = (self.shape, self.columns());
-        let rows = &mut rows[..nx * columns];
-        let forward = |first: usize, rows: &mut [Complex64], scratch: &mut Scratch| {
-            let values = input[first * ny..].chunks_exact(ny);
-            for (half, values) in rows.chunks_exact_mut(columns).zip(values) {
-                self.data_to_spectrum(values, half, &mut scratch.real, &mut scratch.fft);
-            }
-        };
-        self.over_items(threads, rows, columns, scratches, forward);
     }
 
     /// Transforms one row of data, padded with zeros.
@@ -368,6 +344,26 @@ impl PaddedTransform {
         }
     }
 
+    /// Transforms rows back along y into all `outputs`. A block of columns has `part` rows for each output, and `size` in
+    /// all.
+    fn rows_from_parts(
+        &self,
+        mesh: &[[Complex64; BLOCK]],
+        [size, part]: [usize; 2],
+        outputs: &mut [&mut [f64]],
+        scratches: &Scratches,
+        threads: &Threads,
+    ) {
+        for (number, output) in outputs.iter_mut().enumerate() {
+            let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
+                let blocks = mesh.chunks_exact(size);
+                let parts = blocks.map(|block| &block[number * part..]);
+                self.rows_from_blocks(parts, first, output, scratch);
+            };
+            self.over_items(threads, output, self.shape[1], scratches, inverse);
+        }
+    }
+
     fn rows_to_spectrum(
         &self,
         real: &mut [f64],
@@ -393,5 +389,31 @@ impl PaddedTransform {
         let scratch = &mut scratch[..self.row_inverse.get_scratch_len()];
         let done = self.row_inverse.process_with_scratch(half, real, scratch);
         debug_assert!(done.is_ok(), "the lengths are those of the plan");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    /// Adds to `sums`, rows of `ny` cells, `weight` times the double sum of kernel and input. The kernel has these values at
+    /// offsets ≥ 0.
+    pub(super) fn add_double_sum(
+        sums: &mut [f64],
+        ny: usize,
+        weight: f64,
+        input: &[f64],
+        kernel: &[f64],
+        odd: [bool; 2],
+    ) {
+        let side = |a: usize, b: usize, odd: bool| match a.cmp(&b) {
+            _ if !odd => 1.0,
+            order => f64::from(order as i8),
+        };
+        for (at, sum) in sums.iter_mut().enumerate() {
+            for (from, value) in input.iter().enumerate() {
+                let ([i, j], [k, l]) = ([at / ny, at % ny], [from / ny, from % ny]);
+                let entry = kernel[i.abs_diff(k) * ny + j.abs_diff(l)];
+                *sum += weight * side(i, k, odd[0]) * side(j, l, odd[1]) * entry * value;
+            }
+        }
     }
 }

@@ -15,12 +15,13 @@ use super::waves::Along;
 use super::{VANISHED, layers};
 use crate::compliance::convolution::{RowWeights, pair};
 use crate::compliance::influence::{CellInfluence, coefficients_apart};
-use crate::compliance::kernel::quadrature::Rule;
 use crate::error::Result;
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
+use crate::numerics::quadrature::Rule;
+use crate::numerics::special::{barycentric, chebyshev_nodes};
 
 /// Cells next to the end that are nodes themselves. Farther off, coefficients are polynomials of the place on
 /// panels that end at twice the distance from which they start.
@@ -62,15 +63,14 @@ impl Nodes {
             }
             let last = rows.len() + doubled as usize - 1;
             let (low, high) = (at(rows.len()), at(last));
-            let angle = |q: usize| PI * (q as f64 + 0.5) / PANEL_NODES as f64;
-            distances.extend(
-                (0..PANEL_NODES).map(|q| 0.5 * (low + high) - 0.5 * (high - low) * angle(q).cos()),
-            );
+            let nodes = chebyshev_nodes::<PANEL_NODES>();
+            distances
+                .extend((nodes.iter()).map(|[x, _]| 0.5 * (low + high) + 0.5 * (high - low) * x));
             for row in rows.len()..=last {
                 let t = 2.0 * (at(row) - low) / (high - low) - 1.0;
                 rows.push(RowWeights {
                     first,
-                    weights: chebyshev(t).to_vec(),
+                    weights: barycentric(&nodes, t),
                 });
             }
         }
@@ -111,21 +111,6 @@ pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, 
         distances, rows, ..
     } = Nodes::new(nearest, spacing, count);
     (distances, rows)
-}
-
-/// Weights of the Chebyshev nodes −cos((q + ½)π/n) at t.
-fn chebyshev(t: f64) -> [f64; PANEL_NODES] {
-    let nodes: [[f64; 2]; PANEL_NODES] = std::array::from_fn(|q| {
-        let angle = PI * (q as f64 + 0.5) / PANEL_NODES as f64;
-        let sign = if q % 2 == 0 { 1.0 } else { -1.0 };
-        [-angle.cos(), sign * angle.sin()]
-    });
-    if let Some(at) = nodes.iter().position(|[x, _]| (x - t).abs() < 1e-14) {
-        return std::array::from_fn(|q| if q == at { 1.0 } else { 0.0 });
-    }
-    let terms = nodes.map(|[x, weight]| weight / (t - x));
-    let sum: f64 = terms.iter().sum();
-    terms.map(|term| term / sum)
 }
 
 /// Coefficient of the logarithm in what keeps the face free, −c ln k as k → 0. The whole body is displaced as much more than

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use ndarray::{Array1, Array2};
 
 use super::VANISHED;
-use crate::compliance::kernel::quadrature::Rule;
+use crate::numerics::quadrature::Rule;
 
 /// Points of a panel.
 pub(super) const POINTS: usize = 10;

@@ -28,10 +28,11 @@ use ndarray::Array2;
 use super::waves::Along;
 use super::{cells, layers};
 use crate::compliance::convolution::{RowWeights, pair};
-use crate::compliance::kernel::quadrature::Rule;
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
+use crate::numerics::quadrature::Rule;
+use crate::numerics::special::{chebyshev, legendre};
 
 /// Number of polynomials φ.
 const POLYNOMIALS: usize = 8;
@@ -129,16 +130,6 @@ impl Entry {
     }
 }
 
-/// Chebyshev's polynomials T_0, T_1, … at t.
-fn chebyshev<const N: usize>(t: f64) -> [f64; N] {
-    let mut values = [1.0; N];
-    values[1] = t;
-    for n in 2..N {
-        values[n] = 2.0 * t * values[n - 1] - values[n - 2];
-    }
-    values
-}
-
 /// Means of all φ over cells of length `dx` around the places `x`, from the body's start, for a body of this
 /// `length`.
 pub(super) fn rows(x: impl Iterator<Item = f64>, dx: f64, length: f64) -> Vec<RowWeights> {
@@ -150,11 +141,8 @@ pub(super) fn rows(x: impl Iterator<Item = f64>, dx: f64, length: f64) -> Vec<Ro
         let mut weights = vec![0.0; POLYNOMIALS];
         for (at, w) in rule.nodes(x / length, 0.5 * dx / length) {
             let t = 2.0 * at - 1.0;
-            let (mut p, mut before) = (1.0, 0.0);
-            for (a, weight) in weights.iter_mut().enumerate() {
-                let n = a as f64;
-                *weight += w * length / dx * (2.0 * n + 1.0).sqrt() * p;
-                (p, before) = (((2.0 * n + 1.0) * t * p - n * before) / (n + 1.0), p);
+            for ((n, weight), p) in weights.iter_mut().enumerate().zip(legendre(t)) {
+                *weight += w * length / dx * (2.0 * n as f64 + 1.0).sqrt() * p;
             }
         }
         RowWeights { first: 0, weights }
@@ -212,7 +200,7 @@ mod tests {
 
     use super::{POLYNOMIALS, TABLE, rows};
     use crate::compliance::ends::reduction::Reduction;
-    use crate::compliance::kernel::quadrature::Rule;
+    use crate::numerics::quadrature::Rule;
 
     /// Error of a coefficient, relative to the displacement under unit pressure.
     const OF_TABLE: f64 = 2e-5;

@@ -20,9 +20,9 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 use ndarray::{Array1, Array2, Axis};
 use spec_math::cephes64::{k0, k1};
 
-use super::linear::{factors, solve};
 use super::mesh::{ENDS, MESH, Mesh, Modes, PANELS, POINTS, edges, first_reliable, step};
-use crate::compliance::kernel::quadrature::Rule;
+use crate::numerics::dense::Factors;
+use crate::numerics::quadrature::Rule;
 
 /// Matrices that all materials share.
 #[derive(Debug)]
@@ -189,7 +189,7 @@ impl Reduction {
         let traction = direct + &(integral * (1.0 - 2.0 * poisson));
         let squared = traction.dot(&traction);
         let identity = Array2::<f64>::eye(squared.nrows());
-        let factors = factors(identity - &squared);
+        let factors = Factors::new(identity - &squared);
         let kernel = |mut product: Array2<f64>| {
             for (mut column, weight) in product.axis_iter_mut(Axis(1)).zip(&mesh.weights) {
                 column /= *weight;
@@ -197,8 +197,8 @@ impl Reduction {
             product
         };
         // P − p = (1 − T²)⁻¹ T² p,  Q = (1 − T²)⁻¹ T p
-        let excess = solve(&factors, squared);
-        let face = kernel(solve(&factors, traction));
+        let excess = factors.solve(squared);
+        let face = kernel(factors.solve(traction));
         let response = kernel(displacement.dot(&excess));
         // The response is symmetric. The lowest end of the mesh disturbs it least where the source is the farther one.
         let response =

@@ -8,9 +8,9 @@ use ndarray::{Array1, Array2};
 use spec_math::cephes64::k0;
 
 use super::VANISHED;
-use super::linear::{factors, solve};
 use super::reduction::Reduction;
-use crate::compliance::kernel::quadrature::Rule;
+use crate::numerics::dense::Factors;
+use crate::numerics::quadrature::Rule;
 
 /// What the face adds at ξ under pressure from 0 to `end`, with the mirror image.
 fn added(reduction: &Reduction, xi: f64, end: f64) -> f64 {
@@ -159,7 +159,7 @@ fn the_exponent_of_a_sharp_end() {
                 matrix[[i, j]] += 2.0 * potential(middle(i), cell) + potential(middle(i), image);
             }
         }
-        let pressure = solve(&factors(matrix), Array2::ones((n, 1)));
+        let pressure = Factors::new(matrix).solve(Array2::ones((n, 1)));
         let at = |x: f64| (0..n).find(|&i| edges[i + 1] > x).unwrap_or(0);
         let [near, far] = [at(1e-6), at(1e-3)];
         let slope =

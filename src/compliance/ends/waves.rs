@@ -19,8 +19,9 @@
 use std::f64::consts::PI;
 
 use crate::compliance::convolution;
-use crate::compliance::kernel::quadrature::Rule;
 use crate::model::grid::Grid;
+use crate::numerics::quadrature::Rule;
+use crate::numerics::special::{legendre, spherical_bessel};
 
 /// Points of a panel.
 const POINTS: usize = 10;
@@ -155,14 +156,16 @@ impl Waves {
         }
         let rule = Rule::gauss_legendre(POINTS);
         let points: Vec<(f64, f64)> = rule.nodes(0.0, 1.0).collect();
-        let polynomials: Vec<[f64; POINTS]> =
-            points.iter().map(|(t, w)| legendre(*t, *w)).collect();
+        let polynomials: Vec<[f64; POINTS]> = points
+            .iter()
+            .map(|(t, w)| weighted_legendre(*t, *w))
+            .collect();
         let mut start = SINGLE;
         while (start as f64) * step < highest {
             let (middle, half) = (1.5 * start as f64 - 0.5, 0.5 * start as f64);
             let mut weights = vec![vec![0.0; distances]; POINTS];
             for n in start..2 * start {
-                let at = legendre((n as f64 - middle) / half, 1.0);
+                let at = weighted_legendre((n as f64 - middle) / half, 1.0);
                 let transform = step * width.transform(n as f64 * step);
                 let cosines = column(n, transform);
                 for (polynomial, weights) in polynomials.iter().zip(&mut weights) {
@@ -187,7 +190,10 @@ impl Waves {
         let panel = WavePanel {
             middle,
             half,
-            polynomials: points.iter().map(|(t, w)| legendre(*t, *w)).collect(),
+            polynomials: points
+                .iter()
+                .map(|(t, w)| weighted_legendre(*t, *w))
+                .collect(),
         };
         let first = self.weights.len();
         for (t, _) in &points {
@@ -249,7 +255,8 @@ struct WavePanel {
 impl WavePanel {
     /// Weights of the points in the integrals of f cos ky and f sin ky.
     fn moments(&self, y: f64) -> [[f64; 2]; POINTS] {
-        let bessel = spherical_bessel((self.half * y).abs());
+        let mut bessel = [0.0; POINTS];
+        spherical_bessel((self.half * y).abs(), &mut bessel);
         let (sine, cosine) = (self.middle * y.abs()).sin_cos();
         let sign = y.signum();
         std::array::from_fn(|q| {
@@ -271,98 +278,14 @@ impl WavePanel {
 }
 
 /// (2n + 1) w P_n(t)
-fn legendre(t: f64, w: f64) -> [f64; POINTS] {
-    let mut values = [0.0; POINTS];
-    let (mut p, mut before) = (1.0, 0.0);
-    for (n, value) in values.iter_mut().enumerate() {
-        let k = n as f64;
-        *value = (2.0 * k + 1.0) * w * p;
-        (p, before) = (((2.0 * k + 1.0) * t * p - k * before) / (k + 1.0), p);
-    }
-    values
-}
-
-/// Spherical Bessel functions j_n(x), x ≥ 0: by the recurrence upwards where it is stable, and downwards, from
-/// orders at which they vanish, elsewhere.
-fn spherical_bessel(x: f64) -> [f64; POINTS] {
-    // Orders above the last, from which the downward recurrence starts: it gains four digits each two or three.
-    const BEYOND: usize = 20;
-    let (sine, cosine) = x.sin_cos();
-    if x > POINTS as f64 {
-        let mut j = [0.0; POINTS];
-        j[0] = sine / x;
-        j[1] = (j[0] - cosine) / x;
-        for n in 1..POINTS - 1 {
-            j[n + 1] = (2 * n + 1) as f64 / x * j[n] - j[n - 1];
-        }
-        return j;
-    }
-    if x < 1e-8 {
-        return std::array::from_fn(|n| match n {
-            0 => 1.0,
-            1 => x / 3.0,
-            _ => 0.0,
-        });
-    }
-    let mut j = [0.0; POINTS];
-    let (mut above, mut here) = (0.0_f64, 1e-250_f64);
-    for n in (0..POINTS + BEYOND).rev() {
-        if n < POINTS {
-            j[n] = here;
-        }
-        if n > 0 {
-            let below = (2 * n + 1) as f64 / x * here - above;
-            (above, here) = (here, below);
-            if here.abs() > 1e200 {
-                (above, here) = (above * 1e-250, here * 1e-250);
-                j.iter_mut().for_each(|j| *j *= 1e-250);
-            }
-        }
-    }
-    let zeroth = sine / x;
-    let first = if x < 1e-3 {
-        x / 3.0 - x.powi(3) / 30.0
-    } else {
-        (zeroth - cosine) / x
-    };
-    let factor = if zeroth.abs() > first.abs() {
-        zeroth / j[0]
-    } else {
-        first / j[1]
-    };
-    j.map(|j| factor * j)
+fn weighted_legendre(t: f64, w: f64) -> [f64; POINTS] {
+    let mut polynomials = legendre(t);
+    std::array::from_fn(|n| (2.0 * n as f64 + 1.0) * w * polynomials.next().unwrap_or_default())
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
-    use super::{Waves, Width, spherical_bessel};
-
-    /// j_2 and j_9 in closed form or by their series; upward and downward recurrences agree where they meet.
-    #[test]
-    fn bessel_functions_are_those_of_the_books() {
-        for x in [1e-9, 1e-3, 0.3, 3.0, PI, 9.99, 10.01, 50.0] {
-            let j = spherical_bessel(x);
-            let j2 = if x < 0.1 {
-                x * x / 15.0 * (1.0 - x * x / 14.0)
-            } else {
-                (3.0 / (x * x) - 1.0) * x.sin() / x - 3.0 * x.cos() / (x * x)
-            };
-            assert!(
-                (j[2] - j2).abs() < 1e-13 * (1.0 + 1.0 / x.powi(2)).min(10.0),
-                "{x} {} {j2}",
-                j[2]
-            );
-        }
-        // x⁹/19!! (1 − x²/42 + x⁴/3864 − …) at x = 1.
-        let expected = 1.0 / 654_729_075.0 * (1.0 - 1.0 / 42.0 + 1.0 / 3864.0 - 1.0 / 579_600.0);
-        assert!((spherical_bessel(1.0)[9] / expected - 1.0).abs() < 1e-6);
-        let [below, above] = [10.0 - 1e-9, 10.0 + 1e-9].map(spherical_bessel);
-        for (below, above) in below.iter().zip(above) {
-            assert!((below - above).abs() < 1e-9, "{below} {above}");
-        }
-    }
+    use super::{Waves, Width};
 
     /// ∫ e^{−ck} cos ky dk = c/(c²+y²), and its means over the width of a load.
     #[test]

@@ -1,4 +1,4 @@
-//! Quadrature: Gauss–Legendre rules, and integrals over a cell of kernels of the distance from a point.
+//! Integrals over a cell of kernels of the distance from a point.
 //!
 //! - Far from the cell: Gauss quadrature over it.
 //! - Near a long thin cell: Gauss quadrature across it, and along it with x = s sinh u beside the cell,
@@ -11,61 +11,7 @@
 //!
 //!   with tan φ = sinh u, and its inverse in the second. This holds however thin a layer is.
 
-use std::f64::consts::PI;
-
-/// Nodes and weights of the rule of n points, exact for polynomials of degree 2n − 1.
-#[derive(Debug, Clone)]
-pub(crate) struct Rule(Vec<(f64, f64)>);
-
-impl Rule {
-    /// Newton's iteration on the Legendre polynomial from Tricomi's guess; Press et al., Numerical
-    /// Recipes, 3rd ed., §4.6.1.
-    pub(crate) fn gauss_legendre(n: usize) -> Self {
-        let node = |i: usize| {
-            let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
-            let mut slope = 1.0;
-            for _ in 0..8 {
-                let (mut p, mut before) = (1.0, 0.0);
-                for k in 0..n {
-                    let k = k as f64;
-                    (p, before) = (((2.0 * k + 1.0) * x * p - k * before) / (k + 1.0), p);
-                }
-                slope = n as f64 * (x * p - before) / (x * x - 1.0);
-                x -= p / slope;
-            }
-            (x, 2.0 / ((1.0 - x * x) * slope * slope))
-        };
-        Self((0..n).map(node).collect())
-    }
-
-    /// ∫ f over \[middle − half, middle + half\], which keeps the digits of a short interval.
-    pub(crate) fn around(&self, middle: f64, half: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-        half * self
-            .0
-            .iter()
-            .map(|&(x, w)| w * f(middle + half * x))
-            .sum::<f64>()
-    }
-
-    /// The nodes and weights on \[middle − half, middle + half\].
-    pub(crate) fn nodes(&self, middle: f64, half: f64) -> impl Iterator<Item = (f64, f64)> {
-        self.0
-            .iter()
-            .map(move |&(x, w)| (middle + half * x, half * w))
-    }
-
-    /// The nodes and weights on \[a, b\], in panels of length 1 at most.
-    pub(crate) fn panels(&self, a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> {
-        let count = (b - a).ceil().max(1.0);
-        let half = 0.5 * (b - a) / count;
-        (0..count as usize).flat_map(move |k| self.nodes(a + (2 * k + 1) as f64 * half, half))
-    }
-
-    /// ∫ f over \[a, b\], in panels of length 1 at most.
-    pub(crate) fn over_panels(&self, a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-        self.panels(a, b).map(|(x, weight)| weight * f(x)).sum()
-    }
-}
+use crate::numerics::quadrature::Rule;
 
 /// Rules for an integrand that is analytic up to some distance from the interval.
 #[derive(Debug)]
@@ -238,32 +184,6 @@ impl CellRules {
                     node(weight, near * cosh, [sx * cos, sy * sin]);
                 }
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rule_of_n_points_is_exact_to_degree_2n_minus_1() {
-        for n in [2, 3, 5, 8, 11] {
-            let rule = Rule::gauss_legendre(n);
-            for degree in 0..2 * n {
-                let exact = if degree % 2 == 0 {
-                    2.0 / (degree as f64 + 1.0)
-                } else {
-                    0.0
-                };
-                let sum = rule.around(0.0, 1.0, |x| x.powi(degree as i32));
-                assert!(
-                    (sum - exact).abs() < 1e-14,
-                    "n {n}, degree {degree}: {sum} {exact}"
-                );
-            }
-            let beyond = rule.around(0.0, 1.0, |x| x.powi(2 * n as i32));
-            assert!((beyond - 2.0 / (2.0 * n as f64 + 1.0)).abs() > 1e-8);
         }
     }
 }

@@ -18,7 +18,7 @@
 //!
 //! which is 0 for a layer like what it lies on.
 
-use super::compliance::Compliance;
+use super::layer::Compliance;
 use super::layer::{Slab, of_energy};
 use super::{Asymptotes, Response};
 use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};

@@ -9,7 +9,7 @@
 //! σ_LL = −[ν P + 2G αV]/(1−ν)      σ_TT = −ν [P + 2G αV]/(1−ν)      σ_LT = i G αU
 //! ```
 
-use super::compliance::Compliance;
+use super::layer::Compliance;
 use super::layer::Slab;
 use crate::model::body::{HalfSpace, Interface, Substrate};
 use crate::model::material::Elastic;

@@ -79,7 +79,7 @@ impl Tangential {
         let coupling = self
             .is_coupled()
             .then(|| [spectrum(zx, [true, false]), spectrum(zy, [false, true])]);
-        let periodic = PaddedTransform::plan_periodic(shape, threads);
+        let periodic = PaddedTransform::plan_unpadded(shape, [false; 2], threads);
         TangentialWindow {
             shape,
             xx: spectrum(xx, [false, false]),

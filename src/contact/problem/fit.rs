@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::bounds::{Bounds, in_contact, is_free};
 use super::freedoms::Freedoms;
+use crate::numerics::dense::eliminate;
 use crate::numerics::parallel::{Lanes, ONE, Row, Total, sum, update, where_positive};
 
 /// Sums over cells from which [`Freedoms::fitted`] finds the multipliers of the rigid motion.
@@ -221,33 +222,13 @@ impl Freedoms {
         });
     }
 
-    /// Solves for the loaded degrees of freedom by elimination; one that the others determine (a contact
-    /// of one cell has no tilt) stays 0.
+    /// Solves for the loaded degrees of freedom; one that the others determine (a contact of one cell has
+    /// no tilt) stays 0.
     pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
-        // A pivot below this part of its diagonal is rounding: 450 ε.
-        const SMALLEST_PIVOT: f64 = 1e-13;
-        let mut a = *matrix;
-        let mut b = right;
-        let mut pivots = self.loaded;
-        for k in 0..3 {
-            pivots[k] = pivots[k] && a[k][k] > SMALLEST_PIVOT * matrix[k][k];
-            if !pivots[k] {
-                continue;
-            }
-            for row in k + 1..3 {
-                let factor = a[row][k] / a[k][k];
-                let pivot_row = a[k];
-                for (entry, above) in a[row].iter_mut().zip(pivot_row).skip(k) {
-                    *entry -= factor * above;
-                }
-                b[row] -= factor * b[k];
-            }
-        }
-        let mut solution = [0.0; 3];
-        for k in (0..3).rev().filter(|&k| pivots[k]) {
-            let known: f64 = (k + 1..3).map(|c| a[k][c] * solution[c]).sum();
-            solution[k] = (b[k] - known) / a[k][k];
-        }
+        let (mut matrix, mut solution) = (*matrix, right);
+        eliminate(&mut matrix, &mut solution, |k, pivot| {
+            self.loaded[k] && pivot > 0.0
+        });
         solution
     }
 }

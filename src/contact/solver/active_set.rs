@@ -253,7 +253,7 @@ impl System<'_> {
         let places: Vec<[usize; 2]> = (self.contact.iter())
             .map(|k| [k / columns, k % columns])
             .collect();
-        let lower = cholesky(places.len(), |a, b| {
+        let lower = cholesky(places.len(), 0.0, |a, b| {
             let offset = [0, 1].map(|k| places[a][k].abs_diff(places[b][k]));
             let [i, k] = [places[a][0], places[b][0]];
             self.coefficients[offset] + self.problem.convolution.added([i, k], offset[1])

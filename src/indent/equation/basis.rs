@@ -1,10 +1,10 @@
 //! Functions in which a contact is expanded, with their cosine transforms.
 
 use std::f64::consts::FRAC_PI_2;
-use std::sync::OnceLock;
 
 use super::waves::Waves;
-use crate::compliance::kernel::quadrature::Rule;
+use crate::numerics::quadrature::Rule;
+use crate::numerics::special::{legendre, spherical_bessel};
 
 /// Contact radius, in thicknesses of the top layer, up to which values at nodes are cheaper than polynomials.
 const NODAL: f64 = 40.0;
@@ -15,15 +15,6 @@ const MORE: usize = 24;
 /// Polynomials of a profile with singularities, beyond those of a smooth one: what they leave of the profile meets what they leave of
 /// the smooth solution of a flat punch.
 const FINER: f64 = 8.0;
-
-/// Rules of Gauss and Legendre that have been asked for; the largest serves beyond.
-static RULES: [OnceLock<Rule>; 1024] = [const { OnceLock::new() }; 1024];
-
-/// The rule of `count` nodes, computed once.
-pub(in crate::indent) fn rule(count: usize) -> &'static Rule {
-    let count = count.clamp(1, RULES.len() - 1);
-    RULES[count].get_or_init(|| Rule::gauss_legendre(count))
-}
 
 /// Place at which panels end, since the profile is not smooth there or near.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,14 +114,14 @@ impl Basis {
         let more = if breaks.is_some() { FINER } else { 0.0 };
         let count = (finer * (count + more)).ceil() as usize;
         let functions = match is_nodal {
-            true => Functions::Nodes(rule(count).nodes(0.5 * a, 0.5 * a).collect()),
+            true => Functions::Nodes(Rule::kept(count).nodes(0.5 * a, 0.5 * a).collect()),
             false => Functions::Polynomials(count),
         };
         let projection = match is_nodal && breaks.is_none() {
             true => vec![],
             false => Panel::between(0.0, breaks.unwrap_or(&[]), a)
                 .into_iter()
-                .flat_map(|panel| panel.nodes(rule(count + MORE)))
+                .flat_map(|panel| panel.nodes(Rule::kept(count + MORE)))
                 .collect(),
         };
         Self {
@@ -168,7 +159,7 @@ impl Basis {
         let mut sums = vec![0.0; self.len()];
         let mut own = sums.clone();
         for ((s, w), f) in self.projection.iter().zip(values) {
-            legendre(2.0 * s / self.radius - 1.0, self.radius, &mut own);
+            orthonormal(2.0 * s / self.radius - 1.0, self.radius, &mut own);
             let pairs = sums.iter_mut().zip(&own);
             pairs.for_each(|(sum, p)| *sum += w * f * p);
         }
@@ -176,7 +167,7 @@ impl Basis {
             return sums;
         };
         let value = |(s, w): &(f64, f64)| {
-            legendre(2.0 * s / self.radius - 1.0, self.radius, &mut own);
+            orthonormal(2.0 * s / self.radius - 1.0, self.radius, &mut own);
             w.sqrt() * own.iter().zip(&sums).map(|(p, sum)| p * sum).sum::<f64>()
         };
         nodes.iter().map(value).collect()
@@ -217,90 +208,17 @@ impl Basis {
 }
 
 /// Orthonormal Legendre polynomials on an interval of this `length` at x from −1 to 1, into `out`.
-fn legendre(x: f64, length: f64, out: &mut [f64]) {
-    let (mut p, mut before) = (1.0, 0.0);
-    for (k, value) in out.iter_mut().enumerate() {
-        let order = k as f64;
-        *value = p * ((2.0 * order + 1.0) / length).sqrt();
-        (p, before) = (
-            ((2.0 * order + 1.0) * x * p - order * before) / (order + 1.0),
-            p,
-        );
+fn orthonormal(x: f64, length: f64, out: &mut [f64]) {
+    for ((k, value), p) in out.iter_mut().enumerate().zip(legendre(x)) {
+        *value = p * ((2.0 * k as f64 + 1.0) / length).sqrt();
     }
-}
-
-/// Spherical Bessel functions j_k(y) for k from 0, into `out`: upwards where y exceeds the order, and downwards from where
-/// they vanish elsewhere (Miller's algorithm; Abramowitz & Stegun (1964), §10.5).
-fn spherical_bessel(y: f64, out: &mut [f64]) {
-    let count = out.len();
-    if y < 1e-8 {
-        out.fill(0.0);
-        out[0] = 1.0;
-        if count > 1 {
-            out[1] = y / 3.0;
-        }
-        return;
-    }
-    let zeroth = y.sin() / y;
-    let first = (zeroth - y.cos()) / y;
-    if y >= count as f64 {
-        let (mut below, mut here) = (zeroth, first);
-        for (k, value) in out.iter_mut().enumerate() {
-            *value = below;
-            let next = (2 * k + 3) as f64 / y * here - below;
-            (below, here) = (here, next);
-        }
-        return;
-    }
-    let start = count + 20 + (60.0 * count as f64).sqrt() as usize;
-    let (mut above, mut here) = (0.0, 1e-200);
-    for k in (0..start).rev() {
-        let below = (2 * k + 3) as f64 / y * here - above;
-        (above, here) = (here, below);
-        if k < count {
-            out[k] = here;
-        }
-        if here.abs() > 1e200 {
-            above *= 1e-200;
-            here *= 1e-200;
-            out.iter_mut().for_each(|value| *value *= 1e-200);
-        }
-    }
-    // The larger of the first two gives the scale.
-    let scale = match zeroth.abs() > first.abs() || count == 1 {
-        true => zeroth / out[0],
-        false => first / out[1],
-    };
-    out.iter_mut().for_each(|value| *value *= scale);
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Basis, spherical_bessel};
-    use crate::compliance::kernel::quadrature::Rule;
+    use super::Basis;
     use crate::indent::equation::waves::Waves;
-
-    /// Recurrence and the sum Σ (2k+1) j_k² = 1 (Abramowitz & Stegun, 10.1.50), below, at and above the orders.
-    #[test]
-    fn spherical_bessel_functions() {
-        let mut j = vec![0.0; 120];
-        for y in [1e-9, 1e-3, 0.7, 20.0, 60.0] {
-            spherical_bessel(y, &mut j);
-            let sum: f64 = j
-                .iter()
-                .enumerate()
-                .map(|(k, j)| (2 * k + 1) as f64 * j * j)
-                .sum();
-            assert!((sum - 1.0).abs() < 1e-13, "{y}: {sum}");
-            assert!((j[0] - if y > 0.0 { y.sin() / y } else { 1.0 }).abs() < 1e-15);
-        }
-        // j_2 = (3/y² − 1) sin y/y − 3 cos y/y².
-        for y in [3.0, 130.0, 500.0_f64] {
-            spherical_bessel(y, &mut j);
-            let due = (3.0 / (y * y) - 1.0) * y.sin() / y - 3.0 * y.cos() / (y * y);
-            assert!((j[2] - due).abs() < 1e-15, "{y}: {} {due}", j[2]);
-        }
-    }
+    use crate::numerics::quadrature::Rule;
 
     /// Transforms of polynomials equal their quadrature.
     #[test]

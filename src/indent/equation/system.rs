@@ -48,7 +48,7 @@ impl ContactSystem {
         }
         let excess = level.as_ref().map_or(&[][..], |level| &level.excess);
         let matrix = products(&rows, excess);
-        let factor = cholesky(basis.len(), |i, j| {
+        let factor = cholesky(basis.len(), 0.0, |i, j| {
             let identity = if i == j { 1.0 } else { 0.0 };
             identity + matrix.get(i).map_or(0.0, |row| 2.0 / PI * row[j])
         });

@@ -1,7 +1,8 @@
 //! Wavenumbers at which the response of the bodies is known, and cosines and sines there.
 
-use crate::compliance::kernel::quadrature::Rule;
 use crate::numerics::parallel::Lanes;
+use crate::numerics::quadrature::Rule;
+use crate::numerics::special::legendre_pair;
 
 /// Wavenumber, in inverse top layers, from which on the response is that of the top layer: what is left of the rest is
 /// some x² e^{−2x} = 3e-12 of it.
@@ -131,11 +132,7 @@ fn is_smooth(rule: &Rule, top: f64, excess: &impl Fn(f64) -> f64) -> bool {
         let value = excess(alpha);
         size = size.max((1.0 + value).abs());
         let x = 2.0 * alpha / top - 1.0;
-        let (mut p, mut before) = (1.0, 0.0);
-        for k in 0..NODES - 1 {
-            let k = k as f64;
-            (p, before) = (((2.0 * k + 1.0) * x * p - k * before) / (k + 1.0), p);
-        }
+        let [before, p] = legendre_pair(NODES - 1, x);
         // (2k+1)/2 ∫ f P_k over −1 … 1.
         for (sum, (k, p)) in last.iter_mut().zip([(NODES - 1, p), (NODES - 2, before)]) {
             *sum += (k as f64 + 0.5) * (w * 2.0 / top) * value * p;

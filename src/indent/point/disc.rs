@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::indent::adhesion::Adhesion;
 use crate::indent::density::{Density, oscillating};
 use crate::indent::equation::waves::Waves;
+use crate::numerics::special::chebyshev_nodes;
 
 /// Nodes of a panel. What oscillates is analytic up to two thicknesses from the real axis, so that eight nodes on a panel of one
 /// thickness leave (4 + √17)⁻⁸ = 5e-8 of it.
@@ -41,17 +42,11 @@ struct Layers {
     rows: Vec<[[f64; 2]; NODES]>,
 }
 
-/// Chebyshev's point k on −1 … 1, from below, and its barycentric weight.
-fn chebyshev(k: usize) -> [f64; 2] {
-    let (sin, cos) = ((k as f64 + 0.5) * PI / NODES as f64).sin_cos();
-    [-cos, if k.is_multiple_of(2) { sin } else { -sin }]
-}
-
 /// Chebyshev's points on each of the panels between `ends`.
 fn nodes(ends: &[f64]) -> impl Iterator<Item = f64> {
     let on = |pair: &[f64]| {
         let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
-        std::array::from_fn::<f64, NODES, _>(|k| middle + half * chebyshev(k)[0])
+        chebyshev_nodes::<NODES>().map(|[x, _]| middle + half * x)
     };
     ends.windows(2).flat_map(on)
 }
@@ -220,7 +215,7 @@ impl Point {
         if falls && tip.is_convex() {
             return Ok(true);
         }
-        let points = std::array::from_fn(chebyshev);
+        let points = chebyshev_nodes();
         let slopes = |places: &[f64]| -> Vec<f64> {
             let at = |t: &f64| layers.slope(*t, &points) - f * tip.transform(*t)[1];
             places.iter().map(at).collect()

@@ -5,10 +5,11 @@ use spec_math::cephes64::{j0, j1};
 use super::{Point, check_distances};
 use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result, require};
-use crate::indent::equation::basis::{Panel, rule};
+use crate::indent::equation::basis::Panel;
 use crate::indent::equation::system::add;
 use crate::indent::equation::waves::Waves;
 use crate::indent::tip::FEW_KINKS;
+use crate::numerics::quadrature::Rule;
 
 /// Depth, in contact radii, above which the waves that matter are too many.
 const SHALLOWEST: f64 = 1e-2;
@@ -158,7 +159,7 @@ impl Point {
                     high: low + length,
                     has_root: panel.has_root && k == 0,
                 };
-                for (place, weight) in part.nodes(rule(FINE)) {
+                for (place, weight) in part.nodes(Rule::kept(FINE)) {
                     places.push(place);
                     weights.push(weight);
                 }

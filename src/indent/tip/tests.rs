@@ -1,9 +1,9 @@
 //! Transforms of tips against their definition, differences and closed forms.
 
 use super::{Form, Tip, TipParameter};
-use crate::compliance::kernel::quadrature::Rule;
 use crate::error::Result;
 use crate::indent::equation::basis::{Break, Panel};
+use crate::numerics::quadrature::Rule;
 
 /// Forms with their numbers as `numbers` has them.
 fn forms([x, y]: [f64; 2]) -> [Form; 9] {

@@ -13,8 +13,6 @@
 //! transform of the full sequence is 2C where it is even, and −2i S where it is odd. Press et al.,
 //! Numerical Recipes, 3rd ed., Cambridge University Press (2007), §12.4.
 
-use std::ops::{Add, Mul, Sub};
-
 use rustfft::num_complex::Complex64;
 
 /// sin and cos of πj/N, 0 < j < N.
@@ -23,61 +21,16 @@ pub(super) struct Angles {
     pub(super) cos: Vec<f64>,
 }
 
-/// Computes y of the module's formula from f, and returns C_1 of an even sequence, or 0 of an odd one.
-/// The entries j and N − j have the same sine and are computed together.
-pub(super) fn fold<T>(f: &[T], odd: bool, angles: &Angles, y: &mut [T]) -> T
-where
-    T: Copy + Default + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
-{
-    let pairs = angles.sin.len() / 2;
-    let (low, high) = f[1..].split_at(f.len() - 1 - pairs);
-    let (low_y, high_y) = y[1..].split_at_mut(f.len() - 1 - pairs);
-    let ends = low.iter().zip(high.iter().rev());
-    let made = low_y.iter_mut().zip(high_y.iter_mut().rev());
-    let entries = ends.zip(made).zip(angles.sin.iter().zip(&angles.cos));
-    let (mut first, middle);
-    if odd {
-        first = T::default();
-        for (((a, b), (low, high)), (sin, _)) in entries {
-            let (half, sum) = ((*a - *b) * 0.5, (*a + *b) * *sin);
-            (*low, *high) = (sum + half, sum - half);
-        }
-        y[0] = T::default();
-        middle = 2.0;
-    } else {
-        first = f[0] * 0.5;
-        for (((a, b), (low, high)), (sin, cos)) in entries {
-            let (half, difference) = ((*a + *b) * 0.5, *a - *b);
-            let turned = difference * *sin;
-            (*low, *high) = (half - turned, half + turned);
-            first = first + difference * *cos;
-        }
-        y[0] = f[0] * 0.5;
-        middle = 1.0;
-    }
-    // For even N, the entry j = N/2 has no partner; its sine is 1 and its cosine 0.
-    if f.len().is_multiple_of(2) {
-        y[f.len() / 2] = f[f.len() / 2] * middle;
-    }
-    first
-}
-
-/// [`fold`] for W columns together, where `line(j)` has the entries j of all columns. Two columns form
-/// one complex sequence of `y`, and as many pairs are computed as fit into `y`.
-pub(super) fn fold_lines<'a, const W: usize>(
+/// Computes y of the module's formula from f for W sequences together, where `line(j)` has the entries j of all, and hands
+/// over the entries of y. Returns C_1 of even sequences, or 0 of odd ones. The entries j and N − j have the same sine and
+/// are computed together.
+fn fold_lines<'a, const W: usize>(
     line: impl Fn(usize) -> &'a [f64; W],
     odd: bool,
     angles: &Angles,
-    y: &mut [Complex64],
+    mut write: impl FnMut(usize, [f64; W]),
 ) -> [f64; W] {
     let length = angles.sin.len() + 1;
-    let mut write = |j: usize, values: [f64; W]| {
-        let (pairs, _) = values.as_chunks::<2>();
-        for (y, [one, other]) in y[j..].iter_mut().step_by(length).zip(pairs) {
-            *y = Complex64::new(*one, *other);
-        }
-    };
-    let top = line(0);
     let mut first = [0.0; W];
     for j in 1..length.div_ceil(2) {
         let (a, b) = (line(j), line(length - j));
@@ -99,6 +52,7 @@ pub(super) fn fold_lines<'a, const W: usize>(
         write(j, low);
         write(length - j, high);
     }
+    // For even N, the entry j = N/2 has no partner; its sine is 1 and its cosine 0.
     if length.is_multiple_of(2) {
         let middle = if odd { 2.0 } else { 1.0 };
         write(length / 2, line(length / 2).map(|value| middle * value));
@@ -106,12 +60,36 @@ pub(super) fn fold_lines<'a, const W: usize>(
     if odd {
         write(0, [0.0; W]);
     } else {
-        write(0, top.map(|value| 0.5 * value));
+        let top = line(0).map(|value| 0.5 * value);
+        write(0, top);
         for (first, top) in first.iter_mut().zip(top) {
-            *first += 0.5 * top;
+            *first += top;
         }
     }
     first
+}
+
+/// [`fold_lines`] for one sequence.
+pub(super) fn fold(f: &[f64], odd: bool, angles: &Angles, y: &mut [f64]) -> f64 {
+    let (f, _) = f.as_chunks::<1>();
+    let [first] = fold_lines(|j| &f[j], odd, angles, |j, [value]| y[j] = value);
+    first
+}
+
+/// [`fold_lines`] for columns, of which two form one complex sequence of `y`; as many pairs are computed as fit into it.
+pub(super) fn fold_pairs<'a, const W: usize>(
+    line: impl Fn(usize) -> &'a [f64; W],
+    odd: bool,
+    angles: &Angles,
+    y: &mut [Complex64],
+) -> [f64; W] {
+    let length = angles.sin.len() + 1;
+    fold_lines(line, odd, angles, |j, values| {
+        let (pairs, _) = values.as_chunks::<2>();
+        for (y, [one, other]) in y[j..].iter_mut().step_by(length).zip(pairs) {
+            *y = Complex64::new(*one, *other);
+        }
+    })
 }
 
 /// Computes the transform of the full sequence from Y at 0 … N/2; for an odd sequence without the

@@ -1,11 +1,19 @@
 //! Convolution of one input with several kernels, each even or odd along x and along y.
+//!
+//! Kernels are given at offsets ≥ 0 and transformed along each direction by a cosine or sine transform
+//! of half the length, see [`super::cosine`]. Rows are transformed when they are computed. Columns are
+//! transformed when they are needed, one block at a time, so that the full transform is never stored.
 
+use std::f64::consts::PI;
+use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
+use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
 
-use super::cosine::unfold_pair;
-use super::quarter::{KernelRows, QuarterTransform};
+use super::cosine::{Angles, fold, fold_pairs, unfold, unfold_pair};
 use super::stages::scatter;
 use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
 use crate::numerics::parallel::Threads;
@@ -13,6 +21,93 @@ use crate::numerics::parallel::Threads;
 /// The half spectrum of padded data, scaled by 1/(mx my) and stored column after column.
 #[derive(Debug)]
 pub(crate) struct Transformed(Vec<Complex64>);
+
+/// Receives one row of a kernel: (row, kernel, values).
+pub(crate) type Keep<'a> = dyn FnMut(usize, usize, &[f64]) + 'a;
+
+/// Plans of the cosine and sine transforms of half the padded lengths.
+pub(crate) struct QuarterTransform {
+    row: Arc<dyn RealToComplex<f64>>,
+    column: Arc<dyn Fft<f64>>,
+    /// Angles of the transforms along x and along y.
+    angles: [Angles; 2],
+}
+
+impl fmt::Debug for QuarterTransform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [nx, ny] = self.angles.each_ref().map(|angles| angles.sin.len() + 1);
+        write!(f, "QuarterTransform({nx} x {ny})")
+    }
+}
+
+/// Several kernels at offsets (i, j) ≥ 0, transformed along y.
+#[derive(Debug)]
+pub(crate) struct KernelRows {
+    /// Numbers of offsets along x and along y.
+    offsets: [usize; 2],
+    /// Whether each kernel is odd along x and along y.
+    odd: Vec<[bool; 2]>,
+    /// Number of rows that one task computes.
+    rows_per_task: usize,
+    /// Rows, ordered by task, block of columns and kernel.
+    values: Vec<[f64; BLOCK]>,
+    /// Position in `values` of each row of the first kernel in the first block.
+    starts: Vec<usize>,
+}
+
+impl KernelRows {
+    fn odd(&self, kernel: usize) -> [bool; 2] {
+        self.odd[kernel]
+    }
+
+    /// Row i of a kernel in a block of columns; zero beyond the given offsets.
+    fn line(&self, [block, kernel]: [usize; 2], i: usize) -> &[f64; BLOCK] {
+        let part = (block * self.odd.len() + kernel) * self.rows_per_task;
+        self.starts
+            .get(i)
+            .map_or(&[0.0; BLOCK], |start| &self.values[start + part])
+    }
+}
+
+impl QuarterTransform {
+    fn new(padded: [usize; 2]) -> Self {
+        let half = padded.map(|m| m / 2);
+        let angles = half.map(|n| {
+            let angles = (1..n).map(|j| (PI * j as f64 / n as f64).sin_cos());
+            let (sin, cos) = angles.unzip();
+            Angles { sin, cos }
+        });
+        Self {
+            row: RealFftPlanner::new().plan_fft_forward(half[1]),
+            column: FftPlanner::new().plan_fft_forward(half[0]),
+            angles,
+        }
+    }
+
+    /// Half the padded length along x, which is the length of a folded column.
+    fn column_length(&self) -> usize {
+        self.angles[0].sin.len() + 1
+    }
+
+    /// Transforms the columns of one block of a kernel into `folded`, two columns as one complex
+    /// sequence, and returns the term 1 of each column, which [`unfold_pair`] needs.
+    fn columns(
+        &self,
+        rows: &KernelRows,
+        [block, kernel]: [usize; 2],
+        pairs: usize,
+        folded: &mut [Complex64],
+        fft: &mut Vec<Complex64>,
+    ) -> [f64; BLOCK] {
+        let length = self.column_length();
+        let folded = &mut folded[..pairs * length];
+        let line = |i: usize| rows.line([block, kernel], i);
+        let first = fold_pairs(line, rows.odd[kernel][0], &self.angles[0], folded);
+        fft.resize(fft.len().max(self.column.get_inplace_scratch_len()), ZERO);
+        self.column.process_with_scratch(folded, fft);
+        first
+    }
+}
 
 impl PaddedTransform {
     /// Transforms `input` (nx, ny) in C order.
@@ -22,18 +117,17 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) -> Transformed {
-        let nx = self.shape[0];
-        let (mx, columns) = (self.padded[0], self.columns());
+        let (nx, mx) = (self.shape[0], self.padded[0]);
+        self.rows_in((input, 0..nx), workspace, threads);
         let Workspace { mesh, scratches } = workspace;
-        let rows = &mut mesh.as_flattened_mut()[..nx * columns];
-        self.rows_forward(input, rows, scratches, threads);
-        let rows = &*rows;
-        let scale = 1.0 / (mx as f64 * self.padded[1] as f64);
-        let mut spectrum = vec![ZERO; columns * mx];
+        let (mesh, size) = (&*mesh, self.block_rows());
+        let scale = 1.0 / self.points();
+        let mut spectrum = vec![ZERO; self.columns() * mx];
         let along = |first: usize, part: &mut [Complex64], scratch: &mut Scratch| {
-            for (l, column) in part.chunks_exact_mut(mx).enumerate() {
-                for (i, value) in column[..nx].iter_mut().enumerate() {
-                    *value = rows[i * columns + first + l] * scale;
+            for (number, column) in (first..).zip(part.chunks_exact_mut(mx)) {
+                let lines = &mesh[number / BLOCK * size..];
+                for (value, line) in column[..nx].iter_mut().zip(lines) {
+                    *value = line[number % BLOCK] * scale;
                 }
                 self.column_forward
                     .process_with_scratch(column, &mut scratch.fft);
@@ -41,6 +135,71 @@ impl PaddedTransform {
         };
         self.over_items(threads, &mut spectrum, mx, scratches, along);
         Transformed(spectrum)
+    }
+
+    pub(crate) fn quarter_transform(&self) -> QuarterTransform {
+        QuarterTransform::new(self.padded)
+    }
+
+    /// Memory for kernels of these parities along x and y, with the numbers of `offsets` along x and y.
+    pub(crate) fn kernel_rows(&self, offsets: [usize; 2], odd: Vec<[bool; 2]>) -> KernelRows {
+        let rows_per_task = offsets[0].div_ceil(self.tasks);
+        let tasks = offsets[0].div_ceil(rows_per_task);
+        let per_task = self.blocks() * odd.len() * rows_per_task;
+        let start = |i: usize| i / rows_per_task * per_task + i % rows_per_task;
+        KernelRows {
+            offsets,
+            odd,
+            rows_per_task,
+            values: vec![[0.0; BLOCK]; tasks * per_task],
+            starts: (0..offsets[0]).map(start).collect(),
+        }
+    }
+
+    /// Transforms kernels along y. `source` is called with ranges of rows, and passes each row of each
+    /// kernel to its second argument.
+    pub(crate) fn transform_rows(
+        &self,
+        transform: &QuarterTransform,
+        kernels: &mut KernelRows,
+        source: impl Fn(Range<usize>, &mut Keep) + Sync,
+        workspace: &mut Workspace,
+        threads: &Threads,
+    ) {
+        let KernelRows {
+            offsets: [nx, ny],
+            odd,
+            rows_per_task,
+            values,
+            ..
+        } = kernels;
+        let ([nx, ny], per_task) = ([*nx, *ny], *rows_per_task);
+        let (columns, count) = (self.columns(), odd.len());
+        let (plan, angles) = (&transform.row, &transform.angles[1]);
+        let odd = &*odd;
+        let work = |first: usize, part: &mut [[f64; BLOCK]], scratch: &mut Scratch| {
+            let (length, fft) = (columns - 1, &mut scratch.fft);
+            fft.resize(fft.len().max(plan.get_scratch_len()), ZERO);
+            let fft = &mut fft[..plan.get_scratch_len()];
+            let half = &mut scratch.spectra[..length / 2 + 1];
+            let (padded, folded) = scratch.real[..2 * length].split_at_mut(length);
+            padded.fill(0.0);
+            let mut line = vec![0.0; self.blocks() * BLOCK];
+            let mut keep = |i: usize, k: usize, row: &[f64]| {
+                padded[..ny].copy_from_slice(&row[..ny]);
+                let start = fold(padded, odd[k][1], angles, folded);
+                let done = plan.process_with_scratch(folded, half, fft);
+                debug_assert!(done.is_ok(), "the lengths are those of the plan");
+                unfold(half, odd[k][1], start, &mut line[..columns]);
+                let (lines, _) = line.as_chunks::<BLOCK>();
+                for (block, line) in lines.iter().enumerate() {
+                    part[(block * count + k) * per_task + i - first] = *line;
+                }
+            };
+            source(first..(first + per_task).min(nx), &mut keep);
+        };
+        let (size, scratches) = (self.blocks() * count, &workspace.scratches);
+        self.over_tasks(threads, values, (size, per_task), scratches, work);
     }
 
     /// Transforms for kernels of either parity with the given numbers of `offsets` along x and y. These
@@ -69,7 +228,7 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        let [nx, ny] = self.shape;
+        let nx = self.shape[0];
         let mx = self.padded[0];
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
         let Workspace { mesh, scratches } = workspace;
@@ -118,16 +277,7 @@ impl PaddedTransform {
             }
         };
         self.over_items(threads, blocks, size, scratches, multiply);
-
-        let blocks = &*blocks;
-        for (k, output) in outputs.iter_mut().enumerate() {
-            let inverse = |first: usize, output: &mut [f64], scratch: &mut Scratch| {
-                let blocks = blocks.chunks_exact(size);
-                let parts = blocks.map(|block| &block[k * block_rows..]);
-                self.rows_from_blocks(parts, first, output, scratch);
-            };
-            self.over_items(threads, output, ny, scratches, inverse);
-        }
+        self.rows_from_parts(blocks, [size, block_rows], outputs, scratches, threads);
     }
 }
 
@@ -177,8 +327,8 @@ fn accumulate<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::quarter::Keep;
     use super::*;
+    use crate::numerics::fft::tests::add_double_sum;
 
     /// Convolutions of each parity, and their sum, equal the double sum, for odd and even lengths.
     #[test]
@@ -223,23 +373,8 @@ mod tests {
                 transform.transform_rows(&quarter, &mut rows, source, &mut workspace, &threads);
                 let weight = 1.0 + seed as f64;
                 sets.push((weight, rows));
-                let side = |a: usize, b: usize, odd: bool| {
-                    let sign = if !odd {
-                        1.0
-                    } else {
-                        (a > b) as u8 as f64 - (a < b) as u8 as f64
-                    };
-                    (a.abs_diff(b), sign)
-                };
                 for (k, odd) in odd.into_iter().enumerate() {
-                    let values = kernel(k);
-                    for (at, sum) in exact.iter_mut().enumerate() {
-                        for (from, value) in input.iter().enumerate() {
-                            let (i, sx) = side(at / ny, from / ny, odd[0]);
-                            let (j, sy) = side(at % ny, from % ny, odd[1]);
-                            *sum += weight * sx * sy * values[i * ny + j] * value;
-                        }
-                    }
+                    add_double_sum(&mut exact, ny, weight, &input, &kernel(k), odd);
                 }
             }
             let sets: Vec<_> = sets.iter().map(|(weight, rows)| (*weight, rows)).collect();

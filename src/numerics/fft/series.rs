@@ -1,12 +1,10 @@
 //! Transforms that are used once and therefore have no plan.
 
-use std::sync::Arc;
-
-use ndarray::Array2;
+use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 
 use super::ZERO;
 use crate::numerics::parallel::Threads;
@@ -19,53 +17,40 @@ pub(crate) fn inverse_even(
     value: impl Fn(usize, usize) -> f64 + Sync,
     threads: &Threads,
 ) -> Array2<f64> {
-    let mut planner = FftPlanner::new();
-    let (along_x, along_y) = (planner.plan_fft_forward(mx), planner.plan_fft_forward(my));
-    let (half_x, half_y) = (mx / 2, my / 2);
-    // For real and even data, the forward transform equals the unscaled inverse transform.
-    let even = |fft: &Arc<dyn Fft<f64>>, buffer: &mut [Complex64], scratch: &mut Vec<Complex64>| {
-        scratch.resize(fft.get_inplace_scratch_len(), ZERO);
-        fft.process_with_scratch(buffer, scratch);
-    };
-    let mut columns = Array2::<f64>::zeros((half_y + 1, nx));
-    let mut out = Array2::<f64>::zeros((nx, ny));
+    let mut columns = Array2::zeros((my / 2 + 1, nx));
+    let mut out = Array2::zeros((nx, ny));
     let scale = 1.0 / (mx as f64 * my as f64);
     threads.run(|| {
-        columns
-            .axis_iter_mut(ndarray::Axis(0))
-            .into_par_iter()
-            .enumerate()
-            .for_each_init(
-                || (vec![ZERO; mx], Vec::new()),
-                |(buffer, scratch), (l, mut column)| {
-                    for k in 0..=half_x {
-                        let entry = Complex64::new(value(k, l), 0.0);
-                        buffer[k] = entry;
-                        buffer[(mx - k) % mx] = entry;
-                    }
-                    even(&along_x, buffer, scratch);
-                    column.iter_mut().zip(&*buffer).for_each(|(c, b)| *c = b.re);
-                },
-            );
-        out.axis_iter_mut(ndarray::Axis(0))
-            .into_par_iter()
-            .enumerate()
-            .for_each_init(
-                || (vec![ZERO; my], Vec::new()),
-                |(buffer, scratch), (i, mut row)| {
-                    for l in 0..=half_y {
-                        let entry = Complex64::new(columns[[l, i]], 0.0);
-                        buffer[l] = entry;
-                        buffer[(my - l) % my] = entry;
-                    }
-                    even(&along_y, buffer, scratch);
-                    row.iter_mut()
-                        .zip(&*buffer)
-                        .for_each(|(c, b)| *c = b.re * scale);
-                },
-            );
+        even_lines(&mut columns, mx, 1.0, |l, k| value(k, l));
+        even_lines(&mut out, my, scale, |i, l| columns[[l, i]]);
     });
     out
+}
+
+/// Transforms real and even sequences of `period` points, for which the forward transform equals the unscaled inverse
+/// transform. `value(i, k)` returns the entries of row i at 0 ≤ k ≤ period/2.
+fn even_lines(
+    out: &mut Array2<f64>,
+    period: usize,
+    scale: f64,
+    value: impl Fn(usize, usize) -> f64 + Sync,
+) {
+    let fft = FftPlanner::new().plan_fft_forward(period);
+    let memory = || [period, fft.get_inplace_scratch_len()].map(|length| vec![ZERO; length]);
+    out.axis_iter_mut(Axis(0))
+        .into_par_iter()
+        .enumerate()
+        .for_each_init(memory, |[buffer, scratch], (i, mut row)| {
+            for k in 0..=period / 2 {
+                let entry = Complex64::new(value(i, k), 0.0);
+                buffer[k] = entry;
+                buffer[(period - k) % period] = entry;
+            }
+            fft.process_with_scratch(buffer, scratch);
+            row.iter_mut()
+                .zip(&*buffer)
+                .for_each(|(to, from)| *to = from.re * scale);
+        });
 }
 
 /// Fourier coefficients c_m = 1/N Σ f_n e^{−2πi mn/N} of the `samples` f_n, at 0 ≤ m ≤ N/2, as pairs

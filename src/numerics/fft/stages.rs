@@ -13,12 +13,7 @@ use crate::numerics::parallel::{Threads, each_chunk, join};
 /// Half spectra of consecutive rows, stored by blocks of columns.
 pub(crate) struct HalfSpectra<'a>(ArrayViewMut2<'a, [Complex64; BLOCK]>);
 
-impl<'a> HalfSpectra<'a> {
-    /// The half spectra in `memory`: blocks of columns, and rows.
-    pub(super) fn of(memory: ArrayViewMut2<'a, [Complex64; BLOCK]>) -> Self {
-        Self(memory)
-    }
-
+impl HalfSpectra<'_> {
     /// The first `rows` of these half spectra, and the remaining ones.
     pub(crate) fn split(self, rows: usize) -> (Self, Self) {
         let (near, far) = self.0.split_at(Axis(1), rows);
@@ -28,7 +23,7 @@ impl<'a> HalfSpectra<'a> {
 
 /// Divides `rows` into groups of `length` rows or fewer, and calls `work` for each with the index of its
 /// first row; `first` is the index of the first of all.
-pub(super) fn each_group(
+fn each_group(
     rows: HalfSpectra,
     length: usize,
     first: usize,
@@ -79,6 +74,17 @@ impl PaddedTransform {
         threads: &Threads,
     ) {
         let (rows, scratches) = self.half_spectra(workspace);
+        self.rows_into((input, occupied), rows, scratches, threads);
+    }
+
+    /// Transforms the `occupied` rows of `input` along y into those of `rows`.
+    pub(super) fn rows_into(
+        &self,
+        (input, occupied): (&[f64], Range<usize>),
+        rows: HalfSpectra,
+        scratches: &Scratches,
+        threads: &Threads,
+    ) {
         let (_, rows) = rows.split(occupied.start);
         let (rows, _) = rows.split(occupied.len());
         let per_task = occupied.len().div_ceil(self.tasks).max(1);
@@ -98,12 +104,22 @@ impl PaddedTransform {
         workspace: &'a mut Workspace,
     ) -> (HalfSpectra<'a>, &'a Scratches) {
         let Workspace { mesh, scratches } = workspace;
-        let shape = [self.blocks(), self.block_rows()];
-        let Ok(rows) = ArrayViewMut2::from_shape(shape, &mut mesh[..shape[0] * shape[1]]) else {
+        let size = self.block_rows();
+        let (rows, _) = self.blocks_of(mesh, size).split(self.shape[0]);
+        (rows, scratches)
+    }
+
+    /// The blocks of columns in `mesh`, each of `size` rows.
+    pub(super) fn blocks_of<'a>(
+        &self,
+        mesh: &'a mut [[Complex64; BLOCK]],
+        size: usize,
+    ) -> HalfSpectra<'a> {
+        let shape = [self.blocks(), size];
+        let Ok(rows) = ArrayViewMut2::from_shape(shape, &mut mesh[..shape[0] * size]) else {
             unreachable!("the mesh has space for the rows of all blocks");
         };
-        let (rows, _) = HalfSpectra(rows).split(self.shape[0]);
-        (rows, scratches)
+        HalfSpectra(rows)
     }
 
     /// Transforms the first rows of `input` along y into `halves`, as many as `halves` has.
@@ -174,7 +190,7 @@ impl PaddedTransform {
 }
 
 /// Columns of a block that are processed together. In each row they fill a cache line of 64 bytes.
-const COLUMN_GROUP: usize = 4;
+pub(super) const COLUMN_GROUP: usize = 4;
 
 /// The first [`COLUMN_GROUP`] of consecutive columns of `length` points each.
 fn split_columns(columns: &mut [Complex64], length: usize) -> [&mut [Complex64]; COLUMN_GROUP] {
@@ -185,7 +201,7 @@ fn split_columns(columns: &mut [Complex64], length: usize) -> [&mut [Complex64];
 
 /// Copies the columns of `lines` into `columns`, of `length` points each. Only the `occupied` rows are
 /// read; all other points are set to zero.
-fn gather(
+pub(super) fn gather(
     lines: &[[Complex64; BLOCK]],
     occupied: Range<usize>,
     length: usize,

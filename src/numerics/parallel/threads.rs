@@ -1,18 +1,15 @@
 //! Threads that belong to a plan, and the division of work among them.
 
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::hint::spin_loop;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
+use std::time::Duration;
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
 use crate::error::{Error, Result};
-
-mod waiting;
-
-pub(crate) use waiting::{SetOnDrop, join};
-use waiting::{Within, linger, linger_during};
 
 /// Largest permitted number of threads. Larger numbers are taken for mistakes, since each thread has a
 /// stack and working memory.
@@ -59,9 +56,7 @@ pub(crate) struct Threads {
 struct SharedPool {
     threads: ThreadPool,
     /// Number of calls from other threads that have not returned.
-    calls: Arc<AtomicUsize>,
-    /// Held while a call is counted, and while a call that must be the only one checks that it is.
-    gate: Mutex<()>,
+    calls: AtomicUsize,
 }
 
 impl fmt::Debug for Threads {
@@ -138,22 +133,12 @@ impl Threads {
         match &*pool {
             Some((owner, pool)) if *owner == process => Some(Arc::clone(pool)),
             _ => {
-                let calls = Arc::new(AtomicUsize::new(0));
-                let theirs = Arc::clone(&calls);
-                let lingers = self.count <= available();
-                let threads = ThreadPoolBuilder::new()
-                    .num_threads(self.count)
-                    .start_handler(move |_| {
-                        if lingers {
-                            linger_during(&theirs);
-                        }
-                    })
-                    .build()
-                    .ok()?;
                 let new = Arc::new(SharedPool {
-                    threads,
-                    calls,
-                    gate: Mutex::default(),
+                    threads: ThreadPoolBuilder::new()
+                        .num_threads(self.count)
+                        .build()
+                        .ok()?,
+                    calls: AtomicUsize::new(0),
                 });
                 if let Some((_, forked)) = pool.replace((process, Arc::clone(&new))) {
                     // The threads of the old pool do not exist in a forked process and cannot be joined.
@@ -170,46 +155,23 @@ impl SharedPool {
         if self.threads.current_thread_index().is_some() {
             return work();
         }
-        let _call = self.call(&self.gate());
-        self.threads.install(|| {
-            let _within = Within::enter();
-            work()
-        })
-    }
-
-    fn run_inside<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        let (mut work, mut done, mut call) = (Some(work), None, None);
-        self.threads.in_place_scope(|scope| {
-            let gate = self.gate();
-            // At most one call runs inside, so that `work` leaves a thread of the pool to calls that it
-            // waits for. It does not run inside while another call is under way, which might have to
-            // wait for it.
-            if self.calls.load(Ordering::Acquire) == 0 {
-                call = Some(self.call(&gate));
-                self.threads.spawn_broadcast(|_| linger(true));
-                let (work, done) = (work.take(), &mut done);
-                scope.spawn(move |_| {
-                    let _within = Within::enter();
-                    *done = work.map(|work| work());
-                });
-            }
-        });
-        drop(call);
-        match (done, work) {
-            (Some(done), _) => done,
-            (None, Some(work)) => work(),
-            (None, None) => unreachable!("work that was taken has been done"),
-        }
-    }
-
-    fn gate(&self) -> MutexGuard<'_, ()> {
-        self.gate.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Counts a call until the returned value is dropped.
-    fn call(&self, _gate: &MutexGuard<()>) -> Call<'_> {
         self.calls.fetch_add(1, Ordering::AcqRel);
-        Call(&self.calls)
+        let _call = Call(&self.calls);
+        self.threads.install(work)
+    }
+
+    /// At most one call runs inside, so that `work` leaves a thread of the pool to calls that it waits
+    /// for. It does not run inside while another call is under way, which might have to wait for it.
+    fn run_inside<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        let (none, one) = (0, 1);
+        let alone = self
+            .calls
+            .compare_exchange(none, one, Ordering::AcqRel, Ordering::Acquire);
+        if alone.is_err() {
+            return work();
+        }
+        let _call = Call(&self.calls);
+        self.threads.install(work)
     }
 }
 
@@ -220,6 +182,65 @@ impl Drop for Call<'_> {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::AcqRel);
     }
+}
+
+/// Sets a flag when it is dropped, also by a panic.
+pub(crate) struct SetOnDrop<'a>(pub(crate) &'a AtomicBool);
+
+impl Drop for SetOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
+    }
+}
+
+/// Number of times that a waiting thread looks for other work before it naps between two looks.
+const LOOKS: usize = 200;
+
+/// Duration of a nap, to which the system adds about as much.
+const NAP: Duration = Duration::from_micros(50);
+
+/// Spins for about a microsecond.
+fn pause() {
+    (0..50).for_each(|_| spin_loop());
+}
+
+/// Calls both functions, in parallel where another thread of the pool is free.
+///
+/// A solve divides its work hundreds of times, into pieces of a few milliseconds or less. A thread that
+/// waits as rayon does yields its core and, beside programs that keep all cores busy, gets it back only
+/// milliseconds later. Therefore all waiting is done here, by spinning and then by naps, after which the
+/// system gives the thread a core at once.
+pub(crate) fn join<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    let ended = AtomicBool::new(false);
+    rayon::join(
+        || {
+            let done = first();
+            // If no other thread has taken the second function, the first look finds it.
+            let mut looks = 0;
+            while !ended.load(Ordering::Acquire) {
+                match rayon::yield_now() {
+                    Some(Yield::Executed) => looks = 0,
+                    _ if looks < LOOKS => {
+                        pause();
+                        looks += 1;
+                    }
+                    _ => thread::sleep(NAP),
+                }
+            }
+            // Gives rayon time to register the end of the second function.
+            if looks > 0 {
+                pause();
+            }
+            done
+        },
+        || {
+            let _end = SetOnDrop(&ended);
+            second()
+        },
+    )
 }
 
 /// Index of the current thread in its pool; 0 for a thread outside any pool.

@@ -19,6 +19,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
+use crate::numerics::dense::{backward, cholesky, forward};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
@@ -331,19 +332,13 @@ impl NormalEquations {
         if self.count < fewest_values(terms, self.line) {
             return None;
         }
-        let (mut matrix, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
-        for (a, row) in powers.iter().enumerate() {
-            for (b, column) in powers[..=a].iter().enumerate() {
-                matrix[a][b] = self.matrix[*row][*column];
-            }
-            right[a] = self.right[*row];
-        }
-        factorise(&mut matrix, terms)?;
-        let solution = solved(&matrix, right, terms);
-        let mut first = [0.0; TERMS];
+        let right: Vec<f64> = powers.iter().map(|row| self.right[*row]).collect();
+        let factor = cholesky(terms, PIVOT_LIMIT, |a, b| self.matrix[powers[a]][powers[b]])?;
+        let solution = backward(&factor, forward(&factor, right.clone()));
+        let mut first = vec![0.0; terms];
         first[0] = 1.0;
         // The first entry of the inverse: the variance of the value at the centre, over that of values.
-        let spread = solved(&matrix, first, terms)[0];
+        let spread = backward(&factor, forward(&factor, first))[0];
         let product: f64 = solution.iter().zip(&right).map(|(c, r)| c * r).sum();
         let count = self.count as f64;
         let free = count / (count - terms as f64);
@@ -360,40 +355,6 @@ impl NormalEquations {
             uncertainty,
         })
     }
-}
-
-/// Replaces the lower triangle of `matrix` by its Cholesky factor; none where a pivot is lost. Golub &
-/// Van Loan, Matrix Computations, 4th ed. (2013), §4.2.
-fn factorise(matrix: &mut [[f64; TERMS]; TERMS], terms: usize) -> Option<()> {
-    for a in 0..terms {
-        let scale = matrix[a][a];
-        for b in 0..=a {
-            let sum: f64 = (0..b).map(|k| matrix[a][k] * matrix[b][k]).sum();
-            let rest = matrix[a][b] - sum;
-            if a == b {
-                if rest <= PIVOT_LIMIT * scale {
-                    return None;
-                }
-                matrix[a][a] = rest.sqrt();
-            } else {
-                matrix[a][b] = rest / matrix[b][b];
-            }
-        }
-    }
-    Some(())
-}
-
-/// Solution of the system whose Cholesky factor is `factor`.
-fn solved(factor: &[[f64; TERMS]; TERMS], mut right: [f64; TERMS], terms: usize) -> [f64; TERMS] {
-    for a in 0..terms {
-        let sum: f64 = (0..a).map(|k| factor[a][k] * right[k]).sum();
-        right[a] = (right[a] - sum) / factor[a][a];
-    }
-    for a in (0..terms).rev() {
-        let sum: f64 = (a + 1..terms).map(|k| factor[k][a] * right[k]).sum();
-        right[a] = (right[a] - sum) / factor[a][a];
-    }
-    right
 }
 
 /// Cells of the grid within `reach` rows and columns of a cell, itself included.

@@ -13,7 +13,8 @@ use crate::error::Result;
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
-use crate::numerics::parallel::{Threads, dot};
+use crate::numerics::dense::cholesky;
+use crate::numerics::parallel::Threads;
 
 /// The operator of all cells.
 fn convolution(bodies: &[&Body], grid: &Grid) -> Result<Convolution> {
@@ -40,23 +41,11 @@ fn dense(bodies: &[&Body], grid: &Grid) -> Result<Array2<f64>> {
     Ok(matrix)
 }
 
-/// Rows of L, whose product L Lᵀ is a symmetric matrix less `shift` on its diagonal; `None` unless that is positive
-/// definite, that is where an eigenvalue is not above the shift.
-fn cholesky(matrix: &Array2<f64>, shift: f64) -> Option<Vec<Vec<f64>>> {
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for i in 0..matrix.nrows() {
-        let mut row = Vec::with_capacity(i + 1);
-        for (j, other) in rows.iter().enumerate() {
-            row.push((matrix[[i, j]] - dot(&row, &other[..j])) / other[j]);
-        }
-        let pivot = matrix[[i, i]] - shift - dot(&row, &row);
-        if pivot <= 0.0 {
-            return None;
-        }
-        row.push(pivot.sqrt());
-        rows.push(row);
-    }
-    Some(rows)
+/// Cholesky's factor of a symmetric matrix less `shift` on its diagonal; `None` where an eigenvalue is not above the shift.
+fn shifted(matrix: &Array2<f64>, shift: f64) -> Option<Vec<Vec<f64>>> {
+    cholesky(matrix.nrows(), 0.0, |i, j| {
+        matrix[[i, j]] - if i == j { shift } else { 0.0 }
+    })
 }
 
 /// Relative error of [`smallest_eigenvalue`].
@@ -67,7 +56,7 @@ fn smallest_eigenvalue(matrix: &Array2<f64>) -> f64 {
     let (mut below, mut above) = (0.0, matrix[[0, 0]]);
     while above - below > OF_EIGENVALUE * above {
         let middle = 0.5 * (below + above);
-        match cholesky(matrix, middle) {
+        match shifted(matrix, middle) {
             Some(_) => below = middle,
             None => above = middle,
         }
@@ -115,7 +104,7 @@ fn operators_are_symmetric_and_positive() -> Result<()> {
             let asymmetry = (&matrix - &matrix.t()).fold(0.0_f64, |most, d| most.max(d.abs()));
             assert!(asymmetry < 1e-12 * largest, "{name}: {asymmetry:e}");
             let bound = least * bodies.len() as f64 * (1.0 - OF_EIGENVALUE);
-            assert!(cholesky(&matrix, bound).is_some(), "{name}");
+            assert!(shifted(&matrix, bound).is_some(), "{name}");
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Roots of functions of one variable.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// Steps at most; bisection alone needs some 60.
 const STEPS: usize = 200;
@@ -11,7 +11,7 @@ const STEPS: usize = 200;
 ///
 /// # Errors
 /// Errors of `f`.
-pub(in crate::indent) fn newton(
+pub(crate) fn newton(
     mut f: impl FnMut(f64) -> Result<[f64; 2]>,
     [mut low, mut high]: [f64; 2],
     start: f64,
@@ -44,21 +44,19 @@ pub(in crate::indent) fn newton(
     Ok(x)
 }
 
-/// The root of `f` between `low` and `high`, where its signs differ, to rounding, without slopes: Chandrupatla, Adv. Eng. Softw. 28
-/// (1997) 145, doi:10.1016/S0965-9978(96)00051-8.
+/// The root of `f` between `low` and `high`, to rounding, without slopes; `None` where its signs do not differ there.
+/// Chandrupatla, Adv. Eng. Softw. 28 (1997) 145, doi:10.1016/S0965-9978(96)00051-8.
 ///
 /// # Errors
-/// Errors of `f`, and signs that do not differ.
-pub(in crate::indent) fn bracketed(
+/// Errors of `f`.
+pub(crate) fn bracketed(
     mut f: impl FnMut(f64) -> Result<f64>,
     [low, high]: [f64; 2],
-) -> Result<f64> {
+) -> Result<Option<f64>> {
     let (mut b, mut a) = (low, high);
     let (mut fb, mut fa) = (f(b)?, f(a)?);
     if fa * fb > 0.0 || fa.is_nan() || fb.is_nan() {
-        return Err(Error::Inconsistent(
-            "no state of this kind exists within the radii that can be computed",
-        ));
+        return Ok(None);
     }
     let mut t = 0.5;
     let (mut c, mut fc);
@@ -76,7 +74,7 @@ pub(in crate::indent) fn bracketed(
         let best = if fa.abs() < fb.abs() { a } else { b };
         let tolerance = 2.0 * f64::EPSILON * best.abs().max(1.0) / (b - a).abs();
         if tolerance > 0.5 || fa.abs() <= 0.0 || fb.abs() <= 0.0 {
-            return Ok(best);
+            return Ok(Some(best));
         }
         let (xi, phi) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
         let inverse = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
@@ -89,7 +87,7 @@ pub(in crate::indent) fn bracketed(
         };
         t = t.clamp(tolerance, 1.0 - tolerance);
     }
-    Ok(a)
+    Ok(Some(a))
 }
 
 #[cfg(test)]
@@ -103,12 +101,17 @@ mod tests {
             let cube = |x: f64| Ok([x.powi(3) - root.powi(3), 3.0 * x * x]);
             let found = newton(cube, [0.1, 3.0], 2.0).expect("a root");
             assert!((found - root).abs() < 1e-14, "{found} {root}");
-            let found = bracketed(|x| Ok((x - root).cbrt()), [0.0, 3.0]).expect("a root");
+            let found = bracketed(|x| Ok((x - root).cbrt()), [0.0, 3.0]).expect("no error");
+            let found = found.expect("a root");
             assert!((found - root).abs() < 1e-13, "{found} {root}");
             let falling = |x: f64| Ok(root.exp() - x.exp());
-            let found = bracketed(falling, [-4.0, 3.0]).expect("a root");
+            let found = bracketed(falling, [-4.0, 3.0]).expect("no error");
+            let found = found.expect("a root");
             assert!((found - root).abs() < 1e-13, "{found} {root}");
         }
-        assert!(bracketed(|x| Ok(x + 1.0), [0.0, 3.0]).is_err());
+        assert_eq!(
+            bracketed(|x| Ok(x + 1.0), [0.0, 3.0]).expect("no error"),
+            None
+        );
     }
 }
