@@ -406,7 +406,7 @@ mod tests {
     use std::ops::ControlFlow;
 
     use crate::contact::{Algorithm, Contact, Motion, Options, Report, Setup, Solver, Termination};
-    use crate::error::{Error, Result};
+    use crate::error::Result;
     use crate::model::grid::Grid;
     use crate::model::material::Elastic;
     use crate::model::surface::Paraboloid;

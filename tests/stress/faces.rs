@@ -1,7 +1,7 @@
 //! Stress on the face of a free end, beside it, and beyond it, where there is no material.
 
 use nacre::stress::Strengths;
-use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, Stress, StressOptions, StressPlan};
+use nacre::{Elastic, Grid, HalfSpace, Layer, Result, Section, StressOptions, StressPlan};
 use ndarray::{Array2, Array3, Axis};
 
 use crate::support::stresses::{displaced, fields, on};

@@ -5,8 +5,10 @@ use std::ops::ControlFlow;
 use nacre::stress::Strengths;
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, Layer, Member, Motion, Options, Paraboloid, Result, Setup,
-    Solution, Stress, StressOptions, stress,
+    Solution, StressOptions, stress,
 };
+
+use crate::support::stresses::bits;
 
 /// A smooth contact of a coated body, on more than the 181² cells from which on threads share the
 /// work.
