@@ -2,12 +2,13 @@
 //! of threads.
 
 use nacre::influence::{Method, influence_coefficients};
-use nacre::{Convolution, Elastic, Grid, Result};
+use nacre::{Convolution, Grid, Result};
 use ndarray::{Array2, ArrayRef2, Axis, ShapeBuilder, Slice};
 use proptest::prelude::*;
 
+use crate::support::checks::{difference, seeded};
 use crate::support::random::uniform;
-use crate::support::seeded::seeded;
+use crate::support::settings::steel;
 
 /// Error over the largest displacement.
 const ROUNDING: f64 = 1e-12;
@@ -22,12 +23,6 @@ fn double_sum(coefficients: &ArrayRef2<f64>, pressure: &ArrayRef2<f64>) -> Array
     })
 }
 
-/// Largest difference of `a` and `b`, over the largest element of `b`.
-fn difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
-    let largest = |a: &Array2<f64>| a.fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    largest(&(a - b)) / largest(b)
-}
-
 /// Neither padding nor a symmetry of the kernel hides a misplaced element of random arrays.
 fn check_random(shape: [usize; 2]) -> Result<f64> {
     let coefficients = uniform(shape, 1) - 0.5;
@@ -38,54 +33,28 @@ fn check_random(shape: [usize; 2]) -> Result<f64> {
 
 #[test]
 fn odd_even_prime_and_unequal_sizes_equal_the_double_sum() -> Result<()> {
-    let mut worst = 0.0_f64;
-    let small = [
-        [1, 1],
-        [1, 2],
-        [2, 1],
-        [2, 2],
-        [1, 17],
-        [23, 1],
-        [2, 3],
-        [3, 2],
-        [5, 5],
+    #[rustfmt::skip]
+    let shapes = [
+        [1, 1], [1, 2], [2, 1], [2, 2], [1, 17], [23, 1], [2, 3], [3, 2], [5, 5], [16, 16],
+        [13, 7], [7, 31], [17, 32], [32, 17], [37, 41], [3, 101], [64, 48],
+        // Large enough that threads share the work.
+        [187, 176],
     ];
-    let large = [
-        [16, 16],
-        [13, 7],
-        [7, 31],
-        [17, 32],
-        [32, 17],
-        [37, 41],
-        [3, 101],
-        [64, 48],
-    ];
-    for shape in small.into_iter().chain(large) {
-        let error = check_random(shape)?;
-        assert!(error < ROUNDING, "{shape:?}: {error:e}");
-        worst = worst.max(error);
+    for shape in shapes {
+        below!(check_random(shape)?, ROUNDING, shape);
     }
-    println!("largest difference from the double sum: {worst:.1e}");
-    Ok(())
-}
-
-#[test]
-fn threads_share_large_arrays_and_equal_the_double_sum() -> Result<()> {
-    // Large enough that the work is shared.
-    let error = check_random([187, 176])?;
-    assert!(error < ROUNDING, "{error:e}");
     Ok(())
 }
 
 #[test]
 fn displacement_of_a_half_space_equals_the_double_sum() -> Result<()> {
     let grid = Grid::new([29, 40], [2.9e-3, 8e-3])?;
-    let steel = Elastic::new(210e9, 0.3)?;
+    let steel = steel()?;
     let coefficients = influence_coefficients(steel, &grid, Method::Exact)?;
     let pressure = uniform([29, 40], 3) * 1e9;
     let found = Convolution::plan(&coefficients, None)?.apply(&pressure)?;
     let error = difference(&found, &double_sum(&coefficients, &pressure));
-    assert!(error < ROUNDING, "{error:e}");
+    below!(error, ROUNDING);
     Ok(())
 }
 

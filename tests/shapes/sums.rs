@@ -18,12 +18,12 @@ fn a_hundred_thousand_shapes_are_one() -> Result<()> {
     let grid = Grid::new([8, 8], [1e-3, 1e-3])?;
     let rounding = MANY as f64 * f64::EPSILON;
     for (found, exact) in sum.gaps(&grid)?.iter().zip(&one.gaps(&grid)?) {
-        assert_relative_eq!(*found, *exact, max_relative = rounding);
+        near!(*found, *exact, rounding);
     }
-    let contact = Contact::plan(Elastic::new(1e9, 0.3)?, grid, Setup::default())?;
+    let contact = plan(Elastic::new(1e9, 0.3)?, grid)?;
     let press = |shape: &dyn Surface| contact.solve(shape, &Motion::load(1.0), &Options::default());
     let (many, single) = (press(&sum)?, press(&one)?);
-    assert_relative_eq!(many.approach, single.approach, max_relative = 1e-6);
+    near!(many.approach, single.approach, 1e-6);
     Ok(())
 }
 
