@@ -11,5 +11,4 @@ mod shapes {
     mod hertz;
     mod roller;
     mod roller_profiles;
-    mod sums;
 }

@@ -3,14 +3,14 @@
 use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::response::{frequency_response, surface_compliance};
 use nacre::{
-    Contact, Convolution, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Layer,
-    LogarithmicProfile, Paraboloid, Result, Roller, SampledProfile, Setup, Sphere, Substrate,
-    Surface, graded_layers, hertz,
+    Convolution, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Layer,
+    LogarithmicProfile, Paraboloid, Result, Roller, SampledProfile, Sphere, Substrate, Surface,
+    graded_layers, hertz,
 };
 use ndarray::{Array2, array};
 
 use crate::messages::message;
-use crate::support::settings::steel;
+use crate::support::settings::{plan, steel};
 
 const NAN: f64 = f64::NAN;
 const INFINITY: f64 = f64::INFINITY;
@@ -72,9 +72,9 @@ fn grids() -> Result<()> {
 fn a_grid_too_large_for_memory() -> Result<()> {
     let grid = || Grid::new([1 << 21, 1 << 21], [1.0, 1.0]);
     let body: HalfSpace = steel()?.into();
-    let plan = grid().and_then(|grid| plan(&body, grid));
+    let planned = grid().and_then(|grid| plan(&body, grid));
     let coefficients = grid().and_then(|grid| influence_coefficients(&body, &grid, Method::Exact));
-    for text in [message(plan), message(coefficients)] {
+    for text in [message(planned), message(coefficients)] {
         let begins = "a grid of [2097152, 2097152] cells needs about ";
         assert!(text.starts_with(begins), "{text}");
         let ends = " MiB are available; take fewer cells";

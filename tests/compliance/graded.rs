@@ -246,9 +246,10 @@ fn what_waves_between_the_samples_is_resolved() -> Result<()> {
         let exact = HalfSpace::new(steel()?, exact?)?;
         let found = HalfSpace::new(steel()?, layers)?;
         for x in [0.01, 0.3, 1.0, 3.0, 10.0, 30.0] {
+            let due = frequency_response(&exact, x / THICKNESS)?;
             near!(
                 frequency_response(&found, x / THICKNESS)?,
-                frequency_response(&exact, x / THICKNESS)?,
+                due,
                 tolerance,
                 name
             );

@@ -99,12 +99,8 @@ fn peak_at_a_sharp_edge_has_no_estimate() -> Result<()> {
         let (coarse, fine) = (coarse?, fine?);
         let found = estimate(&coarse)?;
         assert_eq!(found.peak_pressure, None, "{motion:?} {line}");
-        below!(
-            1.5 * coarse.peak_pressure(),
-            fine.peak_pressure(),
-            motion,
-            line
-        );
+        let [peak, higher] = [&coarse, &fine].map(Solution::peak_pressure);
+        below!(1.5 * peak, higher, motion, line);
         for (a, b, estimate) in [
             (coarse.approach, fine.approach, found.approach),
             (coarse.load(), fine.load(), found.load),

@@ -220,16 +220,16 @@ fn apart<'a>(a: impl IntoIterator<Item = &'a f64>, b: &'a Solution) -> f64 {
     differences.fold(0.0, f64::max) / b.peak_pressure()
 }
 
-/// A grid twice as wide with the same cells has the same pressures, and a datum that is farther away, also below a layer 8
-/// times harder than the substrate and 4 half-widths thick: at a distance of 3 half-widths its surface moves less than
-/// that of the bare substrate, so that the influence coefficients are negative.
+/// A grid twice as wide with the same cells has the same pressures, and a datum that is farther away. At a distance of 3
+/// half-widths the surface of these layers moves less than that of the bare substrate, so that some influence
+/// coefficients are negative.
 #[test]
 fn the_datum_moves_the_approach_alone() -> Result<()> {
-    for (ratio, thickness, cells, negative) in [(4.0, 0.5, 300, false), (8.0, 4.0, 256, true)] {
+    for (ratio, thickness, cells) in [(4.0, 0.5, 300), (8.0, 4.0, 256)] {
         let body = coated(ratio, thickness * HALF_WIDTH)?;
         let strip = Grid::line(cells, 3.0 * HALF_WIDTH)?;
         let coefficients = influence_coefficients(&body, &strip, Method::Exact)?;
-        assert_eq!(coefficients.iter().any(|&c| c < 0.0), negative);
+        assert!(coefficients.iter().any(|&c| c < 0.0));
         let (near, far) = (line(&body, cells, 3.0)?, line(&body, 2 * cells, 6.0)?);
         // Both were solved to 1e-11; errors of the pressure are some thousand times larger.
         below!(apart(far.pressure.iter().skip(cells / 2), &near), 1e-7);

@@ -48,14 +48,9 @@ pub(crate) fn assert_stiffness(
         for row in 0..3 {
             let slope = (more[row] - less[row]) / (2.0 * step);
             let scale = (stiffness[row][row] * stiffness[freedom][freedom]).sqrt();
-            below!(
-                (stiffness[row][freedom] - slope).abs(),
-                bar * scale,
-                row,
-                freedom
-            );
-            let transposed = stiffness[freedom][row];
-            assert!((stiffness[row][freedom] - transposed).abs() <= SYMMETRY * scale);
+            let (entry, transposed) = (stiffness[row][freedom], stiffness[freedom][row]);
+            below!((entry - slope).abs(), bar * scale, row, freedom);
+            assert!((entry - transposed).abs() <= SYMMETRY * scale);
         }
     }
     Ok(())

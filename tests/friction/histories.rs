@@ -190,11 +190,8 @@ fn gross_slip_is_named() -> Result<()> {
     assert!(solution.stick().iter().all(|stick| !stick));
     // Tractions turn a little towards their own displacement.
     near!(solution.force()[0], FRICTION * load, 1e-3);
-    near!(
-        solution.dissipated(),
-        FRICTION * solution.normal.load() * far,
-        0.1
-    );
+    let work = FRICTION * solution.normal.load() * far;
+    near!(solution.dissipated(), work, 0.1);
     for force in [1.0, 1.5] {
         let step = press(load).with_force([Some(force * FRICTION * load), None]);
         let refused = contact.slide(&ball()?, &[step], &FrictionOptions::default(), None);

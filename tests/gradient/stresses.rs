@@ -2,8 +2,8 @@
 
 use nacre::gradient::{Measure, Output, StressOutput, StressPlace};
 use nacre::{
-    BodyParameter, Elastic, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Section,
-    Side, Solution, Stress, StressOptions, stress,
+    BodyParameter, Elastic, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Section, Side,
+    Solution, Stress, StressOptions, stress,
 };
 use ndarray::Array3;
 
@@ -162,11 +162,8 @@ fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
         near!(found.value, soft(&here, SHARPNESS), 1e-9);
         let compare = |path: &str, theta: f64, expected: f64| {
             let slope = found.get(path).unwrap_or(f64::NAN);
-            below!(
-                (slope - expected).abs() * theta / found.value,
-                DIFFERENCE,
-                path
-            );
+            let error = (slope - expected).abs() * theta / found.value;
+            below!(error, DIFFERENCE, path);
         };
         let load = |step: f64| Ok(soft(&values(&body, LOAD + step)?, SHARPNESS));
         compare("load", LOAD, richardson(1e-4 * LOAD, load)?);

@@ -1,5 +1,6 @@
 //! Assertions that tell both numbers and where they were found.
 
+use nacre::Solution;
 use ndarray::{Array, Dimension};
 use proptest::prelude::ProptestConfig;
 use proptest::test_runner::RngSeed;
@@ -29,9 +30,12 @@ macro_rules! near {
     }};
 }
 
-/// Largest size of the elements.
+/// Largest size of the elements; NaN where one of them is.
 pub(crate) fn largest<D: Dimension>(values: &Array<f64, D>) -> f64 {
-    values.fold(0.0, |most: f64, value| most.max(value.abs()))
+    values.fold(0.0, |most: f64, value| match value.abs() {
+        size if most.is_nan() || size <= most => most,
+        size => size,
+    })
 }
 
 /// Largest |a − b|.
@@ -42,6 +46,11 @@ pub(crate) fn apart<D: Dimension>(a: &Array<f64, D>, b: &Array<f64, D>) -> f64 {
 /// Largest |a − b| over the largest |b|.
 pub(crate) fn difference<D: Dimension>(a: &Array<f64, D>, b: &Array<f64, D>) -> f64 {
     apart(a, b) / largest(b)
+}
+
+/// Largest difference of two pressures over the peak of the second.
+pub(crate) fn pressure_off(a: &Solution, b: &Solution) -> f64 {
+    difference(&a.pressure, &b.pressure)
 }
 
 /// Random cases of proptest, this many, that are equal in every run.
