@@ -1,14 +1,12 @@
 //! The chain from a body to displacement: response, influence coefficients, convolution.
 
-mod support {
-    pub(crate) mod bodies;
-    pub(crate) mod claims;
-    pub(crate) mod foundation;
-    pub(crate) mod messages;
-    pub(crate) mod random;
-    pub(crate) mod reference;
-    pub(crate) mod seeded;
-}
+#[macro_use]
+#[path = "support/root.rs"]
+#[expect(dead_code, reason = "no binary uses all of it")]
+mod support;
+#[macro_use]
+#[path = "support/messages.rs"]
+mod messages;
 
 mod compliance {
     mod convolution_direct;

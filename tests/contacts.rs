@@ -1,15 +1,12 @@
 //! Contacts: every algorithm, control, domain and body, and what cannot be solved.
 
-mod support {
-    pub(crate) mod claims;
-    pub(crate) mod contacts;
-    pub(crate) mod foundation;
-    pub(crate) mod messages;
-    pub(crate) mod random;
-    pub(crate) mod reference;
-    pub(crate) mod rings;
-    pub(crate) mod seeded;
-}
+#[macro_use]
+#[path = "support/root.rs"]
+#[expect(dead_code, reason = "no binary uses all of it")]
+mod support;
+#[macro_use]
+#[path = "support/messages.rs"]
+mod messages;
 
 mod contact {
     mod algorithms;

@@ -1,19 +1,15 @@
 //! Friction in the contact: tractions, partial slip, histories and rolling.
 
-mod support {
-    pub(crate) mod pairs;
-    pub(crate) mod reference;
-    pub(crate) mod seeded;
-}
+#[macro_use]
+#[path = "support/root.rs"]
+#[expect(dead_code, reason = "no binary uses all of it")]
+mod support;
 
 mod friction {
     mod cattaneo;
     mod coefficients;
     mod histories;
-    mod kalker;
     mod lines;
     mod random;
     mod rolling;
-    mod stiffness;
-    mod stresses;
 }

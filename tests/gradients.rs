@@ -1,9 +1,9 @@
 //! Derivatives of solved contacts.
 
-mod support {
-    pub(crate) mod random;
-    pub(crate) mod reference;
-}
+#[macro_use]
+#[path = "support/root.rs"]
+#[expect(dead_code, reason = "no binary uses all of it")]
+mod support;
 
 mod gradient {
     mod cases;

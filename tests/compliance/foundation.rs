@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use nacre::influence::{CellInfluence, Method, influence_coefficients};
 use nacre::response::{Asymptotes, Response};
-use nacre::{Elastic, Grid, HalfSpace, Layer, Result};
+use nacre::{Elastic, Grid, HalfSpace, Result};
 
+use crate::messages::message;
 use crate::support::foundation::{Foundation, bessel_k};
-use crate::support::messages::message;
+use crate::support::settings::coated;
 
 /// Error over the larger of the coefficient and 1e-3 of that of the loaded cell: the promise of the
 /// exact method.
@@ -69,18 +70,14 @@ fn pasternak_has_the_integral_of_its_point_kernel() -> Result<()> {
             let coefficients = influence_coefficients(body, &grid, Method::Exact)?;
             let planned = CellInfluence::plan(body, sides, 1e3)?;
             let loaded = cell(&body, sides, [0.0, 0.0]);
-            let mut worst = [0.0_f64; 2];
             for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1], [2, 5], [0, 7], [23, 2]] {
                 let at = [i as f64 * sides[0], j as f64 * sides[1]];
                 let exact = cell(&body, sides, at);
                 let scale = exact.abs().max(1e-3 * loaded);
-                for (worst, found) in worst.iter_mut().zip([coefficients[[i, j]], planned.at(at)]) {
-                    *worst = worst.max((found - exact).abs() / scale);
+                for found in [coefficients[[i, j]], planned.at(at)] {
+                    below!((found - exact).abs() / scale, EXACT, length, at);
                 }
             }
-            let worst = worst[0].max(worst[1]);
-            println!("l {length}, cell {sides:?}: {worst:.1e}");
-            assert!(worst < EXACT, "{length} {sides:?}: {worst:e}");
         }
     }
     Ok(())
@@ -100,16 +97,19 @@ fn pasternak_strips_have_their_closed_form() -> Result<()> {
             };
             sum / body.stiffness
         };
-        let mut worst = 0.0_f64;
         for (j, c) in strips.iter().enumerate() {
-            let error = (c - exact(j)).abs() / exact(j).max(1e-3 * exact(0));
-            worst = worst.max(error);
+            let scale = exact(j).max(1e-3 * exact(0));
+            below!((c - exact(j)).abs() / scale, EXACT, length, j);
         }
-        println!("l {length}: {worst:.1e}");
-        assert!(worst < EXACT, "{length}: {worst:e}");
     }
     Ok(())
 }
+
+const CONVERSIONS: [Method; 3] = [
+    Method::Plain { refinement: 2 },
+    Method::Difference { refinement: 2 },
+    Method::Image { refinement: 2 },
+];
 
 #[test]
 fn conversions_take_a_foundation_whose_limits_are_zero() -> Result<()> {
@@ -117,46 +117,26 @@ fn conversions_take_a_foundation_whose_limits_are_zero() -> Result<()> {
     let body = pasternak(8.0);
     let grid = Grid::new([64, 64], [64.0, 64.0])?;
     let exact = influence_coefficients(body, &grid, Method::Exact)?;
-    let refinement = 2;
-    for method in [
-        Method::Plain { refinement },
-        Method::Difference { refinement },
-        Method::Image { refinement },
-    ] {
+    for method in CONVERSIONS {
         let found = influence_coefficients(body, &grid, method)?;
-        let error = found[[0, 0]] / exact[[0, 0]] - 1.0;
-        println!("{method:?}: {error:.1e}");
-        assert!(error.abs() < 0.06, "{method:?}: {error:e}");
+        near!(found[[0, 0]], exact[[0, 0]], 0.06, method);
     }
     Ok(())
 }
 
 #[test]
 fn local_compliance_moves_the_loaded_cell_alone() -> Result<()> {
-    let refinement = 2;
-    for (grid, methods) in [
-        (
-            Grid::new([6, 5], [3.0, 4.0])?,
-            &[
-                Method::Exact,
-                Method::Plain { refinement },
-                Method::Difference { refinement },
-                Method::Image { refinement },
-            ][..],
-        ),
-        (Grid::line(7, 2.0)?, &[Method::Exact][..]),
-    ] {
-        for &method in methods {
-            let springs = influence_coefficients(WINKLER, &grid, method)?;
-            for (index, c) in springs.indexed_iter() {
-                let exact = if index == (0, 0) { 1.0 / 3.0 } else { 0.0 };
-                assert!((c - exact).abs() < 1e-16, "{method:?} {index:?}: {c}");
-            }
-            let bare = influence_coefficients(&Sprung::body(0.0)?, &grid, method)?;
-            let sprung = influence_coefficients(&Sprung::body(0.25)?, &grid, method)?;
-            for (index, c) in (sprung - bare).indexed_iter() {
-                let exact = if index == (0, 0) { 0.25 } else { 0.0 };
-                assert!((c - exact).abs() < 1e-15, "{method:?} {index:?}: {c}");
+    let rectangles = Grid::new([6, 5], [3.0, 4.0])?;
+    let converted = CONVERSIONS.map(|method| (rectangles, method));
+    let exact = [rectangles, Grid::line(7, 2.0)?].map(|grid| (grid, Method::Exact));
+    for (grid, method) in converted.into_iter().chain(exact) {
+        let of = |body: nacre::Body| influence_coefficients(&body, &grid, method);
+        let springs = of(nacre::Body::new(WINKLER))?;
+        let added = of(Sprung::body(0.25)?)? - of(Sprung::body(0.0)?)?;
+        for (found, local, rounding) in [(springs, 1.0 / 3.0, 1e-16), (added, 0.25, 1e-15)] {
+            for (index, c) in found.indexed_iter() {
+                let exact = if index == (0, 0) { local } else { 0.0 };
+                below!((c - exact).abs(), rounding, method, index, c);
             }
         }
     }
@@ -175,7 +155,7 @@ fn local_compliance_acts_inside_the_cell_and_by_half_on_its_rim() -> Result<()> 
         ([0.0, 1.1], 0.0),
     ] {
         let value = cell.at(at);
-        assert!((value - share / 3.0).abs() < 1e-16, "{at:?}: {value}");
+        below!((value - share / 3.0).abs(), 1e-16, at, value);
     }
     Ok(())
 }
@@ -189,8 +169,7 @@ struct Sprung {
 
 impl Sprung {
     fn body(local: f64) -> Result<nacre::Body> {
-        let layer = Layer::new(Elastic::new(4.0, 0.3)?, 0.5)?;
-        let below = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer])?;
+        let below = coated(Elastic::new(1.0, 0.3)?, 4.0, 0.5)?;
         Ok(nacre::Body::new(Self { below, local }))
     }
 }
@@ -241,89 +220,35 @@ impl Response for Told {
 
 #[test]
 fn a_response_that_contradicts_itself_is_refused() -> Result<()> {
-    let sound = Told {
-        asymptotes: [1.0, 0.0, 1.0],
-        lengths: None,
-        local: 0.0,
-        normal: 1.0,
+    let told = |asymptotes, lengths, local, normal| Told {
+        asymptotes,
+        lengths,
+        local,
+        normal,
     };
     let grid = Grid::new([4, 4], [1.0, 1.0])?;
+    let sound = told([1.0, 0.0, 1.0], None, 0.0, 1.0);
     assert!(influence_coefficients(sound, &grid, Method::Exact).is_ok());
+    let with = |asymptotes| told(asymptotes, None, 0.0, 1.0);
+    let between = |lengths, normal| told([1.0, 0.0, 1.0], Some(lengths), 0.0, normal);
+    #[rustfmt::skip]
     let cases = [
-        (
-            Told {
-                asymptotes: [f64::NAN, 0.0, 1.0],
-                ..sound
-            },
-            "asymptotes().long must be finite and at least 0, got NaN",
-        ),
-        (
-            Told {
-                asymptotes: [1.0, 0.0, -1.0],
-                ..sound
-            },
-            "asymptotes().short must be finite and at least 0, got -1",
-        ),
-        (
-            Told {
-                asymptotes: [1.0, f64::INFINITY, 1.0],
-                ..sound
-            },
-            "asymptotes().constant must be finite, got inf",
-        ),
-        (
-            Told {
-                local: -0.5,
-                ..sound
-            },
-            "local() must be finite and at least 0, got -0.5",
-        ),
-        (
-            Told {
-                asymptotes: [1.0, 0.0, 2.0],
-                ..sound
-            },
-            "lengths() must be given for a body whose asymptotes() differ or have a constant",
-        ),
-        (
-            Told {
-                lengths: Some([0.0, 1.0]),
-                ..sound
-            },
-            "lengths()[0] must be finite and above 0, got 0",
-        ),
-        (
-            Told {
-                lengths: Some([2.0, 1.0]),
-                ..sound
-            },
-            "lengths()[1] must be finite and at least lengths()[0], got 1",
-        ),
-        (
-            Told {
-                lengths: Some([1.0, 2.0]),
-                normal: f64::NAN,
-                ..sound
-            },
-            "normal(1 / lengths()[0]) must be finite and at least 0, got NaN",
-        ),
-        (
-            Told {
-                lengths: Some([1.0, 2.0]),
-                normal: 3.0,
-                ..sound
-            },
-            "normal(α) of the body must reach asymptotes().long for wavelengths above and \
-             asymptotes().short for wavelengths below its lengths()",
-        ),
+        (with([f64::NAN, 0.0, 1.0]), "asymptotes().long must be finite and at least 0, got NaN"),
+        (with([1.0, 0.0, -1.0]), "asymptotes().short must be finite and at least 0, got -1"),
+        (with([1.0, f64::INFINITY, 1.0]), "asymptotes().constant must be finite, got inf"),
+        (Told { local: -0.5, ..sound }, "local() must be finite and at least 0, got -0.5"),
+        (with([1.0, 0.0, 2.0]), "lengths() must be given for a body whose asymptotes() differ or have a constant"),
+        (between([0.0, 1.0], 1.0), "lengths()[0] must be finite and above 0, got 0"),
+        (between([2.0, 1.0], 1.0), "lengths()[1] must be finite and at least lengths()[0], got 1"),
+        (between([1.0, 2.0], f64::NAN), "normal(1 / lengths()[0]) must be finite and at least 0, got NaN"),
+        (between([1.0, 2.0], 3.0), "normal(α) of the body must reach asymptotes().long for wavelengths above and \
+             asymptotes().short for wavelengths below its lengths()"),
     ];
     for (body, expected) in cases {
-        let found = message(influence_coefficients(body, &grid, Method::Exact));
-        assert_eq!(found, expected);
-        assert_eq!(
-            message(CellInfluence::plan(body, [1.0, 1.0], 2.0)),
-            expected
-        );
+        let coefficients = influence_coefficients(body, &grid, Method::Exact);
+        assert_eq!(message(coefficients), expected);
+        let cell = CellInfluence::plan(body, [1.0, 1.0], 2.0);
+        assert_eq!(message(cell), expected);
     }
     Ok(())
 }

@@ -1,11 +1,15 @@
 //! The conversions by inverse FFT err as they are known to: `image` least, and on long thin domains
 //! only `image` is of use.
 
+use std::ops::Range;
+
 use nacre::influence::{Method, influence_coefficients};
-use nacre::{Elastic, Grid, HalfSpace, Layer, Result};
+use nacre::{Elastic, Grid, HalfSpace, Result};
 use ndarray::Array2;
 
+use crate::support::checks::largest;
 use crate::support::reference::{cases, list, number};
+use crate::support::settings;
 
 /// The reference errors at the loaded cell have this many digits in common with ours, relative,
 /// and absolute where they are themselves near the accuracy of the reference coefficients.
@@ -15,8 +19,7 @@ const SAME_ERROR: (f64, f64) = (1e-3, 1e-10);
 const SAME_LARGEST: std::ops::Range<f64> = 0.85..1.001;
 
 fn coated(modulus_ratio: f64, thickness: f64) -> Result<HalfSpace> {
-    let coating = Layer::new(Elastic::new(modulus_ratio, 0.3)?, thickness)?;
-    HalfSpace::new(Elastic::new(1.0, 0.3)?, [coating])
+    settings::coated(Elastic::new(1.0, 0.3)?, modulus_ratio, thickness)
 }
 
 /// 2N = 128 offsets of square cells of side 1.
@@ -28,10 +31,6 @@ fn square() -> Result<Grid> {
 fn errors(body: &HalfSpace, grid: &Grid, method: Method) -> Result<Array2<f64>> {
     let exact = influence_coefficients(body, grid, Method::Exact)?;
     Ok(influence_coefficients(body, grid, method)? / exact - 1.0)
-}
-
-fn largest(errors: &Array2<f64>) -> f64 {
-    errors.fold(0.0, |largest, error| largest.max(error.abs()))
 }
 
 #[test]
@@ -48,10 +47,7 @@ fn difference_and_image_err_as_the_reference_program_found() -> Result<()> {
             let errors = errors(&body, &square()?, method)?;
             let (found, expected) = (errors[[0, 0]], number(row, "loaded_cell"));
             let tolerance = SAME_ERROR.0 * expected.abs() + SAME_ERROR.1;
-            assert!(
-                (found - expected).abs() < tolerance,
-                "{method:?}: {found:e} {expected:e}"
-            );
+            below!((found - expected).abs(), tolerance, method, row);
             let ratio = largest(&errors) / number(row, "largest");
             assert!(SAME_LARGEST.contains(&ratio), "{method:?}: {ratio}");
             compared += 1;
@@ -76,15 +72,8 @@ fn errors_stay_below_what_the_documentation_states() -> Result<()> {
             (Method::Image { refinement }, image),
         ] {
             let errors = errors(&body, &square()?, method)?;
-            let found = [errors[[0, 0]].abs(), largest(&errors)];
-            println!(
-                "{method:?}: {:.1e} at the loaded cell, {:.1e} at most",
-                found[0], found[1]
-            );
-            assert!(
-                found[0] < bounds[0] && found[1] < bounds[1],
-                "{method:?}: {found:?}"
-            );
+            below!(errors[[0, 0]].abs(), bounds[0], method);
+            below!(largest(&errors), bounds[1], method);
         }
     }
     Ok(())
@@ -92,18 +81,11 @@ fn errors_stay_below_what_the_documentation_states() -> Result<()> {
 
 #[test]
 fn plain_is_right_at_the_loaded_cell_and_rings_next_to_it() -> Result<()> {
-    let errors = errors(
-        &coated(4.0, 8.0)?,
-        &square()?,
-        Method::Plain { refinement: 4 },
-    )?;
-    let (loaded, ringing) = (errors[[0, 0]].abs(), errors[[1, 0]]);
-    println!("plain: {loaded:.1e} at the loaded cell, {ringing:.1e} next to it");
-    assert!(loaded < 1e-3, "{loaded:e}");
-    assert!(
-        ringing.abs() > 0.02 && largest(&errors) < 0.08,
-        "{ringing:e}"
-    );
+    let plain = Method::Plain { refinement: 4 };
+    let errors = errors(&coated(4.0, 8.0)?, &square()?, plain)?;
+    below!(errors[[0, 0]].abs(), 1e-3);
+    below!(0.02, errors[[1, 0]].abs());
+    below!(largest(&errors), 0.08);
     // It alternates about a slow drift.
     for i in 1..8 {
         let steps = [0, 1].map(|k| errors[[i + k, 0]] - errors[[i + k - 1, 0]]);
@@ -118,19 +100,15 @@ fn refinement_moves_the_periodic_images_away() -> Result<()> {
     // as 1/χ. `image` leaves a regular remainder: 1/χ³.
     let body = coated(4.0, 8.0)?;
     let loaded = |method| -> Result<f64> { Ok(errors(&body, &square()?, method)?[[0, 0]].abs()) };
-    for refinement in [2, 4] {
-        let doubled = 2 * refinement;
-        let difference = loaded(Method::Difference { refinement })?
-            / loaded(Method::Difference {
-                refinement: doubled,
-            })?;
-        let image = loaded(Method::Image { refinement })?
-            / loaded(Method::Image {
-                refinement: doubled,
-            })?;
-        assert!((2.0..2.4).contains(&difference), "{difference}");
-        assert!((6.0..9.0).contains(&image), "{image}");
-    }
+    let check = |method: fn(usize) -> Method, expected: Range<f64>| -> Result<()> {
+        for refinement in [2, 4] {
+            let ratio = loaded(method(refinement))? / loaded(method(2 * refinement))?;
+            assert!(expected.contains(&ratio), "{refinement}: {ratio}");
+        }
+        Ok(())
+    };
+    check(|refinement| Method::Difference { refinement }, 2.0..2.4)?;
+    check(|refinement| Method::Image { refinement }, 6.0..9.0)?;
     Ok(())
 }
 
@@ -141,13 +119,6 @@ fn only_image_serves_a_long_thin_domain() -> Result<()> {
     let body = coated(4.0, 0.04)?;
     let difference = errors(&body, &grid, Method::Difference { refinement: 4 })?;
     let image = errors(&body, &grid, Method::Image { refinement: 4 })?;
-    println!(
-        "long domain: difference {:.1e} at the loaded cell, {:.1} at most; image {:.1e}, {:.1e}",
-        difference[[0, 0]],
-        largest(&difference),
-        image[[0, 0]],
-        largest(&image)
-    );
     // 3 % and a factor of 15; 2.6e-3.
     assert!((0.03..0.04).contains(&difference[[0, 0]].abs()));
     assert!((14.0..16.0).contains(&largest(&difference)));
@@ -163,8 +134,7 @@ fn conversions_of_a_bare_body_are_its_closed_form() -> Result<()> {
         Method::Difference { refinement: 2 },
         Method::Image { refinement: 2 },
     ] {
-        let found = largest(&errors(&body, &square()?, method)?);
-        assert!(found < 1e-12, "{method:?}: {found:e}");
+        below!(largest(&errors(&body, &square()?, method)?), 1e-12, method);
     }
     Ok(())
 }

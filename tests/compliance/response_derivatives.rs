@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use nacre::response::{Asymptotes, Response, asymptote_derivatives, normal_derivatives};
 use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result, Substrate};
-use serde_json::Value;
 
+use crate::support::bodies::body;
 use crate::support::random::uniform;
-use crate::support::reference::{list, read};
+use crate::support::reference::{list, number, read};
+use crate::support::settings::stack;
 
 /// Relative to max(|∂|, 1e-6 |c|/|θ|): the energies are sums of a few terms of one size.
 const EXACT: f64 = 1e-12;
@@ -19,41 +20,11 @@ const IDENTITY: f64 = 1e-13;
 /// [`IDENTITY`] for thicknesses; one random body of 200, stiff and thin on a soft layer that slides, has 1.7e-13.
 const LENGTHS: f64 = 2e-13;
 
-/// The value of a decimal number in a text.
-fn decimal(value: &Value) -> f64 {
-    let text = value.as_str().unwrap_or_else(|| panic!("no text: {value}"));
-    text.parse()
-        .unwrap_or_else(|error| panic!("{text}: {error}"))
-}
-
-/// The body of a stack of `response_derivatives.json`.
-fn stack(stack: &Value) -> Result<HalfSpace> {
-    let material = |one: &Value| Elastic::new(decimal(&one["young"]), decimal(&one["poisson"]));
-    let layers: Result<Vec<Layer>> = list(stack, "layers")
-        .iter()
-        .map(|one| {
-            let layer = Layer::new(material(one)?, decimal(&one["thickness"]))?;
-            Ok(layer.with_interface(match one["interface"].as_str() {
-                Some("frictionless") => Interface::Frictionless,
-                _ => Interface::Bonded,
-            }))
-        })
-        .collect();
-    let substrate = match &stack["substrate"] {
-        Value::Object(_) => material(&stack["substrate"])?.into(),
-        _ => Substrate::Rigid,
-    };
-    HalfSpace::new(substrate, layers?)
-}
-
 /// A random body of up to five layers, contrasts up to 1e3, and Poisson's ratios up to 0.5.
 fn random_body(seed: u64) -> Result<HalfSpace> {
     let numbers = uniform([8, 5], seed);
     let count = 1 + (5.0 * numbers[[7, 0]]) as usize;
-    let interface = |u: f64| match u {
-        u if u < 0.25 => Interface::Frictionless,
-        _ => Interface::Bonded,
-    };
+    let interface = |u: f64| [Interface::Bonded, Interface::Frictionless][usize::from(u < 0.25)];
     let poisson = |u: f64| (u * 1.2 - 0.6).clamp(-0.5, 0.5);
     let layers: Result<Vec<Layer>> = (0..count.min(5))
         .map(|k| {
@@ -79,26 +50,6 @@ fn all(body: &HalfSpace, alpha: f64) -> (f64, Vec<(BodyParameter, f64)>) {
     (value, parameters.into_iter().zip(out).collect())
 }
 
-/// Σ θ ∂/∂θ over the parameters that `select` takes.
-fn weighted(
-    body: &HalfSpace,
-    slopes: &[(BodyParameter, f64)],
-    select: fn(&BodyParameter) -> bool,
-) -> f64 {
-    let taken = slopes.iter().filter(|(one, _)| select(one));
-    taken
-        .map(|(one, slope)| body.value(*one).unwrap_or(0.0) * slope)
-        .sum()
-}
-
-const fn is_young(one: &BodyParameter) -> bool {
-    matches!(one, BodyParameter::Young(_))
-}
-
-const fn is_thickness(one: &BodyParameter) -> bool {
-    matches!(one, BodyParameter::Thickness(_))
-}
-
 /// Wavenumbers from 1e-6 to 1e3, two to a decade.
 fn sweep() -> impl Iterator<Item = f64> {
     (-12..=6).map(|k| 10f64.powf(0.5 * f64::from(k)))
@@ -106,14 +57,14 @@ fn sweep() -> impl Iterator<Item = f64> {
 
 #[test]
 fn derivatives_equal_those_of_fifty_digits() -> Result<()> {
-    let (mut worst, mut compared) = (0.0_f64, 0);
+    let mut compared = 0;
     for case in list(&read("response_derivatives.json"), "stacks") {
-        let body = stack(case)?;
+        let body = body(case)?;
         let layers = body.layers().len();
         for row in list(case, "rows") {
-            let (value, slopes) = all(&body, decimal(&row["alpha"]));
-            let expected = decimal(&row["alpha_c11"]);
-            assert!((value / expected - 1.0).abs() < EXACT);
+            let (value, slopes) = all(&body, number(row, "alpha"));
+            let expected = number(row, "alpha_c11");
+            near!(value, expected, EXACT);
             for (parameter, slope) in slopes {
                 let (name, place) = match parameter {
                     BodyParameter::Young(place) => ("young", place),
@@ -124,23 +75,16 @@ fn derivatives_equal_those_of_fifty_digits() -> Result<()> {
                     place if place == layers => format!("d_{name}_substrate"),
                     place => format!("d_{name}_{place}"),
                 };
-                let reference = decimal(&row[&key]);
+                let reference = number(row, &key);
                 let theta = body.value(parameter).unwrap_or(1.0).abs();
                 let scale = reference.abs().max(1e-6 * expected / theta);
                 let error = (slope - reference).abs() / scale;
-                if error > EXACT {
-                    println!(
-                        "{} {} {key}: {slope:e} {reference:e} {error:.1e}",
-                        case["name"], row["alpha"]
-                    );
-                }
-                worst = worst.max(error);
+                below!(error, EXACT);
                 compared += 1;
             }
         }
     }
-    println!("largest error {worst:.1e} of {compared}");
-    assert!(worst < EXACT && compared == 242, "{worst:e} of {compared}");
+    assert!(compared == 242, "{compared}");
     Ok(())
 }
 
@@ -162,25 +106,28 @@ fn along(body: &HalfSpace, alpha: f64) -> f64 {
 
 #[test]
 fn moduli_and_lengths_scale_the_response() -> Result<()> {
-    let mut worst = [0.0_f64; 2];
     for seed in 0..200 {
         let body = random_body(seed)?;
         for alpha in sweep() {
             let (value, slopes) = all(&body, alpha);
-            let young = weighted(&body, &slopes, is_young) + value;
-            let lengths = weighted(&body, &slopes, is_thickness) - along(&body, alpha);
-            worst[0] = worst[0].max((young / value).abs());
-            worst[1] = worst[1].max((lengths / value).abs());
+            let (mut young, mut lengths) = (value, -along(&body, alpha));
+            for (one, slope) in slopes {
+                let weighted = body.value(one).unwrap_or(0.0) * slope;
+                match one {
+                    BodyParameter::Young(_) => young += weighted,
+                    BodyParameter::Thickness(_) => lengths += weighted,
+                    BodyParameter::Poisson(_) => {}
+                }
+            }
+            below!((young / value).abs(), IDENTITY, seed, alpha);
+            below!((lengths / value).abs(), LENGTHS, seed, alpha);
         }
     }
-    println!("Σ E ∂/∂E {:.1e}, Σ h ∂/∂h {:.1e}", worst[0], worst[1]);
-    assert!(worst[0] < IDENTITY && worst[1] < LENGTHS, "{worst:?}");
     Ok(())
 }
 
 #[test]
 fn a_layer_cut_in_two_shares_its_derivatives() -> Result<()> {
-    let mut worst = 0.0_f64;
     for seed in 0..100 {
         let body = random_body(seed)?;
         let cut = |layer: &Layer| -> Result<[Layer; 2]> {
@@ -204,12 +151,10 @@ fn a_layer_cut_in_two_shares_its_derivatives() -> Result<()> {
                     _ if layer == body.layers().len() => at(6 * layer + k % 3),
                     _ => at(6 * layer + k % 3) + at(6 * layer + k % 3 + 3),
                 };
-                worst = worst.max((sum - slope).abs() * theta / value);
+                below!((sum - slope).abs() * theta / value, EXACT);
             }
         }
     }
-    println!("largest difference {worst:.1e}");
-    assert!(worst < EXACT, "{worst:e}");
     Ok(())
 }
 
@@ -217,7 +162,6 @@ fn a_layer_cut_in_two_shares_its_derivatives() -> Result<()> {
 #[test]
 fn limits_have_the_derivatives_of_their_differences() -> Result<()> {
     const STEP: f64 = 1e-4;
-    let mut worst = 0.0_f64;
     for seed in 0..200 {
         let body = random_body(seed)?;
         let parameters = body.parameters();
@@ -243,16 +187,14 @@ fn limits_have_the_derivatives_of_their_differences() -> Result<()> {
                 let difference = (numbers(above)[k] - numbers(below)[k]) / (2.0 * step);
                 let error = (difference - found).abs() * theta.abs().max(0.1);
                 if largest[k] > 0.0 {
-                    worst = worst.max(error / largest[k]);
+                    // The square of the step, and second derivatives that are some tens larger.
+                    below!(error / largest[k], 1e-6);
                 } else {
                     assert!(error <= 0.0);
                 }
             }
         }
     }
-    println!("largest difference {worst:.1e}");
-    // The square of the step, and second derivatives that are some tens larger.
-    assert!(worst < 1e-6, "{worst:e}");
     Ok(())
 }
 
@@ -262,7 +204,6 @@ fn numbers(limits: Asymptotes) -> [f64; 3] {
 
 #[test]
 fn long_waves_leave_for_the_derivatives_of_the_limits() -> Result<()> {
-    let mut worst = 0.0_f64;
     for seed in 0..100 {
         let body = random_body(seed)?;
         let limits = asymptote_derivatives(&body, &body.parameters());
@@ -271,12 +212,10 @@ fn long_waves_leave_for_the_derivatives_of_the_limits() -> Result<()> {
         for ((parameter, slope), limit) in slopes.into_iter().zip(limits) {
             let theta = body.value(parameter).unwrap_or(0.0).abs();
             let error = slope - (limit.long + alpha * limit.constant);
-            worst = worst.max((error * theta).abs() / value);
+            // Terms of the order (αh)², with the largest contrasts.
+            below!((error * theta).abs() / value, 1e-6);
         }
     }
-    println!("largest difference {worst:.1e}");
-    // Terms of the order (αh)², with the largest contrasts.
-    assert!(worst < 1e-6, "{worst:e}");
     Ok(())
 }
 
@@ -284,8 +223,7 @@ fn long_waves_leave_for_the_derivatives_of_the_limits() -> Result<()> {
 /// the printed figure alone.
 #[test]
 fn a_derivative_takes_a_fraction_of_a_microsecond() -> Result<()> {
-    let coat = Layer::new(Elastic::new(4.0, 0.25)?, 1.0)?;
-    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let body = stack(Elastic::new(1.0, 0.3)?, [[4.0, 0.25, 1.0]])?;
     let parameters = body.parameters();
     let mut out = vec![0.0; parameters.len()];
     let start = Instant::now();
@@ -300,7 +238,6 @@ fn a_derivative_takes_a_fraction_of_a_microsecond() -> Result<()> {
         ));
     }
     let each = start.elapsed().as_secs_f64() / f64::from(runs) / parameters.len() as f64;
-    println!("{:.3} µs", 1e6 * each);
-    assert!(each < 20e-6, "{each:e}");
+    below!(each, 20e-6);
     Ok(())
 }

@@ -3,10 +3,13 @@
 
 use nacre::influence::Method;
 use nacre::{
-    Algorithm, Contact, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Layer, Motion,
-    Options, Paraboloid, Result, Roller, Setup, Solution, Solver, Sphere, Surface,
+    Algorithm, Contact, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Motion,
+    Paraboloid, Result, Roller, Solution, Solver, Sphere, Surface,
 };
 use ndarray::Array2;
+
+use crate::support::checks::pressure_off;
+use crate::support::settings::{Controls, by, coated, converged, converted, plan, stack, steel};
 
 /// Residual and overlap to which both algorithms solve.
 const TOLERANCE: f64 = 1e-12;
@@ -15,55 +18,18 @@ const TOLERANCE: f64 = 1e-12;
 /// grows as the number of cells across the grid: some 1e-10 of the peak.
 const SAME: f64 = 1e-9;
 
-fn motions() -> [(&'static str, Motion); 8] {
-    let load = Motion::load(10.0);
-    let approach = Motion::approach(1e-6);
+fn motions() -> [Motion; 8] {
+    let (load, approach) = (Motion::load(10.0), Motion::approach(1e-6));
     [
-        ("load", load),
-        (
-            "eccentric load",
-            Motion {
-                eccentricity: [Some(2e-5), Some(1e-5)],
-                ..load
-            },
-        ),
-        (
-            "eccentric along x, locked along y",
-            Motion {
-                eccentricity: [Some(2e-5), None],
-                ..load
-            },
-        ),
-        (
-            "moment along x, tilt along y",
-            Motion {
-                moment: [Some(1e-4), None],
-                tilt: [None, Some(1e-4)],
-                ..load
-            },
-        ),
-        ("approach", approach),
-        (
-            "approach and moments",
-            Motion {
-                moment: [Some(1e-5), Some(0.0)],
-                ..approach
-            },
-        ),
-        (
-            "approach and tilt",
-            Motion {
-                tilt: [Some(1e-4), None],
-                ..approach
-            },
-        ),
-        (
-            "approach, no moment along x",
-            Motion {
-                moment: [Some(0.0), None],
-                ..approach
-            },
-        ),
+        load,
+        load.with_eccentricity([Some(2e-5), Some(1e-5)]),
+        load.with_eccentricity([Some(2e-5), None]),
+        load.with_moment([Some(1e-4), None])
+            .with_tilt([None, Some(1e-4)]),
+        approach,
+        approach.with_moment([Some(1e-5), Some(0.0)]),
+        approach.with_tilt([Some(1e-4), None]),
+        approach.with_moment([Some(0.0), None]),
     ]
 }
 
@@ -87,26 +53,22 @@ fn rough(grid: &Grid) -> Result<HeightMap> {
     HeightMap::new(heights, grid.spacing())
 }
 
-fn solve(
+/// Solutions of both algorithms to `tolerance`, and the largest difference of their pressures over the peak.
+fn both(
     contact: &Contact,
     shape: &dyn Surface,
     motion: &Motion,
-    algorithm: Algorithm,
-) -> Result<Solution> {
-    let options = Options {
-        tolerance: TOLERANCE,
-        algorithm,
-        ..Options::default()
-    };
-    contact
-        .solve(shape, motion, &options)?
-        .require_converged(TOLERANCE)
+    tolerance: f64,
+) -> Result<([Solution; 2], f64)> {
+    let solve = |algorithm| converged(contact, shape, motion, &by(algorithm, tolerance));
+    let [fast, reference] = [solve(Algorithm::Cascade)?, solve(Algorithm::PolonskyKeer)?];
+    let different = pressure_off(&fast, &reference);
+    Ok(([fast, reference], different))
 }
 
 #[test]
 fn cascade_finds_the_solution_of_polonsky_and_keer() -> Result<()> {
-    let steel = Elastic::new(210e9, 0.3)?;
-    let coating = Layer::new(Elastic::new(840e9, 0.3)?, 40e-6)?;
+    let steel = steel()?;
     let grid = Grid::new([72, 59], [4e-4, 3.28e-4])?;
     let map = rough(&grid)?;
     let sphere = Sphere::new(5e-3)?;
@@ -118,27 +80,15 @@ fn cascade_finds_the_solution_of_polonsky_and_keer() -> Result<()> {
         ("rough sphere", Box::new(sphere.plus(map))),
         ("shifted sphere", Box::new(sphere.shifted(3e-5, -2e-5)?)),
     ];
-    for body in [HalfSpace::from(steel), HalfSpace::new(steel, [coating])?] {
-        let contact = Contact::plan(&body, grid, Setup::default())?;
+    for body in [steel.into(), coated(steel, 4.0, 40e-6)?] {
+        let contact = plan(&body, grid)?;
         for (name, shape) in &shapes {
-            for (control, motion) in motions() {
-                let fast = solve(&contact, shape, &motion, Algorithm::Cascade)?;
-                let reference = solve(&contact, shape, &motion, Algorithm::PolonskyKeer)?;
-                let peak = reference.peak_pressure();
-                assert!(peak > 1e6, "{name}, {control}: nothing touches");
-                let difference = (&fast.pressure - &reference.pressure)
-                    .fold(0.0, |worst: f64, d| worst.max(d.abs()));
-                assert!(
-                    difference < SAME * peak,
-                    "{name}, {control}: {:e}",
-                    difference / peak
-                );
-                assert!(
-                    fast.report.convolutions < reference.report.convolutions,
-                    "{name}, {control}: {} against {} convolutions",
-                    fast.report.convolutions,
-                    reference.report.convolutions
-                );
+            for motion in motions() {
+                let ([fast, reference], different) = both(&contact, shape, &motion, TOLERANCE)?;
+                below!(1e6, reference.peak_pressure(), name, motion);
+                below!(different, SAME, name, motion);
+                let [few, many] = [fast, reference].map(|solution| solution.report.convolutions);
+                assert!(few < many, "{name}, {motion:?}: {few} {many}");
             }
         }
     }
@@ -149,21 +99,15 @@ fn cascade_finds_the_solution_of_polonsky_and_keer() -> Result<()> {
 /// a pressure below 0.
 #[test]
 fn no_pressure_is_below_zero() -> Result<()> {
-    let coat = Layer::new(Elastic::new(1.0, -0.99)?, 1.0 / 12.0)?;
-    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
-    let contact = Contact::plan(body, Grid::line(24, 1.0)?, Setup::default())?;
+    let body = stack(Elastic::new(1.0, 0.3)?, [[1.0, -0.99, 1.0 / 12.0]])?;
+    let contact = plan(body, Grid::line(24, 1.0)?)?;
     let shape = FlatPunch::new(0.4)?;
     for tilt in [0.002, 0.003, 0.004] {
-        let motion = Motion {
-            tilt: [None, Some(tilt)],
-            ..Motion::load(0.003)
-        };
-        let fast = solve(&contact, &shape, &motion, Algorithm::Cascade)?;
-        let reference = solve(&contact, &shape, &motion, Algorithm::PolonskyKeer)?;
-        let peak = fast.peak_pressure();
-        for (p, q) in fast.pressure.iter().zip(&reference.pressure) {
-            assert!(*p >= 0.0 && *q >= 0.0, "{tilt}: {p} {q}");
-            assert!((p - q).abs() < SAME * peak, "{tilt}: {p} {q}");
+        let motion = Motion::load(0.003).with_tilt([None, Some(tilt)]);
+        let (solutions, different) = both(&contact, &shape, &motion, TOLERANCE)?;
+        below!(different, SAME, tilt);
+        for solution in solutions {
+            assert!(solution.pressure.iter().all(|p| *p >= 0.0), "{tilt}");
         }
     }
     Ok(())
@@ -172,12 +116,8 @@ fn no_pressure_is_below_zero() -> Result<()> {
 /// Influence coefficients by conversion on two cells are not positive definite: some pressure would pull.
 #[test]
 fn conversions_on_too_few_cells_are_named() -> Result<()> {
-    let coat = Layer::new(Elastic::new(5.0, 0.3)?, 4e-4)?;
-    let body = HalfSpace::new(Elastic::new(35425.0, 0.3)?, [coat])?;
-    let setup = Setup {
-        method: Method::Difference { refinement: 4 },
-        ..Setup::default()
-    };
+    let body = stack(Elastic::new(35425.0, 0.3)?, [[5.0, 0.3, 4e-4]])?;
+    let setup = converted(Method::Difference { refinement: 4 });
     let planned = Contact::plan(body, Grid::new([2, 2], [2e-3, 8e-7])?, setup);
     let text = planned.map_or_else(|error| error.to_string(), |_| "planned".into());
     let begins = "the influence coefficients are not positive definite, so that";
@@ -189,53 +129,24 @@ fn conversions_on_too_few_cells_are_named() -> Result<()> {
 /// refers to the part that is not, or to 1e-6 of the displacement, which leaves 30 · 1e-8 of the pressure.
 #[test]
 fn tolerance_is_that_of_the_local_displacement() -> Result<()> {
-    let coat = Layer::new(Elastic::new(200e9, 0.3)?, 3e-4)?;
-    let body = HalfSpace::new(Elastic::new(0.2, 0.45)?, [coat])?;
-    let contact = Contact::plan(body, Grid::new([48, 48], [1e-3; 2])?, Setup::default())?;
+    let body = stack(Elastic::new(0.2, 0.45)?, [[200e9, 0.3, 3e-4]])?;
+    let contact = plan(body, Grid::new([48, 48], [1e-3; 2])?)?;
     let (punch, motion) = (FlatPunch::new(2.5e-4)?, Motion::load(1.0));
     let peak = |tolerance: f64, algorithm: Algorithm| -> Result<f64> {
-        let options = Options {
-            tolerance,
-            algorithm,
-            ..Options::default()
-        };
+        let options = by(algorithm, tolerance);
         let solution = contact.solve(&punch, &motion, &options)?;
         Ok(solution.require_converged(tolerance)?.peak_pressure())
     };
     let exact = peak(1e-9, Algorithm::Cascade)?;
     for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-        let error = peak(1e-8, algorithm)? / exact - 1.0;
-        assert!(error.abs() < 1e-5, "{algorithm:?}: {error:e}");
+        near!(peak(1e-8, algorithm)?, exact, 1e-5, algorithm);
     }
     Ok(())
 }
 
 /// A polymer of 3 GPa under a coating `ratio` times as hard and `thickness` \[m\] thick.
 fn polymer(ratio: f64, thickness: f64) -> Result<HalfSpace> {
-    let coating = Layer::new(Elastic::new(ratio * 3e9, 0.25)?, thickness)?;
-    HalfSpace::new(Elastic::new(3e9, 0.38)?, [coating])
-}
-
-/// Solutions of both algorithms to `tolerance`, and the largest difference of their pressures over the peak.
-fn both(
-    contact: &Contact,
-    shape: &dyn Surface,
-    motion: &Motion,
-    tolerance: f64,
-) -> Result<([Solution; 2], f64)> {
-    let solve = |algorithm| {
-        let options = Options {
-            tolerance,
-            algorithm,
-            ..Options::default()
-        };
-        let solution = contact.solve(shape, motion, &options)?;
-        solution.require_converged(tolerance)
-    };
-    let [fast, reference] = [solve(Algorithm::Cascade)?, solve(Algorithm::PolonskyKeer)?];
-    let difference = (&fast.pressure - &reference.pressure).fold(0.0, |a: f64, d| a.max(d.abs()));
-    let difference = difference / reference.peak_pressure();
-    Ok(([fast, reference], difference))
+    stack(Elastic::new(3e9, 0.38)?, [[ratio * 3e9, 0.25, thickness]])
 }
 
 /// Cells in the grids of the following tests, 31.25 µm.
@@ -248,17 +159,15 @@ const CELL: f64 = 1e-3 / 32.0;
 fn a_hard_coating_on_a_polymer_needs_no_fallback() -> Result<()> {
     let body = polymer(200.0 / 3.0, 1e-4)?;
     let grid = Grid::new([32, 32], [1e-3; 2])?;
-    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let contact = plan(&body, grid)?;
     let cylinder = Cylinder::new(5e-3)?;
     for load in (220..390).step_by(10) {
         let motion = Motion::load(f64::from(load));
         let ([fast, reference], _) = both(&contact, &cylinder, &motion, 1e-8)?;
         assert_eq!(fast.report.solver, Some(Solver::Preconditioned), "{load} N");
         let iterations = [&fast, &reference].map(|solution| solution.report.iterations);
-        assert!(
-            iterations[0] <= 2 * iterations[1],
-            "{load} N: {iterations:?}"
-        );
+        let [few, many] = iterations;
+        assert!(few <= 2 * many, "{load} N: {few} {many}");
     }
     Ok(())
 }
@@ -285,21 +194,15 @@ fn algorithms_agree_on_hard_coatings() -> Result<()> {
         (1e5, 0.05, [34.0, 12.0, 33.0]),
     ];
     for (number, (ratio, thickness, loads)) in bodies.into_iter().enumerate() {
-        let contact = Contact::plan(&polymer(ratio, thickness * CELL)?, grid, Setup::default())?;
+        let contact = plan(&polymer(ratio, thickness * CELL)?, grid)?;
         for (k, (shape, load)) in shapes.iter().zip(loads).enumerate() {
             let motion = match (number + k) % 3 {
                 0 => Motion::load(load),
-                1 => Motion {
-                    eccentricity: [Some(2.0 * CELL), Some(0.5 * CELL)],
-                    ..Motion::load(load)
-                },
-                _ => Motion {
-                    tilt: [Some(2e-3), None],
-                    ..Motion::load(load)
-                },
+                1 => Motion::load(load).with_eccentricity([Some(2.0 * CELL), Some(0.5 * CELL)]),
+                _ => Motion::load(load).with_tilt([Some(2e-3), None]),
             };
             let (_, apart) = both(&contact, &**shape, &motion, 1e-10)?;
-            assert!(apart < 1e-6, "{ratio} {thickness} {k}: {apart:e}");
+            below!(apart, 1e-6, ratio, thickness, k);
         }
     }
     Ok(())
@@ -310,18 +213,18 @@ fn algorithms_agree_on_hard_coatings() -> Result<()> {
 /// took six times its own iterations; the default may take half as many more.
 #[test]
 fn a_fallback_costs_little_more_than_the_reference() -> Result<()> {
-    let coat = Elastic::new(2e9 * 9645.085696111506, 0.22699389922019508)?;
-    let layer = Layer::new(coat, 0.342305015032e-6)?;
-    let body = HalfSpace::new(Elastic::new(2e9, 0.4269278355736329)?, [layer])?;
+    let coat = [
+        2e9 * 9645.085696111506,
+        0.22699389922019508,
+        0.342305015032e-6,
+    ];
+    let body = stack(Elastic::new(2e9, 0.4269278355736329)?, [coat])?;
     let grid = Grid::new([40, 40], [40e-6 * 2.3293554948876647, 40e-6])?;
-    let contact = Contact::plan(body, grid, Setup::default())?;
+    let contact = plan(body, grid)?;
     let radius = 0.0012315447106112669;
     let shape = Paraboloid::new(5.425897021563357 * radius, radius)?;
     let [default, reference] = [Algorithm::Cascade, Algorithm::PolonskyKeer].map(|algorithm| {
-        let options = Options {
-            algorithm,
-            ..Options::default()
-        };
+        let options = by(algorithm, 1e-8);
         contact.solve(&shape, &Motion::load(0.04764493802001029), &options)
     });
     let (default, reference) = (default?, reference?);
@@ -329,6 +232,6 @@ fn a_fallback_costs_little_more_than_the_reference() -> Result<()> {
     assert_eq!(default.report.solver, Some(Solver::PolonskyKeer));
     let most = 3 * reference.report.iterations / 2;
     let found = default.report.iterations;
-    assert!(found < most, "{found} {}", reference.report.iterations);
+    below!(found, most, reference.report.iterations);
     Ok(())
 }

@@ -1,35 +1,31 @@
 //! Estimated discretisation errors have the size of the true errors.
 
 use nacre::{
-    Contact, Discretisation, Elastic, Error, FlatPunch, Grid, HalfSpace, Layer, Motion, Options,
-    Paraboloid, Result, Roller, SampledProfile, Setup, Solution, Sphere, Substrate, Surface, hertz,
+    Discretisation, Elastic, Error, FlatPunch, Grid, HalfSpace, Motion, Options, Paraboloid,
+    Result, Roller, SampledProfile, Solution, Sphere, Substrate, Surface, hertz,
 };
 
 use crate::support::contacts::RandomContact;
+use crate::support::settings::{Controls, plan, pressed, stack, steel};
 
 /// Relative errors of peak pressure and approach compared with Hertz, and their estimates.
 fn errors(cells: [usize; 2], radius: f64) -> Result<[[f64; 2]; 2]> {
-    let (body, curvature) = (Elastic::new(1.0, 0.0)?, 100.0);
+    let curvature = 100.0;
     let load = 4.0 / 3.0 * radius.powi(3) / curvature;
-    let contact = Contact::plan(body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
+    let contact = plan(Elastic::new(1.0, 0.0)?, Grid::new(cells, [2.0, 2.0])?)?;
     let shape = Paraboloid::new(curvature, curvature)?;
     let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
     let exact = hertz::Point::new(curvature, 1.0, load)?;
-    let estimate = estimate(solution.report.discretisation)?;
-    let relative = |value: f64, exact: f64| (value / exact - 1.0).abs();
-    Ok([
-        [
-            relative(solution.peak_pressure(), exact.peak_pressure),
-            peak_error(estimate) / exact.peak_pressure,
-        ],
-        [
-            relative(solution.approach, exact.approach),
-            estimate.approach / exact.approach,
-        ],
-    ])
+    let (peak, estimate) = (solution.peak_pressure(), estimate(&solution)?);
+    let pairs = [
+        (peak, exact.peak_pressure, peak_error(estimate)),
+        (solution.approach, exact.approach, estimate.approach),
+    ];
+    Ok(pairs.map(|(found, exact, estimate)| [(found / exact - 1.0).abs(), estimate / exact]))
 }
 
-fn estimate(found: Option<Discretisation>) -> Result<Discretisation> {
+fn estimate(solution: &Solution) -> Result<Discretisation> {
+    let found = solution.report.discretisation;
     found.ok_or(Error::Inconsistent("coarser grids were solved"))
 }
 
@@ -63,27 +59,20 @@ fn estimates_are_of_the_size_of_the_errors() -> Result<()> {
 
 #[test]
 fn what_is_prescribed_has_no_error() -> Result<()> {
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.0)?,
-        Grid::new([128, 100], [2.0, 2.0])?,
-        Setup::default(),
-    )?;
+    let contact = plan(Elastic::new(1.0, 0.0)?, Grid::new([128, 100], [2.0, 2.0])?)?;
     let shape = Sphere::new(100.0)?;
-    let loaded = contact.solve(&shape, &Motion::load(5e-4), &Options::default())?;
-    let loaded = estimate(loaded.report.discretisation)?;
+    let [loaded, moved] = [Motion::load(5e-4), Motion::approach(1e-3)]
+        .map(|motion| estimate(&pressed(&contact, &shape, &motion)?));
+    let (loaded, moved) = (loaded?, moved?);
     // The difference is rounding of the sums.
     assert!(loaded.load < 1e-12 * 5e-4 && loaded.approach > 0.0);
-    let moved = contact.solve(&shape, &Motion::approach(1e-3), &Options::default())?;
-    let moved = estimate(moved.report.discretisation)?;
     assert!(moved.approach.abs() < f64::MIN_POSITIVE && moved.load > 0.0);
     Ok(())
 }
 
 /// A solution on `grid`.
 fn solved(body: &HalfSpace, grid: Grid, shape: &dyn Surface, motion: &Motion) -> Result<Solution> {
-    let options = Options::default();
-    let solution = Contact::plan(body, grid, Setup::default())?.solve(shape, motion, &options)?;
-    solution.require_converged(options.tolerance)
+    pressed(&plan(body, grid)?, shape, motion)
 }
 
 /// With p ~ s^(−1/2) at the edge, the peak has no limit, and no error is stated. Approach and load have one: of
@@ -92,42 +81,32 @@ fn solved(body: &HalfSpace, grid: Grid, shape: &dyn Surface, motion: &Motion) ->
 fn peak_at_a_sharp_edge_has_no_estimate() -> Result<()> {
     let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
     let punch = FlatPunch::new(0.83)?.shifted(0.02, -0.013)?;
-    let tilted = Motion {
-        tilt: [Some(0.04), Some(0.03)],
-        ..Motion::approach(0.01)
-    };
-    let motions = [Motion::load(1.0), Motion::approach(0.01), tilted];
-    for motion in motions {
-        for line in [false, true] {
-            if line && motion.tilt[0].is_some() {
-                continue;
-            }
-            let grid = |n: usize| match line {
-                true => Grid::line(n, 2.5),
-                false => Grid::new([n, n + 5], [2.5, 2.5]),
-            };
-            let [coarse, fine] = [90, 360].map(|n| solved(&body, grid(n)?, &punch, &motion));
-            let (coarse, fine) = (coarse?, fine?);
-            let found = estimate(coarse.report.discretisation)?;
-            let what = format!("{motion:?}, line {line}: {found:?}");
-            assert_eq!(found.peak_pressure, None, "{what}");
-            assert!(
-                fine.peak_pressure() > 1.5 * coarse.peak_pressure(),
-                "{what}"
-            );
-            let errors = [
-                (
-                    coarse.approach - fine.approach,
-                    found.approach,
-                    coarse.approach,
-                ),
-                (coarse.load() - fine.load(), found.load, coarse.load()),
-            ];
-            for (error, estimate, value) in errors {
-                let rounding = 1e-10 * value;
-                assert!(error.abs() < 3.0 * estimate + rounding, "{what}: {error}");
-                assert!(estimate < 0.1 * value, "{what}: {value}");
-            }
+    let tilted = Motion::approach(0.01).with_tilt([Some(0.04), Some(0.03)]);
+    let (loaded, moved) = (Motion::load(1.0), Motion::approach(0.01));
+    let cases = [
+        (loaded, false),
+        (moved, false),
+        (tilted, false),
+        (loaded, true),
+        (moved, true),
+    ];
+    for (motion, line) in cases {
+        let grid = |n: usize| match line {
+            true => Grid::line(n, 2.5),
+            false => Grid::new([n, n + 5], [2.5, 2.5]),
+        };
+        let [coarse, fine] = [90, 360].map(|n| solved(&body, grid(n)?, &punch, &motion));
+        let (coarse, fine) = (coarse?, fine?);
+        let found = estimate(&coarse)?;
+        assert_eq!(found.peak_pressure, None, "{motion:?} {line}");
+        let [peak, higher] = [&coarse, &fine].map(Solution::peak_pressure);
+        below!(1.5 * peak, higher, motion, line);
+        for (a, b, estimate) in [
+            (coarse.approach, fine.approach, found.approach),
+            (coarse.load(), fine.load(), found.load),
+        ] {
+            below!((a - b).abs(), 3.0 * estimate + 1e-10 * a, motion, line);
+            below!(estimate, 0.1 * a, motion, line);
         }
     }
     Ok(())
@@ -137,33 +116,23 @@ fn peak_at_a_sharp_edge_has_no_estimate() -> Result<()> {
 /// coarser grids change little, and err like the finest one.
 #[test]
 fn thin_incompressible_layers_are_seen_not_to_be_resolved() -> Result<()> {
-    let rubber = |thickness: f64| Layer::new(Elastic::new(2e6, 0.5)?, thickness);
-    let steel = Elastic::new(210e9, 0.3)?;
     let cases = [
-        (
-            HalfSpace::new(Substrate::Rigid, [rubber(3e-5)?])?,
-            1e3,
-            7.2e-3,
-        ),
-        (HalfSpace::new(steel, [rubber(1e-4)?])?, 1e5, 28e-3),
+        (stack(Substrate::Rigid, [[2e6, 0.5, 3e-5]])?, 1e3, 7.2e-3),
+        (stack(steel()?, [[2e6, 0.5, 1e-4]])?, 1e5, 28e-3),
     ];
     let sphere = Sphere::new(0.5)?;
     for (body, load, side) in &cases {
         let motion = Motion::load(*load);
         let on = |n: usize| solved(body, Grid::new([n; 2], [*side; 2])?, &sphere, &motion);
         let (coarse, fine) = (on(96)?, on(384)?);
-        let found = estimate(coarse.report.discretisation)?;
-        let errors = [
-            (
-                coarse.peak_pressure() / fine.peak_pressure(),
-                peak_error(found) / fine.peak_pressure(),
-            ),
+        let (found, peak) = (estimate(&coarse)?, fine.peak_pressure());
+        for (ratio, estimate) in [
+            (coarse.peak_pressure() / peak, peak_error(found) / peak),
             (
                 coarse.approach / fine.approach,
                 found.approach / fine.approach,
             ),
-        ];
-        for (ratio, estimate) in errors {
+        ] {
             let error = (ratio - 1.0).abs();
             // The error is some per cent: the estimate is of its size.
             assert!((0.01..0.1).contains(&error), "{body:?}: {error}");
@@ -171,9 +140,7 @@ fn thin_incompressible_layers_are_seen_not_to_be_resolved() -> Result<()> {
             assert!(within.contains(&estimate), "{body:?}: {error} {estimate}");
         }
         // On fine cells the layer is resolved, and the estimate says that as well.
-        let found = estimate(fine.report.discretisation)?;
-        let relative = peak_error(found) / fine.peak_pressure();
-        assert!(relative < 0.02, "{relative}");
+        below!(peak_error(estimate(&fine)?), 0.02 * peak);
     }
     Ok(())
 }
@@ -183,21 +150,19 @@ fn thin_incompressible_layers_are_seen_not_to_be_resolved() -> Result<()> {
 #[test]
 fn hard_layers_thinner_than_cells_are_seen_not_to_be_resolved() -> Result<()> {
     let cell = 2.0 / 80.0;
-    let coat = Layer::new(Elastic::new(1e3, 0.3)?, 0.1 * cell)?;
-    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let body = stack(Elastic::new(1.0, 0.3)?, [[1e3, 0.3, 0.1 * cell]])?;
     let (shape, motion) = (Paraboloid::new(1e2, 1e2)?, Motion::approach(2e-4));
     let on = |n: usize| solved(&body, Grid::new([n; 2], [2.0; 2])?, &shape, &motion);
     let (coarse, fine) = (on(80)?, on(640)?);
-    let found = estimate(coarse.report.discretisation)?;
+    let found = estimate(&coarse)?;
     let error = fine.peak_pressure() - coarse.peak_pressure();
     assert!(error > 0.1 * coarse.peak_pressure());
     assert!(error < 3.0 * peak_error(found));
     // A layer of twice the substrate's modulus does nothing of the kind.
-    let coat = Layer::new(Elastic::new(2.0, 0.3)?, 0.1 * cell)?;
-    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let body = stack(Elastic::new(1.0, 0.3)?, [[2.0, 0.3, 0.1 * cell]])?;
     let mild = solved(&body, Grid::new([80; 2], [2.0; 2])?, &shape, &motion)?;
-    let found = estimate(mild.report.discretisation)?;
-    assert!(peak_error(found) < 0.03 * mild.peak_pressure(), "{found:?}");
+    let found = estimate(&mild)?;
+    below!(peak_error(found), 0.03 * mild.peak_pressure(), found);
     Ok(())
 }
 
@@ -211,12 +176,8 @@ fn count(numbers: std::ops::Range<u64>) -> Result<[usize; 2]> {
         };
         let on = |factor: usize| -> Result<Solution> {
             let grid = random.finer(factor)?;
-            solved(
-                &random.body,
-                grid,
-                &*random.shape_on(&grid)?,
-                &random.motion,
-            )
+            let shape = random.shape_on(&grid)?;
+            solved(&random.body, grid, &*shape, &random.motion)
         };
         let Ok(coarse) = on(1) else {
             continue;
@@ -227,12 +188,9 @@ fn count(numbers: std::ops::Range<u64>) -> Result<[usize; 2]> {
         let Ok(fine) = on(4) else {
             continue;
         };
+        let peaks = [&coarse, &fine].map(Solution::peak_pressure);
         let pairs = [
-            (
-                coarse.peak_pressure(),
-                fine.peak_pressure(),
-                found.peak_pressure,
-            ),
+            (peaks[0], peaks[1], found.peak_pressure),
             (coarse.approach, fine.approach, Some(found.approach)),
             (coarse.load(), fine.load(), Some(found.load)),
         ];
@@ -241,12 +199,8 @@ fn count(numbers: std::ops::Range<u64>) -> Result<[usize; 2]> {
             // Errors of the iteration, whose tolerance is 1e-8, are no discretisation errors.
             estimate.is_some_and(|e| (coarse - fine).abs() > 3.0 * e + 1e-6 * fine.abs())
         });
-        if fails {
-            wrong += 1;
-            println!("{}: {pairs:?}, {:?}", random.name, coarse.report.warnings);
-        }
+        wrong += usize::from(fails);
     }
-    println!("{cases} cases, {wrong} wrong");
     Ok([cases, wrong])
 }
 
@@ -272,7 +226,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
     let shape = Sphere::new(100.0)?;
     let body = Elastic::new(1.0, 0.0)?;
     for (cells, initial) in [([40, 40], false), ([100, 40], false), ([128, 128], true)] {
-        let contact = Contact::plan(body, Grid::new(cells, [2.0, 2.0])?, Setup::default())?;
+        let contact = plan(body, Grid::new(cells, [2.0, 2.0])?)?;
         let motion = Motion::load(5e-4);
         let mut solution = contact.solve(&shape, &motion, &Options::default())?;
         if initial {
@@ -292,7 +246,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
 /// points leave no such change.
 #[test]
 fn corners_of_a_sampled_profile_are_estimated() -> Result<()> {
-    let steel = Elastic::new(210e9, 0.3)?;
+    let steel = steel()?;
     let half = 5e-3;
     for (points, sharp) in [(101, true), (1001, false)] {
         let x: Vec<f64> = (0..points)
@@ -300,32 +254,15 @@ fn corners_of_a_sampled_profile_are_estimated() -> Result<()> {
             .collect();
         let drop: Vec<f64> = x.iter().map(|x| 30e-6 * (x / half).powi(4)).collect();
         let roller = Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?)?;
-        let motion = Motion {
-            tilt: [Some(2e-3), None],
-            ..Motion::load(2000.0)
+        let motion = Motion::load(2000.0).with_tilt([Some(2e-3), None]);
+        let on = |cells: usize| {
+            let contact = plan(steel, Grid::new([cells, 64], [10e-3, 0.4e-3])?)?;
+            pressed(&contact, &roller, &motion)
         };
-        let solved = |cells: usize| {
-            let grid = Grid::new([cells, 64], [10e-3, 0.4e-3])?;
-            Contact::plan(steel, grid, Setup::default())?.solve(
-                &roller,
-                &motion,
-                &Options::default(),
-            )
-        };
-        let (found, finer) = (solved(200)?, solved(800)?);
-        let error = found
-            .report
-            .discretisation
-            .and_then(|errors| errors.peak_pressure);
-        let error = error.expect("nothing is singular");
-        let change = (finer.peak_pressure() - found.peak_pressure()).abs();
-        let peak = found.peak_pressure();
-        println!(
-            "{points}: estimated {:.4}, changed {:.4}",
-            error / peak,
-            change / peak
-        );
-        assert!(change < 3.0 * error, "{points}: {change:e} {error:e}");
+        let (found, finer) = (on(200)?, on(800)?);
+        let (error, peak) = (peak_error(estimate(&found)?), found.peak_pressure());
+        let change = (finer.peak_pressure() - peak).abs();
+        below!(change, 3.0 * error, points, error);
         assert_eq!(error > 0.004 * peak, sharp, "{points}: {error:e} {peak:e}");
     }
     Ok(())

@@ -3,113 +3,57 @@
 
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
-    Contact, Cylinder, Elastic, Error, FlatPunch, Grid, HalfSpace, HeightMap, Motion, Options,
-    Paraboloid, Result, Setup, Solution, Surface, solve,
+    Contact, Cylinder, Error, FlatPunch, Grid, HalfSpace, HeightMap, Motion, Options, Paraboloid,
+    Result, Setup, Solution, Surface, solve,
 };
 use ndarray::Array2;
 
-use crate::support::messages::{check, message};
+use crate::messages::message;
+use crate::support::settings::{Controls, converted, plan, steel, threads, tolerance};
 
 const NAN: f64 = f64::NAN;
 const INFINITY: f64 = f64::INFINITY;
 
-fn steel() -> Result<Elastic> {
-    Elastic::new(210e9, 0.3)
-}
-
 /// A contact on 16 x 12 cells of 1 mm.
 fn contact() -> Result<Contact> {
-    let grid = Grid::new([16, 12], [16e-3, 12e-3])?;
-    Contact::plan(steel()?, grid, Setup::default())
+    plan(steel()?, Grid::new([16, 12], [16e-3, 12e-3])?)
 }
 
-fn solved(shape: &dyn Surface, motion: &Motion) -> Result<()> {
-    contact()?
-        .solve(shape, motion, &Options::default())
-        .map(drop)
+fn solved(shape: &dyn Surface, motion: &Motion) -> Result<Solution> {
+    contact()?.solve(shape, motion, &Options::default())
 }
 
 #[test]
 fn controls() -> Result<()> {
-    let shape = Paraboloid::new(1.0, 1.0)?;
-    let load = Motion::load(10.0);
-    let approach = Motion::approach(1e-6);
-    let cases = [
-        (
-            Motion::default(),
-            "exactly one of load and approach must be given",
-        ),
-        (
-            Motion {
-                approach: Some(1e-6),
-                ..load
-            },
-            "exactly one of load and approach must be given",
-        ),
-        (Motion::load(0.0), "load must be finite and above 0, got 0"),
-        (
-            Motion::load(-5.0),
-            "load must be finite and above 0, got -5",
-        ),
-        (
-            Motion::load(NAN),
-            "load must be finite and above 0, got NaN",
-        ),
-        (Motion::approach(NAN), "approach must be finite, got NaN"),
-        (
-            Motion {
-                tilt: [Some(NAN), None],
-                ..load
-            },
-            "tilt must be finite, got NaN",
-        ),
-        (
-            Motion {
-                moment: [None, Some(INFINITY)],
-                ..load
-            },
-            "moment must be finite, got inf",
-        ),
-        (
-            Motion {
-                eccentricity: [Some(NAN), None],
-                ..load
-            },
-            "eccentricity must be finite, got NaN",
-        ),
-        (
-            Motion {
-                eccentricity: [Some(0.0), None],
-                ..approach
-            },
-            "eccentricity needs load: under a given approach, give moment",
-        ),
-        (
-            Motion {
-                eccentricity: [Some(0.0), None],
-                tilt: [Some(0.0), None],
-                ..load
-            },
-            "along x at most one of eccentricity, moment and tilt can be a number",
-        ),
-        (
-            Motion {
-                moment: [None, Some(0.0)],
-                tilt: [None, Some(0.0)],
-                ..load
-            },
-            "along y at most one of eccentricity, moment and tilt can be a number",
-        ),
-        (
-            Motion {
-                eccentricity: [Some(0.0); 2],
-                moment: [None, Some(0.0)],
-                ..load
-            },
-            "along y at most one of eccentricity, moment and tilt can be a number",
-        ),
-    ];
-    check(cases.map(|(motion, text)| (solved(&shape, &motion), text)));
+    let ball = Paraboloid::new(1.0, 1.0)?;
+    let (load, approach) = (Motion::load(10.0), Motion::approach(1e-6));
+    let moved = |motion: Motion| solved(&ball, &motion);
+    let (both, zero) = (
+        Motion {
+            approach: Some(1e-6),
+            ..load
+        },
+        Some(0.0),
+    );
+    refused! {
+        moved(Motion::default()) => "exactly one of load and approach must be given";
+        moved(both) => "exactly one of load and approach must be given";
+        moved(Motion::load(0.0)) => "load must be finite and above 0, got 0";
+        moved(Motion::load(-5.0)) => "load must be finite and above 0, got -5";
+        moved(Motion::load(NAN)) => "load must be finite and above 0, got NaN";
+        moved(Motion::approach(NAN)) => "approach must be finite, got NaN";
+        moved(load.with_tilt([Some(NAN), None])) => "tilt must be finite, got NaN";
+        moved(load.with_moment([None, Some(INFINITY)])) => "moment must be finite, got inf";
+        moved(load.with_eccentricity([Some(NAN), None])) => "eccentricity must be finite, got NaN";
+        moved(approach.with_eccentricity([zero, None]))
+            => "eccentricity needs load: under a given approach, give moment";
+        moved(load.with_eccentricity([zero, None]).with_tilt([zero, None]))
+            => "along x at most one of eccentricity, moment and tilt can be a number";
+        moved(load.with_moment([None, zero]).with_tilt([None, zero]))
+            => "along y at most one of eccentricity, moment and tilt can be a number";
+        moved(load.with_eccentricity([zero; 2]).with_moment([None, zero]))
+            => "along y at most one of eccentricity, moment and tilt can be a number";
+    }
     Ok(())
 }
 
@@ -117,19 +61,16 @@ fn controls() -> Result<()> {
 fn products_that_overflow() -> Result<()> {
     let shape = Paraboloid::new(1.0, 1.0)?;
     let overflows = "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish";
-    let apart = Motion {
-        eccentricity: [Some(1e-3), None],
-        ..Motion::load(1e307)
-    };
+    let apart = Motion::load(1e307).with_eccentricity([Some(1e-3), None]);
     // Pressures are about 1e13 times the approach and overflow for the larger one; for the smaller one,
     // products of pressures with displacements underflow.
-    check([
-        (solved(&shape, &Motion::approach(1e300)), overflows),
-        (solved(&shape, &Motion::approach(1e160)), overflows),
-        (solved(&shape, &Motion::load(1e307)), overflows),
-        (solved(&shape, &Motion::load(1e200)), overflows),
-        (solved(&shape, &apart), overflows),
-    ]);
+    refused! {
+        solved(&shape, &Motion::approach(1e300)) => overflows;
+        solved(&shape, &Motion::approach(1e160)) => overflows;
+        solved(&shape, &Motion::load(1e307)) => overflows;
+        solved(&shape, &Motion::load(1e200)) => overflows;
+        solved(&shape, &apart) => overflows;
+    }
     Ok(())
 }
 
@@ -138,10 +79,7 @@ fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
     // A punch of 4 mm radius on cells of 1 mm has cell centres up to 3.5 mm.
     let punch = FlatPunch::new(4e-3)?;
     for x in [3.5e-3, -5e-3] {
-        let motion = Motion {
-            eccentricity: [Some(x), None],
-            ..Motion::load(10.0)
-        };
+        let motion = Motion::load(10.0).with_eccentricity([Some(x), None]);
         let text = message(solved(&punch, &motion));
         let begins = format!(
             "the load point ({x:.6e}, 0.000000e0) must lie strictly inside the convex hull of the \
@@ -149,36 +87,19 @@ fn load_point_outside_the_cells_that_can_touch() -> Result<()> {
         );
         assert!(text.starts_with(&begins), "{text}");
     }
-    // The point is inside the rectangle around the cells, and outside their convex hull.
-    let corner = [Some(3e-3), Some(3e-3)];
-    let motion = Motion {
-        eccentricity: corner,
-        ..Motion::load(10.0)
-    };
-    assert!(matches!(
-        solved(&punch, &motion),
-        Err(Error::LoadPoint { .. })
-    ));
-    let motion = Motion {
-        eccentricity: [Some(2e-3), Some(2e-3)],
-        ..Motion::load(10.0)
-    };
-    assert_eq!(message(solved(&punch, &motion)), "no error");
+    // The first point is inside the rectangle around the cells, and outside their convex hull.
+    let at = |x: f64| solved(&punch, &Motion::load(10.0).with_eccentricity([Some(x); 2]));
+    assert!(matches!(at(3e-3), Err(Error::LoadPoint { .. })));
+    assert!(at(2e-3).is_ok());
 
-    let beside = Motion {
-        moment: [Some(1.0), None],
-        ..Motion::approach(1e-6)
-    };
-    check([(
-        solved(&punch.shifted(-4e-3, 0.0)?, &beside),
-        "no pressure p >= 0 on the cells that can touch has this moment: moment (1.000000e0, 0.000000e0), \
-         cells in x [-0.0075, -0.0005], y [-0.0035000000000000005, 0.0035000000000000005]; a moment has the \
-         direction of the point where the force acts",
-    )]);
-    check([(
-        solved(&punch.shifted(1.0, 0.0)?, &Motion::load(1.0)),
-        "no cell of the grid can touch: the gap is infinite",
-    )]);
+    let beside = Motion::approach(1e-6).with_moment([Some(1.0), None]);
+    refused! {
+        solved(&punch.shifted(-4e-3, 0.0)?, &beside)
+            => "no pressure p >= 0 on the cells that can touch has this moment: moment (1.000000e0, 0.000000e0), \
+                cells in x [-0.0075, -0.0005], y [-0.0035000000000000005, 0.0035000000000000005]; a moment has the \
+                direction of the point where the force acts";
+        solved(&punch.shifted(1.0, 0.0)?, &Motion::load(1.0)) => "no cell of the grid can touch: the gap is infinite";
+    }
     Ok(())
 }
 
@@ -187,41 +108,18 @@ fn plans_and_options() -> Result<()> {
     let body: HalfSpace = steel()?.into();
     let grid = Grid::new([16, 12], [1.0, 1.0])?;
     let plan = |setup: Setup| Contact::plan(&body, grid, setup);
-    check([
-        (
-            plan(Setup {
-                threads: Some(0),
-                ..Setup::default()
-            }),
-            "threads must be at least 1, got 0",
-        ),
-        (
-            plan(Setup {
-                method: Method::Image { refinement: 0 },
-                ..Setup::default()
-            }),
-            "refinement must be at least 1, got 0",
-        ),
-        (
-            Contact::plan(
-                &body,
-                Grid::line(64, 1.0)?,
-                Setup {
-                    method: Method::Image { refinement: 4 },
-                    ..Setup::default()
-                },
-            ),
-            "method must be \"exact\" on the grid of a line contact",
-        ),
-    ]);
+    refused! {
+        plan(threads(0)) => "threads must be at least 1, got 0";
+        plan(converted(Method::Image { refinement: 0 })) => "refinement must be at least 1, got 0";
+        Contact::plan(&body, Grid::line(64, 1.0)?, converted(Method::Image { refinement: 4 }))
+            => "method must be \"exact\" on the grid of a line contact";
+    }
     let refined = Method::Plain {
         refinement: usize::MAX / 8,
     };
     let text = message(influence_coefficients(&body, &grid, refined));
-    assert!(
-        text.starts_with("refinement must be small enough"),
-        "{text}"
-    );
+    let begins = "refinement must be small enough";
+    assert!(text.starts_with(begins), "{text}");
 
     let shape = Paraboloid::new(1.0, 1.0)?;
     let with = |options: Options| contact()?.solve(&shape, &Motion::load(1.0), &options);
@@ -233,47 +131,21 @@ fn plans_and_options() -> Result<()> {
     };
     let mut broken = Array2::zeros([16, 12]);
     broken[[7, 8]] = NAN;
-    let tolerance = |tolerance| {
-        with(Options {
-            tolerance,
-            ..Options::default()
-        })
-    };
-    check([
-        (
-            tolerance(0.0),
-            "tolerance must be above 0 and below 1, got 0",
-        ),
-        (
-            tolerance(1.0),
-            "tolerance must be above 0 and below 1, got 1",
-        ),
-        (
-            tolerance(NAN),
-            "tolerance must be above 0 and below 1, got NaN",
-        ),
-        (
-            start(Array2::zeros([12, 16])),
-            "initial: expected shape [16, 12], got [12, 16]",
-        ),
-        (start(broken), "initial is not finite at [7, 8]"),
-    ]);
+    let to = |asked| with(tolerance(asked));
+    refused! {
+        to(0.0) => "tolerance must be above 0 and below 1, got 0";
+        to(1.0) => "tolerance must be above 0 and below 1, got 1";
+        to(NAN) => "tolerance must be above 0 and below 1, got NaN";
+        start(Array2::zeros([12, 16])) => "initial: expected shape [16, 12], got [12, 16]";
+        start(broken) => "initial is not finite at [7, 8]";
+    }
     Ok(())
 }
 
 #[test]
-fn cells_too_coarse_for_a_height_map() -> Result<()> {
+fn shapes_that_do_not_fit_the_grid_or_have_no_gap() -> Result<()> {
     // The cells have sides of 1 mm, and the samples are 0.1 mm apart.
     let fine = HeightMap::new(Array2::zeros([160, 120]), [1e-4, 1e-4])?;
-    check([(
-        solved(&fine, &Motion::load(1.0)),
-        "grid spacing must be at most twice the spacing of the height map, got 0.001",
-    )]);
-    Ok(())
-}
-
-#[test]
-fn a_shape_of_the_wrong_size_or_without_a_gap() -> Result<()> {
     #[derive(Debug)]
     struct Broken(f64, usize);
     impl Surface for Broken {
@@ -284,20 +156,13 @@ fn a_shape_of_the_wrong_size_or_without_a_gap() -> Result<()> {
             Ok(Array2::from_elem([self.1, grid.shape()[1]], self.0))
         }
     }
-    check([
-        (
-            solved(&Broken(NAN, 16), &Motion::load(1.0)),
-            "shape is not finite at [0, 0]",
-        ),
-        (
-            solved(&Broken(-INFINITY, 16), &Motion::load(1.0)),
-            "shape is not finite at [0, 0]",
-        ),
-        (
-            solved(&Broken(0.0, 15), &Motion::load(1.0)),
-            "shape: expected shape [16, 12], got [15, 12]",
-        ),
-    ]);
+    refused! {
+        solved(&fine, &Motion::load(1.0))
+            => "grid spacing must be at most twice the spacing of the height map, got 0.001";
+        solved(&Broken(NAN, 16), &Motion::load(1.0)) => "shape is not finite at [0, 0]";
+        solved(&Broken(-INFINITY, 16), &Motion::load(1.0)) => "shape is not finite at [0, 0]";
+        solved(&Broken(0.0, 15), &Motion::load(1.0)) => "shape: expected shape [16, 12], got [15, 12]";
+    }
     Ok(())
 }
 
@@ -320,16 +185,11 @@ fn a_shape_without_a_gap_on_the_finest_grid() -> Result<()> {
     }
     let shape = Pierced(Paraboloid::new(1.0, 1.0)?);
     let grid = Grid::new([256, 192], [16e-3, 12e-3])?;
-    for threads in [1, 2] {
-        let setup = Setup {
-            threads: Some(threads),
-            ..Setup::default()
-        };
-        let contact = Contact::plan(steel()?, grid, setup)?;
-        check([(
-            contact.solve(&shape, &Motion::load(1e3), &Options::default()),
-            "shape is not finite at [17, 5]",
-        )]);
+    for count in [1, 2] {
+        let contact = Contact::plan(steel()?, grid, threads(count))?;
+        refused! {
+            contact.solve(&shape, &Motion::load(1e3), &Options::default()) => "shape is not finite at [17, 5]";
+        }
     }
     Ok(())
 }
@@ -337,10 +197,10 @@ fn a_shape_without_a_gap_on_the_finest_grid() -> Result<()> {
 #[test]
 fn grids_that_are_not_to_be_found() -> Result<()> {
     let body: HalfSpace = steel()?.into();
-    check([(
-        solve(&Cylinder::new(1.0)?, &body, &Motion::load(1.0)),
-        "grid must be given for a shape without end: its contact is as long as the grid",
-    )]);
+    refused! {
+        solve(&Cylinder::new(1.0)?, &body, &Motion::load(1.0))
+            => "grid must be given for a shape without end: its contact is as long as the grid";
+    }
     // The contact of a plane covers any grid.
     #[derive(Debug)]
     struct Plane;
@@ -350,14 +210,10 @@ fn grids_that_are_not_to_be_found() -> Result<()> {
         }
     }
     let text = message(solve(&Plane, &body, &Motion::load(1.0)));
-    assert!(
-        text.starts_with("no grid found: after 10 enlargements, to ["),
-        "{text}"
-    );
-    assert!(
-        text.ends_with("the contact still touches the edge; give a grid"),
-        "{text}"
-    );
+    let begins = "no grid found: after 10 enlargements, to [";
+    assert!(text.starts_with(begins), "{text}");
+    let ends = "the contact still touches the edge; give a grid";
+    assert!(text.ends_with(ends), "{text}");
     Ok(())
 }
 
@@ -383,43 +239,26 @@ fn an_iteration_that_did_not_converge_says_how_far_it_came() -> Result<()> {
 fn fields_that_were_kept() -> Result<()> {
     let (contact, shape) = (contact()?, Paraboloid::new(1.0, 1.0)?);
     let solution = contact.solve(&shape, &Motion::load(10.0), &Options::default())?;
-    let again = |gap: Array2<f64>| {
-        let fields = [
-            solution.pressure.clone(),
-            gap,
-            solution.displacement.clone(),
-        ];
-        let (approach, tilt) = (solution.approach, solution.tilt);
-        Solution::from_fields(fields, approach, tilt, solution.report.clone())
+    let fields = [&solution.pressure, &solution.gap(), &solution.displacement].map(Clone::clone);
+    let kept = |changed: usize, field: Array2<f64>| {
+        let (mut fields, report) = (fields.clone(), solution.report.clone());
+        fields[changed] = field;
+        Solution::from_fields(fields, solution.approach, solution.tilt, report)
     };
-    assert_eq!(again(solution.gap())?, solution);
-    assert_ne!(again(solution.gap() + 1e-9)?, solution);
-    assert_eq!(
-        message(again(Array2::zeros((12, 16)))),
-        "gap: expected shape [16, 12], got [12, 16]"
-    );
+    assert_eq!(kept(1, solution.gap())?, solution);
+    assert_ne!(kept(1, solution.gap() + 1e-9)?, solution);
     // A gap may be +inf, where the shape cannot touch.
-    assert!(again(solution.gap() + f64::INFINITY).is_ok());
-    assert_eq!(
-        message(again(solution.gap() * f64::NAN)),
-        "gap must be a number or +inf, got NaN"
-    );
+    assert!(kept(1, solution.gap() + INFINITY).is_ok());
     let pressed = |pressure: f64| {
-        let mut fields = [
-            solution.pressure.clone(),
-            solution.gap(),
-            solution.displacement.clone(),
-        ];
-        fields[0][[3, 2]] = pressure;
-        Solution::from_fields(fields, 0.0, [0.0; 2], solution.report.clone())
+        let mut field = solution.pressure.clone();
+        field[[3, 2]] = pressure;
+        kept(0, field)
     };
-    assert_eq!(
-        message(pressed(f64::INFINITY)),
-        "pressure is not finite at [3, 2]"
-    );
-    assert_eq!(
-        message(pressed(-1.0)),
-        "pressure must be at least 0, got -1"
-    );
+    refused! {
+        kept(1, Array2::zeros((12, 16))) => "gap: expected shape [16, 12], got [12, 16]";
+        kept(1, solution.gap() * NAN) => "gap must be a number or +inf, got NaN";
+        pressed(INFINITY) => "pressure is not finite at [3, 2]";
+        pressed(-1.0) => "pressure must be at least 0, got -1";
+    }
     Ok(())
 }

@@ -1,14 +1,15 @@
 //! Contacts of a few cells have the forces that statics demands, down to vanishing loads.
 
-use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
     Algorithm, Contact, Cylinder, Elastic, Grid, HalfSpace, HeightMap, Motion, Options, Paraboloid,
-    Result, Roller, Setup, Solution, Surface,
+    Result, Roller, Solution, Surface,
 };
 use ndarray::Array2;
 
+use crate::support::checks::pressure_off;
 use crate::support::random::uniform;
+use crate::support::settings::{Controls, by, converged, plan, steel};
 
 /// Relative error of forces that three equations of equilibrium determine.
 const STATICS: f64 = 1e-9;
@@ -23,8 +24,7 @@ const ALGORITHMS: [Algorithm; 2] = [Algorithm::Cascade, Algorithm::PolonskyKeer]
 
 /// A contact on unit cells with unit modulus.
 fn contact() -> Result<Contact> {
-    let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
-    Contact::plan(&body, Grid::new([16, 16], [16.0; 2])?, Setup::default())
+    plan(Elastic::new(1.0, 0.3)?, Grid::new([16, 16], [16.0; 2])?)
 }
 
 /// A balanced solution. The default algorithm must find it; the reference algorithm may fail to converge,
@@ -48,15 +48,15 @@ fn solve(
     }
     let balance = report.balance;
     let worst = balance.force.max(balance.moment[0]).max(balance.moment[1]);
-    assert!(worst < BALANCE, "{algorithm:?}, {motion:?}: {balance:?}");
+    below!(worst, BALANCE, algorithm, motion, balance);
     Ok(Some(solution))
 }
 
 #[test]
 fn one_cell_carries_the_load() -> Result<()> {
     let contact = contact()?;
-    let loaded =
-        influence_coefficients(Elastic::new(1.0, 0.3)?, contact.grid(), Method::Exact)?[[0, 0]];
+    let body = Elastic::new(1.0, 0.3)?;
+    let loaded = influence_coefficients(body, contact.grid(), Method::Exact)?[[0, 0]];
     let mut heights = Array2::zeros([16, 16]);
     heights[[5, 9]] = 1.0;
     let nail = HeightMap::new(heights, [1.0, 1.0])?;
@@ -65,8 +65,8 @@ fn one_cell_carries_the_load() -> Result<()> {
             let Some(solution) = solve(&contact, &nail, &Motion::load(load), algorithm)? else {
                 continue;
             };
-            assert_relative_eq!(solution.pressure[[5, 9]], load, max_relative = STATICS);
-            assert_relative_eq!(solution.approach, load * loaded, max_relative = STATICS);
+            near!(solution.pressure[[5, 9]], load, STATICS);
+            near!(solution.approach, load * loaded, STATICS);
         }
     }
     Ok(())
@@ -98,32 +98,23 @@ fn table_stands_on_its_three_long_legs() -> Result<()> {
         for load in [1e-7, 1e-5, 1e-3] {
             for [x, y] in [[0.0, 0.0], [-1.0, -2.0], [2.0, -1.0]] {
                 let what = format!("{algorithm:?}, load {load:e} at {x}, {y}");
-                let motion = Motion {
-                    eccentricity: [Some(x), Some(y)],
-                    ..Motion::load(load)
-                };
+                let motion = Motion::load(load).with_eccentricity([Some(x), Some(y)]);
                 let Some(solution) = solve(&contact, &table, &motion, algorithm)? else {
                     continue;
                 };
                 for (k, force) in leg_forces(x, y, contact.grid()).into_iter().enumerate() {
                     let (i, j, height) = LEGS[k];
-                    let error = solution.pressure[[i, j]] / (load * force) - 1.0;
-                    assert!(error.abs() < STATICS, "{what}: leg {k}: {error:e}");
+                    near!(solution.pressure[[i, j]], load * force, STATICS, what, k);
                     // The indentation of a leg's foot is the displacement of the foot by the rigid motion.
                     let (gx, gy) = (contact.grid().x()[i], contact.grid().y()[j]);
                     let [sx, sy] = solution.tilt;
                     let down = solution.approach + sx * gx + sy * gy - (1.0 - height);
                     let gap = solution.displacement[[i, j]] - down;
-                    assert!(
-                        gap.abs() < 1e-7 * solution.displacement[[i, j]] + 1e-15,
-                        "{what}"
-                    );
+                    let bar = 1e-7 * solution.displacement[[i, j]] + 1e-15;
+                    below!(gap.abs(), bar, what, k);
                 }
-                assert_eq!(
-                    solution.in_contact().iter().filter(|c| **c).count(),
-                    3,
-                    "{what}"
-                );
+                let touching = solution.in_contact().iter().filter(|c| **c).count();
+                assert_eq!(touching, 3, "{what}");
             }
         }
     }
@@ -149,16 +140,12 @@ fn legs_in_line_with_the_load_carry_it_beside_a_taller_one() -> Result<()> {
         let shape = HeightMap::new(heights, [1.0, 1.0])?;
         let undeformed = shape.gaps(contact.grid())?;
         for load in [1e-6, 1e-3] {
-            let motion = Motion {
-                eccentricity: place.map(Some),
-                ..Motion::load(load)
-            };
+            let motion = Motion::load(load).with_eccentricity(place.map(Some));
             let Some(solution) = solve(&contact, &shape, &motion, Algorithm::Cascade)? else {
                 continue;
             };
             for &(i, j, _, part) in &legs {
-                let error = solution.pressure[[i, j]] / (load * part) - 1.0;
-                assert!(error.abs() < STATICS, "{load:e}, {legs:?}: {error:e}");
+                near!(solution.pressure[[i, j]], load * part, STATICS, load, legs);
             }
             let [sx, sy] = solution.tilt;
             let deepest = solution.displacement.iter().fold(0.0_f64, |a, &u| a.max(u));
@@ -179,8 +166,8 @@ fn legs_in_line_with_the_load_carry_it_beside_a_taller_one() -> Result<()> {
 #[test]
 fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
     let grid = Grid::new([45, 64], [4.5e-4, 4.8e-4])?;
-    let body: HalfSpace = Elastic::new(210e9, 0.3)?.into();
-    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let body: HalfSpace = steel()?.into();
+    let contact = plan(&body, grid)?;
     // In some of the last cases, the contact cannot balance the moment during the iteration until the body has
     // turned by a large angle.
     for seed in (0..8).chain([19, 45, 49]) {
@@ -190,10 +177,7 @@ fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
         let e = [0, 1].map(|k| 0.6 * (place[[0, k]] - 0.5) * grid.size()[k]);
         for load in [1e-7, 1e-5, 1e-3, 1e-2, 1e-1, 1.0] {
             for eccentricity in [[Some(e[0]), Some(e[1])], [Some(e[0]), None]] {
-                let motion = Motion {
-                    eccentricity,
-                    ..Motion::load(load)
-                };
+                let motion = Motion::load(load).with_eccentricity(eccentricity);
                 for algorithm in ALGORITHMS {
                     // For other loads, the reference algorithm usually fails to converge.
                     if (seed < 8 && load >= 1e-3) || algorithm == Algorithm::Cascade {
@@ -211,26 +195,19 @@ fn rough_surfaces_are_balanced_under_vanishing_loads() -> Result<()> {
 #[test]
 fn loads_far_below_the_rounding_of_the_gaps() -> Result<()> {
     let shape = Roller::new(5e-3, 1e-4, 0.1)?;
-    let steel = Elastic::new(210e9, 0.3)?;
+    let steel = steel()?;
     for (cells, load) in [(16, 1e-11), (48, 1e-18), (33, 1e-15)] {
         let grid = Grid::new([cells; 2], [4e-4; 2])?;
-        let contact = Contact::plan(steel, grid, Setup::default())?;
-        let solve = |algorithm: Algorithm| {
-            let options = Options {
-                algorithm,
-                ..Options::default()
-            };
-            let solution = contact.solve(&shape, &Motion::load(load), &options)?;
-            let report = &solution.report;
+        let contact = plan(steel, grid)?;
+        let [fast, reference] = ALGORITHMS.map(|algorithm| {
+            converged(&contact, &shape, &Motion::load(load), &by(algorithm, 1e-8))
+        });
+        let (fast, reference) = (fast?, reference?);
+        for report in [&fast.report, &reference.report] {
             assert!(report.residual <= 1e-8 && report.overlap <= 1e-8);
-            assert!(report.balance.force < BALANCE);
-            solution.require_converged(options.tolerance)
-        };
-        let [fast, reference] = [solve(ALGORITHMS[0])?, solve(ALGORITHMS[1])?];
-        for (p, q) in fast.pressure.iter().zip(&reference.pressure) {
-            let error = (p - q) / reference.peak_pressure();
-            assert!(error.abs() < 1e-6, "{cells}, {load:e}: {error:e}");
+            below!(report.balance.force, BALANCE);
         }
+        below!(pressure_off(&fast, &reference), 1e-6, cells, load);
     }
     Ok(())
 }
@@ -241,12 +218,10 @@ fn loads_far_below_the_rounding_of_the_gaps() -> Result<()> {
 fn one_rule_calls_a_solution_converged() -> Result<()> {
     let body = Elastic::new(740_967_469.200_680_7, -0.999_999_999_988_594_7)?;
     let grid = Grid::new([12, 12], [0.032_208_219_010_814_096; 2])?;
-    let contact = Contact::plan(body, grid, Setup::default())?;
-    let motion = Motion {
-        moment: [Some(0.067_710_027_304_117_32), None],
-        tilt: [None, Some(-0.000_141_109_104_374_051_04)],
-        ..Motion::load(31.810_227_740_377_936)
-    };
+    let contact = plan(body, grid)?;
+    let motion = Motion::load(31.810_227_740_377_936)
+        .with_moment([Some(0.067_710_027_304_117_32), None])
+        .with_tilt([None, Some(-0.000_141_109_104_374_051_04)]);
     let shape = Cylinder::new(2.819_184_480_053_274)?;
     let report = contact.solve(&shape, &motion, &Options::default())?.report;
     let met = report.residual <= 1e-8 && report.overlap <= 1e-8;

@@ -3,14 +3,15 @@
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
     Algorithm, Contact, Convolution, Cylinder, Elastic, Error, FlatPunch, Grid, HalfSpace,
-    HeightMap, Layer, Motion, Options, Paraboloid, Result, Setup, Solution, Substrate, Surface,
+    HeightMap, Motion, Paraboloid, Result, Solution, Substrate, Surface,
 };
 use ndarray::{Array2, Axis};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError, TestCaseResult};
 
+use crate::support::checks::{apart, largest, pressure_off, seeded};
 use crate::support::random::uniform;
-use crate::support::seeded::seeded;
+use crate::support::settings::{by, stack, threads};
 
 /// Tolerance of the iterations.
 const TIGHT: f64 = 1e-12;
@@ -130,20 +131,17 @@ impl Case {
         let grid = grid.centered_at(center)?;
 
         let material = Elastic::new(modulus, self.poisson)?;
-        let layers = self.coats.iter().map(|&(young, poisson, thickness)| {
-            Layer::new(Elastic::new(young * modulus, poisson)?, thickness * length)
-        });
-        let substrate = if self.rigid_base {
-            Substrate::Rigid
-        } else {
-            Substrate::from(material)
+        let coat =
+            |&(young, poisson, thickness): &Coat| [young * modulus, poisson, thickness * length];
+        let substrate = match self.rigid_base {
+            true => Substrate::Rigid,
+            false => Substrate::from(material),
         };
-        let body = HalfSpace::new(substrate, layers.collect::<Result<Vec<_>>>()?)?;
+        let body = stack(substrate, self.coats.iter().map(coat))?;
 
-        let shorter = if self.line {
-            grid.size()[1]
-        } else {
-            grid.size()[0].min(grid.size()[1])
+        let shorter = match self.line {
+            true => grid.size()[1],
+            false => grid.size()[0].min(grid.size()[1]),
         };
         let half = 0.5 * self.width * shorter;
         // A radius at which slopes are small; the contact of a bare half-space has δ = a²/R.
@@ -190,26 +188,14 @@ impl Case {
     }
 }
 
-fn tight(algorithm: Algorithm) -> Options {
-    Options {
-        tolerance: TIGHT,
-        algorithm,
-        ..Options::default()
-    }
-}
-
 fn broken(what: impl std::fmt::Display) -> TestCaseError {
     TestCaseError::fail(what.to_string())
 }
 
 impl Problem {
     fn solve(&self, algorithm: Algorithm) -> std::result::Result<Option<Solution>, TestCaseError> {
-        let setup = Setup {
-            threads: Some(1),
-            ..Setup::default()
-        };
-        let contact = Contact::plan(&self.body, self.grid, setup).map_err(broken)?;
-        match contact.solve(&*self.shape, &self.motion, &tight(algorithm)) {
+        let contact = Contact::plan(&self.body, self.grid, threads(1)).map_err(broken)?;
+        match contact.solve(&*self.shape, &self.motion, &by(algorithm, TIGHT)) {
             Ok(solution) if solution.report.converged() => Ok(Some(solution)),
             // The reference goes round in circles on some contacts of a few cells, and says so.
             Ok(_) if algorithm == Algorithm::PolonskyKeer => Ok(None),
@@ -224,8 +210,7 @@ impl Problem {
 
 /// Largest |a − b| relative to the largest |b|; 0 where both are zero.
 fn difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
-    let largest = |a: &Array2<f64>| a.fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    largest(&(a - b)) / largest(b).max(f64::MIN_POSITIVE)
+    apart(a, b) / largest(b).max(f64::MIN_POSITIVE)
 }
 
 fn expect(found: f64, limit: f64, what: &str) -> TestCaseResult {
@@ -302,7 +287,7 @@ proptest! {
         let problem = case.build(1.0, 1.0).map_err(broken)?;
         let Some(a) = problem.solve(Algorithm::Cascade)? else { return Ok(()) };
         let Some(b) = problem.solve(Algorithm::PolonskyKeer)? else { return Ok(()) };
-        expect(difference(&a.pressure, &b.pressure), SAME, "pressure")?;
+        expect(pressure_off(&a, &b), SAME, "pressure")?;
         let depth = problem.grid.size()[1].abs();
         let slope = (a.approach - b.approach).abs() / b.approach.abs().max(1e-12 * depth);
         expect(slope, SAME, "approach")?;

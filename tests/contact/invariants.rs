@@ -1,7 +1,6 @@
 //! Properties of every contact: balance, complementarity, scaling, and that a solution does not
 //! depend on which quantities are prescribed.
 
-use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
     Algorithm, Contact, Elastic, Grid, HalfSpace, HeightMap, Layer, Motion, Options, Paraboloid,
@@ -10,9 +9,10 @@ use nacre::{
 use ndarray::Array2;
 use proptest::prelude::*;
 
+use crate::support::checks::{difference, pressure_off, seeded};
 use crate::support::claims::claim;
 use crate::support::random::uniform;
-use crate::support::seeded::seeded;
+use crate::support::settings::{self, Controls, by, converged, pressed, steel, tolerance};
 
 /// Error of a layer of the material of the substrate: the tables of the remainder of its response, which is
 /// zero.
@@ -32,12 +32,8 @@ const RADIUS: f64 = 5e-3;
 
 /// A body of two layers on steel.
 fn stack() -> Result<HalfSpace> {
-    let steel = Elastic::new(210e9, 0.3)?;
-    let layers = [
-        Layer::new(Elastic::new(420e9, 0.22)?, 10e-6)?,
-        Layer::new(Elastic::new(70e9, 0.35)?, 30e-6)?,
-    ];
-    HalfSpace::new(steel, layers)
+    let layers = [[420e9, 0.22, 10e-6], [70e9, 0.35, 30e-6]];
+    settings::stack(steel()?, layers)
 }
 
 /// A grid of oblong cells, odd in number along one axis and even along the other, off the origin.
@@ -46,10 +42,7 @@ fn grid() -> Result<Grid> {
 }
 
 fn tight() -> Options {
-    Options {
-        tolerance: TIGHT,
-        ..Options::default()
-    }
+    tolerance(TIGHT)
 }
 
 fn plan(body: &HalfSpace) -> Result<Contact> {
@@ -60,43 +53,32 @@ fn paraboloid() -> Result<Paraboloid> {
     Paraboloid::new(RADIUS, 1.5 * RADIUS)
 }
 
-/// Largest |a − b| relative to the peak of b.
-fn difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
-    let largest = |a: &Array2<f64>| a.fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    largest(&(a - b)) / largest(b)
-}
-
 fn assert_same(a: &Solution, b: &Solution, what: &str) {
     assert!(a.report.converged() && b.report.converged(), "{what}");
-    let pressure = difference(&a.pressure, &b.pressure);
-    assert!(pressure < SAME_PRESSURE, "{what}: pressure {pressure:e}");
-    assert_relative_eq!(a.load(), b.load(), max_relative = SAME_MOTION);
-    assert_relative_eq!(a.approach, b.approach, max_relative = SAME_MOTION);
+    below!(pressure_off(a, b), SAME_PRESSURE, what);
+    near!(a.load(), b.load(), SAME_MOTION);
+    near!(a.approach, b.approach, SAME_MOTION);
     let lever = grid().map_or(1.0, |grid| grid.size()[0]);
     for k in 0..2 {
         let tilt = (a.tilt[k] - b.tilt[k]) * lever / b.approach;
         let moment = (a.moment()[k] - b.moment()[k]) / (b.load() * lever);
-        assert!(tilt.abs() < SAME_MOTION, "{what}: tilt {tilt:e}");
-        assert!(moment.abs() < SAME_MOTION, "{what}: moment {moment:e}");
+        below!(tilt.abs(), SAME_MOTION, what, k);
+        below!(moment.abs(), SAME_MOTION, what, k);
     }
 }
 
 #[test]
 fn layer_of_the_substrates_material_is_no_layer() -> Result<()> {
-    let steel = Elastic::new(210e9, 0.3)?;
-    let motion = Motion {
-        eccentricity: [Some(1e-5), Some(-2e-5)],
-        ..Motion::load(30.0)
-    };
+    let steel = steel()?;
+    let motion = Motion::load(30.0).with_eccentricity([Some(1e-5), Some(-2e-5)]);
     let bare = plan(&steel.into())?.solve(&paraboloid()?, &motion, &tight())?;
     for thickness in [1e-8, 1e-5, 1e-3] {
         let same = HalfSpace::new(steel, [Layer::new(steel, thickness)?])?;
         let coated = plan(&same)?.solve(&paraboloid()?, &motion, &tight())?;
-        let pressure = difference(&coated.pressure, &bare.pressure);
-        assert!(pressure < NO_LAYER, "{thickness}: {pressure:e}");
-        assert_relative_eq!(coated.approach, bare.approach, max_relative = NO_LAYER);
-        assert_relative_eq!(coated.tilt[0], bare.tilt[0], max_relative = NO_LAYER);
-        assert_relative_eq!(coated.tilt[1], bare.tilt[1], max_relative = NO_LAYER);
+        below!(pressure_off(&coated, &bare), NO_LAYER, thickness);
+        near!(coated.approach, bare.approach, NO_LAYER);
+        near!(coated.tilt[0], bare.tilt[0], NO_LAYER);
+        near!(coated.tilt[1], bare.tilt[1], NO_LAYER);
     }
     Ok(())
 }
@@ -111,28 +93,19 @@ fn eccentric_paraboloid_is_a_shifted_one() -> Result<()> {
     let radii = [shape.radius_x(), shape.radius_y()];
     for half_cells in [[3.0, 0.0], [-4.0, 5.0]] {
         let e = [0, 1].map(|k| half_cells[k] * 0.5 * contact.grid().spacing()[k]);
-        let motion = Motion {
-            eccentricity: e.map(Some),
-            ..Motion::load(30.0)
-        };
+        let motion = Motion::load(30.0).with_eccentricity(e.map(Some));
         let eccentric = contact.solve(&shape, &motion, &tight())?;
         let shifted = contact.solve(&shape.shifted(e[0], e[1])?, &Motion::load(30.0), &tight())?;
         assert!(eccentric.report.converged() && shifted.report.converged());
-        let pressure = difference(&eccentric.pressure, &shifted.pressure);
-        println!("eccentric against shifted: pressure {pressure:.1e}");
-        assert!(pressure < SAME_PRESSURE, "{pressure:e}");
+        below!(pressure_off(&eccentric, &shifted), SAME_PRESSURE);
         let mut lift = 0.0;
         for k in 0..2 {
             let largest = side[k] / radii[k];
             let error = (eccentric.tilt[k] - e[k] / radii[k]) / largest;
-            assert!(error.abs() < SAME_MOTION, "{error:e}");
+            below!(error.abs(), SAME_MOTION);
             lift += e[k] * e[k] / (2.0 * radii[k]);
         }
-        assert_relative_eq!(
-            eccentric.approach,
-            shifted.approach - lift,
-            max_relative = SAME_MOTION
-        );
+        near!(eccentric.approach, shifted.approach - lift, SAME_MOTION);
     }
     Ok(())
 }
@@ -142,41 +115,27 @@ fn every_mixture_of_freedoms_finds_the_same_contact() -> Result<()> {
     let contact = plan(&stack()?)?;
     let shape = paraboloid()?;
     let eccentricity = [1.5e-5, -2.5e-5];
-    let motion = Motion {
-        eccentricity: eccentricity.map(Some),
-        ..Motion::load(30.0)
-    };
+    let motion = Motion::load(30.0).with_eccentricity(eccentricity.map(Some));
     let known = contact.solve(&shape, &motion, &tight())?;
     let moment = known.moment();
+    let (loaded, moved) = (Motion::load(known.load()), Motion::approach(known.approach));
     let mut mixtures = 0;
-    for loaded in [true, false] {
-        for x in 0..3 {
-            for y in 0..3 {
-                let mut motion = if loaded {
-                    Motion::load(known.load())
-                } else {
-                    Motion::approach(known.approach)
-                };
-                for (k, control) in [x, y].into_iter().enumerate() {
-                    match control {
-                        0 => motion.tilt[k] = Some(known.tilt[k]),
-                        1 => motion.moment[k] = Some(moment[k]),
-                        _ => motion.eccentricity[k] = Some(eccentricity[k]),
-                    }
+    for (start, controls) in [(loaded, 3), (moved, 2)] {
+        // An eccentricity, the last of the controls, needs a load.
+        for (x, y) in (0..controls).flat_map(|x| (0..controls).map(move |y| (x, y))) {
+            let mut motion = start;
+            for (k, control) in [x, y].into_iter().enumerate() {
+                match control {
+                    0 => motion.tilt[k] = Some(known.tilt[k]),
+                    1 => motion.moment[k] = Some(moment[k]),
+                    _ => motion.eccentricity[k] = Some(eccentricity[k]),
                 }
-                if !loaded && (x == 2 || y == 2) {
-                    continue; // An eccentricity needs a load.
-                }
-                for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-                    let options = Options {
-                        algorithm,
-                        ..tight()
-                    };
-                    let found = contact.solve(&shape, &motion, &options)?;
-                    assert_same(&found, &known, &format!("{algorithm:?} {motion:?}"));
-                }
-                mixtures += 1;
             }
+            for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
+                let found = contact.solve(&shape, &motion, &by(algorithm, TIGHT))?;
+                assert_same(&found, &known, &format!("{algorithm:?} {motion:?}"));
+            }
+            mixtures += 1;
         }
     }
     assert_eq!(mixtures, 13);
@@ -189,14 +148,14 @@ fn locked_tilt_is_zero_and_carries_a_moment() -> Result<()> {
     let shape = paraboloid()?.shifted(3e-5, -4e-5)?;
     let solution = contact.solve(&shape, &Motion::load(30.0), &tight())?;
     assert!(
-        solution.tilt.iter().all(|s| s.abs() <= 0.0),
+        solution.tilt.iter().all(|tilt| tilt.abs() <= 0.0),
         "{:?}",
         solution.tilt
     );
     let [ex, ey] = solution.eccentricity();
     // The discrete contact is symmetric only to a fraction of a cell.
-    assert_relative_eq!(ex, 3e-5, max_relative = 5e-3);
-    assert_relative_eq!(ey, -4e-5, max_relative = 5e-3);
+    near!(ex, 3e-5, 5e-3);
+    near!(ey, -4e-5, 5e-3);
     Ok(())
 }
 
@@ -206,16 +165,8 @@ fn approach_at_which_nothing_touches_is_an_answer() -> Result<()> {
     let shape = paraboloid()?;
     for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
         for approach in [-1e-6, 0.0] {
-            let options = Options {
-                algorithm,
-                ..Options::default()
-            };
-            let solution = contact.solve(&shape, &Motion::approach(approach), &options)?;
-            assert!(
-                solution.report.converged(),
-                "{algorithm:?}: {:?}",
-                solution.report
-            );
+            let (motion, options) = (Motion::approach(approach), by(algorithm, 1e-8));
+            let solution = converged(&contact, &shape, &motion, &options)?;
             assert!(solution.pressure.iter().all(|p| p.abs() <= 0.0));
             assert!(solution.load().abs() <= 0.0 && solution.report.residual.abs() <= 0.0);
             assert_eq!(solution.contact_extent(), [[0.0; 2]; 2]);
@@ -226,58 +177,40 @@ fn approach_at_which_nothing_touches_is_an_answer() -> Result<()> {
     Ok(())
 }
 
-#[test]
-fn stiffer_bodies_under_larger_loads_touch_alike() -> Result<()> {
-    // In linear elasticity, E → kE and W → kW do not change contact and approach, and p → kp.
-    let scaled = |factor: f64| -> Result<Solution> {
-        let steel = Elastic::new(factor * 210e9, 0.3)?;
-        let coating = Layer::new(Elastic::new(factor * 420e9, 0.2)?, 2e-5)?;
-        let contact = plan(&HalfSpace::new(steel, [coating])?)?;
-        contact.solve(&paraboloid()?, &Motion::load(factor * 30.0), &tight())
-    };
-    let (one, three) = (scaled(1.0)?, scaled(3.0)?);
-    assert!(difference(&three.pressure, &(&one.pressure * 3.0)) < SAME_PRESSURE);
-    assert_relative_eq!(three.approach, one.approach, max_relative = SAME_MOTION);
-    assert_eq!(three.in_contact(), one.in_contact());
-    Ok(())
-}
-
+/// The first units are m and Pa, others mm and MPa. Without other lengths, E → kE and W → kW leave contact and approach.
 #[test]
 fn any_consistent_units_give_the_same_contact() -> Result<()> {
-    // The first solution is in m, N, Pa, the second in mm, N, MPa.
     let solve = |length: f64, pressure: f64| -> Result<Solution> {
         let steel = Elastic::new(210e9 * pressure, 0.3)?;
-        let coating = Layer::new(Elastic::new(800e9 * pressure, 0.1)?, 1e-5 * length)?;
-        let body = HalfSpace::new(steel, [coating])?;
+        let body = settings::stack(steel, [[800e9 * pressure, 0.1, 1e-5 * length]])?;
         let grid = grid()?;
         let center = grid.center().map(|x| x * length);
         let grid = Grid::new(grid.shape(), grid.size().map(|l| l * length))?.centered_at(center)?;
         let shape = Paraboloid::new(RADIUS * length, RADIUS * length)?;
-        let motion = Motion {
-            eccentricity: [Some(1e-5 * length), None],
-            ..Motion::load(30.0)
-        };
-        Contact::plan(&body, grid, Setup::default())?.solve(&shape, &motion, &tight())
+        let motion = Motion::load(30.0 * length * length * pressure)
+            .with_eccentricity([Some(1e-5 * length), None]);
+        converged(&settings::plan(&body, grid)?, &shape, &motion, &tight())
     };
-    let (si, mm) = (solve(1.0, 1.0)?, solve(1e3, 1e-6)?);
-    assert!(difference(&(&mm.pressure * 1e6), &si.pressure) < SAME_PRESSURE);
-    assert_relative_eq!(mm.approach, si.approach * 1e3, max_relative = SAME_MOTION);
-    assert_relative_eq!(mm.tilt[0], si.tilt[0], max_relative = SAME_MOTION);
-    assert_relative_eq!(
-        mm.moment()[0],
-        si.moment()[0] * 1e3,
-        max_relative = SAME_MOTION
-    );
+    let si = solve(1.0, 1.0)?;
+    for (length, pressure) in [(1e3, 1e-6), (1.0, 3.0)] {
+        let other = solve(length, pressure)?;
+        below!(
+            difference(&(&other.pressure / pressure), &si.pressure),
+            SAME_PRESSURE
+        );
+        near!(other.approach, si.approach * length, SAME_MOTION);
+        near!(other.tilt[0], si.tilt[0], SAME_MOTION);
+        let moment = si.moment()[0] * length.powi(3) * pressure;
+        near!(other.moment()[0], moment, SAME_MOTION);
+        assert_eq!(other.in_contact(), si.in_contact());
+    }
     Ok(())
 }
 
 #[test]
 fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
     let contact = plan(&stack()?)?;
-    let motion = Motion {
-        eccentricity: [Some(1e-5), Some(0.0)],
-        ..Motion::load(30.0)
-    };
+    let motion = Motion::load(30.0).with_eccentricity([Some(1e-5), Some(0.0)]);
     let known = contact.solve(&paraboloid()?, &motion, &tight())?;
     let starts = [
         None,
@@ -318,11 +251,7 @@ impl Surface for OnOneGrid {
 /// Coarser grids only provide the starting point.
 #[test]
 fn gaps_of_coarser_grids_do_not_change_the_solution() -> Result<()> {
-    let prescribed = Motion {
-        approach: Some(2e-7),
-        ..Motion::default()
-    };
-    for motion in [Motion::load(30.0), prescribed] {
+    for motion in [Motion::load(30.0), Motion::approach(2e-7)] {
         let contact = plan(&stack()?)?;
         let known = contact.solve(&paraboloid()?, &motion, &tight())?;
         for coarser in [f64::NAN, f64::NEG_INFINITY, f64::INFINITY, 0.0] {
@@ -342,16 +271,9 @@ fn bits_of_a_solution_do_not_depend_on_threads() -> Result<()> {
     let large = (Grid::new([290, 270], [2e-4, 2e-4])?, 600.0);
     for (grid, load) in [small, large] {
         let solve = |threads: usize| -> Result<Solution> {
-            let setup = Setup {
-                threads: Some(threads),
-                ..Setup::default()
-            };
-            let contact = Contact::plan(&stack()?, grid, setup)?;
-            let motion = Motion {
-                eccentricity: [Some(1e-6), None],
-                ..Motion::load(load)
-            };
-            contact.solve(&paraboloid()?, &motion, &Options::default())
+            let contact = Contact::plan(&stack()?, grid, settings::threads(threads))?;
+            let motion = Motion::load(load).with_eccentricity([Some(1e-6), None]);
+            pressed(&contact, &paraboloid()?, &motion)
         };
         let bits = |solution: &Solution| -> Vec<u64> {
             let gap = solution.gap();
@@ -395,7 +317,7 @@ fn displacement_is_the_convolution_of_the_pressure() -> Result<()> {
         let sum: f64 = pressed
             .map(|((k, l), p)| c[[i.abs_diff(k), j.abs_diff(l)]] * p)
             .sum();
-        assert_relative_eq!(solution.displacement[[i, j]], sum, max_relative = 1e-11);
+        near!(solution.displacement[[i, j]], sum, 1e-11);
     }
     Ok(())
 }
@@ -421,9 +343,9 @@ proptest! {
         let [lx, ly] = grid.size();
         let e = [grid.center()[0] + ex * lx, grid.center()[1] + ey * ly];
         let eccentricity = [0, 1].map(|k| free[k].then_some(e[k]));
-        let motion = Motion { eccentricity, ..Motion::load(load) };
+        let motion = Motion::load(load).with_eccentricity(eccentricity);
         let algorithm = if old { Algorithm::PolonskyKeer } else { Algorithm::Cascade };
-        let options = Options { algorithm, ..Options::default() };
+        let options = by(algorithm, 1e-8);
         let solution = plan(&stack()?)?.solve(&shape, &motion, &options)?;
 
         let report = &solution.report;

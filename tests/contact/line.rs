@@ -3,17 +3,16 @@
 
 use std::f64::consts::PI;
 
-use approx::assert_relative_eq;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::{
-    Algorithm, Contact, Cylinder, Elastic, Error, FlatPunch, Grid, HalfSpace, Layer, Motion,
-    Options, Result, Setup, Solution, Substrate, hertz,
+    Algorithm, Contact, Cylinder, Error, FlatPunch, Grid, HalfSpace, Motion, Options, Result,
+    Setup, Solution, Substrate, hertz,
 };
-use serde_json::Value;
 
 use crate::support::claims::claim;
 use crate::support::random::uniform;
 use crate::support::reference::{cases, list, number};
+use crate::support::settings::{self, by, converged, plan, stack, steel, tolerance};
 
 /// Error of the peak pressure, extrapolated from 256 and 512 cells with an error of second order.
 const EXTRAPOLATED: f64 = 1e-4;
@@ -37,10 +36,6 @@ const RADIUS: f64 = 1.0;
 /// Width of the grid relative to [`HALF_WIDTH`].
 const WIDTH: f64 = 6.0;
 
-fn steel() -> Result<Elastic> {
-    Elastic::new(210e9, 0.3)
-}
-
 /// Error of sums over rows of 3000 cells: beyond their ends, (h/X)² = 2e-5 of a tail of (y/X)²/4 is
 /// neglected.
 const STRIPS: f64 = 1e-7;
@@ -54,19 +49,23 @@ fn bare() -> Result<hertz::Line> {
     hertz::Line::new(RADIUS, steel()?.plane_strain_modulus(), line_load()?)
 }
 
-fn coated(modulus_ratio: f64, thickness: f64) -> Result<HalfSpace> {
-    let coating = Elastic::new(modulus_ratio * 210e9, 0.3)?;
-    HalfSpace::new(steel()?, [Layer::new(coating, thickness)?])
+fn coated(ratio: f64, thickness: f64) -> Result<HalfSpace> {
+    settings::coated(steel()?, ratio, thickness)
+}
+
+/// How far the approach moves where the datum is twice as far away: 2W'/πE* ln 2.
+fn datum() -> Result<f64> {
+    Ok(2.0 * line_load()? / (PI * steel()?.plane_strain_modulus()) * 2.0_f64.ln())
 }
 
 fn press(body: &HalfSpace, grid: Grid, load: f64) -> Result<Solution> {
-    let options = Options {
-        tolerance: 1e-11,
-        ..Options::default()
-    };
-    let contact = Contact::plan(body, grid, Setup::default())?;
-    let solution = contact.solve(&Cylinder::new(RADIUS)?, &Motion::load(load), &options)?;
-    solution.require_converged(options.tolerance)
+    let (contact, motion) = (plan(body, grid)?, Motion::load(load));
+    converged(
+        &contact,
+        &Cylinder::new(RADIUS)?,
+        &motion,
+        &tolerance(1e-11),
+    )
 }
 
 fn line(body: &HalfSpace, cells: usize, width: f64) -> Result<Solution> {
@@ -87,60 +86,33 @@ fn pressure_at(solution: &Solution, y: f64) -> f64 {
     (1.0 - t) * solution.pressure[[0, below]] + t * solution.pressure[[0, below + 1]]
 }
 
-/// The body of a row of `line_coated.json`.
-fn row_body(row: &Value) -> Result<HalfSpace> {
-    coated(number(row, "modulus_ratio"), number(row, "h") * HALF_WIDTH)
-}
-
 #[test]
 fn coated_cylinders_equal_the_reference() -> Result<()> {
-    let scale = bare()?;
+    let scale = bare()?.peak_pressure;
     let rows = cases("line_coated.json");
     assert_eq!(rows.len(), 25);
-    let mut worst = [0.0_f64; 4];
     for row in &rows {
-        let name = format!("h {} E1/E2 {}", row["h"], row["modulus_ratio"]);
-        let body = row_body(row)?;
-        let solutions = [line(&body, 256, WIDTH)?, line(&body, 512, WIDTH)?];
-        let exact = number(row, "peak") * scale.peak_pressure;
-        let peaks = solutions
-            .each_ref()
-            .map(|s| s.peak_pressure() / exact - 1.0);
+        let [ratio, h] = ["modulus_ratio", "h"].map(|key| number(row, key));
+        let body = coated(ratio, h * HALF_WIDTH)?;
+        let (coarse, fine) = (line(&body, 256, WIDTH)?, line(&body, 512, WIDTH)?);
+        let exact = number(row, "peak") * scale;
+        claim("coated-cylinder-peak", coarse.peak_pressure() / exact - 1.0);
+        let extrapolated = (4.0 * fine.peak_pressure() - coarse.peak_pressure()) / 3.0;
+        near!(extrapolated, exact, EXTRAPOLATED, ratio, h);
+        near!(fine.peak_pressure(), exact, ON_THE_GRID, ratio, h);
         // Under a thin hard coating, the error on 512 cells is larger: 1.5e-3.
-        let edge = if number(row, "modulus_ratio") > 3.0 && number(row, "h") < 0.3 {
-            half_width(&line(&body, 1024, WIDTH)?)
-        } else {
-            half_width(&solutions[1])
+        let edge = match ratio > 3.0 && h < 0.3 {
+            true => half_width(&line(&body, 1024, WIDTH)?),
+            false => half_width(&fine),
         };
-        let width = edge / (number(row, "half_width") * HALF_WIDTH) - 1.0;
-        let mut profile = 0.0_f64;
+        let width = number(row, "half_width") * HALF_WIDTH;
+        near!(edge, width, ON_THE_GRID, ratio, h);
         for (k, p) in list(row, "pressure").iter().enumerate().skip(1) {
-            let y = 0.25 * k as f64 * number(row, "half_width") * HALF_WIDTH;
-            let exact_here = p.as_f64().unwrap_or(f64::NAN) * scale.peak_pressure;
-            let error = (pressure_at(&solutions[1], y) - exact_here) / exact;
-            profile = profile.max(error.abs());
-        }
-        claim("coated-cylinder-peak", peaks[0]);
-        let extrapolated = (4.0 * peaks[1] - peaks[0]) / 3.0;
-        println!(
-            "{name}: peak {:.1e} {:.1e} -> {extrapolated:.1e}, half-width {width:.1e}, \
-             profile {profile:.1e}",
-            peaks[0], peaks[1]
-        );
-        for (worst, error) in worst
-            .iter_mut()
-            .zip([extrapolated, peaks[1], width, profile])
-        {
-            *worst = worst.max(error.abs());
+            let due = p.as_f64().expect("a number") * scale;
+            let error = pressure_at(&fine, 0.25 * k as f64 * width) - due;
+            below!(error.abs() / exact, PROFILE, ratio, h, k);
         }
     }
-    println!("worst: extrapolated, 512 cells, half-width, profile {worst:?}");
-    assert!(worst[0] < EXTRAPOLATED, "{worst:?}");
-    assert!(
-        worst[1] < ON_THE_GRID && worst[2] < ON_THE_GRID,
-        "{worst:?}"
-    );
-    assert!(worst[3] < PROFILE, "{worst:?}");
     Ok(())
 }
 
@@ -152,42 +124,21 @@ fn bare_cylinder_equals_hertz() -> Result<()> {
         let grid = Grid::line(cells, width * HALF_WIDTH)?;
         let grid = grid.centered_at([0.0, center * HALF_WIDTH])?;
         let solution = press(&steel()?.into(), grid, line_load()?)?;
-        let peak = solution.peak_pressure() / exact.peak_pressure - 1.0;
-        let edge = half_width(&solution) / exact.half_width - 1.0;
-        println!("{cells} cells: peak {peak:.1e}, half-width {edge:.1e}");
-        assert!(peak.abs() < ON_THE_GRID && edge.abs() < ON_THE_GRID);
+        near!(solution.peak_pressure(), exact.peak_pressure, ON_THE_GRID);
+        near!(half_width(&solution), exact.half_width, ON_THE_GRID);
         for (y, p) in solution.grid().y().iter().zip(&solution.pressure) {
             // Hertz: p0 √(1 − y²/b²). The edge lies inside a cell.
             let beyond = (y.abs() / HALF_WIDTH - 1.0).abs();
             let tolerance = if beyond > 0.1 { 2e-3 } else { 0.1 };
             let hertz = (1.0 - (y / HALF_WIDTH).powi(2)).max(0.0).sqrt();
             let error = p / exact.peak_pressure - hertz;
-            assert!(error.abs() < tolerance, "y/b = {}: {error}", y / HALF_WIDTH);
+            below!(error.abs(), tolerance, y / HALF_WIDTH);
         }
         // u(0) = 2W'/πE* (ln 2ℓ/b + ½), from −2W'/πE* ln r/ℓ per line load and Hertz's pressure.
         let unit = 2.0 * line_load()? / (PI * modulus);
         let approach = unit * ((2.0 * width).ln() + 0.5);
-        assert_relative_eq!(solution.approach, approach, max_relative = 1e-4);
+        near!(solution.approach, approach, 1e-4);
     }
-    Ok(())
-}
-
-#[test]
-fn the_datum_moves_the_approach_alone() -> Result<()> {
-    // With twice as many cells of equal width, the datum moves by 2W'/πE* ln 2.
-    let body = coated(4.0, 0.5 * HALF_WIDTH)?;
-    let (near, far) = (line(&body, 300, 3.0)?, line(&body, 600, 6.0)?);
-    let unit = 2.0 * line_load()? / (PI * steel()?.plane_strain_modulus());
-    assert_relative_eq!(
-        far.approach - near.approach,
-        unit * 2.0_f64.ln(),
-        max_relative = 1e-7
-    );
-    assert_relative_eq!(
-        far.peak_pressure(),
-        near.peak_pressure(),
-        max_relative = 1e-6
-    );
     Ok(())
 }
 
@@ -195,12 +146,8 @@ fn the_datum_moves_the_approach_alone() -> Result<()> {
 fn force_is_per_length() -> Result<()> {
     let solution = line(&coated(2.0, HALF_WIDTH)?, 200, WIDTH)?;
     assert_eq!(solution.pressure.dim(), (1, 200));
-    assert_relative_eq!(solution.load(), line_load()?, max_relative = ROUNDING);
-    assert_relative_eq!(
-        solution.line_load()[0],
-        line_load()?,
-        max_relative = ROUNDING
-    );
+    near!(solution.load(), line_load()?, ROUNDING);
+    near!(solution.line_load()[0], line_load()?, ROUNDING);
     Ok(())
 }
 
@@ -208,37 +155,19 @@ fn force_is_per_length() -> Result<()> {
 fn thin_layer_on_a_rigid_base_is_a_winkler_foundation() -> Result<()> {
     // p = M (δ − y²/2R)/h with M = E (1−ν)/((1+ν)(1−2ν)), from which a³ = 3 W' R h/2M and p0 = 3W'/4a.
     // A layer of a/100 spreads the pressure at the edges over its thickness.
-    let (material, load) = (steel()?, line_load()?);
+    let load = line_load()?;
     let oedometer = 210e9 * 0.7 / (1.3 * 0.4);
     let h = 0.9e-3 * HALF_WIDTH;
-    let body = HalfSpace::new(Substrate::Rigid, [Layer::new(material, h)?])?;
+    let body = stack(Substrate::Rigid, [[210e9, 0.3, h]])?;
     let a = (1.5 * load * RADIUS * h / oedometer).cbrt();
-    assert!(h / a < 0.01, "{}", h / a);
+    below!(h / a, 0.01);
     let solve = |cells: usize, width: f64| press(&body, Grid::line(cells, width * a)?, load);
     let solution = solve(600, 3.0)?;
-    println!(
-        "rigid base: peak {:.1e}, half-width {:.1e}, approach {:.1e}",
-        solution.peak_pressure() / (0.75 * load / a) - 1.0,
-        half_width(&solution) / a - 1.0,
-        solution.approach / (a * a / (2.0 * RADIUS)) - 1.0
-    );
-    assert_relative_eq!(
-        solution.peak_pressure(),
-        0.75 * load / a,
-        max_relative = 0.01
-    );
-    assert_relative_eq!(half_width(&solution), a, max_relative = 0.01);
-    assert_relative_eq!(
-        solution.approach,
-        a * a / (2.0 * RADIUS),
-        max_relative = 0.02
-    );
+    near!(solution.peak_pressure(), 0.75 * load / a, 0.01);
+    near!(half_width(&solution), a, 0.01);
+    near!(solution.approach, a * a / (2.0 * RADIUS), 0.02);
     // A rigid base does not move, so that there is no datum.
-    assert_relative_eq!(
-        solve(1200, 6.0)?.approach,
-        solution.approach,
-        max_relative = 1e-6
-    );
+    near!(solve(1200, 6.0)?.approach, solution.approach, 1e-6);
     Ok(())
 }
 
@@ -257,8 +186,8 @@ fn endless_strips_are_rows_of_rectangles() -> Result<()> {
         let (body, dx) = (coated(ratio, thickness * dy)?, aspect * dy);
         let flat = Grid::new([n, ny], [n as f64 * dx, ny as f64 * dy])?;
         let cells = influence_coefficients(&body, &flat, Method::Exact)?;
-        let strips =
-            influence_coefficients(&body, &Grid::line(ny, ny as f64 * dy)?, Method::Exact)?;
+        let line = Grid::line(ny, ny as f64 * dy)?;
+        let strips = influence_coefficients(&body, &line, Method::Exact)?;
         let row = |j: usize| cells[[0, j]] + 2.0 * cells.column(j).iter().skip(1).sum::<f64>();
         let reach = (n as f64 - 0.5) * dx;
         for j in 1..ny {
@@ -267,9 +196,7 @@ fn endless_strips_are_rows_of_rectangles() -> Result<()> {
                 * (0.5 + 0.5 * (1.0 + (y / reach).powi(2)).sqrt()).ln();
             let sum = row(0) - row(j) + far;
             let strip = strips[[0, 0]] - strips[[0, j]];
-            let error = sum / strip - 1.0;
-            println!("E1/E2 {ratio} h/dy {thickness} j {j}: {error:.1e}");
-            assert!(error.abs() < STRIPS, "{ratio} {thickness} {j}: {error:e}");
+            near!(sum, strip, STRIPS, ratio, thickness, j);
         }
     }
     Ok(())
@@ -283,15 +210,7 @@ fn the_middle_of_a_long_cylinder_is_in_plane_strain() -> Result<()> {
     let long = press(&body, grid, 60.0 * HALF_WIDTH * line_load()?)?;
     let middle = long.line_load()[32];
     let strip = press(&body, Grid::line(128, 4.0 * HALF_WIDTH)?, middle)?;
-    let mut worst = 0.0_f64;
-    for (p, q) in long.pressure.row(32).iter().zip(&strip.pressure) {
-        worst = worst.max((p - q).abs() / strip.peak_pressure());
-    }
-    println!(
-        "line load in the middle {:.3}, pressure {worst:.1e}",
-        middle / line_load()?
-    );
-    assert!(worst < 1e-3, "{worst:e}");
+    below!(apart(long.pressure.row(32), &strip), 1e-3);
     Ok(())
 }
 
@@ -301,25 +220,24 @@ fn apart<'a>(a: impl IntoIterator<Item = &'a f64>, b: &'a Solution) -> f64 {
     differences.fold(0.0, f64::max) / b.peak_pressure()
 }
 
-/// A layer 8 times harder than the substrate and 4 half-widths thick. At a distance of 3 half-widths its
-/// surface moves less than that of the bare substrate, so that the influence coefficients are negative. A
-/// grid twice as wide with the same cells has the same pressures, and a datum that is farther away.
+/// A grid twice as wide with the same cells has the same pressures, and a datum that is farther away. At a distance of 3
+/// half-widths the surface of these layers moves less than that of the bare substrate, so that some influence
+/// coefficients are negative.
 #[test]
-fn a_datum_below_a_thick_hard_layer_changes_no_pressure() -> Result<()> {
-    let body = coated(8.0, 4.0 * HALF_WIDTH)?;
-    let strip = Grid::line(256, 3.0 * HALF_WIDTH)?;
-    let coefficients = influence_coefficients(&body, &strip, Method::Exact)?;
-    assert!(coefficients.iter().any(|&c| c < 0.0));
-    let (near, far) = (line(&body, 256, 3.0)?, line(&body, 512, 6.0)?);
-    // Both were solved to 1e-11; errors of the pressure are some thousand times larger.
-    let inside = far.pressure.iter().skip(128);
-    assert!(apart(inside, &near) < 1e-7);
-    let unit = 2.0 * line_load()? / (PI * steel()?.plane_strain_modulus());
-    let moved = (far.approach - near.approach) / (unit * 2.0_f64.ln());
-    assert!((moved - 1.0).abs() < 1e-7, "{moved}");
-    let shifts = far.displacement.iter().skip(128).zip(&near.displacement);
-    for (far, near) in shifts {
-        assert!(((far - near) / (unit * 2.0_f64.ln()) - 1.0).abs() < 1e-7);
+fn the_datum_moves_the_approach_alone() -> Result<()> {
+    for (ratio, thickness, cells) in [(4.0, 0.5, 300), (8.0, 4.0, 256)] {
+        let body = coated(ratio, thickness * HALF_WIDTH)?;
+        let strip = Grid::line(cells, 3.0 * HALF_WIDTH)?;
+        let coefficients = influence_coefficients(&body, &strip, Method::Exact)?;
+        assert!(coefficients.iter().any(|&c| c < 0.0));
+        let (near, far) = (line(&body, cells, 3.0)?, line(&body, 2 * cells, 6.0)?);
+        // Both were solved to 1e-11; errors of the pressure are some thousand times larger.
+        below!(apart(far.pressure.iter().skip(cells / 2), &near), 1e-7);
+        near!(far.approach - near.approach, datum()?, 1e-7);
+        let inside = far.displacement.iter().skip(cells / 2);
+        for (far, near) in inside.zip(&near.displacement) {
+            near!(far - near, datum()?, 1e-7);
+        }
     }
     Ok(())
 }
@@ -339,21 +257,18 @@ fn an_approach_is_refused_where_it_would_fall_with_the_load() -> Result<()> {
         };
         assert!((width / (2.5 * HALF_WIDTH) - 1.0).abs() < 1e-12 && needed > width);
         let wide = plan(needed)?;
-        let options = Options {
-            tolerance: 1e-11,
-            ..Options::default()
-        };
+        let options = tolerance(1e-11);
         let loaded = wide.solve(&shape, &Motion::load(line_load()?), &options)?;
         let moved = wide.solve(&shape, &Motion::approach(loaded.approach), &options)?;
         assert!(moved.report.converged(), "{ratio}");
-        assert_relative_eq!(moved.load(), line_load()?, max_relative = 1e-7);
+        near!(moved.load(), line_load()?, 1e-7);
 
         // A punch does not change its contact: approach and load are proportional.
         let punch = FlatPunch::new(HALF_WIDTH)?;
         for (contact, rises) in [(&narrow, false), (&wide, true)] {
             let pressed = contact.solve(&punch, &Motion::load(1.0), &options)?;
             let [[stiffness, ..], ..] = pressed.stiffness()?;
-            assert_relative_eq!(stiffness * pressed.approach, 1.0, max_relative = 1e-6);
+            near!(stiffness * pressed.approach, 1.0, 1e-6);
             assert_eq!(stiffness > 0.0, rises, "{ratio}");
         }
     }
@@ -375,29 +290,19 @@ fn hard_layers_on_grids_of_any_width() -> Result<()> {
         let grid = Grid::line(cells, width * HALF_WIDTH)?;
         let contact = Contact::plan(&body, grid, Setup::default())?;
         let [found, reference] = [Algorithm::Cascade, Algorithm::PolonskyKeer].map(|algorithm| {
-            let options = Options {
-                algorithm,
-                tolerance: 1e-10,
-                ..Options::default()
-            };
             let (shape, motion) = (Cylinder::new(RADIUS)?, Motion::load(line_load()?));
-            let solution = contact.solve(&shape, &motion, &options)?;
-            solution.require_converged(options.tolerance)
+            converged(&contact, &shape, &motion, &by(algorithm, 1e-10))
         });
         let (found, reference) = (found?, reference?);
-        let difference = apart(&found.pressure, &reference);
-        assert!(difference < 1e-6, "{name}: {difference:e}");
+        below!(apart(&found.pressure, &reference), 1e-6, name);
         // Where the contact ends on the grid.
         if found.pressure[[0, 0]] <= 0.0 {
             let wide = line(&body, 2 * cells, 2.0 * width)?;
-            let difference = apart(wide.pressure.iter().skip(cells / 2), &found);
-            assert!(difference < 1e-6, "{name}: {difference:e}");
+            let inside = wide.pressure.iter().skip(cells / 2);
+            below!(apart(inside, &found), 1e-6, name);
         }
-        let prescribed = contact.solve(
-            &Cylinder::new(RADIUS)?,
-            &Motion::approach(0.0),
-            &Options::default(),
-        );
+        let (shape, motion) = (Cylinder::new(RADIUS)?, Motion::approach(0.0));
+        let prescribed = contact.solve(&shape, &motion, &Options::default());
         datum_moved += usize::from(matches!(prescribed, Err(Error::Datum { .. })));
     }
     assert!((4..20).contains(&datum_moved), "{datum_moved}");

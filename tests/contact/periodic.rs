@@ -5,33 +5,29 @@ use std::f64::consts::PI;
 use nacre::influence::{Method, influence_coefficients};
 use nacre::response::frequency_response;
 use nacre::{
-    Contact, Cylinder, Elastic, Error, Grid, HalfSpace, Hardness, HeightMap, Layer, Motion,
-    Options, Paraboloid, Result, Setup, Solution, Substrate, Surface,
+    Contact, Cylinder, Elastic, Error, Grid, HalfSpace, Hardness, HeightMap, Motion, Options,
+    Paraboloid, Result, Solution, Substrate, Surface,
 };
 use ndarray::Array2;
 
+use crate::support::checks::largest;
 use crate::support::claims::claim;
 use crate::support::random::uniform;
+use crate::support::settings::{self, Controls, converged, converted, plan, stack, tolerance};
 
 /// Bare, under thin and thick coats, and a layer on a rigid base; thicknesses in units of `dx`.
 fn bodies(dx: f64) -> Result<Vec<HalfSpace>> {
-    let (soft, hard) = (Elastic::new(1.0, 0.3)?, Elastic::new(5.0, 0.2)?);
+    let soft = Elastic::new(1.0, 0.3)?;
     let mut bodies = vec![soft.into()];
     for h in [0.01, 1.0, 100.0] {
-        bodies.push(HalfSpace::new(soft, [Layer::new(hard, h * dx)?])?);
+        bodies.push(stack(soft, [[5.0, 0.2, h * dx]])?);
     }
-    bodies.push(HalfSpace::new(
-        Substrate::Rigid,
-        [Layer::new(hard, 3.0 * dx)?],
-    )?);
+    bodies.push(stack(Substrate::Rigid, [[5.0, 0.2, 3.0 * dx]])?);
     Ok(bodies)
 }
 
 fn tight() -> Options {
-    Options {
-        tolerance: 1e-12,
-        ..Options::default()
-    }
+    tolerance(1e-12)
 }
 
 /// A periodic map of heights on the cells of `grid`.
@@ -45,11 +41,8 @@ fn map(grid: &Grid, height: impl Fn(f64, f64) -> f64) -> Result<HeightMap> {
 /// the cells. The terms alternate.
 #[test]
 fn waves_have_the_displacement_of_their_aliases() -> Result<()> {
-    for (shape, spacing) in [
-        ([32, 32], [1.0, 1.0]),
-        ([32, 32], [20.0, 1.0]),
-        ([30, 64], [1.0, 1.0]),
-    ] {
+    let even = [1.0, 1.0];
+    for (shape, spacing) in [([32, 32], even), ([32, 32], [20.0, 1.0]), ([30, 64], even)] {
         let size = [0, 1].map(|k| shape[k] as f64 * spacing[k]);
         let grid = Grid::new(shape, size)?.periodic([true; 2])?;
         for (number, body) in bodies(1.0)?.iter().enumerate() {
@@ -71,12 +64,8 @@ fn waves_have_the_displacement_of_their_aliases() -> Result<()> {
                     let weight = [0.25, 0.75, 1.0][(last - alias).min(2) as usize];
                     due += weight * (term(alias)? + term(-alias)?);
                 }
-                let own = c[[0, 0]];
-                let bar = 1e-9 * due.abs().max(own);
-                assert!(
-                    (found - due).abs() < bar,
-                    "{shape:?} {spacing:?} {number} {axis} {wave}: {found} {due}"
-                );
+                let bar = 1e-9 * due.abs().max(c[[0, 0]]);
+                below!((found - due).abs(), bar, grid, number, axis, wave);
             }
         }
     }
@@ -87,21 +76,20 @@ fn waves_have_the_displacement_of_their_aliases() -> Result<()> {
 /// pressure does not change along it.
 #[test]
 fn one_direction_and_the_line() -> Result<()> {
-    let coat = Layer::new(Elastic::new(4.0, 0.3)?, 0.3)?;
-    let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let body = stack(Elastic::new(1.0, 0.3)?, [[4.0, 0.3, 0.3]])?;
     let shape = Cylinder::new(50.0)?;
     let motion = Motion::load(0.02);
-    let line = Contact::plan(&body, Grid::line(128, 4.0)?, Setup::default())?;
+    let line = plan(&body, Grid::line(128, 4.0)?)?;
     let line = line.solve(&shape, &motion, &tight())?;
     let grid = Grid::new([24, 128], [1.0, 4.0])?.periodic([true, false])?;
-    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let contact = plan(&body, grid)?;
     let found = contact.solve(&shape, &motion, &tight())?;
     assert!(found.report.converged() && found.report.warnings.is_empty());
     let peak = line.peak_pressure();
     for ((_, j), p) in found.pressure.indexed_iter() {
         assert!((p - line.pressure[[0, j]]).abs() < 1e-6 * peak);
     }
-    assert!((found.approach / line.approach - 1.0).abs() < 1e-9);
+    near!(found.approach, line.approach, 1e-9);
     Ok(())
 }
 
@@ -114,12 +102,8 @@ fn full_contact_of_crossed_waves() -> Result<()> {
         let amplitude = height / frequency_response(body, k * 2.0_f64.sqrt())?;
         let error = |n: usize, method: Method| -> Result<f64> {
             let grid = Grid::new([n, n], [10.0, 10.0])?.periodic([true; 2])?;
-            let setup = Setup {
-                method,
-                ..Setup::default()
-            };
             let shape = map(&grid, |x, y| height * (k * x).cos() * (k * y).cos())?;
-            let contact = Contact::plan(body, grid, setup)?;
+            let contact = Contact::plan(body, grid, converted(method))?;
             let solution = contact.solve(&shape, &Motion::load(150.0 * amplitude), &tight())?;
             let (x, y) = (grid.x(), grid.y());
             let wrong = solution.pressure.indexed_iter().map(|((i, j), p)| {
@@ -129,10 +113,8 @@ fn full_contact_of_crossed_waves() -> Result<()> {
         };
         claim("waves", error(48, Method::Spectral)?);
         let [coarse, fine] = [error(32, Method::Exact)?, error(64, Method::Exact)?];
-        assert!(
-            fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.8,
-            "{number}: {coarse} {fine}"
-        );
+        below!(fine, 1e-3, number);
+        near!(coarse / fine, 4.0, 0.2, number);
     }
     Ok(())
 }
@@ -143,7 +125,7 @@ fn full_contact_of_crossed_waves() -> Result<()> {
 fn westergaards_wave() -> Result<()> {
     let n = 1024;
     let grid = Grid::new([2, n], [0.25, 1.0])?.periodic([true; 2])?;
-    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
+    let contact = plan(Elastic::new(1.0, 0.0)?, grid)?;
     let height = 1e-3;
     let shape = map(&grid, |_, y| height * (2.0 * PI * y).cos())?;
     let cell = grid.spacing()[1];
@@ -157,22 +139,12 @@ fn westergaards_wave() -> Result<()> {
                 let rest = (share - (PI * y).sin().powi(2)).sqrt();
                 let due = 2.0 * mean * (PI * y).cos() / share * rest;
                 let found = solution.pressure[[0, j]];
-                assert!(
-                    (found / due - 1.0).abs() < 1e-3,
-                    "{share} {y}: {found} {due}"
-                );
+                near!(found, due, 1e-3, share, y);
             }
         }
-        let touching = solution
-            .pressure
-            .row(0)
-            .iter()
-            .filter(|p| **p > 0.0)
-            .count();
-        assert!(
-            (0.5 * touching as f64 * cell - half).abs() < 0.5 * cell,
-            "{share}"
-        );
+        let row = solution.pressure.row(0);
+        let touching = row.iter().filter(|p| **p > 0.0).count() as f64;
+        below!((0.5 * touching * cell - half).abs(), 0.5 * cell, share);
     }
     Ok(())
 }
@@ -192,9 +164,7 @@ fn rough(grid: &Grid) -> Result<HeightMap> {
 }
 
 fn solved(body: &HalfSpace, shape: &dyn Surface, grid: Grid, motion: &Motion) -> Result<Solution> {
-    let solution = Contact::plan(body, grid, Setup::default())?.solve(shape, motion, &tight())?;
-    assert!(solution.report.converged());
-    Ok(solution)
+    converged(&plan(body, grid)?, shape, motion, &tight())
 }
 
 /// A shift by whole cells along a direction that repeats shifts the pressure; so do approach and load, exchanged, give it
@@ -210,19 +180,15 @@ fn shifts_and_controls() -> Result<()> {
         let peak = one.peak_pressure();
         for ((i, j), p) in one.pressure.indexed_iter() {
             let q = other.pressure[[(i + 17) % 64, (j + 43) % 48]];
-            assert!((p - q).abs() < 1e-7 * peak, "{i} {j}: {p} {q}");
+            below!((p - q).abs(), 1e-7 * peak, i, j, p, q);
         }
         let back = solved(body, &shape, grid, &Motion::approach(one.approach))?;
-        assert!((back.load() / one.load() - 1.0).abs() < 1e-8);
+        near!(back.load(), one.load(), 1e-8);
         let stiffness = one.stiffness()?;
         let step = 1e-4 * one.approach.abs();
         let more = solved(body, &shape, grid, &Motion::approach(one.approach + step))?;
         let secant = (more.load() - one.load()) / step;
-        assert!(
-            (stiffness[0][0] / secant - 1.0).abs() < 0.02,
-            "{} {secant}",
-            stiffness[0][0]
-        );
+        near!(stiffness[0][0], secant, 0.02);
     }
     Ok(())
 }
@@ -249,14 +215,10 @@ fn a_long_period_is_none() -> Result<()> {
         Ok([approach.abs(), apart.fold(0.0, f64::max)])
     };
     let [near, far] = [wrong(128)?, wrong(256)?];
-    assert!(
-        near[0] < 1e-2 && far[0] < 0.16 * near[0],
-        "{near:?} {far:?}"
-    );
-    assert!(
-        near[1] < 5e-2 && far[1] < 0.16 * near[1],
-        "{near:?} {far:?}"
-    );
+    for (k, bar) in [1e-2, 5e-2].into_iter().enumerate() {
+        below!(near[k], bar, k);
+        below!(far[k], 0.16 * near[k], k);
+    }
     Ok(())
 }
 
@@ -266,28 +228,19 @@ fn random_stacks_in_full_contact() -> Result<()> {
     let grid = Grid::new([24, 20], [2.4, 2.0])?.periodic([true; 2])?;
     for number in 0..10 {
         let r = uniform([1, 14], 900 + number);
-        let material =
-            |k: usize| Elastic::new(10_f64.powf(2.0 * r[[0, k]] - 1.0), 0.49 * r[[0, k + 1]]);
-        let count = 1 + number as usize % 4;
-        let layers: Vec<Layer> = (0..count)
-            .map(|k| Layer::new(material(3 * k)?, 10_f64.powf(2.0 * r[[0, 3 * k + 2]] - 1.5)))
-            .collect::<Result<_>>()?;
-        let base = if number % 3 == 0 {
-            Substrate::Rigid
-        } else {
-            Substrate::Elastic(material(12)?)
+        let power = |k: usize, least: f64| 10_f64.powf(2.0 * r[[0, k]] + least);
+        let layer = |k: usize| [power(k, -1.0), 0.49 * r[[0, k + 1]], power(k + 2, -1.5)];
+        let base = match number % 3 {
+            0 => Substrate::Rigid,
+            _ => Elastic::new(power(12, -1.0), 0.49 * r[[0, 13]])?.into(),
         };
-        let body = HalfSpace::new(base, layers)?;
+        let body = stack(base, (0..=number as usize % 4).map(|k| layer(3 * k)))?;
         for [k, l] in [[1, 0], [2, 3]] {
             let (qx, qy) = (2.0 * PI * f64::from(k) / 2.4, 2.0 * PI * f64::from(l) / 2.0);
             let wave = |x: f64, y: f64| (qx * x).cos() * (qy * y).cos();
             let alpha = qx.hypot(qy);
             let amplitude = 1e-3 / frequency_response(&body, alpha)?;
-            let setup = Setup {
-                method: Method::Spectral,
-                ..Setup::default()
-            };
-            let contact = Contact::plan(&body, grid, setup)?;
+            let contact = Contact::plan(&body, grid, converted(Method::Spectral))?;
             let shape = map(&grid, |x, y| 1e-3 * wave(x, y))?;
             let found = contact.solve(&shape, &Motion::load(1.2 * amplitude * 4.8), &tight())?;
             let (x, y) = (grid.x(), grid.y());
@@ -298,7 +251,7 @@ fn random_stacks_in_full_contact() -> Result<()> {
             }
             claim("waves", worst);
             let largest = found.gap().iter().fold(0.0_f64, |m, g| m.max(g.abs()));
-            assert!(largest < 1e-12 * 1e-3, "{number}: {largest:e}");
+            below!(largest, 1e-12 * 1e-3, number);
         }
     }
     Ok(())
@@ -318,13 +271,11 @@ fn the_operator_is_mirrored_shifted_and_transposed() -> Result<()> {
                 };
                 let size = shape.map(|n| n as f64);
                 let grid = Grid::new(shape, size)?.periodic(repeats)?;
-                Contact::plan(body, grid, Setup::default())?
-                    .convolution()
-                    .apply(p)
+                plan(body, grid)?.convolution().apply(p)
             };
             let at = |values: &Array2<f64>, [i, j]: [usize; 2]| values[[i % 30, j % 18]];
             let here = displaced(&pressure, false)?;
-            let largest = here.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+            let most = largest(&here);
             let moved = |i: usize| if repeats[0] { i + 7 } else { i };
             let shifted = Array2::from_shape_fn(shape, |(i, j)| at(&pressure, [moved(i), j]));
             let mirrored = Array2::from_shape_fn(shape, |(i, j)| pressure[[29 - i, 17 - j]]);
@@ -332,16 +283,12 @@ fn the_operator_is_mirrored_shifted_and_transposed() -> Result<()> {
             let [shifted, mirrored] = [displaced(&shifted, false)?, displaced(&mirrored, false)?];
             let transposed = displaced(&transposed, true)?;
             for ((i, j), u) in here.indexed_iter() {
-                let errors = [
+                for error in [
                     shifted[[i, j]] - at(&here, [moved(i), j]),
                     mirrored[[29 - i, 17 - j]] - u,
                     transposed[[j, i]] - u,
-                ];
-                for error in errors {
-                    assert!(
-                        error.abs() < 1e-12 * largest,
-                        "{repeats:?} {i} {j}: {errors:?}"
-                    );
+                ] {
+                    below!(error.abs(), 1e-12 * most, repeats, i, j);
                 }
             }
         }
@@ -356,10 +303,7 @@ fn threads_change_no_bit() -> Result<()> {
     let shape = rough(&grid)?;
     let body = &bodies(0.01)?[1];
     let solve = |threads: usize, hardness: Option<f64>| -> Result<Solution> {
-        let setup = Setup {
-            threads: Some(threads),
-            ..Setup::default()
-        };
+        let setup = settings::threads(threads);
         let options = Options {
             hardness: hardness.map(Hardness::Uniform),
             ..Options::default()
@@ -384,22 +328,19 @@ fn threads_change_no_bit() -> Result<()> {
 fn what_does_not_repeat_is_refused() -> Result<()> {
     let grid = Grid::new([32, 32], [1.0, 1.0])?.periodic([true, false])?;
     let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
-    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let contact = plan(&body, grid)?;
     let ball = Paraboloid::new(10.0, 10.0)?;
     let asked = |shape: &dyn Surface, motion: Motion| {
         let refused = contact.solve(shape, &motion, &Options::default()).err();
         refused.map(|error| error.to_string()).unwrap_or_default()
     };
-    let tilted = Motion {
-        tilt: [Some(1e-3), None],
-        ..Motion::load(1e-3)
-    };
+    let tilted = Motion::load(1e-3).with_tilt([Some(1e-3), None]);
     assert!(asked(&ball, tilted).contains("along x the grid is periodic"));
     let beside = ball.shifted(0.2, 0.0)?;
     assert!(asked(&beside, Motion::load(1e-3)).contains("shape must repeat along x"));
     let ended = body.clone().with_ends([Some(-0.5), None])?;
     assert!(matches!(
-        Contact::plan(&ended, grid, Setup::default()),
+        plan(&ended, grid),
         Err(Error::Inconsistent(message)) if message.contains("leave out their ends")
     ));
     assert!(Grid::line(8, 1.0)?.periodic([false, true]).is_err());

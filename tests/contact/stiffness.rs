@@ -1,67 +1,11 @@
 //! The tangent stiffness is symmetric and equals central differences and closed forms.
 
 use nacre::{
-    Contact, Elastic, FlatPunch, Grid, HalfSpace, Layer, Motion, Options, Paraboloid, Result,
-    Roller, Setup, Sphere, Surface,
+    Contact, Elastic, FlatPunch, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Roller,
+    Solution, Sphere, Surface,
 };
 
-/// Force and moments (Σ p dA, Σ p x dA, Σ p y dA) under a prescribed motion.
-fn loads(contact: &Contact, shape: &dyn Surface, motion: [f64; 3]) -> Result<[f64; 3]> {
-    let [approach, sx, sy] = motion;
-    let motion = Motion {
-        tilt: [Some(sx), Some(sy)],
-        ..Motion::approach(approach)
-    };
-    let options = Options {
-        tolerance: 1e-13,
-        ..Options::default()
-    };
-    let solution = contact.solve(shape, &motion, &options)?;
-    assert!(solution.report.converged());
-    let [mx, my] = solution.moment();
-    Ok([solution.load(), mx, my])
-}
-
-/// Largest difference between the stiffness of a solution and central differences, each entry relative to
-/// the geometric mean of its diagonals; the contact is tilted, so that no entry is zero by symmetry.
-fn error_against_differences(
-    body: &HalfSpace,
-    shape: &dyn Surface,
-    grid: Grid,
-    at: [f64; 3],
-) -> Result<f64> {
-    let contact = Contact::plan(body, grid, Setup::default())?;
-    let motion = Motion {
-        tilt: [Some(at[1]), Some(at[2])],
-        ..Motion::approach(at[0])
-    };
-    let options = Options {
-        tolerance: 1e-13,
-        ..Options::default()
-    };
-    let solution = contact.solve(shape, &motion, &options)?;
-    let stiffness = solution.stiffness()?;
-    // All steps cause equal displacements at the rim.
-    let half = 0.5 * grid.size()[0];
-    let mut worst: f64 = 0.0;
-    for freedom in 0..3 {
-        let step = STEP * at[0] / if freedom == 0 { 1.0 } else { half };
-        let moved = |sign: f64| {
-            let mut to = at;
-            to[freedom] += sign * step;
-            loads(&contact, shape, to)
-        };
-        let (more, less) = (moved(1.0)?, moved(-1.0)?);
-        for row in 0..3 {
-            let difference = (more[row] - less[row]) / (2.0 * step);
-            let scale = (stiffness[row][row] * stiffness[freedom][freedom]).sqrt();
-            worst = worst.max((stiffness[row][freedom] - difference).abs() / scale);
-            let transposed = stiffness[freedom][row];
-            assert!((stiffness[row][freedom] - transposed).abs() <= SYMMETRY * scale);
-        }
-    }
-    Ok(worst)
-}
+use crate::support::settings::{Controls, converged, plan, stack, tolerance};
 
 /// Step of the differences: so small that no cell joins or leaves the contact, and large compared with
 /// the error of the solutions, 1e-13/1e-6.
@@ -69,10 +13,51 @@ const STEP: f64 = 1e-6;
 const SYMMETRY: f64 = 1e-10;
 const DIFFERENCES: f64 = 1e-6;
 
+/// The solution of a tilted contact at a given approach.
+fn moved(contact: &Contact, shape: &dyn Surface, at: [f64; 3]) -> Result<Solution> {
+    let motion = Motion::approach(at[0]).with_tilt([Some(at[1]), Some(at[2])]);
+    converged(contact, shape, &motion, &tolerance(1e-13))
+}
+
+/// Force and moments (Σ p dA, Σ p x dA, Σ p y dA).
+fn loads(solution: &Solution) -> [f64; 3] {
+    let [mx, my] = solution.moment();
+    [solution.load(), mx, my]
+}
+
+/// Asserts that the stiffness is symmetric and equals central differences, each entry relative to the geometric mean of
+/// its diagonals; the contact is tilted, so that no entry is zero by symmetry.
+pub(crate) fn assert_stiffness(
+    contact: &Contact,
+    shape: &dyn Surface,
+    at: [f64; 3],
+    step: f64,
+    bar: f64,
+) -> Result<()> {
+    let stiffness = moved(contact, shape, at)?.stiffness()?;
+    // All steps cause equal displacements at the rim.
+    let half = 0.5 * contact.grid().size()[0];
+    for freedom in 0..3 {
+        let step = step * at[0] / if freedom == 0 { 1.0 } else { half };
+        let loads = |sign: f64| {
+            let mut to = at;
+            to[freedom] += sign * step;
+            Ok::<_, nacre::Error>(loads(&moved(contact, shape, to)?))
+        };
+        let (more, less) = (loads(1.0)?, loads(-1.0)?);
+        for row in 0..3 {
+            let slope = (more[row] - less[row]) / (2.0 * step);
+            let scale = (stiffness[row][row] * stiffness[freedom][freedom]).sqrt();
+            let (entry, transposed) = (stiffness[row][freedom], stiffness[freedom][row]);
+            below!((entry - slope).abs(), bar * scale, row, freedom);
+            assert!((entry - transposed).abs() <= SYMMETRY * scale);
+        }
+    }
+    Ok(())
+}
+
 fn coated() -> Result<HalfSpace> {
-    let coat = Elastic::new(4.0, 0.3)?;
-    let base = Elastic::new(1.0, 0.25)?;
-    HalfSpace::new(base, vec![Layer::new(coat, 0.1)?])
+    stack(Elastic::new(1.0, 0.25)?, [[4.0, 0.3, 0.1]])
 }
 
 #[test]
@@ -86,20 +71,12 @@ fn stiffness_is_that_of_central_differences() -> Result<()> {
     ];
     for body in [bare, coated()?] {
         for (shape, at) in shapes {
-            let error = error_against_differences(&body, shape, grid, at)?;
-            assert!(error < DIFFERENCES, "{error:e}");
+            assert_stiffness(&plan(&body, grid)?, shape, at, STEP, DIFFERENCES)?;
         }
     }
-    Ok(())
-}
-
-#[test]
-fn stiffness_of_a_tilted_roller_is_that_of_central_differences() -> Result<()> {
     let roller = Roller::new(5.0, 8.0, 100.0)?;
-    let grid = Grid::new([96, 48], [16.0, 1.2])?;
-    let error = error_against_differences(&coated()?, &roller, grid, [0.02, 5e-4, 0.0])?;
-    assert!(error < DIFFERENCES, "{error:e}");
-    Ok(())
+    let contact = plan(coated()?, Grid::new([96, 48], [16.0, 1.2])?)?;
+    assert_stiffness(&contact, &roller, [0.02, 5e-4, 0.0], STEP, DIFFERENCES)
 }
 
 #[test]
@@ -111,25 +88,23 @@ fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
     let mut errors = Vec::new();
     for cells in [64, 128] {
         let grid = Grid::new([cells, cells], [2.2, 2.2])?;
-        let contact = Contact::plan(&body, grid, Setup::default())?;
+        let contact = plan(&body, grid)?;
         let punch = FlatPunch::new(radius)?;
         let solution = contact.solve(&punch, &Motion::load(1.0), &Options::default())?;
         let stiffness = solution.stiffness()?;
         let normal = stiffness[0][0] / (2.0 * radius) - 1.0;
         let tilt = stiffness[1][1] / (4.0 / 3.0 * radius.powi(3)) - 1.0;
         errors.push([normal, tilt]);
-        assert!((stiffness[1][1] / stiffness[2][2] - 1.0).abs() < 1e-9);
+        near!(stiffness[1][1], stiffness[2][2], 1e-9);
         for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-            assert!(
-                stiffness[row][column].abs() < 1e-9,
-                "no coupling at the middle"
-            );
+            // No coupling at the middle.
+            below!(stiffness[row][column].abs(), 1e-9, row, column);
         }
     }
     // Cells of uniform pressure represent a 1/√ singularity at the edge to first order: half a cell of radius.
     for (error, cell) in errors.iter().zip([2.2 / 64.0, 2.2 / 128.0]) {
-        assert!(error[0].abs() < 0.5 * cell / radius, "{errors:?}");
-        assert!(error[1].abs() < 1.5 * cell / radius, "{errors:?}");
+        below!(error[0].abs(), 0.5 * cell / radius, errors);
+        below!(error[1].abs(), 1.5 * cell / radius, errors);
     }
     Ok(())
 }
@@ -138,35 +113,25 @@ fn flat_punch_has_the_stiffness_of_its_closed_form() -> Result<()> {
 fn nothing_touching_has_no_stiffness() -> Result<()> {
     let body: HalfSpace = Elastic::new(1.0, 0.0)?.into();
     let grid = Grid::new([16, 16], [1.0, 1.0])?;
-    let contact = Contact::plan(&body, grid, Setup::default())?;
+    let contact = plan(&body, grid)?;
     let motion = Motion::approach(-1.0);
     let solution = contact.solve(&Sphere::new(5.0)?, &motion, &Options::default())?;
-    let none = solution
-        .stiffness()?
-        .as_flattened()
-        .iter()
-        .all(|&s| s == 0.0);
-    assert!(none);
+    let stiffness = solution.stiffness()?;
+    assert!(stiffness.as_flattened().iter().all(|&s| s == 0.0));
     Ok(())
 }
 
 #[test]
 fn motion_found_under_load_gives_the_load_back() -> Result<()> {
     let grid = Grid::new([60, 45], [2.4, 2.0])?;
-    let contact = Contact::plan(&coated()?, grid, Setup::default())?;
+    let contact = plan(&coated()?, grid)?;
     let sphere = Sphere::new(50.0)?;
-    let loaded = Motion {
-        eccentricity: [Some(0.2), Some(-0.1)],
-        ..Motion::load(0.02)
-    };
-    let options = Options {
-        tolerance: 1e-12,
-        ..Options::default()
-    };
+    let loaded = Motion::load(0.02).with_eccentricity([Some(0.2), Some(-0.1)]);
+    let options = tolerance(1e-12);
     let solution = contact.solve(&sphere, &loaded, &options)?;
     let [sx, sy] = solution.tilt;
-    let [load, mx, my] = loads(&contact, &sphere, [solution.approach, sx, sy])?;
-    assert!((load / 0.02 - 1.0).abs() < GIVEN_BACK);
+    let [load, mx, my] = loads(&moved(&contact, &sphere, [solution.approach, sx, sy])?);
+    near!(load, 0.02, GIVEN_BACK);
     let half = [1.2, 1.0];
     assert!((mx - 0.2 * 0.02).abs() < GIVEN_BACK * 0.02 * half[0]);
     assert!((my + 0.1 * 0.02).abs() < GIVEN_BACK * 0.02 * half[1]);

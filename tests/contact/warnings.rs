@@ -1,10 +1,12 @@
 //! Warnings stand where they must, and not elsewhere.
 
 use nacre::{
-    Contact, Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller,
-    Setup, Sphere, Surface, Warning,
+    Elastic, FlatPunch, Grid, HeightMap, Motion, Options, Paraboloid, Result, Roller, Sphere,
+    Surface, Warning,
 };
 use ndarray::Array2;
+
+use crate::support::settings::{Controls, plan, pressed};
 
 /// Cells along a side of the grid, of unit length.
 const CELLS: usize = 96;
@@ -14,13 +16,8 @@ fn grid() -> Result<Grid> {
 }
 
 fn warnings(shape: &dyn Surface, motion: &Motion) -> Result<Vec<Warning>> {
-    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid()?, Setup::default())?;
-    let options = Options::default();
-    let solution = contact.solve(shape, motion, &options)?;
-    Ok(solution
-        .require_converged(options.tolerance)?
-        .report
-        .warnings)
+    let contact = plan(Elastic::new(1.0, 0.0)?, grid()?)?;
+    Ok(pressed(&contact, shape, motion)?.report.warnings)
 }
 
 fn kinds(shape: &dyn Surface, motion: &Motion) -> Result<Vec<&'static str>> {
@@ -30,10 +27,8 @@ fn kinds(shape: &dyn Surface, motion: &Motion) -> Result<Vec<&'static str>> {
 /// A map of heights as a function of x and y, with samples in the cells of [`grid`].
 fn map(height: impl Fn(f64, f64) -> f64) -> Result<HeightMap> {
     let (x, y) = (grid()?.x(), grid()?.y());
-    HeightMap::new(
-        Array2::from_shape_fn([CELLS; 2], |(i, j)| height(x[i], y[j])),
-        [1.0; 2],
-    )
+    let heights = Array2::from_shape_fn([CELLS; 2], |(i, j)| height(x[i], y[j]));
+    HeightMap::new(heights, [1.0; 2])
 }
 
 /// Radius of a sphere, and its load for a contact of a radius of 20 cells.
@@ -67,20 +62,12 @@ fn asperities_of_a_few_cells_are_warned_of() -> Result<()> {
 #[test]
 fn specks_beside_a_resolved_contact_are_not_warned_of() -> Result<()> {
     let at = |x: f64| x.rem_euclid(9.0) < 1.0;
-    let specks = map(|x, y| if at(x) && at(y) { 0.01 } else { 0.0 })?;
-    let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid()?, Setup::default())?;
-    let round = map(|x, y| -(x * x + y * y) / (2.0 * RADIUS))?;
-    let heights = Array2::from_shape_fn([CELLS; 2], |(i, j)| {
-        let (x, y) = (i as f64 - 47.5, j as f64 - 47.5);
+    let shape = map(|x, y| {
         // The specks outside the contact alone.
-        let speck = if x.hypot(y) > 22.0 {
-            specks.heights()[[i, j]]
-        } else {
-            0.0
-        };
-        round.heights()[[i, j]] + speck
-    });
-    let shape = HeightMap::new(heights, [1.0; 2])?;
+        let is_speck = at(x) && at(y) && x.hypot(y) > 22.0;
+        (if is_speck { 0.01 } else { 0.0 }) - (x * x + y * y) / (2.0 * RADIUS)
+    })?;
+    let contact = plan(Elastic::new(1.0, 0.0)?, grid()?)?;
     let solution = contact.solve(&shape, &Motion::load(LOAD), &Options::default())?;
     let touching = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
     let lonely = (1..CELLS - 1).flat_map(|i| (1..CELLS - 1).map(move |j| (i, j)));
@@ -98,11 +85,8 @@ fn resolved_contacts_are_not_warned_of() -> Result<()> {
         for shift in [0.0, 0.25, 0.5] {
             let sphere = Sphere::new(RADIUS)?.shifted(shift, 0.3 * shift)?;
             let load = 4.0 / 3.0 * radius.powi(3) / RADIUS;
-            assert_eq!(
-                kinds(&sphere, &Motion::load(load))?,
-                [""; 0],
-                "{radius} {shift}"
-            );
+            let found = kinds(&sphere, &Motion::load(load))?;
+            assert_eq!(found, [""; 0], "{radius} {shift}");
         }
     }
     Ok(())
@@ -112,10 +96,7 @@ fn resolved_contacts_are_not_warned_of() -> Result<()> {
 #[test]
 fn edges_of_punches_are_sharp() -> Result<()> {
     let punch = || FlatPunch::new(30.3);
-    let tilted = Motion {
-        tilt: [Some(3e-2), Some(3e-2)],
-        ..Motion::approach(-0.6)
-    };
+    let tilted = Motion::approach(-0.6).with_tilt([Some(3e-2), Some(3e-2)]);
     assert_eq!(kinds(&punch()?, &Motion::load(1.0))?, ["sharp edge"]);
     assert_eq!(kinds(&punch()?, &tilted)?, ["sharp edge"]);
     let sum = punch()?.plus(Paraboloid::new(RADIUS, RADIUS)?);
@@ -124,13 +105,8 @@ fn edges_of_punches_are_sharp() -> Result<()> {
     let roller = Roller::new(RADIUS, 60.0, 1e6)?.with_length(60.0)?;
     assert_eq!(kinds(&roller, &Motion::load(5e-2))?, ["sharp end"]);
     // A punch as wide as the grid.
-    assert_eq!(
-        kinds(
-            &FlatPunch::new(40.0)?.shifted(8.2, 0.0)?,
-            &Motion::load(1.0)
-        )?,
-        ["sharp edge"]
-    );
+    let wide = FlatPunch::new(40.0)?.shifted(8.2, 0.0)?;
+    assert_eq!(kinds(&wide, &Motion::load(1.0))?, ["sharp edge"]);
     Ok(())
 }
 
@@ -141,14 +117,10 @@ fn the_rim_of_a_measured_map_is_named() -> Result<()> {
     assert_eq!(kinds(&hill(0.0)?, &Motion::load(LOAD))?, [""; 0]);
     let found = warnings(&hill(40.0)?, &Motion::load(LOAD))?;
     assert_eq!(found, [Warning::MapRim { axis: 0 }]);
-    assert!(
-        found[0]
-            .to_string()
-            .contains("rim of the measured map along x")
-    );
-    let moved = hill(-40.0)?
-        .shifted(10.0, 0.0)?
-        .plus(Paraboloid::new(1e6, 1e6)?);
+    let text = found[0].to_string();
+    assert!(text.contains("rim of the measured map along x"), "{text}");
+    let flat = Paraboloid::new(1e6, 1e6)?;
+    let moved = hill(-40.0)?.shifted(10.0, 0.0)?.plus(flat);
     assert_eq!(kinds(&moved, &Motion::load(LOAD))?, ["map rim"]);
     // The grid cuts a map that goes on.
     let moved = hill(0.0)?.shifted(30.0, 0.0)?;

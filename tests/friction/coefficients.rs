@@ -2,25 +2,13 @@
 
 use std::f64::consts::PI;
 
-use nacre::{
-    Elastic, Grid, HalfSpace, Interface, Layer, Result, Substrate, TractionCoefficients,
-    traction_coefficients,
-};
+use nacre::{Elastic, Grid, HalfSpace, Layer, Result, TractionCoefficients, traction_coefficients};
 use ndarray::Array2;
-use serde_json::Value;
 
+use crate::support::bodies::body_by;
+use crate::support::checks::apart;
 use crate::support::reference::{list, number, read};
-
-fn body(stack: &Value) -> Result<HalfSpace> {
-    let elastic = |value: &Value| Elastic::new(number(value, "E"), number(value, "nu"));
-    let layers = list(stack, "layers").iter();
-    let layers = layers.map(|layer| Layer::new(elastic(layer)?, number(layer, "h")));
-    let substrate = match stack["substrate"].as_str() {
-        Some("rigid") => Substrate::Rigid,
-        _ => elastic(&stack["substrate"])?.into(),
-    };
-    HalfSpace::new(substrate, layers.collect::<Result<Vec<_>>>()?)
-}
+use crate::support::settings::stack;
 
 /// All five coefficients agree with two independent computations of the reference, to 1e-10 of the self-coefficient.
 #[test]
@@ -29,13 +17,13 @@ fn coefficients_are_those_of_the_reference() -> Result<()> {
     for stack in list(&reference, "stacks") {
         let (dx, dy) = (number(stack, "dx"), number(stack, "dy"));
         let grid = Grid::new([64, 32], [64.0 * dx, 32.0 * dy])?;
-        let c = traction_coefficients(body(stack)?, &grid)?;
+        let c = traction_coefficients(body_by(["E", "nu", "h"], stack, 1.0)?, &grid)?;
         let own = c.xx[[0, 0]];
         for row in list(stack, "rows") {
             let at = [number(row, "i") as usize, number(row, "j") as usize];
             for (found, name) in [(&c.xx, "ux"), (&c.xy, "uy"), (&c.zx, "uz")] {
                 let error = (found[at] - number(row, name)).abs() / own;
-                assert!(error < 1e-10, "{} {at:?} {name}: {error:e}", stack["name"]);
+                below!(error, 1e-10, stack["name"], at, name);
             }
         }
     }
@@ -70,14 +58,9 @@ fn bare_cells_are_in_closed_form() -> Result<()> {
         let fa = |x: f64, y: f64| x * asinh(y, x) + y * asinh(x, y);
         let fxx = |x: f64, y: f64| y * asinh(x, y);
         let fxy = |x: f64, y: f64| -x.hypot(y);
-        let fx = |x: f64, y: f64| {
-            let log = if y == 0.0 {
-                0.0
-            } else {
-                0.5 * y * (x * x + y * y).ln()
-            };
-            log + if x == 0.0 { 0.0 } else { x * (y / x).atan() }
-        };
+        // Where a factor is 0, so is the product.
+        let times = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * b };
+        let fx = |x: f64, y: f64| times(y, x.hypot(y).ln()) + times(x, (y / x).atan());
         let exact = [
             ((1.0 - nu) * corners(&fa) + nu * corners(&fxx)) / (2.0 * PI * g),
             nu * corners(&fxy) / (2.0 * PI * g),
@@ -88,10 +71,8 @@ fn bare_cells_are_in_closed_form() -> Result<()> {
         let found = [&c.xx, &c.xy, &c.zx].map(|c| c[[i, j]]);
         let layered = [&integrated.xx, &integrated.xy, &integrated.zx].map(|c| c[[i, j]]);
         for ((found, layered), exact) in found.into_iter().zip(layered).zip(exact) {
-            let error = (found - exact).abs() / own;
-            assert!(error < rounding, "{i} {j}: {found} {exact} {error:e}");
-            let error = (layered - exact).abs() / own;
-            assert!(error < 1e-10, "{i} {j}: {layered} {exact} {error:e}");
+            below!((found - exact).abs() / own, rounding, i, j, exact);
+            below!((layered - exact).abs() / own, 1e-10, i, j, exact);
         }
     }
     Ok(())
@@ -100,45 +81,35 @@ fn bare_cells_are_in_closed_form() -> Result<()> {
 /// Exchanging x and y exchanges the coefficients; two equal layers are none; ν = ½ alone is not coupled.
 #[test]
 fn coefficients_have_their_symmetries() -> Result<()> {
-    let (hard, soft) = (Elastic::new(4.0, 0.3)?, Elastic::new(1.0, 0.3)?);
-    let coated = HalfSpace::new(soft, [Layer::new(hard, 0.4)?])?;
+    let soft = Elastic::new(1.0, 0.3)?;
+    let coated = stack(soft, [[4.0, 0.3, 0.4]])?;
     let grid = Grid::new([24, 16], [24.0, 8.0])?;
     let turned = Grid::new([16, 24], [8.0, 24.0])?;
-    let close = |a: &TractionCoefficients, b: &TractionCoefficients, exchange: bool, error: f64| {
-        let pairs = if exchange {
-            [
-                (&a.xx, &b.yy),
-                (&a.yy, &b.xx),
-                (&a.xy, &b.xy),
-                (&a.zx, &b.zy),
-                (&a.zy, &b.zx),
-            ]
-        } else {
-            [
-                (&a.xx, &b.xx),
-                (&a.yy, &b.yy),
-                (&a.xy, &b.xy),
-                (&a.zx, &b.zx),
-                (&a.zy, &b.zy),
-            ]
-        };
-        for (a, b) in pairs {
-            for ((i, j), value) in a.indexed_iter() {
-                let other = if exchange { b[[j, i]] } else { b[[i, j]] };
-                assert!((value - other).abs() < error, "{i} {j}: {value} {other}");
-            }
+    let close = |a: &TractionCoefficients, b: &TractionCoefficients, error: f64| {
+        let ours = [&a.xx, &a.yy, &a.xy, &a.zx, &a.zy];
+        for (a, b) in ours.into_iter().zip([&b.xx, &b.yy, &b.xy, &b.zx, &b.zy]) {
+            below!(apart(a, b), error);
+        }
+    };
+    // The coefficients of a grid with x and y exchanged, in the order of the first.
+    let exchanged = |c: TractionCoefficients| {
+        let turn = |a: Array2<f64>| a.reversed_axes();
+        TractionCoefficients {
+            xx: turn(c.yy),
+            yy: turn(c.xx),
+            xy: turn(c.xy),
+            zx: turn(c.zy),
+            zy: turn(c.zx),
         }
     };
     let c = traction_coefficients(&coated, &grid)?;
-    close(&c, &traction_coefficients(&coated, &turned)?, true, 1e-11);
-    let split = HalfSpace::new(
-        soft,
-        [
-            Layer::new(hard, 0.1)?,
-            Layer::new(hard, 0.3)?.with_interface(Interface::Bonded),
-        ],
-    )?;
-    close(&c, &traction_coefficients(&split, &grid)?, false, 1e-10);
+    close(
+        &c,
+        &exchanged(traction_coefficients(&coated, &turned)?),
+        1e-11,
+    );
+    let split = stack(soft, [[4.0, 0.3, 0.1], [4.0, 0.3, 0.3]])?;
+    close(&c, &traction_coefficients(&split, &grid)?, 1e-10);
     let bare = traction_coefficients(Elastic::new(3.0, 0.5)?, &grid)?;
     assert!(bare.zx.iter().chain(&bare.zy).all(|c| *c == 0.0));
     let own = c.xx[[0, 0]];
@@ -150,10 +121,7 @@ fn coefficients_have_their_symmetries() -> Result<()> {
 /// a line of n cells lacks is of second order in 1/n, of first in u_z; the next order is (15/1024)⁴ and (15/1024)³.
 #[test]
 fn strips_are_rows_of_cells() -> Result<()> {
-    let coated = HalfSpace::new(
-        Elastic::new(1.0, 0.3)?,
-        [Layer::new(Elastic::new(4.0, 0.3)?, 0.7)?],
-    )?;
+    let coated = stack(Elastic::new(1.0, 0.3)?, [[4.0, 0.3, 0.7]])?;
     let strips = traction_coefficients(&coated, &Grid::line(16, 16.0)?)?;
     let cells = |n: usize| traction_coefficients(&coated, &Grid::new([n, 16], [n as f64, 16.0])?);
     let (coarse, fine) = (cells(1024)?, cells(2048)?);
@@ -164,12 +132,11 @@ fn strips_are_rows_of_cells() -> Result<()> {
             (&strips.yy, &coarse.yy, &fine.yy),
         ] {
             let [coarse, fine] = [coarse, fine].map(|c| row(c, j) - row(c, 0));
-            let (found, due) = (strip[[0, j]] - strip[[0, 0]], (4.0 * fine - coarse) / 3.0);
-            assert!((found - due).abs() < 1e-6 * due.abs(), "{j}: {found} {due}");
+            let due = (4.0 * fine - coarse) / 3.0;
+            near!(strip[[0, j]] - strip[[0, 0]], due, 1e-6, j);
         }
         let due = 2.0 * row(&fine.zy, j) - row(&coarse.zy, j);
-        let found = strips.zy[[0, j]];
-        assert!((found - due).abs() < 3e-5 * due.abs(), "{j}: {found} {due}");
+        near!(strips.zy[[0, j]], due, 3e-5, j);
     }
     Ok(())
 }

@@ -1,22 +1,23 @@
-//! Histories, combinations of forces and motions, friction by cell, symmetries, and full slip.
+//! Histories, combinations of forces and motions, friction by cell, symmetries, full slip, and stresses below.
 
 use nacre::friction::{FrictionOptions, FrictionSolution, Step};
-use nacre::{Contact, Elastic, Error, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Setup};
-use ndarray::Array2;
+use nacre::{
+    Contact, Elastic, Error, Grid, HalfSpace, Member, Motion, Options, Result, StressOptions,
+    stress,
+};
+use ndarray::{Array2, Axis};
 
-use crate::support::pairs::{RADIUS, ball, coated, equal, load, material, pair, slid};
+use crate::support::checks::apart;
+use crate::support::pairs::{
+    Pulled, RADIUS, ball, coated, equal, load, material, pair, precise, slid, slide,
+    tractions_apart, unlike,
+};
+use crate::support::settings::{Controls, against, one_thread, plan};
 
 const FRICTION: f64 = 0.3;
 
 fn press(load: f64) -> Step {
     Step::press(Motion::load(load), FRICTION)
-}
-
-fn precise() -> FrictionOptions {
-    FrictionOptions {
-        tolerance: 1e-12,
-        ..FrictionOptions::default()
-    }
 }
 
 /// Every combination of prescribed and loaded motions: what is prescribed and given is met, and a step with the motions
@@ -25,10 +26,7 @@ fn precise() -> FrictionOptions {
 fn prescribed_and_loaded_motions_are_the_same_problem() -> Result<()> {
     let (contact, load) = (pair(0.3, 48)?, load(0.3));
     let unit = FRICTION * load;
-    let options = FrictionOptions {
-        tolerance: 1e-11,
-        ..FrictionOptions::default()
-    };
+    let options = precise(1e-11);
     let given = [
         ([Some(0.6), Some(-0.3)], Some(0.1)),
         ([Some(0.6), None], Some(0.1)),
@@ -38,34 +36,20 @@ fn prescribed_and_loaded_motions_are_the_same_problem() -> Result<()> {
     for (force, torque) in given {
         let force = force.map(|force| force.map(|force: f64| force * unit));
         let torque = torque.map(|torque| torque * unit);
-        let step = Step {
-            force,
-            torque,
-            ..press(load)
-        };
-        let loaded = &contact.slide(&ball()?, &[step], &options, None)?[0];
-        assert!(loaded.report.converged());
+        let step = press(load).with_force(force).with_torque(torque);
+        let loaded = slide(&contact, step, &options)?;
         for (force, found) in force.into_iter().zip(loaded.force()) {
             assert!(force.is_none_or(|force| (force - found).abs() < 1e-10 * unit));
         }
         assert!(torque.is_none_or(|torque| (torque - loaded.torque()).abs() < 1e-10 * unit));
-        let (shift, twist) = slid(loaded);
-        let step = Step {
-            shift: shift.map(Some),
-            twist: Some(twist),
-            ..press(load)
-        };
-        let moved = &contact.slide(&ball()?, &[step], &options, None)?[0];
+        let (shift, twist) = slid(&loaded);
+        let step = press(load)
+            .with_shift(shift.map(Some))
+            .with_twist(Some(twist));
+        let moved = slide(&contact, step, &options)?;
         let most = FRICTION * loaded.normal.peak_pressure();
-        for (a, b) in loaded
-            .traction
-            .iter()
-            .flatten()
-            .zip(moved.traction.iter().flatten())
-        {
-            // The compliance's condition amplifies the tolerance.
-            assert!((a - b).abs() < 1e-7 * most, "{a} {b}");
-        }
+        // The compliance's condition amplifies the tolerance.
+        below!(tractions_apart(&loaded, &moved), 1e-7 * most);
     }
     Ok(())
 }
@@ -74,19 +58,12 @@ fn prescribed_and_loaded_motions_are_the_same_problem() -> Result<()> {
 #[test]
 fn a_resumed_history_is_the_same() -> Result<()> {
     let grid = Grid::new([40, 40], [2.6, 2.6])?;
-    let setup = Setup {
-        counterbody: Some(material(0.3)?.into()),
-        threads: Some(1),
-        ..Setup::default()
-    };
+    let setup = one_thread(material(0.3)?);
     let contact = Contact::plan(coated(3.0, 0.2)?, grid, setup)?;
     let unit = FRICTION * load(0.3);
     let steps = [
         press(load(0.3)),
-        Step {
-            force: [Some(0.7 * unit), None],
-            ..Step::default()
-        },
+        Step::default().with_force([Some(0.7 * unit), None]),
         Step {
             motion: Some(Motion::load(1.2 * load(0.3))),
             torque: Some(0.1 * unit),
@@ -117,25 +94,17 @@ fn a_resumed_history_is_the_same() -> Result<()> {
 fn friction_may_differ_from_cell_to_cell() -> Result<()> {
     let (contact, load) = (pair(0.3, 48)?, load(0.3));
     let cells = Array2::from_shape_fn((48, 48), |(i, _)| if i < 24 { 0.1 } else { 0.4 });
-    let step = Step {
-        force: [Some(0.2 * load), None],
-        ..Step::press(Motion::load(load), cells.clone())
-    };
-    let solution = &contact.slide(&ball()?, &[step], &FrictionOptions::default(), None)?[0];
-    assert!(solution.report.converged());
+    let step = Step::press(Motion::load(load), cells.clone()).with_force([Some(0.2 * load), None]);
+    let solution = slide(&contact, step, &FrictionOptions::default())?;
     let (size, stick) = (solution.traction_size(), solution.stick());
     let mut slipping = [0; 2];
-    for (at, p) in solution
-        .normal
-        .pressure
-        .indexed_iter()
-        .filter(|(_, p)| **p > 0.0)
-    {
+    let pressure = solution.normal.pressure.indexed_iter();
+    for (at, p) in pressure.filter(|(_, p)| **p > 0.0) {
         let bound = cells[at] * p;
         assert!(size[at] <= bound * (1.0 + 1e-12));
         if !stick[at] {
             slipping[usize::from(at.0 >= 24)] += 1;
-            assert!((size[at] / bound - 1.0).abs() < 1e-9);
+            near!(size[at], bound, 1e-9);
         }
     }
     assert!(slipping[0] > slipping[1] && slipping[1] > 0, "{slipping:?}");
@@ -146,19 +115,11 @@ fn friction_may_differ_from_cell_to_cell() -> Result<()> {
 /// bodies differ. The certificate, with the operator of the whole grid, shows it.
 #[test]
 fn cells_may_have_no_friction() -> Result<()> {
-    let grid = Grid::new([40, 40], [2.6, 2.6])?;
-    let setup = Setup {
-        counterbody: Some(material(0.2)?.into()),
-        threads: Some(1),
-        ..Setup::default()
-    };
-    let contact = Contact::plan(coated(3.0, 0.2)?, grid, setup)?;
+    let contact = unlike(40, 2.6)?;
     let cells = Array2::from_shape_fn((40, 40), |(_, j)| if j < 20 { 0.0 } else { FRICTION });
-    let step = Step {
-        force: [Some(0.3 * FRICTION * load(0.3)), None],
-        ..Step::press(Motion::load(load(0.3)), cells)
-    };
-    let solution = &contact.slide(&ball()?, &[step], &FrictionOptions::default(), None)?[0];
+    let step = Step::press(Motion::load(load(0.3)), cells)
+        .with_force([Some(0.3 * FRICTION * load(0.3)), None]);
+    let solution = slide(&contact, step, &FrictionOptions::default())?;
     assert!(solution.report.converged() && solution.report.violation < 1.001e-8);
     for ((_, j), q) in solution.traction_size().indexed_iter() {
         assert!(j >= 20 || *q <= 0.0);
@@ -169,21 +130,11 @@ fn cells_may_have_no_friction() -> Result<()> {
 /// Pulls along +x, −x, +y, −y are one by mirror and exchange, with layers and coupling.
 #[test]
 fn directions_are_equal() -> Result<()> {
-    let grid = Grid::new([40, 40], [2.6, 2.6])?;
-    let setup = Setup {
-        counterbody: Some(material(0.2)?.into()),
-        threads: Some(1),
-        ..Setup::default()
-    };
-    let contact = Contact::plan(coated(3.0, 0.2)?, grid, setup)?;
+    let contact = unlike(40, 2.6)?;
     let force = 0.7 * FRICTION * load(0.3);
-    let pulled = |force: [f64; 2]| -> Result<FrictionSolution> {
-        let step = Step {
-            force: force.map(Some),
-            ..press(load(0.3))
-        };
-        let solutions = contact.slide(&ball()?, &[step], &precise(), None)?;
-        Ok(solutions.into_iter().next().expect("one step"))
+    let pulled = |force: [f64; 2]| {
+        let step = press(load(0.3)).with_force(force.map(Some));
+        slide(&contact, step, &precise(1e-12))
     };
     let [right, left, up] = [[force, 0.0], [-force, 0.0], [0.0, force]].map(pulled);
     let (right, left, up) = (right?, left?, up?);
@@ -197,7 +148,7 @@ fn directions_are_equal() -> Result<()> {
             (up.traction[0][[j, i]], right.traction[1][[i, j]]),
         ];
         for (a, b) in same {
-            assert!((a - b).abs() < 1e-10 * most, "{i} {j}: {a} {b}");
+            below!((a - b).abs(), 1e-10 * most, i, j, a, b);
         }
     }
     Ok(())
@@ -207,28 +158,17 @@ fn directions_are_equal() -> Result<()> {
 #[test]
 fn bodies_may_be_exchanged() -> Result<()> {
     let solve = |exchanged: bool| -> Result<FrictionSolution> {
-        let grid = Grid::new([32, 32], [2.6, 2.6])?;
         let (a, b) = (coated(3.0, 0.2)?, material(0.2)?.into());
-        let (body, counter) = if exchanged { (b, a) } else { (a, b) };
-        let setup = Setup {
-            counterbody: Some(counter.into()),
-            threads: Some(1),
-            ..Setup::default()
-        };
-        let contact = Contact::plan(body, grid, setup)?;
         // Turned about the x axis, the other body lies below: y and z change sign, and so does the motion over it.
-        let force = 0.7 * FRICTION * load(0.3);
-        let force = if exchanged {
-            [-force, 0.0]
-        } else {
-            [force, 0.0]
-        };
-        let step = Step {
-            force: force.map(Some),
-            ..press(load(0.3))
-        };
-        let solutions = contact.slide(&ball()?, &[step], &precise(), None)?;
-        Ok(solutions.into_iter().next().expect("one step"))
+        let (body, counter, sign) = if exchanged { (b, a, -1.0) } else { (a, b, 1.0) };
+        let grid = Grid::new([32, 32], [2.6, 2.6])?;
+        let contact = Contact::plan(body, grid, one_thread(counter))?;
+        let force = [Some(sign * 0.7 * FRICTION * load(0.3)), Some(0.0)];
+        slide(
+            &contact,
+            press(load(0.3)).with_force(force),
+            &precise(1e-12),
+        )
     };
     let (one, other) = (solve(false)?, solve(true)?);
     let most = FRICTION * one.normal.peak_pressure();
@@ -244,28 +184,19 @@ fn bodies_may_be_exchanged() -> Result<()> {
 fn gross_slip_is_named() -> Result<()> {
     let (contact, load) = (pair(0.3, 40)?, load(0.3));
     let far = 10.0 * FRICTION * load;
-    let step = Step {
-        shift: [Some(far), None],
-        ..press(load)
-    };
-    let solution = &contact.slide(&ball()?, &[step], &FrictionOptions::default(), None)?[0];
+    let step = press(load).with_shift([Some(far), None]);
+    let solution = slide(&contact, step, &FrictionOptions::default())?;
     assert!(solution.report.full_slip && solution.report.converged());
     assert!(solution.stick().iter().all(|stick| !stick));
-    let found = solution.force();
     // Tractions turn a little towards their own displacement.
-    assert!((found[0] / (FRICTION * load) - 1.0).abs() < 1e-3);
-    let half = FRICTION * solution.normal.load();
-    assert!((solution.dissipated() / (half * far) - 1.0).abs() < 0.1);
+    near!(solution.force()[0], FRICTION * load, 1e-3);
+    let work = FRICTION * solution.normal.load() * far;
+    near!(solution.dissipated(), work, 0.1);
     for force in [1.0, 1.5] {
-        let step = Step {
-            force: [Some(force * FRICTION * load), None],
-            ..press(load)
-        };
+        let step = press(load).with_force([Some(force * FRICTION * load), None]);
         let refused = contact.slide(&ball()?, &[step], &FrictionOptions::default(), None);
-        assert!(
-            matches!(refused, Err(Error::FullSlip { .. })),
-            "{refused:?}"
-        );
+        let named = matches!(refused, Err(Error::FullSlip { .. }));
+        assert!(named, "{refused:?}");
     }
     Ok(())
 }
@@ -274,26 +205,22 @@ fn gross_slip_is_named() -> Result<()> {
 #[test]
 fn coupling_is_there_where_bodies_differ() -> Result<()> {
     let grid = || Grid::new([32, 32], [2.6, 2.6]);
-    let step = || Step {
-        force: [Some(0.5 * FRICTION * load(0.3)), None],
-        ..press(load(0.3))
-    };
+    let step = || press(load(0.3)).with_force([Some(0.5 * FRICTION * load(0.3)), None]);
     let equal = equal(coated(3.0, 0.2)?, grid()?)?;
-    let solution = &equal.slide(&ball()?, &[step()], &FrictionOptions::default(), None)?[0];
+    let solution = slide(&equal, step(), &FrictionOptions::default())?;
     assert!(!solution.report.coupled);
     let normal = equal.solve(&ball()?, &Motion::load(load(0.3)), &Options::default())?;
     assert_eq!(normal.pressure, solution.normal.pressure);
-    let alone = Contact::plan(coated(3.0, 0.2)?, grid()?, Setup::default())?;
+    let alone = plan(coated(3.0, 0.2)?, grid()?)?;
     for coupling in [true, false] {
         let options = FrictionOptions {
             coupling,
             ..FrictionOptions::default()
         };
-        let solution = &alone.slide(&ball()?, &[step()], &options, None)?[0];
-        assert!(solution.report.converged());
+        let solution = slide(&alone, step(), &options)?;
         assert_eq!(solution.report.coupled, coupling);
         // Without coupling, pressure alone does not rub.
-        let pressed = &alone.slide(&ball()?, &[press(load(0.3))], &options, None)?[0];
+        let pressed = slide(&alone, press(load(0.3)), &options)?;
         let rubbed = pressed.traction.iter().flatten().any(|q| *q != 0.0);
         assert_eq!(rubbed, coupling);
     }
@@ -306,23 +233,12 @@ fn coupling_is_there_where_bodies_differ() -> Result<()> {
 fn torque_is_about_the_origin() -> Result<()> {
     let contact = equal(material(0.0)?, Grid::new([80, 80], [5.2, 5.2])?)?;
     let force = 0.5 * FRICTION * load(0.0);
-    let motion = Motion {
-        tilt: [Some(0.65 / RADIUS), None],
-        ..Motion::load(load(0.0))
-    };
-    let step = Step {
-        force: [None, Some(force)],
-        ..Step::press(motion, FRICTION)
-    };
-    let solution = &contact.slide(&ball()?, &[step], &precise(), None)?[0];
-    let pressure = &solution.normal.pressure;
-    let moment: f64 = pressure
-        .indexed_iter()
-        .map(|((i, _), p)| contact.grid().x()[i] * p)
-        .sum();
-    let arm = moment / pressure.sum();
+    let motion = Motion::load(load(0.0)).with_tilt([Some(0.65 / RADIUS), None]);
+    let step = Step::press(motion, FRICTION).with_force([None, Some(force)]);
+    let solution = slide(&contact, step, &precise(1e-12))?;
+    let arm = solution.normal.moment()[0] / solution.normal.load();
     assert!((arm.abs() - 0.65).abs() < 0.01);
-    assert!((solution.torque() / (force * arm) - 1.0).abs() < 1e-9);
+    near!(solution.torque(), force * arm, 1e-9);
     Ok(())
 }
 
@@ -330,16 +246,10 @@ fn torque_is_about_the_origin() -> Result<()> {
 /// and a torque: each holds to the tolerance.
 #[test]
 fn little_friction_under_forces_and_a_torque() -> Result<()> {
-    let setup = Setup {
-        counterbody: Some(HalfSpace::from(Elastic::new(1e3, 0.3)?).into()),
-        ..Setup::default()
-    };
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.3)?,
-        Grid::new([48, 48], [3.0, 3.0])?,
-        setup,
-    )?;
-    let (shape, load) = (Paraboloid::new(RADIUS, RADIUS)?, 4.0 / 3.0 / 0.91 / RADIUS);
+    let setup = against(HalfSpace::from(Elastic::new(1e3, 0.3)?));
+    let grid = Grid::new([48, 48], [3.0, 3.0])?;
+    let contact = Contact::plan(Elastic::new(1.0, 0.3)?, grid, setup)?;
+    let load = 4.0 / 3.0 / 0.91 / RADIUS;
     for friction in [0.01, 0.05, 0.1] {
         for [along, across, turning] in [
             [0.3, 0.3, 0.2],
@@ -348,26 +258,69 @@ fn little_friction_under_forces_and_a_torque() -> Result<()> {
             [0.02, 0.0, -0.3],
         ] {
             let bears = friction * load;
-            let (force, torque) = (
-                [along * bears, across * bears],
-                turning * bears * 3.0 * std::f64::consts::PI / 16.0,
-            );
-            let step = Step {
-                force: force.map(Some),
-                torque: Some(torque),
-                ..Step::press(Motion::load(load), friction)
-            };
-            let found = contact.slide(&shape, &[step], &FrictionOptions::default(), None)?;
-            let report = &found[0].report;
-            assert!(
-                report.converged(),
-                "{friction} {force:?} {torque}: {report:?}"
-            );
-            let error = |found: f64, due: f64| (found - due).abs();
-            let [x, y] = found[0].force();
-            assert!(error(x, force[0]).max(error(y, force[1])) < 1e-7 * bears);
-            assert!(error(found[0].torque(), torque) < 1e-7 * bears);
+            let force = [along * bears, across * bears];
+            let torque = turning * bears * 3.0 * std::f64::consts::PI / 16.0;
+            let step = Step::press(Motion::load(load), friction)
+                .with_force(force.map(Some))
+                .with_torque(Some(torque));
+            let found = slide(&contact, step, &FrictionOptions::default())?;
+            let [x, y] = found.force();
+            for (found, due) in [(x, force[0]), (y, force[1]), (found.torque(), torque)] {
+                below!((found - due).abs(), 1e-7 * bears, friction, force, torque);
+            }
         }
     }
+    Ok(())
+}
+
+/// At the surface, shear stress is what the traction demands, −q on the body and on the counterbody, whose z axis points
+/// the other way.
+#[test]
+fn shear_at_the_surface_is_the_traction() -> Result<()> {
+    let contact = unlike(32, 2.6)?;
+    let force = [0.6, -0.3].map(|share| Some(share * FRICTION * load(0.3)));
+    let step = Step::press(Motion::load(load(0.3)), FRICTION)
+        .with_force(force)
+        .with_torque(Some(0.1 * FRICTION * load(0.3)));
+    let solution = slide(&contact, step, &FrictionOptions::default())?;
+    let most = solution.normal.peak_pressure();
+    for (member, sign) in [(Member::Body, -1.0), (Member::Counterbody, 1.0)] {
+        let field = solution.stress(&[0.0], member, &StressOptions::default())?;
+        for (shear, traction) in [field.xz(), field.yz()].into_iter().zip(&solution.traction) {
+            let surface = shear.index_axis(Axis(0), 0).to_owned();
+            below!(apart(&surface, &(sign * traction)), 1e-10 * most, member);
+        }
+    }
+    Ok(())
+}
+
+/// With ν = 0, gross slip has the traction μp along the shift: its stress is that of `friction` in the evaluation of
+/// stress.
+#[test]
+fn gross_slip_is_friction_of_the_stress_call() -> Result<()> {
+    let contact = pair(0.0, 32)?;
+    let step = Step::press(Motion::load(load(0.0)), FRICTION)
+        .with_shift([Some(10.0 * FRICTION * load(0.0)), None]);
+    let solution = slide(&contact, step, &FrictionOptions::default())?;
+    assert!(solution.report.full_slip);
+    let (body, depths) = (material(0.0)?.into(), [0.0, 0.2, 1.0]);
+    let without = StressOptions::default();
+    let with = StressOptions {
+        friction: FRICTION,
+        direction: Some([1.0, 0.0]),
+        ..StressOptions::default()
+    };
+    let pressure = &solution.normal.pressure;
+    let called = stress(&body, contact.grid(), pressure, &depths, &with)?;
+    let pressed = stress(&body, contact.grid(), pressure, &depths, &without)?;
+    let true_one = solution.stress(&depths, Member::Body, &without)?;
+    let normal = solution.normal.stress(&depths, Member::Body, &without)?;
+    let most = solution.normal.peak_pressure();
+    for component in 0..6 {
+        let due = &called.components[component] - &pressed.components[component];
+        let found = &true_one.components[component] - &normal.components[component];
+        below!(apart(&due, &found), 1e-10 * most, component);
+    }
+    assert!(called.xz().iter().any(|s| s.abs() > 0.2 * most));
     Ok(())
 }

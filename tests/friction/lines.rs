@@ -1,11 +1,13 @@
 //! Line contact of coated cylinders, against two independent programs that agree to 8e-12: Chebyshev coefficients with
 //! Bessel transforms, and nodes of Erdogan and Gupta.
 
-use nacre::friction::{FrictionOptions, FrictionSolution, Rolling, RollingDirection, Step};
+use nacre::friction::{FrictionSolution, RollingDirection, Step};
 use nacre::{Contact, Cylinder, Grid, Motion, Options, Result};
 use serde_json::Value;
 
-use crate::support::pairs::{RADIUS, coated, creepage, equal, slid};
+use crate::support::pairs::{
+    Pulled, RADIUS, coated, creepage, equal, precise, rolled, rolling, slid, slide_once,
+};
 use crate::support::reference::{list, number, read};
 
 const FRICTION: f64 = 0.3;
@@ -30,12 +32,8 @@ impl Line {
         let shape = Cylinder::new(RADIUS)?;
         let excess = |load: f64| -> Result<f64> {
             let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
-            let p: Vec<f64> = solution
-                .pressure
-                .iter()
-                .copied()
-                .filter(|p| *p > 0.0)
-                .collect();
+            let p = solution.pressure.iter().copied();
+            let p: Vec<f64> = p.filter(|p| *p > 0.0).collect();
             Ok(match p.len().cmp(&cells) {
                 std::cmp::Ordering::Less => -1.0,
                 std::cmp::Ordering::Greater => 1.0,
@@ -45,10 +43,9 @@ impl Line {
         let (mut low, mut high) = (1e-3 / RADIUS, 1e2 / RADIUS);
         while high / low > 1.0 + 1e-8 {
             let middle = (low * high).sqrt();
-            if excess(middle)? > 0.0 {
-                high = middle;
-            } else {
-                low = middle;
+            match excess(middle)? > 0.0 {
+                true => high = middle,
+                false => low = middle,
             }
         }
         Ok(Self {
@@ -65,12 +62,9 @@ impl Line {
     }
 
     fn pull(&self, share: f64) -> Result<FrictionSolution> {
-        let step = Step {
-            force: [None, Some(share * self.bears())],
-            ..Step::press(Motion::load(self.load), FRICTION)
-        };
-        let solutions = self.contact.slide(&self.shape, &[step], &options(), None)?;
-        Ok(solutions.into_iter().next().expect("one step"))
+        let step = Step::press(Motion::load(self.load), FRICTION)
+            .with_force([None, Some(share * self.bears())]);
+        slide_once(&self.contact, &self.shape, step, &precise(1e-9))
     }
 
     fn roll(
@@ -79,21 +73,9 @@ impl Line {
         creepage: Option<f64>,
         force: Option<f64>,
     ) -> Result<FrictionSolution> {
-        let rolling = Rolling {
-            creepage: [creepage, None],
-            force: [force, None],
-            ..Rolling::new(Motion::load(self.load), friction, RollingDirection::PlusY)
-        };
-        let solution = self.contact.roll(&self.shape, &rolling, &options())?;
-        assert!(solution.report.converged());
-        Ok(solution)
-    }
-}
-
-fn options() -> FrictionOptions {
-    FrictionOptions {
-        tolerance: 1e-9,
-        ..FrictionOptions::default()
+        let (contact, direction) = (&self.contact, RollingDirection::PlusY);
+        let rolling = rolling(self.load, friction, direction, [creepage, force]);
+        rolled(contact, &self.shape, &rolling, &precise(1e-9))
     }
 }
 
@@ -132,19 +114,15 @@ fn partial_slip() -> Result<()> {
         let mut shifts = [0.0; 3];
         for (line, shift) in lines.iter().zip(&mut shifts) {
             let solution = line.pull(share)?;
-            assert!(solution.report.converged());
             let datum = 2.0 / std::f64::consts::PI * share * line.width.ln();
             *shift = slid(&solution).0[1] / ((1.0 - POISSON) * line.bears()) - datum;
             let cell = line.contact.grid().spacing()[1];
             let stuck = solution.stick().iter().filter(|stick| **stick).count();
             let half = 0.5 * stuck as f64 * cell;
-            assert!(
-                (half - number(case, "c_over_b")).abs() < cell,
-                "{case}: {half}"
-            );
+            below!((half - number(case, "c_over_b")).abs(), cell, case, half);
         }
         let (found, exact) = (extrapolated(shifts), number(case, "shift"));
-        assert!((found - exact).abs() < 2e-4, "{case}: {found}");
+        below!((found - exact).abs(), 2e-4, case, found);
         Ok(())
     })
 }
@@ -158,8 +136,7 @@ fn full_adhesion() -> Result<()> {
         for (line, ratio) in lines.iter().zip(&mut ratios) {
             *ratio = line.roll(1e4, Some(1e-6), None)?.force()[1] / 1e-6 / bare;
         }
-        let (found, exact) = (extrapolated(ratios), number(case, "ratio"));
-        assert!((found / exact - 1.0).abs() < 2e-4, "{case}: {found}");
+        near!(extrapolated(ratios), number(case, "ratio"), 2e-4, case);
         Ok(())
     })
 }
@@ -174,9 +151,8 @@ fn partial_slip_in_rolling() -> Result<()> {
             let solution = line.roll(FRICTION, None, Some(share * line.bears()))?;
             *found = creepage(&solution)[0] / line.bears();
         }
-        let found = extrapolated(creepages);
         let exact = number(case, "creep_times_G2b_over_muP");
-        assert!((found / exact - 1.0).abs() < 1e-3, "{case}: {found}");
+        near!(extrapolated(creepages), exact, 1e-3, case);
         Ok(())
     })
 }

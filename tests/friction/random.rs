@@ -1,12 +1,13 @@
 //! Random histories: every one converges or says that it did not, and keeps Coulomb's law. `make fuzz` tries many more.
 
-use nacre::friction::{FrictionOptions, Rolling, RollingDirection, Step};
-use nacre::{Contact, Elastic, Error, Grid, HalfSpace, Layer, Motion, Options, Result, Setup};
+use nacre::friction::{Rolling, RollingDirection, Step};
+use nacre::{Contact, Elastic, Error, Grid, Motion, Options, Result, Setup};
 use ndarray::Array2;
 use proptest::prelude::*;
 
-use crate::support::pairs::{RADIUS, ball};
-use crate::support::seeded::seeded;
+use crate::support::checks::seeded;
+use crate::support::pairs::{Pulled, RADIUS, ball, precise};
+use crate::support::settings::stack;
 
 /// Numbers from which a history is made.
 #[derive(Debug, Clone)]
@@ -70,12 +71,11 @@ fn case() -> impl Strategy<Value = Case> {
 
 impl Case {
     fn contact(&self) -> Result<Contact> {
-        let layers: Result<Vec<Layer>> = self
+        let layers = self
             .layers
             .iter()
-            .map(|(ratio, nu, thickness)| Layer::new(Elastic::new(2.6 * ratio, *nu)?, *thickness))
-            .collect();
-        let body = HalfSpace::new(Elastic::new(2.6, 0.3)?, layers?)?;
+            .map(|(ratio, nu, h)| [2.6 * ratio, *nu, *h]);
+        let body = stack(Elastic::new(2.6, 0.3)?, layers)?;
         let counterbody = match self.counterbody {
             None => None,
             Some(None) => Some(body.clone().into()),
@@ -95,11 +95,9 @@ impl Case {
         each.map(|(k, ((share, angle), load))| {
             let friction = self.friction[k.min(1)];
             let force = share * friction * load;
-            Step {
-                force: [Some(force * angle.cos()), Some(force * angle.sin())],
-                twist: (k == 2).then_some(self.twist * friction * load),
-                ..Step::press(Motion::load(load), friction)
-            }
+            Step::press(Motion::load(load), friction)
+                .with_force([Some(force * angle.cos()), Some(force * angle.sin())])
+                .with_twist((k == 2).then_some(self.twist * friction * load))
         })
         .collect()
     }
@@ -127,7 +125,7 @@ proptest! {
     #[test]
     fn fuzz_histories_keep_the_law(case in case()) {
         let contact = case.contact().expect("a contact");
-        let options = FrictionOptions { tolerance: 1e-7, ..FrictionOptions::default() };
+        let options = precise(1e-7);
         let shape = ball().expect("a ball");
         let loads = case.approaches.map(|part| {
             let motion = Motion::approach(part / RADIUS);

@@ -1,33 +1,13 @@
 //! Random layered contacts on small grids.
 
+use nacre::gradient::{LinearOptions, Linearisation};
 use nacre::{
     Contact, Elastic, Grid, HalfSpace, Interface, Layer, LogarithmicProfile, Motion, Options,
     Paraboloid, Result, Roller, Setup, Solution, Sphere, Substrate, Surface,
 };
 
-use crate::support::random::uniform;
-
-/// Numbers between 0 and 1.
-#[derive(Debug)]
-pub(crate) struct Numbers {
-    seed: u64,
-    taken: u64,
-}
-
-impl Numbers {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self { seed, taken: 0 }
-    }
-
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.taken += 1;
-        low + (high - low) * uniform([1, 1], (self.seed << 20) + self.taken)[[0, 0]]
-    }
-
-    fn chance(&mut self, part: f64) -> bool {
-        self.between(0.0, 1.0) < part
-    }
-}
+use crate::support::contacts::Random;
+use crate::support::settings;
 
 /// A contact to be solved.
 #[derive(Debug)]
@@ -39,29 +19,29 @@ pub(crate) struct Case {
     pub(crate) motion: Motion,
 }
 
-fn material(numbers: &mut Numbers) -> Result<Elastic> {
-    Elastic::new(
-        10f64.powf(numbers.between(-0.6, 0.6)),
-        numbers.between(0.0, 0.5),
-    )
+fn chance(numbers: &mut Random, part: f64) -> bool {
+    numbers.between(0.0, 1.0) < part
+}
+
+fn material(numbers: &mut Random) -> Result<Elastic> {
+    let young = numbers.power(-0.6, 0.6);
+    Elastic::new(young, numbers.between(0.0, 0.5))
 }
 
 /// A body of up to two layers.
-fn body(numbers: &mut Numbers) -> Result<HalfSpace> {
-    let count = numbers.between(0.0, 3.0) as usize;
+fn body(numbers: &mut Random) -> Result<HalfSpace> {
+    let count = numbers.choice(3);
     let mut layers = Vec::new();
     for _ in 0..count {
         let layer = Layer::new(material(numbers)?, numbers.between(0.1, 0.8))?;
-        layers.push(match numbers.chance(0.2) {
+        layers.push(match chance(numbers, 0.2) {
             true => layer.with_interface(Interface::Frictionless),
             false => layer,
         });
     }
-    let rigid = count > 0 && numbers.chance(0.15);
-    let substrate = if rigid {
-        Substrate::Rigid
-    } else {
-        material(numbers)?.into()
+    let substrate = match count > 0 && chance(numbers, 0.15) {
+        true => Substrate::Rigid,
+        false => material(numbers)?.into(),
     };
     HalfSpace::new(substrate, layers)
 }
@@ -69,25 +49,21 @@ fn body(numbers: &mut Numbers) -> Result<HalfSpace> {
 impl Case {
     /// The case with this number: spheres, paraboloids and rollers, under all kinds of motion.
     pub(crate) fn new(number: u64) -> Result<Self> {
-        let numbers = &mut Numbers::new(number);
+        let numbers = &mut Random::new(number);
         let cells = [0, 1].map(|_| numbers.between(18.0, 30.0) as usize);
-        let line = numbers.chance(0.1);
+        let line = chance(numbers, 0.1);
         let grid = match line {
             true => Grid::line(40, 2.4)?,
             false => Grid::new(cells, [2.4, 2.4])?,
         };
         let body = body(numbers)?;
-        let counterbody = match numbers.chance(0.4) {
+        let counterbody = match chance(numbers, 0.4) {
             true => Some(self::body(numbers)?),
             false => None,
         };
         let radius = numbers.between(8.0, 20.0);
         let by = [numbers.between(-0.1, 0.1), numbers.between(-0.1, 0.1)];
-        let kind = if line {
-            3
-        } else {
-            numbers.between(0.0, 4.0) as usize
-        };
+        let kind = if line { 3 } else { numbers.choice(4) };
         let shape: Box<dyn Surface> = match kind {
             0 => Box::new(Sphere::new(radius)?.shifted(by[0], by[1])?),
             1 => Box::new(Roller::new(radius, 0.6, radius)?.shifted(by[0], by[1])?),
@@ -101,13 +77,13 @@ impl Case {
             }
         };
         let depth = numbers.between(0.2, 0.5) / radius;
-        let mut motion = match numbers.chance(0.6) {
+        let mut motion = match chance(numbers, 0.6) {
             true => Motion::load(if line { 0.3 * depth } else { depth }),
             false if line => Motion::load(0.3 * depth),
             false => Motion::approach(depth),
         };
         for (axis, by) in by.into_iter().enumerate().skip(usize::from(line)) {
-            match numbers.between(0.0, 4.0) as usize {
+            match numbers.choice(4) {
                 0 if motion.load.is_some() => {
                     motion.eccentricity[axis] = Some(by + numbers.between(-0.05, 0.05));
                 }
@@ -134,10 +110,24 @@ impl Case {
             ..Setup::default()
         };
         let options = Options {
-            tolerance,
             max_iterations: Some(20_000),
-            ..Options::default()
+            ..settings::tolerance(tolerance)
         };
         Contact::plan(&self.body, self.grid, setup)?.solve(&*self.shape, &self.motion, &options)
     }
+}
+
+/// A linearisation whose solves end at 1e-12.
+pub(crate) fn linearised<'a>(
+    solution: &'a Solution,
+    shape: Option<&'a dyn Surface>,
+) -> Result<Linearisation<'a>> {
+    Linearisation::plan(
+        solution,
+        shape,
+        &LinearOptions {
+            tolerance: 1e-12,
+            watch: None,
+        },
+    )
 }

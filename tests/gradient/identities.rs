@@ -1,75 +1,60 @@
 //! Adjoint and tangent solves agree, and derivatives satisfy the sum rules of the discrete contact.
 
-use nacre::gradient::{LinearOptions, Linearisation, Output};
+use nacre::gradient::Output;
 use nacre::{Result, Surface};
 use ndarray::Array2;
 
-use super::cases::{Case, Numbers};
+use super::cases::{Case, linearised};
+
+use crate::support::checks::largest;
+use crate::support::contacts::Random;
 
 /// Linear solves to 1e-12, and sums of some hundred terms.
 const EXACT: f64 = 1e-9;
 
-const TIGHT: LinearOptions = LinearOptions {
-    tolerance: 1e-12,
-    watch: None,
-};
-
 /// Σ w ṗ of the tangent equals the derivative of Σ w p of the adjoint, for every parameter.
 #[test]
 fn adjoint_and_tangent_agree() -> Result<()> {
-    let (mut worst, mut compared, mut cases) = (0.0_f64, 0, 0);
+    let (mut compared, mut cases) = (0, 0);
     for number in 0..200 {
         let case = Case::new(number)?;
         let Ok(solution) = case.solve(1e-10) else {
             continue;
         };
         cases += 1;
-        let plan = Linearisation::plan(&solution, Some(&*case.shape), &TIGHT)?;
-        let numbers = &mut Numbers::new(1000 + number);
+        let plan = linearised(&solution, Some(&*case.shape))?;
+        let numbers = &mut Random::new(1000 + number);
         let weights =
             Array2::from_shape_simple_fn(case.grid.shape(), || numbers.between(-1.0, 1.0));
         let gradient = plan.vjp(&weights, None)?;
-        let sized = |field: &Array2<f64>| {
-            (field.iter().zip(&weights))
-                .map(|(p, w)| (p * w).abs())
-                .sum::<f64>()
-        };
+        let sized = |field: &Array2<f64>| (field * &weights).mapv(f64::abs).sum();
         // A shift that moves the whole contact changes nothing but by its rounding.
         let rest = 1e-3 * sized(&solution.pressure);
         let scale = |rate: &Array2<f64>| sized(rate) + rest;
-        let largest = |a: &Array2<f64>| a.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         for (parameter, value) in &gradient.values {
             let tangent = plan.jvp(&[(&parameter.to_string(), 1.0)], None)?;
-            let dot: f64 = (tangent.pressure.iter().zip(&weights))
-                .map(|(p, w)| p * w)
-                .sum();
+            let dot = (&tangent.pressure * &weights).sum();
             if largest(&tangent.pressure) > 0.0 {
                 let error = (dot - value).abs() / scale(&tangent.pressure);
-                worst = worst.max(error);
+                below!(error, EXACT, number, parameter);
                 compared += 1;
             }
         }
         // And for a random change of the gap, which the field answers.
         let gap = Array2::from_shape_simple_fn(case.grid.shape(), || numbers.between(-1.0, 1.0));
         let tangent = plan.jvp(&[], Some(&gap))?;
-        let one: f64 = (gradient.gap.iter().zip(&gap)).map(|(a, b)| a * b).sum();
-        let other: f64 = (tangent.pressure.iter().zip(&weights))
-            .map(|(p, w)| p * w)
-            .sum();
-        worst = worst.max((one - other).abs() / scale(&tangent.pressure));
+        let one = (&gradient.gap * &gap).sum();
+        let other = (&tangent.pressure * &weights).sum();
+        below!((one - other).abs() / scale(&tangent.pressure), EXACT);
     }
-    println!("largest difference {worst:.1e} of {compared} in {cases} cases");
-    assert!(
-        worst < EXACT && compared > 1500 && cases > 195,
-        "{worst:e} {compared} {cases}"
-    );
+    assert!(compared > 1500 && cases > 195, "{compared} {cases}");
     Ok(())
 }
 
 /// Σ dδ/dh = 1 under a load, and Σ dJ/dh = 0 for every J(p); Σ x ds_x/dh = 1 where the tilt is loaded.
 #[test]
 fn fields_satisfy_the_sum_rules() -> Result<()> {
-    let (mut worst, mut seen) = (0.0_f64, [0, 0]);
+    let mut seen = [0, 0];
     for number in 0..100 {
         let case = Case::new(number)?;
         let motion = case.motion;
@@ -79,34 +64,30 @@ fn fields_satisfy_the_sum_rules() -> Result<()> {
         let Ok(solution) = case.solve(1e-10) else {
             continue;
         };
-        let plan = Linearisation::plan(&solution, Some(&*case.shape), &TIGHT)?;
+        let plan = linearised(&solution, Some(&*case.shape))?;
         let outputs = [Output::Approach, Output::Tilt(0), Output::PressureNorm(8.0)];
         let gradients = plan.gradients(&outputs, Some(&[]))?;
         let size = |k: usize| gradients[k].gap.iter().map(|g| g.abs()).sum::<f64>();
         seen[0] += 1;
-        worst = worst.max((gradients[0].gap.sum() - 1.0).abs() / size(0));
-        worst = worst.max(gradients[2].gap.sum().abs() / size(2));
+        below!((gradients[0].gap.sum() - 1.0).abs() / size(0), EXACT);
+        below!(gradients[2].gap.sum().abs() / size(2), EXACT);
         if motion.eccentricity[0].is_some() || motion.moment[0].is_some() {
             let x = case.grid.x();
             let moment: f64 = (gradients[1].gap.indexed_iter())
                 .map(|((i, _), g)| x[i] * g)
                 .sum();
-            worst = worst.max((moment - 1.0).abs() / size(1));
+            below!((moment - 1.0).abs() / size(1), EXACT);
             seen[1] += 1;
         }
     }
-    println!("largest difference {worst:.1e} of {seen:?}");
-    assert!(
-        worst < EXACT && seen[0] > 30 && seen[1] > 10,
-        "{worst:e} {seen:?}"
-    );
+    assert!(seen[0] > 30 && seen[1] > 10, "{seen:?}");
     Ok(())
 }
 
 /// Moduli and load scaled together leave the approach, and scale pressures: Σ E ∂/∂E + W ∂/∂W.
 #[test]
 fn moduli_and_load_scale_together() -> Result<()> {
-    let (mut worst, mut seen) = (0.0_f64, 0);
+    let mut seen = 0;
     for number in 0..60 {
         let case = Case::new(number)?;
         let Some(load) = case.motion.load else {
@@ -119,7 +100,7 @@ fn moduli_and_load_scale_together() -> Result<()> {
             continue;
         };
         let outputs = [Output::Approach, Output::PressureNorm(10.0)];
-        let plan = Linearisation::plan(&solution, Some(&*case.shape), &TIGHT)?;
+        let plan = linearised(&solution, Some(&*case.shape))?;
         for (gradient, degree) in plan.gradients(&outputs, None)?.iter().zip([0.0, 1.0]) {
             let mut sum = 0.0;
             for (parameter, slope) in &gradient.values {
@@ -129,13 +110,12 @@ fn moduli_and_load_scale_together() -> Result<()> {
                         .or((path == "load").then_some(load))
                         .unwrap_or(0.0);
             }
-            worst = worst.max((sum / gradient.value - degree).abs());
+            // The exact method's coefficients hold to 1e-9.
+            below!((sum / gradient.value - degree).abs(), 1e-8);
         }
         seen += 1;
     }
-    println!("largest difference {worst:.1e} of {seen}");
-    // The exact method's coefficients hold to 1e-9.
-    assert!(worst < 1e-8 && seen > 12, "{worst:e} {seen}");
+    assert!(seen > 12, "{seen}");
     Ok(())
 }
 
@@ -159,16 +139,14 @@ fn young(case: &Case, path: &str) -> Option<f64> {
 fn the_gap_field_stands_for_any_shape() -> Result<()> {
     let case = Case::new(0)?;
     let solution = case.solve(1e-10)?;
-    let plan = Linearisation::plan(&solution, Some(&*case.shape), &TIGHT)?;
+    let plan = linearised(&solution, Some(&*case.shape))?;
     let gradient = &plan.gradients(&[Output::PressureNorm(8.0)], None)?[0];
     for (name, _) in case.shape.parameters() {
         let slopes = case.shape.gap_derivative(&name, &case.grid)?;
-        let sum: f64 = (slopes.iter().zip(&gradient.gap)).map(|(a, b)| a * b).sum();
+        let sum = (&slopes * &gradient.gap).sum();
         let found = gradient.get(&format!("shape.{name}")).unwrap_or(f64::NAN);
-        assert!(
-            (sum - found).abs() < 1e-12 * found.abs().max(1e-3 * gradient.value),
-            "{name}"
-        );
+        let bar = 1e-12 * found.abs().max(1e-3 * gradient.value);
+        below!((sum - found).abs(), bar, name);
     }
     Ok(())
 }

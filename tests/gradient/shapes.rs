@@ -5,6 +5,8 @@ use nacre::{
     Superposition, Surface,
 };
 
+use crate::support::checks::{apart, largest};
+
 /// Differences of sixth order with steps of 1e-2.
 const DIFFERENCE: f64 = 1e-8;
 
@@ -18,89 +20,44 @@ fn log(v: &[f64]) -> Result<LogarithmicProfile> {
 #[test]
 fn derivatives_of_gaps_equal_differences() -> Result<()> {
     let grid = Grid::new([32, 20], [2.0, 1.0])?;
+    #[rustfmt::skip]
     let shapes: [(&[&str], &[f64], Maker); 9] = [
         (&["radius"], &[5.0], |v| Ok(Box::new(Sphere::new(v[0])?))),
-        (
-            &["radius", "counter_radius_x", "counter_radius_y"],
-            &[5.0, -9.0, 7.0],
-            |v| {
-                Ok(Box::new(
-                    Sphere::new(v[0])?.with_counter_radii([Some(v[1]), Some(v[2])])?,
-                ))
-            },
-        ),
-        (
-            &["radius_x", "radius_y", "counter_radius_y"],
-            &[5.0, 3.0, -7.0],
-            |v| {
-                Ok(Box::new(
-                    Paraboloid::new(v[0], v[1])?.with_counter_radii([None, Some(v[2])])?,
-                ))
-            },
-        ),
-        (&["radius", "counter_radius"], &[5.0, -8.0], |v| {
-            Ok(Box::new(Cylinder::new(v[0])?.with_counter_radius(v[1])?))
-        }),
-        (
-            &["radius", "flat_length", "crown_radius"],
-            &[5.0, 0.61, 9.0],
-            |v| Ok(Box::new(Roller::new(v[0], v[1], v[2])?)),
-        ),
-        (
-            &[
-                "radius",
-                "profile.amplitude",
-                "profile.flat_length",
-                "profile.end_factor",
-                "counter_radius",
-            ],
+        (&["radius", "counter_radius_x", "counter_radius_y"], &[5.0, -9.0, 7.0],
+            |v| Ok(Box::new(Sphere::new(v[0])?.with_counter_radii([Some(v[1]), Some(v[2])])?))),
+        (&["radius_x", "radius_y", "counter_radius_y"], &[5.0, 3.0, -7.0],
+            |v| Ok(Box::new(Paraboloid::new(v[0], v[1])?.with_counter_radii([None, Some(v[2])])?))),
+        (&["radius", "counter_radius"], &[5.0, -8.0],
+            |v| Ok(Box::new(Cylinder::new(v[0])?.with_counter_radius(v[1])?))),
+        (&["radius", "flat_length", "crown_radius"], &[5.0, 0.61, 9.0],
+            |v| Ok(Box::new(Roller::new(v[0], v[1], v[2])?))),
+        (&["radius", "profile.amplitude", "profile.flat_length", "profile.end_factor", "counter_radius"],
             &[5.0, 0.01, 0.61, 0.95, -8.0],
-            |v| {
-                Ok(Box::new(
-                    Roller::with_profile(v[0], log(v)?)?.with_counter_radius(v[4])?,
-                ))
-            },
-        ),
-        (
-            &["radius", "profile.drop[0]", "profile.drop[1]"],
-            &[5.0, 0.01, 0.02],
-            |v| {
-                let profile = SampledProfile::new(&[-1.0, 0.1, 1.0], &[v[1], v[2], 0.03])?;
-                Ok(Box::new(Roller::with_profile(v[0], profile)?))
-            },
-        ),
-        (
-            &["radius", "shift[0]", "shift[1]"],
-            &[5.0, 0.03, 0.05],
-            |v| Ok(Box::new(Sphere::new(v[0])?.shifted(v[1], v[2])?)),
-        ),
-        (&["parts[0].radius", "parts[1].radius"], &[5.0, 7.0], |v| {
-            Ok(Box::new(Superposition::new([
-                Sphere::new(v[0])?,
-                Sphere::new(v[1])?,
-            ])?))
+            |v| Ok(Box::new(Roller::with_profile(v[0], log(v)?)?.with_counter_radius(v[4])?))),
+        (&["radius", "profile.drop[0]", "profile.drop[1]"], &[5.0, 0.01, 0.02], |v| {
+            let profile = SampledProfile::new(&[-1.0, 0.1, 1.0], &[v[1], v[2], 0.03])?;
+            Ok(Box::new(Roller::with_profile(v[0], profile)?))
         }),
+        (&["radius", "shift[0]", "shift[1]"], &[5.0, 0.03, 0.05],
+            |v| Ok(Box::new(Sphere::new(v[0])?.shifted(v[1], v[2])?))),
+        (&["parts[0].radius", "parts[1].radius"], &[5.0, 7.0],
+            |v| Ok(Box::new(Superposition::new([Sphere::new(v[0])?, Sphere::new(v[1])?])?))),
     ];
     for (names, values, make) in shapes {
         let shape = make(values)?;
         for name in names {
-            assert!(
-                shape.parameters().iter().any(|(one, _)| one == name),
-                "{shape:?} {name}"
-            );
+            let all = shape.parameters();
+            assert!(all.iter().any(|(one, _)| one == name), "{shape:?} {name}");
         }
         for (name, value) in shape.parameters() {
             let Some(k) = names.iter().position(|one| *one == name) else {
                 continue;
             };
-            assert!((value - values[k]).abs() < 1e-15, "{name}");
+            below!((value - values[k]).abs(), 1e-15, name);
             let found = shape.gap_derivative(&name, &grid)?;
             // Ends of profiles, at which the end factor has its pole, need the smaller step.
-            let step = if name.ends_with("factor") {
-                5e-4
-            } else {
-                1e-2 * value.abs()
-            };
+            let is_end = name.ends_with("factor");
+            let step = if is_end { 5e-4 } else { 1e-2 * value.abs() };
             let at = |factor: f64| -> Result<_> {
                 let mut values = values.to_vec();
                 values[k] += factor * step;
@@ -110,19 +67,12 @@ fn derivatives_of_gaps_equal_differences() -> Result<()> {
             for (factor, weight) in [(1.0, 0.75), (2.0, -0.15), (3.0, 1.0 / 60.0)] {
                 difference = difference + (at(factor)? - at(-factor)?) * (weight / step);
             }
-            let size = difference.iter().fold(0.0, |a: f64, d| a.max(d.abs()));
+            let size = largest(&difference);
             assert!(size > 0.0, "{name}");
-            let worst = found
-                .iter()
-                .zip(&difference)
-                .fold(0.0, |a: f64, (d, e)| a.max((d - e).abs()));
             // The second derivative of a gap jumps where a straight part ends: a part of the step.
-            let bar = if name.ends_with("flat_length") {
-                3e-3
-            } else {
-                DIFFERENCE
-            };
-            assert!(worst < bar * size, "{shape:?} {name}: {:e}", worst / size);
+            let is_jump = name.ends_with("flat_length");
+            let bar = if is_jump { 3e-3 } else { DIFFERENCE };
+            below!(apart(&found, &difference), bar * size, shape, name);
         }
     }
     Ok(())

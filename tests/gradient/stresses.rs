@@ -1,11 +1,16 @@
 //! Derivatives of stresses equal differences of whole solves, whose stresses are those of uniform cells.
 
-use nacre::gradient::{LinearOptions, Linearisation, Measure, Output, StressOutput, StressPlace};
+use nacre::gradient::{Measure, Output, StressOutput, StressPlace};
 use nacre::{
-    BodyParameter, Contact, Elastic, Grid, HalfSpace, Layer, Member, Motion, Options, Paraboloid,
-    Result, Section, Setup, Side, Solution, Stress, StressOptions, stress,
+    BodyParameter, Elastic, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Section, Side,
+    Solution, Stress, StressOptions, stress,
 };
 use ndarray::Array3;
+
+use super::cases::linearised;
+use super::kinks::refused;
+
+use crate::support::settings::{Controls, plan, stack, tolerance};
 
 const LOAD: f64 = 0.03;
 
@@ -13,26 +18,16 @@ const LOAD: f64 = 0.03;
 const DIFFERENCE: f64 = 2e-6;
 
 fn body() -> Result<HalfSpace> {
-    let coat = Layer::new(Elastic::new(3.0, 0.25)?, 0.4)?;
-    HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])
+    stack(Elastic::new(1.0, 0.3)?, [[3.0, 0.25, 0.4]])
 }
 
 fn solve(body: &HalfSpace, load: f64) -> Result<Solution> {
     let grid = Grid::new([26, 24], [2.4, 2.4])?;
-    let contact = Contact::plan(body, grid, Setup::default())?;
-    let options = Options {
-        tolerance: 1e-11,
-        ..Options::default()
-    };
+    let contact = plan(body, grid)?;
+    let options = tolerance(1e-11);
     let ball = Paraboloid::new(9.0, 11.0)?;
-    contact.solve(
-        &ball,
-        &Motion {
-            tilt: [Some(0.002), None],
-            ..Motion::load(load)
-        },
-        &options,
-    )
+    let motion = Motion::load(load).with_tilt([Some(0.002), None]);
+    contact.solve(&ball, &motion, &options)
 }
 
 fn options(side: Side, section: Section, friction: f64) -> StressOptions {
@@ -47,14 +42,7 @@ fn options(side: Side, section: Section, friction: f64) -> StressOptions {
 
 fn field(body: &HalfSpace, load: f64, depth: f64, options: &StressOptions) -> Result<Stress> {
     let solution = solve(body, load)?;
-    let plan = Linearisation::plan(
-        &solution,
-        None,
-        &LinearOptions {
-            tolerance: 1e-12,
-            watch: None,
-        },
-    )?;
+    let plan = linearised(&solution, None)?;
     stress(body, solution.grid(), &plan.pressure(), &[depth], options)
 }
 
@@ -66,14 +54,7 @@ fn richardson(step: f64, at: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 
 fn gradient(output: StressOutput) -> Result<nacre::gradient::Gradient> {
     let solution = solve(&body()?, LOAD)?;
-    let plan = Linearisation::plan(
-        &solution,
-        None,
-        &LinearOptions {
-            tolerance: 1e-12,
-            watch: None,
-        },
-    )?;
+    let plan = linearised(&solution, None)?;
     let mut found = plan.gradients(&[Output::Stress(output)], None)?;
     Ok(found.remove(0))
 }
@@ -92,7 +73,6 @@ fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
         (Measure::Principal(0), |s| s.principal()[0][[0, 0, 0]]),
         (Measure::MaxShear, |s| s.max_shear()[[0, 0, 0]]),
     ];
-    let mut worst = 0.0_f64;
     for (measure, value) in measures {
         let output = StressOutput {
             friction: 0.2,
@@ -101,12 +81,11 @@ fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
         };
         let found = gradient(output)?;
         let exact = value(&field(&body, LOAD, at[2], &options)?);
-        assert!((found.value / exact - 1.0).abs() < 1e-9, "{measure:?}");
-        let mut compare = |path: &str, theta: f64, expected: f64| {
+        near!(found.value, exact, 1e-9, measure);
+        let compare = |path: &str, theta: f64, expected: f64| {
             let slope = found.get(path).unwrap_or(f64::NAN);
             let error = (slope - expected).abs() * theta / exact.abs();
-            println!("{measure:?} {path}: {slope:.8e} {expected:.8e} {error:.1e}");
-            worst = worst.max(error);
+            below!(error, DIFFERENCE, measure, path);
         };
         let load = |step: f64| Ok(value(&field(&body, LOAD + step, at[2], &options)?));
         compare("load", LOAD, richardson(1e-4 * LOAD, load)?);
@@ -131,7 +110,6 @@ fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
         };
         compare("friction", 0.2, richardson(1e-3, friction)?);
     }
-    assert!(worst < DIFFERENCE, "{worst:e}");
     Ok(())
 }
 
@@ -158,18 +136,13 @@ fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
         side: Side::Below,
         sharpness: SHARPNESS,
     };
-    let shear = |s: &Stress| {
-        let mut found = s.xz().clone();
-        found.zip_mut_with(s.yz(), |a, b| *a = a.hypot(*b));
-        found
-    };
+    let shear = |s: &Stress| (s.xz() * s.xz() + s.yz() * s.yz()).sqrt();
     type Planes<'a> = &'a dyn Fn(&HalfSpace) -> Vec<(f64, Side)>;
     let three: Planes = &|body| {
         let h = body.thickness();
         vec![(0.0, Side::Below), (0.5 * h, Side::Below), (h, Side::Above)]
     };
     let one: Planes = &|body| vec![(body.thickness(), Side::Below)];
-    let mut worst = 0.0_f64;
     for (measure, place, planes) in [
         (Measure::VonMises, layer, three),
         (Measure::PlaneShear, interface, one),
@@ -186,43 +159,37 @@ fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
             fields.collect()
         };
         let here = values(&body, LOAD)?;
-        assert!((found.value / soft(&here, SHARPNESS) - 1.0).abs() < 1e-9);
+        near!(found.value, soft(&here, SHARPNESS), 1e-9);
+        let compare = |path: &str, theta: f64, expected: f64| {
+            let slope = found.get(path).unwrap_or(f64::NAN);
+            let error = (slope - expected).abs() * theta / found.value;
+            below!(error, DIFFERENCE, path);
+        };
         let load = |step: f64| Ok(soft(&values(&body, LOAD + step)?, SHARPNESS));
-        let expected = richardson(1e-4 * LOAD, load)?;
-        let slope = found.get("load").unwrap_or(f64::NAN);
-        worst = worst.max((slope - expected).abs() * LOAD / found.value);
+        compare("load", LOAD, richardson(1e-4 * LOAD, load)?);
         let h = body.thickness();
         let thickness = |step: f64| {
             let body = body.with_value(BodyParameter::Thickness(0), h + step)?;
             Ok(soft(&values(&body, LOAD)?, SHARPNESS))
         };
-        let expected = richardson(2e-3 * h, thickness)?;
-        let slope = found.get("body.layers[0].thickness").unwrap_or(f64::NAN);
-        println!("{measure:?}: {slope:e} {expected:e}");
-        worst = worst.max((slope - expected).abs() * h / found.value);
+        compare(
+            "body.layers[0].thickness",
+            h,
+            richardson(2e-3 * h, thickness)?,
+        );
     }
-    println!("largest difference {worst:.1e}");
-    assert!(worst < DIFFERENCE, "{worst:e}");
     Ok(())
 }
 
 #[test]
 fn a_repeated_principal_stress_is_refused() -> Result<()> {
     let grid = Grid::new([25, 25], [2.4, 2.4])?;
-    let contact = Contact::plan(Elastic::new(1.0, 0.3)?, grid, Setup::default())?;
+    let contact = plan(Elastic::new(1.0, 0.3)?, grid)?;
     let ball = Paraboloid::new(10.0, 10.0)?;
     let solution = contact.solve(&ball, &Motion::load(LOAD), &Options::default())?;
     let at = StressPlace::Point([0.0, 0.0, 0.3], Side::Below);
-    let refused = solution.gradient(
-        &Output::Stress(StressOutput::new(Measure::Principal(0), at)),
-        None,
-    );
-    let message = refused.map_or_else(|error| error.to_string(), |found| panic!("{found:?}"));
-    assert!(message.contains("von Mises"), "{message}");
-    let smooth = StressOutput {
-        member: Member::Body,
-        ..StressOutput::new(Measure::VonMises, at)
-    };
-    assert!(solution.gradient(&Output::Stress(smooth), None)?.value > 0.0);
+    let of = |measure| solution.gradient(&Output::Stress(StressOutput::new(measure, at)), None);
+    refused(of(Measure::Principal(0)), "von Mises");
+    assert!(of(Measure::VonMises)?.value > 0.0);
     Ok(())
 }

@@ -5,8 +5,11 @@ use std::f64::consts::PI;
 use nacre::indent::{Adhesion, Branch, Control, Indent, Stack, Tip};
 use nacre::{Elastic, Result};
 
-use super::support::{EIGHTH, coated, number, reference, unit_rule};
+use super::coated;
+
 use crate::support::claims::claim;
+use crate::support::numerics::{slope, unit_rule};
+use crate::support::reference::{float, list, number, read};
 
 /// Work of adhesion with which a0 = 1 where E2* = R = 1: a0³ = 9πwR²/8E2*.
 const WORK: f64 = 8.0 / (9.0 * PI);
@@ -28,32 +31,32 @@ fn jkr_on_a_bare_body() -> Result<()> {
         let edge = -(2.0 * a * modulus * work / PI).sqrt();
         let near = a * (1.0 - 1e-9);
         let singular = edge / (a * a - near * near).sqrt();
-        assert!((point.pressure(&[near])?[0] / singular - 1.0).abs() < 1e-4);
+        near!(point.pressure(&[near])?[0], singular, 1e-4);
     }
     let scale = PI * work * radius;
     for (control, due) in [(Control::Load, 1.5), (Control::Approach, 5.0 / 6.0)] {
         let found = indent.pull_off(control)?;
         claim("jkr-bare", -found.load / scale - due);
         let again = indent.work_from_pull_off(-found.load, control)?;
-        assert!((again / work - 1.0).abs() < 1e-9, "{control:?}: {again}");
+        near!(again, work, 1e-9, control);
     }
     // Under no load: a³ = 9πwR²/2E*, and the tip jumps there.
     let jumped = indent.snap_in(Control::Load)?;
     let due = (4.5 * PI * work * radius * radius / modulus).cbrt();
-    assert!((jumped.radius / due - 1.0).abs() < 1e-12);
+    near!(jumped.radius, due, 1e-12);
     Ok(())
 }
 
 /// Pull-off and whole curves on coated bodies, of an edge condition and of an energy form, which agree to 1e-13.
 #[test]
 fn jkr_on_coated_bodies() -> Result<()> {
-    let data = reference("jkr.json");
+    let data = read("jkr.json");
     let indent = |ratio: f64, h: f64| -> Result<Indent> {
         let stack = Stack::plan(&[coated(ratio, h)?.into()])?;
         Indent::new(&stack, &Tip::paraboloid(1.0)?).with_adhesion(Adhesion::Jkr { work: WORK })
     };
-    for row in data["table"].as_array().into_iter().flatten() {
-        let (ratio, h) = (number(&row["E1_over_E2"]), number(&row["h_over_a0"]));
+    for row in list(&data, "table") {
+        let (ratio, h) = (number(row, "E1_over_E2"), number(row, "h_over_a0"));
         let indent = indent(ratio, h)?;
         for (control, key) in [
             (Control::Load, "load_control"),
@@ -66,23 +69,21 @@ fn jkr_on_coated_bodies() -> Result<()> {
             claim("jkr-coated", load - due);
         }
     }
-    for curve in data["curves"].as_array().into_iter().flatten() {
-        let (ratio, h) = (number(&curve["E1_over_E2"]), number(&curve["h_over_a0"]));
+    for curve in list(&data, "curves") {
+        let (ratio, h) = (number(curve, "E1_over_E2"), number(curve, "h_over_a0"));
         let indent = indent(ratio, h)?;
-        for row in curve["rows"].as_array().into_iter().flatten() {
-            let [a, load, approach] = [0, 1, 2].map(|k| number(&row[k]));
+        for row in list(curve, "rows") {
+            let [a, load, approach] = [0, 1, 2].map(|k| float(&row[k]).expect("a number"));
             let point = indent.at_radius(a)?;
             let error = (point.load / (PI * WORK) - load) / load.abs().max(1.0);
             claim("jkr-coated", error);
-            claim(
-                "jkr-coated",
-                (point.approach - approach) / approach.abs().max(1.0),
-            );
+            let error = (point.approach - approach) / approach.abs().max(1.0);
+            claim("jkr-coated", error);
             // The energy form: w = S' (δ − δ_H)²/4πa.
             let without = Indent::new(indent.stack(), indent.tip()).at_radius(a)?;
             let apart = point.approach - without.approach;
             let work = point.stiffness_slope * apart * apart / (4.0 * PI * a);
-            assert!((work / WORK - 1.0).abs() < 1e-9);
+            near!(work, WORK, 1e-9);
         }
     }
     Ok(())
@@ -100,8 +101,8 @@ fn branches_of_the_curve() -> Result<()> {
         let [stable, unstable] =
             [Branch::Stable, Branch::Unstable].map(|branch| indent.at(Control::Load, load, branch));
         let (stable, unstable) = (stable?, unstable?);
-        assert!((stable.load / load - 1.0).abs() < 1e-10);
-        assert!((unstable.load / load - 1.0).abs() < 1e-10);
+        near!(stable.load, load, 1e-10);
+        near!(unstable.load, load, 1e-10);
         assert!(stable.radius > last.radius && unstable.radius < last.radius);
     }
     assert!(indent.at_load(1.001 * last.load).is_err());
@@ -112,40 +113,34 @@ fn branches_of_the_curve() -> Result<()> {
 /// Johnson, Kendall and Roberts where the strength is large for the top layer, and 2πwR where it is small.
 #[test]
 fn maugis_on_bare_and_coated_bodies() -> Result<()> {
-    let data = reference("maugis.json");
+    let data = read("maugis.json");
     let tip = Tip::paraboloid(1.0)?;
     // λ = σ0 (9R/2πwE2*²)^{1/3}
     let strength = |lambda: f64| lambda / (9.0 / (2.0 * PI * WORK)).cbrt();
     let pull_off = |stack: &Stack, lambda: f64| -> Result<f64> {
-        let adhesion = Adhesion::Maugis {
-            work: WORK,
-            strength: strength(lambda),
-        };
+        let (work, strength) = (WORK, strength(lambda));
+        let adhesion = Adhesion::Maugis { work, strength };
         let indent = Indent::new(stack, &tip).with_adhesion(adhesion)?;
         Ok(-indent.pull_off(Control::Load)?.load / (PI * WORK))
     };
     let bare = Stack::plan(&[Elastic::new(0.91, 0.3)?.into()])?;
-    for row in data["bare"].as_array().into_iter().flatten() {
-        let (lambda, due) = (number(&row["lambda_"]), number(&row["pull_off_over_piwR"]));
-        let found = pull_off(&bare, lambda)?;
-        claim("maugis-bare", found - due);
+    for row in list(&data, "bare") {
+        let (lambda, due) = (number(row, "lambda_"), number(row, "pull_off_over_piwR"));
+        claim("maugis-bare", pull_off(&bare, lambda)? - due);
     }
-    for case in data["coated"].as_array().into_iter().flatten() {
-        let (ratio, h) = (number(&case["E1_over_E2"]), number(&case["h_over_a0"]));
+    for case in list(&data, "coated") {
+        let (ratio, h) = (number(case, "E1_over_E2"), number(case, "h_over_a0"));
         let stack = Stack::plan(&[coated(ratio, h)?.into()])?;
-        for row in case["rows"].as_array().into_iter().flatten() {
-            let (lambda, due) = (number(&row["lambda_"]), number(&row["pull_off_over_piwR"]));
-            let found = pull_off(&stack, lambda)?;
-            claim("maugis-coated", found - due);
+        for row in list(case, "rows") {
+            let (lambda, due) = (number(row, "lambda_"), number(row, "pull_off_over_piwR"));
+            claim("maugis-coated", pull_off(&stack, lambda)? - due);
         }
         let jkr = Indent::new(&stack, &tip).with_adhesion(Adhesion::Jkr { work: WORK })?;
         let due = -jkr.pull_off(Control::Load)?.load / (PI * WORK);
         // λ of the top layer is λ (E2*/E1*)^{2/3}.
         let top = ratio.powf(2.0 / 3.0);
-        let found = pull_off(&stack, 100.0 * top)?;
-        claim("maugis-jkr", found / due - 1.0);
-        let found = pull_off(&stack, 0.002 * top)?;
-        claim("maugis-dmt", found / 2.0 - 1.0);
+        claim("maugis-jkr", pull_off(&stack, 100.0 * top)? / due - 1.0);
+        claim("maugis-dmt", pull_off(&stack, 0.002 * top)? / 2.0 - 1.0);
     }
     Ok(())
 }
@@ -192,19 +187,9 @@ fn the_load_is_the_derivative_of_the_energy() -> Result<()> {
             let near: Vec<[f64; 3]> = (-4..=4)
                 .map(|k| energy(a * (1.0 + 0.02 * f64::from(k))))
                 .collect::<Result<_>>()?;
-            let slope = |quantity: usize| {
-                let term = |k: usize| near[4 + k][quantity] - near[4 - k][quantity];
-                EIGHTH
-                    .iter()
-                    .zip(1..)
-                    .map(|(c, k)| c * term(k))
-                    .sum::<f64>()
-            };
-            let (found, due) = (slope(0) / slope(1), near[4][2]);
-            assert!(
-                (found - due).abs() < 1e-6 * due.abs().max(1.0),
-                "{a}: {found} {due}"
-            );
+            let along = |quantity: usize| slope(|k| near[(4 + k) as usize][quantity]);
+            let (found, due) = (along(0) / along(1), near[4][2]);
+            below!((found - due).abs(), 1e-6 * due.abs().max(1.0), a);
         }
     }
     Ok(())
@@ -243,10 +228,7 @@ fn stresses_with_a_cohesive_zone() -> Result<()> {
         let found = point.stress(0, z, &[0.0])?[0].zz;
         // The next term: 4e-5 at the smallest depth, below 1e-9 at the others.
         let error = 1e-8 + (step * a / z).powi(4);
-        assert!(
-            (found - due).abs() < error * pressures[0],
-            "{z}: {found} {due}"
-        );
+        below!((found - due).abs(), error * pressures[0], z, found, due);
         if z >= 0.1 {
             claim("cohesive-stress", (found - due) / pressures[0]);
         }

@@ -5,215 +5,184 @@ use nacre::indent::{
 };
 use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result};
 
-use super::support::{number, reference};
 use crate::support::claims::claim;
+use crate::support::reference::{list, number, read};
+use crate::support::settings;
 
 /// Derivatives of ln a and ln δ to 1e-9, of the logarithm of the central pressure to 1e-7, under a given load: eleven coated
 /// spheres, of complex steps and of polynomials.
 #[test]
 fn coated_spheres() -> Result<()> {
-    let data = reference("sphere_derivatives.json");
-    for case in data["cases"].as_array().into_iter().flatten() {
-        let get = |key: &str| number(&case[key]);
-        let coat = Elastic::new(get("E1"), get("nu1"))?;
+    let data = read("sphere_derivatives.json");
+    for case in list(&data, "cases") {
+        let get = |key: &str| number(case, key);
         let base = Elastic::new(get("E2"), get("nu2"))?;
-        let body = HalfSpace::new(base, [Layer::new(coat, get("h"))?])?;
+        let body = settings::stack(base, [[get("E1"), get("nu1"), get("h")]])?;
         let tip = match case["tip"].as_str() {
             Some("sphere") => Tip::sphere(get("R"))?,
             _ => Tip::paraboloid(get("R"))?,
         };
         let stack = Stack::plan(&[body.into()])?;
         let point = Indent::new(&stack, &tip).at_load(get("W"))?;
-        assert!((point.radius / get("a") - 1.0).abs() < 1e-9);
+        near!(point.radius, get("a"), 1e-9);
         let central = point.pressure(&[0.0])?[0];
         let body = |parameter| Variable::Parameter(Parameter::Body(0, parameter));
+        let radius = Variable::Parameter(Parameter::Tip(TipParameter::Number(0)));
         for (key, variable, scale) in [
             ("d/dlnE1", body(BodyParameter::Young(0)), get("E1")),
             ("d/dnu1", body(BodyParameter::Poisson(0)), 1.0),
             ("d/dlnE2", body(BodyParameter::Young(1)), get("E2")),
             ("d/dnu2", body(BodyParameter::Poisson(1)), 1.0),
             ("d/dlnh", body(BodyParameter::Thickness(0)), get("h")),
-            (
-                "d/dlnR",
-                Variable::Parameter(Parameter::Tip(TipParameter::Number(0))),
-                get("R"),
-            ),
+            ("d/dlnR", radius, get("R")),
             ("d/dlnW", Variable::Held, get("W")),
         ] {
             let due = &case["derivatives"][key];
             let change = point.derivative(variable, Held::Load)?;
-            let of = [
-                (
-                    "ln_a",
-                    change.radius / point.radius,
-                    "indentation-derivatives",
-                ),
-                (
-                    "ln_delta",
-                    change.approach / point.approach,
-                    "indentation-derivatives",
-                ),
-                (
-                    "ln_p0",
-                    change.pressure(&[0.0])?[0] / central,
-                    "indentation-derivative-of-pressure",
-                ),
-            ];
-            for (name, found, of_claim) in of {
-                let (found, due) = (found * scale, number(&due[name]));
-                println!("{key} {name}: {found} {due} (E1 {})", get("E1"));
-                claim(of_claim, found - due);
+            let pressure = change.pressure(&[0.0])?[0] / central;
+            for (name, found, of_claim) in [
+                ("ln_a", change.radius / point.radius, "derivatives"),
+                ("ln_delta", change.approach / point.approach, "derivatives"),
+                ("ln_p0", pressure, "derivative-of-pressure"),
+            ] {
+                let error = found * scale - number(due, name);
+                claim(&format!("indentation-{of_claim}"), error);
             }
         }
     }
     Ok(())
 }
 
+/// A body of two layers, the lower of which slips, and a counterbody.
+fn stack(n: &[f64]) -> Result<Stack> {
+    let layers = [
+        Layer::new(Elastic::new(n[0], n[1])?, n[2])?,
+        Layer::new(Elastic::new(n[3], n[4])?, n[5])?.with_interface(Interface::Frictionless),
+    ];
+    let body = HalfSpace::new(Elastic::new(n[6], n[7])?, layers)?;
+    Stack::plan(&[body.into(), Elastic::new(n[8], n[9])?.into()])
+}
+
+/// Numbers of such a stack.
+const STACK: [f64; 10] = [4.0, 0.2, 0.3, 0.5, 0.35, 0.7, 1.0, 0.3, 2.0, 0.25];
+
+/// Derivatives in the logarithms of numbers that `at` moves by a part, from differences of fourth order.
+fn slopes(at: impl Fn(f64) -> Result<Vec<f64>>) -> Result<Vec<f64>> {
+    let h = 1e-3;
+    let [a, b, c, d] = [at(-2.0 * h)?, at(-h)?, at(h)?, at(2.0 * h)?];
+    let slope = |i: usize| (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
+    Ok((0..a.len()).map(slope).collect())
+}
+
+/// The stack, the two numbers of a tip, the work of adhesion, and what is held.
+type Numbers = [f64; 14];
+
 /// All numbers of a two-layer body with a slipping interface, an elastic counterbody, several tips and adhesions: derivatives
 /// equal differences of fourth order, of radius, load, approach, stiffness, pressure and displacement, whatever is held.
 #[test]
 fn differences() -> Result<()> {
-    let numbers = [4.0, 0.2, 0.3, 0.5, 0.35, 0.7, 1.0, 0.3, 2.0, 0.25];
-    let stack = |n: &[f64; 10]| -> Result<Stack> {
-        let layers = [
-            Layer::new(Elastic::new(n[0], n[1])?, n[2])?,
-            Layer::new(Elastic::new(n[3], n[4])?, n[5])?.with_interface(Interface::Frictionless),
-        ];
-        let body = HalfSpace::new(Elastic::new(n[6], n[7])?, layers)?;
-        Stack::plan(&[body.into(), Elastic::new(n[8], n[9])?.into()])
-    };
+    #[rustfmt::skip]
     let forms: [fn(f64, f64) -> Form; 5] = [
         |radius, _| Form::Sphere { radius },
-        |slope, radius| Form::RoundedCone {
-            slope: 0.05 * slope,
-            radius,
-        },
-        |flat, radius| Form::RoundedPunch {
-            flat: 0.1 * flat,
-            radius,
-        },
-        |factor, exponent| Form::Power {
-            factor: 0.1 * factor,
-            exponent,
-        },
-        |radius, _| Form::FlatPunch {
-            radius: 0.2 * radius,
-        },
+        |slope, radius| Form::RoundedCone { slope: 0.05 * slope, radius },
+        |flat, radius| Form::RoundedPunch { flat: 0.1 * flat, radius },
+        |factor, exponent| Form::Power { factor: 0.1 * factor, exponent },
+        |radius, _| Form::FlatPunch { radius: 0.2 * radius },
     ];
-    let jkr = Adhesion::Jkr { work: 0.02 };
-    for (k, form) in forms.into_iter().enumerate() {
-        for adhesion in [Adhesion::None, jkr] {
-            if adhesion != Adhesion::None && k > 0 {
-                continue;
+    // What is held is one line of the code: a sphere and a punch show it; each pull-off takes as long as fifty points.
+    let (load, approach, radius) = (Held::Load, Held::Approach, Held::Radius);
+    for (k, adheres, held) in [
+        (0, false, load),
+        (0, false, approach),
+        (0, false, radius),
+        (0, true, approach),
+        (1, false, load),
+        (2, false, load),
+        (3, false, load),
+        (4, false, load),
+        (4, false, approach),
+    ] {
+        let solve = |n: &Numbers| -> Result<Point> {
+            let adhesion = match adheres {
+                true => Adhesion::Jkr { work: n[12] },
+                false => Adhesion::None,
+            };
+            let tip = Tip::new(forms[k](n[10], n[11]))?;
+            let indent = Indent::new(&stack(n)?, &tip).with_adhesion(adhesion)?;
+            match held {
+                Held::Radius => indent.at_radius(n[13]),
+                Held::Load => indent.at_load(n[13]),
+                Held::Approach => indent.at_approach(n[13]),
             }
-            let tip_numbers = [3.0, 4.5];
-            let solve =
-                |n: &[f64; 10], t: [f64; 2], work: f64, held, value: f64| -> Result<Point> {
-                    let adhesion = match adhesion {
-                        Adhesion::None => Adhesion::None,
-                        _ => Adhesion::Jkr { work },
-                    };
-                    let tip = Tip::new(form(t[0], t[1]))?;
-                    let indent = Indent::new(&stack(n)?, &tip).with_adhesion(adhesion)?;
-                    match held {
-                        Held::Radius => indent.at_radius(value),
-                        Held::Load => indent.at_load(value),
-                        Held::Approach => indent.at_approach(value),
-                    }
-                };
-            for held in [Held::Load, Held::Approach, Held::Radius] {
-                // What is held is one line of the code: a sphere and a punch show it; each pull-off takes as long as fifty points.
-                let is_shown = match (k, adhesion) {
-                    (0, Adhesion::None) => true,
-                    (0, _) => held == Held::Approach,
-                    (4, _) => held != Held::Radius,
-                    _ => held == Held::Load,
-                };
-                if !is_shown {
-                    continue;
-                }
-                let value = match held {
-                    Held::Radius => 0.6,
-                    Held::Load => 0.08,
-                    Held::Approach => 0.1,
-                };
-                let point = solve(&numbers, tip_numbers, 0.02, held, value)?;
-                let stack = stack(&numbers)?;
-                let mut variables: Vec<Variable> = stack
-                    .parameters()
-                    .iter()
-                    .map(|p| Variable::Parameter(*p))
-                    .collect();
-                assert_eq!(variables.len(), 10);
-                // The interfaces are in order: layer, layer, substrate, counterbody.
-                let tips =
-                    [0, 1].map(|k| Variable::Parameter(Parameter::Tip(TipParameter::Number(k))));
-                let count = Tip::new(form(3.0, 4.5))?.numbers().len();
-                variables.extend(&tips[..count]);
-                variables.push(Variable::Held);
-                if adhesion != Adhesion::None {
-                    variables.push(Variable::Parameter(Parameter::Work));
-                }
-                for (number, variable) in variables.iter().enumerate() {
-                    let at = |step: f64| -> Result<Point> {
-                        let (mut n, mut t, mut work, mut value) =
-                            (numbers, tip_numbers, 0.02, value);
-                        match variable {
-                            Variable::Held => value *= 1.0 + step,
-                            Variable::Parameter(Parameter::Work) => work *= 1.0 + step,
-                            Variable::Parameter(Parameter::Tip(TipParameter::Number(k))) => {
-                                t[*k] *= 1.0 + step;
-                            }
-                            _ => n[number] *= 1.0 + step,
-                        }
-                        solve(&n, t, work, held, value)
-                    };
-                    let size = match variable {
-                        Variable::Held => value,
-                        Variable::Parameter(Parameter::Work) => 0.02,
-                        Variable::Parameter(Parameter::Tip(TipParameter::Number(i))) => {
-                            let tip = Tip::new(form(3.0, 4.5))?;
-                            tip.numbers()[*i].1
-                        }
-                        _ => numbers[number],
-                    };
-                    let change = point.derivative(*variable, held)?;
-                    let (inside, outside) = ([0.3 * point.radius], [1.7 * point.radius]);
-                    let of = |p: &Point| -> Result<[f64; 6]> {
-                        Ok([
-                            p.radius,
-                            p.load,
-                            p.approach,
-                            p.stiffness,
-                            p.pressure(&inside)?[0],
-                            p.displacement(&outside)?[0],
-                        ])
-                    };
-                    let found = [
-                        change.radius,
-                        change.load,
-                        change.approach,
-                        change.stiffness,
-                        change.pressure(&inside)?[0],
-                        change.displacement(&outside)?[0],
-                    ];
-                    // Fourth order in 1e-3 leaves 1e-11 of smooth functions, 1e-7 near the kink of a rounded cone; rounding of
-                    // 1e-12 in the states leaves 1e-9.
-                    let error = if k == 1 { 2e-7 } else { 2e-8 };
-                    let h = 1e-3;
-                    let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|s| at(s * h));
-                    let [a, b, c, d] = [of(&a?)?, of(&b?)?, of(&c?)?, of(&d?)?];
-                    let sizes = of(&point)?;
-                    for i in 0..6 {
-                        let due = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
-                        assert!(
-                            (found[i] * size - due).abs() < error * (sizes[i].abs() + due.abs()),
-                            "tip {k} {adhesion:?} {held:?} {variable:?} {i}: {} {due} of {}",
-                            found[i] * size,
-                            sizes[i]
-                        );
-                    }
-                }
+        };
+        let value = match held {
+            Held::Radius => 0.6,
+            Held::Load => 0.08,
+            Held::Approach => 0.1,
+        };
+        let mut numbers: Numbers = [0.0; 14];
+        numbers[..10].copy_from_slice(&STACK);
+        numbers[10..].copy_from_slice(&[3.0, 4.5, 0.02, value]);
+        let point = solve(&numbers)?;
+        // The interfaces are in order: layer, layer, substrate, counterbody.
+        let mut variables: Vec<(usize, Variable)> = Vec::new();
+        let of_stack = stack(&numbers)?.parameters().to_vec();
+        assert_eq!(of_stack.len(), 10);
+        variables.extend(
+            of_stack
+                .iter()
+                .map(|one| Variable::Parameter(*one))
+                .enumerate(),
+        );
+        let tip = Tip::new(forms[k](3.0, 4.5))?;
+        for i in 0..tip.numbers().len() {
+            let number = Parameter::Tip(TipParameter::Number(i));
+            variables.push((10 + i, Variable::Parameter(number)));
+        }
+        if adheres {
+            variables.push((12, Variable::Parameter(Parameter::Work)));
+        }
+        variables.push((13, Variable::Held));
+        for (number, variable) in variables {
+            // Numbers of a tip may be parts of those of its form.
+            let size = match number {
+                10 | 11 => tip.numbers()[number - 10].1,
+                _ => numbers[number],
+            };
+            let (inside, outside) = ([0.3 * point.radius], [1.7 * point.radius]);
+            let of = |p: &Point| -> Result<Vec<f64>> {
+                let numbers = vec![p.radius, p.load, p.approach, p.stiffness];
+                Ok([numbers, p.pressure(&inside)?, p.displacement(&outside)?].concat())
+            };
+            let change = point.derivative(variable, held)?;
+            let found = [
+                change.radius,
+                change.load,
+                change.approach,
+                change.stiffness,
+            ];
+            let (pressure, displacement) =
+                (change.pressure(&inside)?, change.displacement(&outside)?);
+            let found = [&found[..], &pressure, &displacement].concat();
+            let due = slopes(|step| {
+                let mut moved = numbers;
+                moved[number] *= 1.0 + step;
+                of(&solve(&moved)?)
+            })?;
+            // Fourth order in 1e-3 leaves 1e-11 of smooth functions, 1e-7 near the kink of a rounded cone; rounding of
+            // 1e-12 in the states leaves 1e-9.
+            let error = if k == 1 { 2e-7 } else { 2e-8 };
+            for (i, size_of) in of(&point)?.into_iter().enumerate() {
+                let bar = error * (size_of.abs() + due[i].abs());
+                below!(
+                    (found[i] * size - due[i]).abs(),
+                    bar,
+                    k,
+                    adheres,
+                    held,
+                    variable,
+                    i
+                );
             }
         }
     }
@@ -226,21 +195,15 @@ fn differences() -> Result<()> {
 /// are those of fixed radius and along the curve, and equal differences, too.
 #[test]
 fn cohesive_zones() -> Result<()> {
-    let solve = |n: &[f64; 14]| -> Result<Point> {
-        let layers = [
-            Layer::new(Elastic::new(n[0], n[1])?, n[2])?,
-            Layer::new(Elastic::new(n[3], n[4])?, n[5])?.with_interface(Interface::Frictionless),
-        ];
-        let body = HalfSpace::new(Elastic::new(n[6], n[7])?, layers)?;
-        let stack = Stack::plan(&[body.into(), Elastic::new(n[8], n[9])?.into()])?;
+    let solve = |n: &Numbers| -> Result<Point> {
         let (work, strength) = (n[11], n[12]);
-        Indent::new(&stack, &Tip::sphere(n[10])?)
+        Indent::new(&stack(n)?, &Tip::sphere(n[10])?)
             .with_adhesion(Adhesion::Maugis { work, strength })?
             .at_radius(n[13])
     };
-    let numbers = [
-        4.0, 0.2, 0.3, 0.5, 0.35, 0.7, 1.0, 0.3, 2.0, 0.25, 3.0, 0.03, 0.3, 0.6,
-    ];
+    let mut numbers: Numbers = [0.0; 14];
+    numbers[..10].copy_from_slice(&STACK);
+    numbers[10..].copy_from_slice(&[3.0, 0.03, 0.3, 0.6]);
     let point = solve(&numbers)?;
     let outer = point.outer_radius.expect("a cohesive zone");
     // The zone is as wide as a fifth of the contact.
@@ -257,21 +220,11 @@ fn cohesive_zones() -> Result<()> {
         .concat())
     };
     let sizes = of(&point)?;
-    let stack_numbers = (0..10).map(|k| match k {
-        8 => Parameter::Body(1, BodyParameter::Young(0)),
-        9 => Parameter::Body(1, BodyParameter::Poisson(0)),
-        _ if k % 3 == 0 => Parameter::Body(0, BodyParameter::Young(k / 3)),
-        _ if k % 3 == 1 => Parameter::Body(0, BodyParameter::Poisson(k / 3)),
-        _ => Parameter::Body(0, BodyParameter::Thickness(k / 3)),
-    });
-    let variables = stack_numbers
-        .chain([
-            Parameter::Tip(TipParameter::Number(0)),
-            Parameter::Work,
-            Parameter::Strength,
-        ])
-        .map(Variable::Parameter)
-        .chain([Variable::Held]);
+    let of_stack = stack(&numbers)?.parameters().to_vec();
+    let radius = Parameter::Tip(TipParameter::Number(0));
+    let others = [radius, Parameter::Work, Parameter::Strength];
+    let variables = of_stack.into_iter().chain(others).map(Variable::Parameter);
+    let variables = variables.chain([Variable::Held]);
     let along = point.derivative(Variable::Held, Held::Radius)?;
     for (number, variable) in variables.enumerate() {
         let change = point.derivative(variable, Held::Radius)?;
@@ -284,17 +237,13 @@ fn cohesive_zones() -> Result<()> {
         ]
         .concat();
         // Fourth order in 1e-3 leaves 1e-10; states are known to 1e-12, which leaves 1e-9.
-        let h = 1e-3;
-        let at = |step: f64| {
-            let mut n = numbers;
-            n[number] *= 1.0 + step * h;
-            of(&solve(&n)?)
-        };
-        let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
-        for i in 0..found.len() {
-            let due = (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
+        let due = slopes(|step| {
+            let mut moved = numbers;
+            moved[number] *= 1.0 + step;
+            of(&solve(&moved)?)
+        })?;
+        for (i, due) in due.into_iter().enumerate() {
             let error = (found[i] * numbers[number] - due) / (sizes[i].abs() + due.abs());
-            println!("{variable:?} {i}: {due} of {}", sizes[i]);
             claim("cohesive-derivatives", error);
         }
         if variable == Variable::Held {
@@ -304,24 +253,24 @@ fn cohesive_zones() -> Result<()> {
             let kept = point.derivative(variable, held)?;
             let fixed = [change.load, change.approach];
             let slopes = [along.load, along.approach];
-            let rates = [0, 1].map(|k| fixed[k] + slopes[k] * kept.radius);
-            for (k, (found, due)) in [kept.load, kept.approach]
-                .into_iter()
-                .zip(rates)
-                .enumerate()
-            {
-                let size = fixed[k].abs() + (slopes[k] * kept.radius).abs();
-                assert!(
-                    (found - due).abs() < 1e-12 * size,
-                    "{variable:?} {held:?}: {found} {due}"
+            let found = [kept.load, kept.approach];
+            for k in 0..2 {
+                let moved = slopes[k] * kept.radius;
+                let size = fixed[k].abs() + moved.abs();
+                below!(
+                    (found[k] - fixed[k] - moved).abs(),
+                    1e-12 * size,
+                    variable,
+                    held,
+                    k
                 );
             }
-            let held_rate = if held == Held::Load {
+            let rate = if held == Held::Load {
                 kept.load
             } else {
                 kept.approach
             };
-            assert!(held_rate.abs() < 1e-12 * fixed[0].abs().max(fixed[1].abs()));
+            below!(rate.abs(), 1e-12 * fixed[0].abs().max(fixed[1].abs()));
         }
     }
     Ok(())

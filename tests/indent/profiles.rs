@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use nacre::indent::{Form, Held, Indent, Parameter, Point, Stack, Tip, TipParameter, Variable};
 use nacre::{Elastic, HalfSpace, Result};
 
-use super::support::{EIGHTH, coated};
+use super::coated;
+
+use crate::support::numerics::slope;
 
 /// ∫₀^a F ds and F(a) of a step m and of a hinge c at b.
 fn step(m: f64, b: f64, a: f64) -> [f64; 2] {
@@ -111,25 +113,14 @@ fn tips() -> Vec<(Form, f64)> {
 }
 
 /// The form with its numbers.
+#[rustfmt::skip]
 fn with(form: &Form, n: &[f64]) -> Form {
     match form {
         Form::Sphere { .. } => Form::Sphere { radius: n[0] },
-        Form::Power { .. } => Form::Power {
-            factor: n[0],
-            exponent: n[1],
-        },
-        Form::RoundedCone { .. } => Form::RoundedCone {
-            slope: n[0],
-            radius: n[1],
-        },
-        Form::RoundedPunch { .. } => Form::RoundedPunch {
-            flat: n[0],
-            radius: n[1],
-        },
-        Form::FlatCone { .. } => Form::FlatCone {
-            flat: n[0],
-            slope: n[1],
-        },
+        Form::Power { .. } => Form::Power { factor: n[0], exponent: n[1] },
+        Form::RoundedCone { .. } => Form::RoundedCone { slope: n[0], radius: n[1] },
+        Form::RoundedPunch { .. } => Form::RoundedPunch { flat: n[0], radius: n[1] },
+        Form::FlatCone { .. } => Form::FlatCone { flat: n[0], slope: n[1] },
         other => other.clone(),
     }
 }
@@ -144,8 +135,7 @@ fn loads_are_closed_forms() -> Result<()> {
         let tip = Tip::new(form.clone())?;
         let point = Indent::new(&stack, &tip).at_radius(1.0)?;
         let due = load(&form, 1.0);
-        let error = point.load / due - 1.0;
-        assert!(error.abs() < 1e-12, "{form:?}: {error:e}");
+        near!(point.load, due, 1e-12, form);
         let numbers: Vec<f64> = tip.numbers().iter().map(|(_, value)| *value).collect();
         for k in 0..numbers.len() {
             let step = 0.02 * part * numbers[k].min(1.0);
@@ -154,13 +144,7 @@ fn loads_are_closed_forms() -> Result<()> {
                 moved[k] += by;
                 load(&with(&form, &moved), 1.0)
             };
-            let term = |n: f64| at(n * step) - at(-n * step);
-            let sum: f64 = EIGHTH
-                .iter()
-                .zip(1..)
-                .map(|(c, n)| c * term(f64::from(n)))
-                .sum();
-            let due = sum / step;
+            let due = slope(|n| at(f64::from(n) * step)) / step;
             let variable = Variable::Parameter(Parameter::Tip(TipParameter::Number(k)));
             let found = point.derivative(variable, Held::Radius)?.load;
             // The distance of a radius from the end of a sphere is known to the rounding of both.
@@ -197,8 +181,7 @@ fn layers_below_profiles_that_are_not_smooth() -> Result<()> {
                 );
                 continue;
             };
-            let error = indent.error_at(&point)?;
-            assert!(error < 1e-10, "{form:?} {ratio} {h}: {error:e}");
+            below!(indent.error_at(&point)?, 1e-10, form, ratio, h);
             if matches!(form, Form::Profile { .. }) {
                 continue;
             }
@@ -208,15 +191,11 @@ fn layers_below_profiles_that_are_not_smooth() -> Result<()> {
                 .collect();
             // Some are lifted off at larger radii.
             let Ok(near) = near else { continue };
-            let mut slopes = [0.0; 2];
-            for (c, k) in EIGHTH.iter().zip(1..) {
-                let (low, high): (&Point, &Point) = (&near[4 - k], &near[4 + k]);
-                slopes[0] += c * (high.load - low.load) / step;
-                slopes[1] += c * (high.approach - low.approach) / step;
-            }
+            let at = |k: i32| -> &Point { &near[(4 + k) as usize] };
+            let slopes = [slope(|k| at(k).load), slope(|k| at(k).approach)];
             let error = slopes[0] / (point.stiffness * slopes[1]) - 1.0;
             let bar = 1e-10 + 1e-13 / step;
-            assert!(error.abs() < bar, "{form:?} {ratio} {h}: P' {error:e}");
+            below!(error.abs(), bar, form, ratio, h);
         }
     }
     Ok(())

@@ -3,23 +3,17 @@
 
 use std::f64::consts::PI;
 
-use approx::assert_relative_eq;
-use nacre::{
-    Contact, Elastic, FlatPunch, Grid, HalfSpace, Motion, Options, Paraboloid, Result, Setup,
-    Solution, hertz,
-};
+use nacre::{Contact, FlatPunch, Grid, Motion, Options, Paraboloid, Result, Solution, hertz};
 
 use crate::support::claims::claim;
+use crate::support::numerics::elliptic;
+use crate::support::settings::{self, Controls, converged, pressed, steel, tolerance};
 
 /// Error of a flat punch, whose singular rim is a staircase of cells with dx/a = 1/64.
 const FLAT_PUNCH: f64 = 5e-3;
 
 const RADIUS: f64 = 5e-3;
 const CONTACT_RADIUS: f64 = 1e-4;
-
-fn steel() -> Result<Elastic> {
-    Elastic::new(210e9, 0.3)
-}
 
 fn modulus() -> Result<f64> {
     Ok(steel()?.plane_strain_modulus())
@@ -32,14 +26,13 @@ fn load() -> Result<f64> {
 
 fn plan(shape: [usize; 2], sides: [f64; 2]) -> Result<Contact> {
     let grid = Grid::new(shape, sides.map(|side| side * CONTACT_RADIUS))?;
-    Contact::plan(steel()?, grid, Setup::default())
+    settings::plan(steel()?, grid)
 }
 
-fn paraboloid(shape: [usize; 2], sides: [f64; 2], motion: &Motion) -> Result<Solution> {
+/// The ball under the load.
+fn loaded(shape: [usize; 2], sides: [f64; 2]) -> Result<Solution> {
     let paraboloid = Paraboloid::new(RADIUS, RADIUS)?;
-    let options = Options::default();
-    let solution = plan(shape, sides)?.solve(&paraboloid, motion, &options)?;
-    solution.require_converged(options.tolerance)
+    pressed(&plan(shape, sides)?, &paraboloid, &Motion::load(load()?))
 }
 
 /// Relative errors of peak pressure, approach, and half the larger extent.
@@ -57,20 +50,19 @@ fn errors(solution: &Solution) -> Result<[f64; 3]> {
 
 #[test]
 fn paraboloid_equals_hertz() -> Result<()> {
-    let solution = paraboloid([256, 256], [6.0, 6.0], &Motion::load(load()?))?;
+    let solution = loaded([256, 256], [6.0, 6.0])?;
     let [peak, approach, radius] = errors(&solution)?;
-    println!("256²: peak {peak:.1e}, approach {approach:.1e}, contact radius {radius:.1e}");
     // The peak is read half a cell diagonal off the axis, (dx/a)²/4 = 1.4e-4 with 43 cells to a radius.
     claim("hertz-peak", peak);
     claim("hertz-approach", approach);
     // The radius from a straight line through p² is right to a tenth of a cell.
-    assert!(radius.abs() < 2e-3, "{radius:e}");
+    below!(radius.abs(), 2e-3);
     Ok(())
 }
 
 #[test]
 fn pressure_equals_hertz_everywhere() -> Result<()> {
-    let solution = paraboloid([201, 150], [6.3, 5.7], &Motion::load(load()?))?;
+    let solution = loaded([201, 150], [6.3, 5.7])?;
     let exact = hertz::Point::new(RADIUS, modulus()?, load()?)?;
     let (x, y) = (solution.grid().x(), solution.grid().y());
     for ((i, j), p) in solution.pressure.indexed_iter() {
@@ -79,21 +71,13 @@ fn pressure_equals_hertz_everywhere() -> Result<()> {
         let beyond = (r / exact.radius - 1.0).abs();
         let tolerance = if beyond > 0.1 { 5e-3 } else { 0.25 };
         let error = (p - exact.pressure(r)) / exact.peak_pressure;
-        assert!(
-            error.abs() < tolerance,
-            "r/a = {}: {error}",
-            r / exact.radius
-        );
+        below!(error.abs(), tolerance, r / exact.radius);
     }
     // Displacement outside the contact, Johnson (1985), eq. (3.42a).
     let (a, r) = (exact.radius, x[0].hypot(y[0]));
     let inside = (2.0 * a * a - r * r) * (a / r).asin() + r * a * (1.0 - a * a / (r * r)).sqrt();
     let displacement = exact.peak_pressure / (2.0 * modulus()? * a) * inside;
-    assert_relative_eq!(
-        solution.displacement[[0, 0]],
-        displacement,
-        max_relative = 1e-4
-    );
+    near!(solution.displacement[[0, 0]], displacement, 1e-4);
     Ok(())
 }
 
@@ -102,31 +86,30 @@ fn approach_converges_with_the_grid() -> Result<()> {
     // The rim on staircase cells makes the error uneven; over a factor of eight in the cell it
     // falls by the power 1.5 at least.
     let error = |n: usize| -> Result<f64> {
-        let [_, approach, _] = errors(&paraboloid([n; 2], [3.0; 2], &Motion::load(load()?))?)?;
-        println!("{n}²: approach {approach:.2e}");
+        let [_, approach, _] = errors(&loaded([n; 2], [3.0; 2])?)?;
         Ok(approach.abs())
     };
     let errors = [error(32)?, error(64)?, error(128)?, error(256)?];
     let order = (errors[0] / errors[3]).log2() / 3.0;
-    println!("order of convergence: {order:.2}");
     assert!(order > 1.5 && errors[3] < 2e-5, "{order}: {errors:?}");
     Ok(())
 }
 
 #[test]
 fn load_gives_approach_gives_load() -> Result<()> {
-    let options = Options {
-        tolerance: 1e-12,
-        ..Options::default()
-    };
-    let contact = plan([96, 80], [3.0, 2.8])?;
-    let shape = Paraboloid::new(RADIUS, RADIUS)?;
-    let loaded = contact.solve(&shape, &Motion::load(load()?), &options)?;
-    let pressed = contact.solve(&shape, &Motion::approach(loaded.approach), &options)?;
-    assert!(loaded.report.converged() && pressed.report.converged());
-    assert_relative_eq!(pressed.load(), load()?, max_relative = 1e-9);
-    let again = contact.solve(&shape, &Motion::load(pressed.load()), &options)?;
-    assert_relative_eq!(again.approach, loaded.approach, max_relative = 1e-9);
+    let (contact, shape) = (
+        plan([96, 80], [3.0, 2.8])?,
+        Paraboloid::new(RADIUS, RADIUS)?,
+    );
+    let solve = |motion: Motion| converged(&contact, &shape, &motion, &tolerance(1e-12));
+    let given = solve(Motion::load(load()?))?;
+    let moved = solve(Motion::approach(given.approach))?;
+    near!(moved.load(), load()?, 1e-9);
+    near!(
+        solve(Motion::load(moved.load()))?.approach,
+        given.approach,
+        1e-9
+    );
     Ok(())
 }
 
@@ -139,7 +122,7 @@ fn load_grows_as_the_approach_to_three_halves() -> Result<()> {
         let approach = factor * CONTACT_RADIUS.powi(2) / RADIUS;
         let solution = contact.solve(&shape, &Motion::approach(approach), &Options::default())?;
         let expected = load()? * f64::powf(factor, 1.5);
-        assert_relative_eq!(solution.load(), expected, max_relative = 2e-3);
+        near!(solution.load(), expected, 2e-3);
     }
     Ok(())
 }
@@ -147,82 +130,46 @@ fn load_grows_as_the_approach_to_three_halves() -> Result<()> {
 #[test]
 fn eccentric_flat_punch_tilts_as_boussinesq_found() -> Result<()> {
     let a = 1e-3;
-    let contact = Contact::plan(
-        steel()?,
-        Grid::new([256, 256], [4.0 * a; 2])?,
-        Setup::default(),
-    )?;
+    let contact = settings::plan(steel()?, Grid::new([256, 256], [4.0 * a; 2])?)?;
     let punch = FlatPunch::new(a)?;
     for eccentricity in [[Some(0.25 * a), None], [Some(0.0), Some(-0.25 * a)]] {
-        let motion = Motion {
-            eccentricity,
-            ..Motion::load(1e3)
-        };
-        let solution = contact.solve(&punch, &motion, &Options::default())?;
-        assert!(solution.report.converged());
+        let motion = Motion::load(1e3).with_eccentricity(eccentricity);
+        let solution = pressed(&contact, &punch, &motion)?;
         let moment = eccentricity.map(|e| 1e3 * e.unwrap_or(0.0));
         for (tilt, moment) in solution.tilt.into_iter().zip(moment) {
             let (approach, exact) = hertz::flat_punch(a, modulus()?, 1e3, moment)?;
-            let relative = solution.approach / approach - 1.0;
-            claim("punch-approach", relative);
+            claim("punch-approach", solution.approach / approach - 1.0);
             // The tilt is 3M/(4E*a³) where it is free, and 0 where it is locked.
             let scale = 0.75 * 0.25 * a * 1e3 / (modulus()? * a.powi(3));
-            let error = (tilt - exact) / scale;
-            println!("flat punch: approach {relative:.1e}, tilt {error:.1e}");
-            claim("punch-tilt", error);
+            claim("punch-tilt", (tilt - exact) / scale);
         }
         // The pressure in the middle is W/2πa² (1 + 3 e x/a²).
         let central = 1e3 / (2.0 * PI * a * a);
-        assert_relative_eq!(
-            solution.central_pressure(),
-            central,
-            max_relative = FLAT_PUNCH
-        );
+        near!(solution.central_pressure(), central, FLAT_PUNCH);
     }
     Ok(())
-}
-
-/// Complete elliptic integrals K and E of the parameter m = e², by the arithmetic-geometric mean.
-/// Abramowitz & Stegun (1964), §17.6.
-fn elliptic(m: f64) -> (f64, f64) {
-    let (mut a, mut b, mut power, mut sum) = (1.0, (1.0 - m).sqrt(), 0.5, 0.5 * m);
-    for _ in 0..8 {
-        let c = 0.5 * (a - b);
-        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
-        power *= 2.0;
-        sum += power * c * c;
-    }
-    let k = PI / (2.0 * a);
-    (k, k * (1.0 - sum))
 }
 
 #[test]
 fn elliptic_contact_equals_hertz() -> Result<()> {
     // Johnson (1985), eqs (4.26), (4.28), for half-axes a = 3 along x and b = 1 along y, p0 = E*/20.
     let (a, b) = (3.0, 1.0);
-    let body: HalfSpace = steel()?.into();
     let (modulus, peak) = (modulus()?, 0.05 * modulus()?);
-    let m = 1.0 - b * b / (a * a);
-    let (k, e) = elliptic(m);
+    let m: f64 = 1.0 - b * b / (a * a);
+    let [k, e] = elliptic(m.sqrt());
     let common = peak / modulus * b / (m * a * a);
     let along = common * (k - e);
     let across = common * (a * a / (b * b) * e - k);
     let shape = Paraboloid::new(0.5 / along, 0.5 / across)?;
     let load = 2.0 / 3.0 * PI * a * b * peak;
 
-    let contact = Contact::plan(&body, Grid::new([161, 128], [8.0, 3.0])?, Setup::default())?;
-    let solution = contact.solve(&shape, &Motion::load(load), &Options::default())?;
-    assert!(solution.report.converged());
-    let approach = solution.approach / (peak * b / modulus * k) - 1.0;
-    let highest = solution.peak_pressure() / peak - 1.0;
-    println!("elliptic: peak {highest:.1e}, approach {approach:.1e}");
-    assert!(
-        highest.abs() < 1e-3 && approach.abs() < 2e-4,
-        "{highest:e} {approach:e}"
-    );
+    let contact = settings::plan(steel()?, Grid::new([161, 128], [8.0, 3.0])?)?;
+    let solution = pressed(&contact, &shape, &Motion::load(load))?;
+    near!(solution.peak_pressure(), peak, 1e-3);
+    near!(solution.approach, peak * b / modulus * k, 2e-4);
     let [x, y] = solution.contact_extent();
     for (found, exact) in [(x[0], -a), (x[1], a), (y[0], -b), (y[1], b)] {
-        assert_relative_eq!(found, exact, max_relative = 5e-3);
+        near!(found, exact, 5e-3);
     }
     Ok(())
 }

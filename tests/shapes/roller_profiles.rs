@@ -6,9 +6,11 @@ use std::f64::consts::PI;
 use approx::assert_relative_eq;
 use nacre::surface::Profile;
 use nacre::{
-    Contact, Elastic, Error, Grid, HalfSpace, Layer, LogarithmicProfile, Motion, Options, Result,
-    Roller, SampledProfile, Setup, Solution, Surface, Warning, hertz,
+    Error, Grid, HalfSpace, LogarithmicProfile, Motion, Result, Roller, SampledProfile, Solution,
+    Surface, Warning, hertz,
 };
+
+use crate::support::settings::{Controls, coated, converged, plan, pressed, steel, tolerance};
 
 /// Rounding between two forms of one formula.
 const ROUNDING: f64 = 1e-12;
@@ -34,10 +36,6 @@ const UNIFORM: f64 = 0.03;
 const RADIUS: f64 = 5e-3;
 const LENGTH: f64 = 20e-3;
 
-fn steel() -> Result<Elastic> {
-    Elastic::new(210e9, 0.3)
-}
-
 /// Load at which a roller of infinite length has the peak pressure `peak`: p0² = W'E*/πR.
 fn load(peak: f64) -> Result<f64> {
     Ok(LENGTH * PI * RADIUS * peak * peak / steel()?.plane_strain_modulus())
@@ -47,11 +45,9 @@ fn iso() -> Result<LogarithmicProfile> {
     LogarithmicProfile::iso16281(2.0 * RADIUS, LENGTH)
 }
 
-fn press(body: &HalfSpace, grid: Grid, roller: &Roller, load: f64) -> Result<Solution> {
-    let options = Options::default();
-    let contact = Contact::plan(body, grid, Setup::default())?;
-    let solution = contact.solve(roller, &Motion::load(load), &options)?;
-    solution.require_converged(options.tolerance)
+fn press(body: &HalfSpace, grid: Grid, profile: impl Into<Profile>, load: f64) -> Result<Solution> {
+    let roller = &Roller::with_profile(RADIUS, profile)?;
+    pressed(&plan(body, grid)?, roller, &Motion::load(load))
 }
 
 fn drop(profile: impl Into<Profile>, x: f64) -> f64 {
@@ -63,16 +59,12 @@ fn iso_profile_has_the_values_of_the_standard() -> Result<()> {
     // L ≤ 2.5 D: 0.00035 D ln 1/[1 − (2x/L)²]; D = 10, L = 20: 3.5e-3 ln 4/3 and 3.5e-3 ln 100/19.
     let short = LogarithmicProfile::iso16281(10.0, 20.0)?;
     assert_relative_eq!(drop(short, 0.0), 0.0);
-    assert_relative_eq!(drop(short, 5.0), 1.006_887_25e-3, max_relative = 1e-7);
-    assert_relative_eq!(drop(short, -9.0), 5.812_559e-3, max_relative = 1e-6);
+    near!(drop(short, 5.0), 1.006_887_25e-3, 1e-7);
+    near!(drop(short, -9.0), 5.812_559e-3, 1e-6);
     // L > 2.5 D: straight over L − 2.5 D = 15, then 0.0005 D ln 1/[1 − ((2|x| − 15)/25)²].
     let long = LogarithmicProfile::iso16281(10.0, 40.0)?;
     assert_relative_eq!(drop(long, 7.5), 0.0);
-    assert_relative_eq!(
-        drop(long, 13.75),
-        5e-3 * (4.0_f64 / 3.0).ln(),
-        max_relative = ROUNDING
-    );
+    near!(drop(long, 13.75), 5e-3 * (4.0_f64 / 3.0).ln(), ROUNDING);
     assert_relative_eq!(drop(long, -13.75), drop(long, 13.75));
     // At L = 2.5 D, the formula for short rollers applies.
     let limit = LogarithmicProfile::iso16281(10.0, 25.0)?;
@@ -87,55 +79,42 @@ fn lundberg_makes_the_load_uniform() -> Result<()> {
     let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
     let profile = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
     let line_load = load / LENGTH;
-    assert_relative_eq!(
-        profile.amplitude(),
-        line_load / (PI * modulus),
-        max_relative = ROUNDING
-    );
+    near!(profile.amplitude(), line_load / (PI * modulus), ROUNDING);
     let b = hertz::Line::new(RADIUS, modulus, line_load)?.half_width;
-    let roller = Roller::with_profile(RADIUS, profile)?;
     let grid = Grid::new([256, 48], [LENGTH, 3.0 * b])?;
-    let solution = press(&steel()?.into(), grid, &roller, load)?;
+    let solution = press(&steel()?.into(), grid, profile, load)?;
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
     for (x, w) in solution.grid().x().iter().zip(&solution.line_load()) {
         if x.abs() < 0.4 * LENGTH {
             (low, high) = (low.min(w / line_load), high.max(w / line_load));
         }
     }
-    println!(
-        "Lundberg: b/L {:.4}, line load over its mean {low:.4} to {high:.4}",
-        b / LENGTH
-    );
     assert!(low > 1.0 - UNIFORM && high < 1.0 + UNIFORM, "{low} {high}");
     // Without a profile, the pressure is lowest in the middle and has peaks at the ends.
     let straight = SampledProfile::new(&[-0.5 * LENGTH, 0.5 * LENGTH], &[0.0, 0.0])?;
-    let straight = Roller::with_profile(RADIUS, straight)?;
-    let sharp = press(&steel()?.into(), grid, &straight, load)?;
-    println!(
-        "peak {:.3e}, straight {:.3e}",
-        solution.peak_pressure(),
-        sharp.peak_pressure()
-    );
+    let sharp = press(&steel()?.into(), grid, straight, load)?;
     assert!(sharp.peak_pressure() > 1.5 * solution.peak_pressure());
     Ok(())
 }
 
 #[test]
-fn johns_gohar_ends_with_a_finite_drop() -> Result<()> {
+fn johns_gohar_ends_with_a_finite_drop_and_a_sharp_end_under_load() -> Result<()> {
     // A ln 1/(0.3033 b/a) at the ends, a = L/2.
     let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
     let profile = LogarithmicProfile::johns_gohar(LENGTH, load, modulus, RADIUS)?;
     let b = hertz::Line::new(RADIUS, modulus, load / LENGTH)?.half_width;
     let end = load / (PI * LENGTH * modulus) * (0.5 * LENGTH / (0.3033 * b)).ln();
-    assert_relative_eq!(drop(profile, 0.5 * LENGTH), end, max_relative = 1e-9);
+    near!(drop(profile, 0.5 * LENGTH), end, 1e-9);
     // Away from the ends, the profile is that of Lundberg.
     let lundberg = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
     let x = 0.25 * LENGTH;
-    assert_relative_eq!(
-        drop(profile, x),
-        drop(lundberg, x),
-        max_relative = 2.0 * (1.0 - profile.end_factor())
-    );
+    let cut = 2.0 * (1.0 - profile.end_factor());
+    near!(drop(profile, x), drop(lundberg, x), cut);
+    let grid = Grid::new([128, 32], [1.02 * LENGTH, 0.25e-3])?;
+    let warnings = press(&steel()?.into(), grid, profile, load)?
+        .report
+        .warnings;
+    assert!(warnings.contains(&Warning::SharpEnd { axis: 0 }));
     Ok(())
 }
 
@@ -152,7 +131,7 @@ fn a_fine_sampling_is_the_profile() -> Result<()> {
         // Linear interpolation between samples has the error A f u″ dx²/8, and a larger error at the ends.
         let x = 0.499 * LENGTH * (f64::from(k) / 500.0 - 1.0);
         let error = (drop(sampled.clone(), x) - drop(profile, x)).abs() / profile.amplitude();
-        assert!(error < 2e-3, "x/L = {}: {error:e}", x / LENGTH);
+        below!(error, 2e-3, x / LENGTH);
     }
     // A measured profile need be neither symmetric nor centred at the origin.
     let lopsided = SampledProfile::new(&[-1.0, 0.0, 2.0], &[0.5, 0.0, 0.25])?;
@@ -162,24 +141,10 @@ fn a_fine_sampling_is_the_profile() -> Result<()> {
 
     let body: HalfSpace = steel()?.into();
     let grid = Grid::new([100, 32], [1.02 * LENGTH, 0.25e-3])?;
-    let smooth = press(
-        &body,
-        grid,
-        &Roller::with_profile(RADIUS, profile)?,
-        load(1.5e9)?,
-    )?;
-    let rough = press(
-        &body,
-        grid,
-        &Roller::with_profile(RADIUS, sampled)?,
-        load(1.5e9)?,
-    )?;
-    assert_relative_eq!(
-        smooth.peak_pressure(),
-        rough.peak_pressure(),
-        max_relative = 1e-3
-    );
-    assert_relative_eq!(smooth.approach, rough.approach, max_relative = 1e-3);
+    let smooth = press(&body, grid, profile, load(1.5e9)?)?;
+    let rough = press(&body, grid, sampled, load(1.5e9)?)?;
+    near!(smooth.peak_pressure(), rough.peak_pressure(), 1e-3);
+    near!(smooth.approach, rough.approach, 1e-3);
     Ok(())
 }
 
@@ -221,7 +186,7 @@ fn cells_take_the_mean_of_the_profile() -> Result<()> {
                 continue;
             }
             let error = (gap - mean(&profile, a, b)) / 1e-6;
-            assert!(error.abs() < QUADRATURE * 10.0, "{x}: {error:e}");
+            below!(error.abs(), QUADRATURE * 10.0, x);
         }
     }
     Ok(())
@@ -244,154 +209,98 @@ fn ends_do_not_depend_on_where_cells_fall() -> Result<()> {
     let lundberg =
         LogarithmicProfile::lundberg(LENGTH, load(1.5e9)?, steel()?.plane_strain_modulus())?;
     for (name, profile, factor) in [("ISO", iso()?, 4.0), ("Lundberg", lundberg, 0.5)] {
-        let roller = Roller::with_profile(RADIUS, profile)?;
         let solve = |shift: f64| -> Result<Solution> {
             let grid = Grid::new([206, 32], [206.0 * cell, 0.3e-3])?;
             let grid = grid.centered_at([shift * cell, 0.0])?;
-            press(&body, grid, &roller, factor * load(1.5e9)?)
+            press(&body, grid, profile, factor * load(1.5e9)?)
         };
         let still = solve(0.0)?;
         for shift in [0.125, 0.25, 0.375, 0.49] {
             let moved = solve(shift)?;
-            let peak = moved.peak_pressure() / still.peak_pressure() - 1.0;
-            let end = end_force(&moved) / end_force(&still) - 1.0;
-            let [there, here] = [&moved, &still].map(|s| s.contact_extent()[0][1]);
-            let edge = (there - here) / cell;
-            println!(
-                "{name} moved by {shift} cells: peak {peak:.1e}, end {end:.1e}, edge {edge:.2} cells"
+            near!(
+                moved.peak_pressure(),
+                still.peak_pressure(),
+                MOVED,
+                name,
+                shift
             );
-            assert!(peak.abs() < MOVED && end.abs() < END && edge.abs() < 1.0);
+            near!(end_force(&moved), end_force(&still), END, name, shift);
+            let [there, here] = [&moved, &still].map(|s| s.contact_extent()[0][1]);
+            below!((there - here).abs(), cell, name, shift);
         }
     }
-    Ok(())
-}
-
-#[test]
-fn a_finite_drop_under_load_is_reported_as_a_sharp_end() -> Result<()> {
-    let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
-    let profile = LogarithmicProfile::johns_gohar(LENGTH, load, modulus, RADIUS)?;
-    let grid = Grid::new([128, 32], [1.02 * LENGTH, 0.25e-3])?;
-    let roller = Roller::with_profile(RADIUS, profile)?;
-    let solution = press(&steel()?.into(), grid, &roller, load)?;
-    assert!(
-        solution
-            .report
-            .warnings
-            .contains(&Warning::SharpEnd { axis: 0 })
-    );
     Ok(())
 }
 
 #[test]
 fn the_peak_converges_along_the_roller() -> Result<()> {
     // A centred load, an off-centre load with a free tilt, and a contact that nearly reaches the ends.
-    let coating = Elastic::new(420e9, 0.3)?;
-    let body = HalfSpace::new(steel()?, [Layer::new(coating, 2e-6)?])?;
+    let body = coated(steel()?, 2.0, 2e-6)?;
     let (modulus, load) = (steel()?.plane_strain_modulus(), load(1.5e9)?);
     let b = hertz::Line::new(RADIUS, modulus, load / LENGTH)?.half_width;
     let lundberg = LogarithmicProfile::lundberg(LENGTH, load, modulus)?;
-    let eccentric = |load: f64| Motion {
-        eccentricity: [Some(0.1 * LENGTH), None],
-        ..Motion::load(load)
-    };
+    let eccentric = |load: f64| Motion::load(load).with_eccentricity([Some(0.1 * LENGTH), None]);
     for (name, profile, motion) in [
         ("ISO", iso()?, Motion::load(load)),
         ("ISO, off-centre", iso()?, eccentric(load)),
         ("ISO, 4x", iso()?, Motion::load(4.0 * load)),
-        (
-            "Lundberg, half its load",
-            lundberg,
-            Motion::load(0.5 * load),
-        ),
+        ("Lundberg, 0.5x", lundberg, Motion::load(0.5 * load)),
     ] {
         let roller = Roller::with_profile(RADIUS, profile)?;
-        let options = Options {
-            tolerance: 1e-10,
-            ..Options::default()
-        };
+        let options = tolerance(1e-10);
         let peak = |cells: usize| -> Result<f64> {
-            let contact = Contact::plan(
-                &body,
-                Grid::new([cells, 64], [LENGTH, 5.0 * b])?,
-                Setup::default(),
-            )?;
-            let solution = contact.solve(&roller, &motion, &options)?;
-            Ok(solution
-                .require_converged(options.tolerance)?
-                .peak_pressure())
+            let contact = plan(&body, Grid::new([cells, 64], [LENGTH, 5.0 * b])?)?;
+            Ok(converged(&contact, &roller, &motion, &options)?.peak_pressure())
         };
         let peaks = [peak(64)?, peak(128)?, peak(256)?, peak(512)?];
         let errors = [0, 1, 2].map(|k| (peaks[k] / peaks[3] - 1.0).abs());
-        println!(
-            "{name}: peak {:.1} MPa, against 512 cells {errors:?}",
-            peaks[3] / 1e6
-        );
         for pair in errors.windows(2) {
-            assert!(pair[1] < pair[0].max(CONVERGED), "{name}: {errors:?}");
+            below!(pair[1], pair[0].max(CONVERGED), name, errors);
         }
-        assert!(errors[2] < AXIAL, "{name}: {errors:?}");
+        below!(errors[2], AXIAL, name, errors);
     }
     Ok(())
 }
 
 #[test]
 fn errors_name_what_is_wrong() {
-    fn name<T>(result: Result<T>) -> Option<&'static str> {
+    fn name<T>(result: Result<T>) -> &'static str {
         match result {
             Err(
                 Error::Parameter { name, .. }
                 | Error::Shape { name, .. }
                 | Error::NonFinite { name, .. },
-            ) => Some(name),
-            _ => None,
+            ) => name,
+            _ => "nothing",
         }
     }
     let log = LogarithmicProfile::new;
+    let (lundberg, johns_gohar) = (
+        LogarithmicProfile::lundberg,
+        LogarithmicProfile::johns_gohar,
+    );
+    let iso = LogarithmicProfile::iso16281;
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(name(log(bad, 1.0, 0.0, 1.0)), Some("amplitude"));
-        assert_eq!(name(log(1e-6, bad, 0.0, 1.0)), Some("length"));
-        assert_eq!(
-            name(LogarithmicProfile::lundberg(1.0, bad, 1e9)),
-            Some("load")
-        );
-        assert_eq!(
-            name(LogarithmicProfile::lundberg(1.0, 1e3, bad)),
-            Some("contact_modulus")
-        );
-        assert_eq!(
-            name(LogarithmicProfile::johns_gohar(1.0, 1e3, 1e9, bad)),
-            Some("radius")
-        );
-        assert_eq!(
-            name(LogarithmicProfile::iso16281(bad, 1.0)),
-            Some("diameter")
-        );
-        assert_eq!(name(LogarithmicProfile::iso16281(1.0, bad)), Some("length"));
+        assert_eq!(name(log(bad, 1.0, 0.0, 1.0)), "amplitude");
+        assert_eq!(name(log(1e-6, bad, 0.0, 1.0)), "length");
+        assert_eq!(name(lundberg(1.0, bad, 1e9)), "load");
+        assert_eq!(name(lundberg(1.0, 1e3, bad)), "contact_modulus");
+        assert_eq!(name(johns_gohar(1.0, 1e3, 1e9, bad)), "radius");
+        assert_eq!(name(iso(bad, 1.0)), "diameter");
+        assert_eq!(name(iso(1.0, bad)), "length");
     }
     for bad in [-0.1, 1.0, 2.0, f64::NAN] {
-        assert_eq!(name(log(1e-6, 1.0, bad, 1.0)), Some("flat_length"));
+        assert_eq!(name(log(1e-6, 1.0, bad, 1.0)), "flat_length");
     }
     for bad in [0.0, -0.5, 1.001, f64::NAN] {
-        assert_eq!(name(log(1e-6, 1.0, 0.0, bad)), Some("end_factor"));
+        assert_eq!(name(log(1e-6, 1.0, 0.0, bad)), "end_factor");
     }
     // The contact would be wider than long: b = √(4W'R/πE*) = 3.6 for a length of 1.
-    assert_eq!(
-        name(LogarithmicProfile::johns_gohar(1.0, 1.0, 1.0, 10.0)),
-        Some("end_factor")
-    );
-    let sampled = SampledProfile::new;
-    assert!(name(sampled(&[0.0, 1.0], &[0.0])).is_some_and(|name| name.starts_with("profile")));
-    assert!(name(sampled(&[0.0], &[0.0])).is_some_and(|name| name.starts_with("profile")));
-    assert_eq!(
-        name(sampled(&[0.0, 1.0], &[0.0, f64::NAN])),
-        Some("profile")
-    );
-    assert_eq!(
-        name(sampled(&[0.0, 0.0], &[0.0, 1.0])),
-        Some("profile positions")
-    );
-    assert_eq!(
-        name(sampled(&[1.0, 0.0], &[0.0, 1.0])),
-        Some("profile positions")
-    );
+    assert_eq!(name(johns_gohar(1.0, 1.0, 1.0, 10.0)), "end_factor");
+    let sampled = |x: &[f64], drop: &[f64]| name(SampledProfile::new(x, drop));
+    assert!(sampled(&[0.0, 1.0], &[0.0]).starts_with("profile"));
+    assert!(sampled(&[0.0], &[0.0]).starts_with("profile"));
+    assert_eq!(sampled(&[0.0, 1.0], &[0.0, f64::NAN]), "profile");
+    assert_eq!(sampled(&[0.0, 0.0], &[0.0, 1.0]), "profile positions");
+    assert_eq!(sampled(&[1.0, 0.0], &[0.0, 1.0]), "profile positions");
 }

@@ -1,28 +1,31 @@
-//! Bodies in the format of the reference data.
+//! Bodies in the formats of the reference data.
 
 use nacre::{Elastic, HalfSpace, Interface, Layer, Result, Substrate};
 use serde_json::Value;
 
 use crate::support::reference::{list, number};
 
-/// The body of a case with `layers` and `substrate`.
+/// The body of a case with `layers` and `substrate`. Layers are bonded where nothing else is said.
 pub(crate) fn body(case: &Value) -> Result<HalfSpace> {
-    let material = |value: &Value| Elastic::new(number(value, "young"), number(value, "poisson"));
-    let layers: Result<Vec<Layer>> = list(case, "layers")
-        .iter()
-        .map(|layer| {
-            let interface = match layer["interface"].as_str() {
-                Some("bonded") => Interface::Bonded,
-                Some("frictionless") => Interface::Frictionless,
-                other => panic!("interface {other:?}"),
-            };
-            let made = Layer::new(material(layer)?, number(layer, "thickness"))?;
-            Ok(made.with_interface(interface))
-        })
-        .collect();
+    body_by(["young", "poisson", "thickness"], case, 1.0)
+}
+
+/// The body of a case that has moduli, Poisson's ratios and thicknesses by these names, the last in this unit.
+pub(crate) fn body_by([e, nu, h]: [&str; 3], case: &Value, unit: f64) -> Result<HalfSpace> {
+    let material = |value: &Value| Elastic::new(number(value, e), number(value, nu));
+    let layer = |layer: &Value| {
+        let interface = match layer["interface"].as_str() {
+            Some("bonded") | None => Interface::Bonded,
+            Some("frictionless") => Interface::Frictionless,
+            other => panic!("interface {other:?}"),
+        };
+        let made = Layer::new(material(layer)?, number(layer, h) * unit)?;
+        Ok(made.with_interface(interface))
+    };
+    let layers: Result<Vec<Layer>> = list(case, "layers").iter().map(layer).collect();
     let substrate = match &case["substrate"] {
-        Value::Null => Substrate::Rigid,
-        value => material(value)?.into(),
+        Value::Object(_) => material(&case["substrate"])?.into(),
+        _ => Substrate::Rigid,
     };
     HalfSpace::new(substrate, layers?)
 }

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use nacre::surface::Profile;
 use nacre::{
-    Contact, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, Layer, LogarithmicProfile,
-    Motion, Options, Paraboloid, Result, Roller, SampledProfile, Setup, Sphere, Substrate, Surface,
+    Contact, Cylinder, Elastic, FlatPunch, Grid, HalfSpace, HeightMap, LogarithmicProfile, Motion,
+    Options, Paraboloid, Result, Roller, SampledProfile, Setup, Sphere, Substrate, Surface,
 };
 
 use ndarray::Array2;
 
 use crate::support::random::uniform;
+use crate::support::settings::{Controls, stack};
 
 /// Random numbers, one after the other.
 #[derive(Debug)]
@@ -63,53 +64,44 @@ fn body(random: &mut Random, cell: f64) -> Result<(String, HalfSpace)> {
     let ratio = |random: &mut Random| random.one_of(&[0.0, 0.2, 0.3, 0.4, 0.45, 0.49, 0.499, 0.5]);
     let kind = random.choice(8);
     let base = Elastic::new(1.0, ratio(random))?;
-    let layer = |random: &mut Random, young: f64, nu: f64, [low, high]: [f64; 2]| {
-        Layer::new(Elastic::new(young, nu)?, cell * random.power(low, high))
+    let thick = |random: &mut Random, [low, high]: [f64; 2]| cell * random.power(low, high);
+    let one = |kind: &str, on: Substrate, [young, nu, h]: [f64; 3]| {
+        let name = format!("{kind} {young:.0e} {nu} {:.2}", h / cell);
+        Ok((name, stack(on, [[young, nu, h]])?))
     };
-    Ok(match kind {
-        0 => ("bare".into(), base.into()),
-        1 => {
-            let (young, nu) = (random.power(0.0, 4.0), ratio(random));
-            let layer = layer(random, young, nu, [-2.0, 1.5])?;
-            (
-                format!("hard {young:.0e} {nu} {:.2}", layer.thickness() / cell),
-                HalfSpace::new(base, [layer])?,
-            )
-        }
-        2 => {
-            let (young, nu) = (random.power(-4.0, 0.0), ratio(random));
-            let layer = layer(random, young, nu, [-2.0, 1.5])?;
-            (
-                format!("soft {young:.0e} {nu} {:.2}", layer.thickness() / cell),
-                HalfSpace::new(base, [layer])?,
-            )
+    match kind {
+        0 => Ok(("bare".into(), base.into())),
+        1 | 2 => {
+            let (kind, powers) = [("hard", [0.0, 4.0]), ("soft", [-4.0, 0.0])][kind - 1];
+            let (young, nu) = (random.power(powers[0], powers[1]), ratio(random));
+            one(kind, base.into(), [young, nu, thick(random, [-2.0, 1.5])])
         }
         3 | 4 => {
             let (young, nu) = (random.power(-5.0, -2.0), random.one_of(&[0.49, 0.499, 0.5]));
-            let layer = layer(random, young, nu, [-1.0, 1.0])?;
-            let name = format!("rubber {young:.0e} {nu} {:.2}", layer.thickness() / cell);
-            (name, HalfSpace::new(base, [layer])?)
+            one(
+                "rubber",
+                base.into(),
+                [young, nu, thick(random, [-1.0, 1.0])],
+            )
         }
         5 | 6 => {
             let nu = random.one_of(&[0.3, 0.45, 0.49, 0.499, 0.5, 0.5]);
-            let layer = layer(random, 1.0, nu, [-0.8, 1.5])?;
-            let name = format!("on rigid {nu} {:.2}", layer.thickness() / cell);
-            (name, HalfSpace::new(Substrate::Rigid, [layer])?)
+            let h = thick(random, [-0.8, 1.5]);
+            let made = stack(Substrate::Rigid, [[1.0, nu, h]])?;
+            Ok((format!("on rigid {nu} {:.2}", h / cell), made))
         }
         _ => {
-            let top = layer(random, 1.0, 0.3, [-1.0, 1.0])?;
+            let top = thick(random, [-1.0, 1.0]);
             let (young, nu) = (random.power(-3.0, 2.0), ratio(random));
-            let below = layer(random, young, nu, [-1.0, 1.0])?;
-            (
-                format!(
-                    "two layers {young:.0e} {nu} {:.2} {:.2}",
-                    top.thickness() / cell,
-                    below.thickness() / cell
-                ),
-                HalfSpace::new(base, [top, below])?,
-            )
+            let below = thick(random, [-1.0, 1.0]);
+            let places = format!("{:.2} {:.2}", top / cell, below / cell);
+            let layers = [[1.0, 0.3, top], [young, nu, below]];
+            Ok((
+                format!("two layers {young:.0e} {nu} {places}"),
+                stack(base, layers)?,
+            ))
         }
-    })
+    }
 }
 
 /// Heights of a rough surface as a function of x and y, without waves shorter than `shortest`.
@@ -117,10 +109,8 @@ fn rough(random: &mut Random, shortest: f64, height: f64) -> impl Fn(f64, f64) -
     let longest = std::f64::consts::TAU / shortest;
     let waves: Vec<[f64; 4]> = (0..60)
         .map(|_| {
-            let (k, angle) = (
-                longest * random.between(0.0, 1.0).sqrt(),
-                random.between(0.0, 3.2),
-            );
+            let k = longest * random.between(0.0, 1.0).sqrt();
+            let angle = random.between(0.0, 3.2);
             let (phase, amplitude) = (random.between(0.0, 6.3), random.between(0.0, 1.0));
             [k * angle.cos(), k * angle.sin(), phase, amplitude]
         })
@@ -162,10 +152,9 @@ impl RandomContact {
             cells[1] = cells[0];
         }
         let line = random.choice(8) == 0;
-        let grid = if line {
-            Grid::line(cells[1], 2.0)?
-        } else {
-            Grid::new(cells, [2.0, 2.0])?
+        let grid = match line {
+            true => Grid::line(cells[1], 2.0)?,
+            false => Grid::new(cells, [2.0, 2.0])?,
         };
         let cell = grid.spacing()[1];
         let (body_name, body) = body(random, cell)?;
@@ -174,64 +163,48 @@ impl RandomContact {
         let radius = random.power(1.0, 3.0);
         let depth = width * width / (2.0 * radius);
         let at = [random.between(-0.1, 0.1), random.between(-0.1, 0.1)];
-        let kind = if line {
-            random.one_of(&[1, 2, 4])
-        } else {
-            random.choice(9)
+        let kind = match line {
+            true => random.one_of(&[1, 2, 4]),
+            false => random.choice(9),
         };
         let mut measured = None;
+        let [x, y] = at;
         let (kind, shape): (&str, Box<dyn Surface>) = match kind {
-            0 => (
-                "sphere",
-                Box::new(Sphere::new(radius)?.shifted(at[0], at[1])?),
-            ),
+            0 => ("sphere", Box::new(Sphere::new(radius)?.shifted(x, y)?)),
             1 => {
-                let oblong = radius * random.power(-0.7, 0.7);
-                (
-                    "paraboloid",
-                    Box::new(Paraboloid::new(oblong, radius)?.shifted(at[0], at[1])?),
-                )
+                let oblong = Paraboloid::new(radius * random.power(-0.7, 0.7), radius)?;
+                ("paraboloid", Box::new(oblong.shifted(x, y)?))
             }
-            2 => (
-                "cylinder",
-                Box::new(Cylinder::new(radius)?.shifted(at[0], at[1])?),
-            ),
+            2 => ("cylinder", Box::new(Cylinder::new(radius)?.shifted(x, y)?)),
             3 => {
                 let (flat, crown) = (random.between(0.0, 1.0), radius * random.power(0.0, 1.5));
-                let roller = Roller::new(radius, flat, crown)?;
-                ("roller", Box::new(roller.shifted(at[0], at[1])?))
+                (
+                    "roller",
+                    Box::new(Roller::new(radius, flat, crown)?.shifted(x, y)?),
+                )
             }
-            4 => (
-                "punch",
-                Box::new(FlatPunch::new(width)?.shifted(at[0], at[1])?),
-            ),
+            4 => ("punch", Box::new(FlatPunch::new(width)?.shifted(x, y)?)),
             5 => {
                 let length = random.between(0.5, 1.7);
                 let profile: Profile = if random.choice(2) == 0 {
-                    LogarithmicProfile::new(
-                        depth * random.power(-1.5, 0.5),
-                        length,
-                        0.0,
-                        random.one_of(&[1.0, 0.99, 0.9]),
-                    )?
-                    .into()
+                    let amplitude = depth * random.power(-1.5, 0.5);
+                    let end = random.one_of(&[1.0, 0.99, 0.9]);
+                    LogarithmicProfile::new(amplitude, length, 0.0, end)?.into()
                 } else {
                     let x: Vec<f64> = (0..9).map(|k| length * (k as f64 / 8.0 - 0.5)).collect();
-                    let drop: Vec<f64> = x
+                    let wave = |x: &f64| (2.0 * x / length).powi(4);
+                    let drop = x
                         .iter()
-                        .map(|x| depth * ((2.0 * x / length).powi(4) + random.between(0.0, 0.1)))
-                        .collect();
-                    SampledProfile::new(&x, &drop)?.into()
+                        .map(|x| depth * (wave(x) + random.between(0.0, 0.1)));
+                    SampledProfile::new(&x, &drop.collect::<Vec<f64>>())?.into()
                 };
                 let roller = Roller::with_profile(radius, profile)?;
                 ("profiled roller", Box::new(roller.shifted(at[0], at[1])?))
             }
             6 => {
-                let second = Paraboloid::new(
-                    radius * random.power(-0.5, 1.0),
-                    radius * random.power(-0.5, 1.0),
-                )?;
-                let sum = Sphere::new(radius)?.plus(second.shifted(at[0], at[1])?);
+                let radii = [0, 1].map(|_| radius * random.power(-0.5, 1.0));
+                let second = Paraboloid::new(radii[0], radii[1])?;
+                let sum = Sphere::new(radius)?.plus(second.shifted(x, y)?);
                 ("sum", Box::new(sum))
             }
             7 => {
@@ -263,16 +236,12 @@ impl RandomContact {
             .shape_on(&grid)?
             .gaps(&grid)?
             .fold(f64::INFINITY, |a, b| a.min(*b));
-        let slope = if random.choice(3) == 0 {
-            random.between(-0.3, 0.3) * depth
-        } else {
-            0.0
+        let slope = match random.choice(3) {
+            0 => random.between(-0.3, 0.3) * depth,
+            _ => 0.0,
         };
         let tilt = [None, Some(slope)];
-        let moved = Motion {
-            tilt,
-            ..Motion::approach(lowest + depth)
-        };
+        let moved = Motion::approach(lowest + depth).with_tilt(tilt);
         let motion = if random.choice(2) == 0 {
             moved
         } else {
@@ -280,22 +249,13 @@ impl RandomContact {
             let contact = Contact::plan(&made.body, grid, Setup::default())?;
             let solution = contact.solve(&*made.shape_on(&grid)?, &moved, &Options::default())?;
             match solution.load() {
-                load if load > 0.0 => Motion {
-                    tilt,
-                    ..Motion::load(load)
-                },
+                load if load > 0.0 => Motion::load(load).with_tilt(tilt),
                 _ => moved,
             }
         };
-        let how = if motion.load.is_some() {
-            "load"
-        } else {
-            "approach"
-        };
-        let name = format!(
-            "{number}: {kind}, {how}, {body_name}, {cells:?}{}",
-            if line { " line" } else { "" }
-        );
+        let how = motion.load.map_or("approach", |_| "load");
+        let line = if line { " line" } else { "" };
+        let name = format!("{number}: {kind}, {how}, {body_name}, {cells:?}{line}");
         Ok(Self {
             name,
             motion,

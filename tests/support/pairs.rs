@@ -1,7 +1,12 @@
 //! Pairs of equal bodies, and balls whose contact has a radius of 1.
 
-use nacre::friction::{FrictionSolution, TangentialMotion};
-use nacre::{Contact, Elastic, Grid, HalfSpace, Layer, Paraboloid, Result, Setup};
+use nacre::friction::{
+    FrictionOptions, FrictionSolution, Rolling, RollingDirection, Step, TangentialMotion,
+};
+use nacre::{Contact, Elastic, Grid, HalfSpace, Motion, Paraboloid, Result, Surface};
+
+use crate::support::checks::apart;
+use crate::support::settings::{self, one_thread};
 
 /// Radius of the ball.
 pub(crate) const RADIUS: f64 = 50.0;
@@ -23,18 +28,13 @@ pub(crate) fn load(poisson: f64) -> f64 {
 
 /// A body of shear modulus 1 with one layer of the given ratio of moduli, both with ν = 0.3.
 pub(crate) fn coated(ratio: f64, thickness: f64) -> Result<HalfSpace> {
-    let layer = Elastic::new(2.6 * ratio, 0.3)?;
-    HalfSpace::new(Elastic::new(2.6, 0.3)?, [Layer::new(layer, thickness)?])
+    settings::coated(Elastic::new(2.6, 0.3)?, ratio, thickness)
 }
 
 /// Two equal bodies, on one thread.
 pub(crate) fn equal(body: impl Into<HalfSpace>, grid: Grid) -> Result<Contact> {
     let body = body.into();
-    let setup = Setup {
-        counterbody: Some(body.clone().into()),
-        threads: Some(1),
-        ..Setup::default()
-    };
+    let setup = one_thread(body.clone());
     Contact::plan(body, grid, setup)
 }
 
@@ -45,6 +45,99 @@ pub(crate) fn pair(poisson: f64, cells: usize) -> Result<Contact> {
         material(poisson)?,
         Grid::new([cells, cells], [width, width])?,
     )
+}
+
+/// A coated body on another one, which couples pressure and tractions.
+pub(crate) fn unlike(cells: usize, width: f64) -> Result<Contact> {
+    let grid = Grid::new([cells, cells], [width, width])?;
+    Contact::plan(coated(3.0, 0.2)?, grid, one_thread(material(0.2)?))
+}
+
+/// Options with this tolerance.
+pub(crate) fn precise(tolerance: f64) -> FrictionOptions {
+    FrictionOptions {
+        tolerance,
+        ..FrictionOptions::default()
+    }
+}
+
+/// The ball after a single step, which converges.
+pub(crate) fn slide(
+    contact: &Contact,
+    step: Step,
+    options: &FrictionOptions,
+) -> Result<FrictionSolution> {
+    slide_once(contact, &ball()?, step, options)
+}
+
+/// A shape after a single step, which converges.
+pub(crate) fn slide_once(
+    contact: &Contact,
+    shape: &dyn Surface,
+    step: Step,
+    options: &FrictionOptions,
+) -> Result<FrictionSolution> {
+    let solution = contact.slide(shape, &[step], options, None)?.remove(0);
+    assert!(solution.report.converged(), "{:?}", solution.report);
+    Ok(solution)
+}
+
+/// Largest difference of two tractions.
+pub(crate) fn tractions_apart(a: &FrictionSolution, b: &FrictionSolution) -> f64 {
+    let [x, y] = [0, 1].map(|k| apart(&a.traction[k], &b.traction[k]));
+    x.max(y)
+}
+
+/// What a step prescribes and what acts in it.
+pub(crate) trait Pulled {
+    fn with_force(self, force: [Option<f64>; 2]) -> Self;
+    fn with_torque(self, torque: Option<f64>) -> Self;
+    fn with_shift(self, shift: [Option<f64>; 2]) -> Self;
+    fn with_twist(self, twist: Option<f64>) -> Self;
+}
+
+impl Pulled for Step {
+    fn with_force(self, force: [Option<f64>; 2]) -> Self {
+        Self { force, ..self }
+    }
+
+    fn with_torque(self, torque: Option<f64>) -> Self {
+        Self { torque, ..self }
+    }
+
+    fn with_shift(self, shift: [Option<f64>; 2]) -> Self {
+        Self { shift, ..self }
+    }
+
+    fn with_twist(self, twist: Option<f64>) -> Self {
+        Self { twist, ..self }
+    }
+}
+
+/// Rolling with a creepage or under a force along x, or along y on a line.
+pub(crate) fn rolling(
+    load: f64,
+    friction: f64,
+    direction: RollingDirection,
+    [creepage, force]: [Option<f64>; 2],
+) -> Rolling {
+    Rolling {
+        creepage: [creepage, None],
+        force: [force, None],
+        ..Rolling::new(Motion::load(load), friction, direction)
+    }
+}
+
+/// The steady state of rolling, which converges.
+pub(crate) fn rolled(
+    contact: &Contact,
+    shape: &dyn Surface,
+    rolling: &Rolling,
+    options: &FrictionOptions,
+) -> Result<FrictionSolution> {
+    let solution = contact.roll(shape, rolling, options)?;
+    assert!(solution.report.converged(), "{:?}", solution.report);
+    Ok(solution)
 }
 
 /// Shift and twist.

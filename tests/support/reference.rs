@@ -22,8 +22,12 @@ pub(crate) fn list<'a>(value: &'a Value, key: &str) -> &'a Vec<Value> {
     found.unwrap_or_else(|| panic!("no list {key:?} in {value}"))
 }
 
-/// Number `value[key]`.
+/// Number `value[key]`, which may be written as text.
 pub(crate) fn number(value: &Value, key: &str) -> f64 {
-    let found = value[key].as_f64();
-    found.unwrap_or_else(|| panic!("no number {key:?} in {value}"))
+    float(&value[key]).unwrap_or_else(|| panic!("no number {key:?} in {value}"))
+}
+
+/// A number, which may be written as text.
+pub(crate) fn float(value: &Value) -> Option<f64> {
+    value.as_f64().or_else(|| value.as_str()?.parse().ok())
 }

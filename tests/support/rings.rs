@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use crate::support::numerics::elliptic;
+
 /// Rings of equal width, on a half-space with E* = 1.
 pub(crate) struct Rings {
     width: f64,
@@ -121,19 +123,6 @@ fn disc_displacement(r: f64, a: f64) -> f64 {
     }
     let [k, e] = elliptic(a / r);
     4.0 * r / PI * (e - (1.0 - (a / r).powi(2)) * k)
-}
-
-/// Complete elliptic integrals K and E of modulus k, by the arithmetic-geometric mean (DLMF 19.8).
-fn elliptic(k: f64) -> [f64; 2] {
-    let (mut a, mut b, mut c) = (1.0, (1.0 - k * k).sqrt(), k);
-    let (mut sum, mut power) = (0.5 * k * k, 0.5);
-    while c.abs() > 1e-16 {
-        (a, b, c) = (0.5 * (a + b), (a * b).sqrt(), 0.5 * (a - b));
-        power *= 2.0;
-        sum += power * c * c;
-    }
-    let complete = PI / (2.0 * a);
-    [complete, complete * (1.0 - sum)]
 }
 
 /// Solution of a dense system whose last column is the right side, by elimination with row pivots.

@@ -1,8 +1,10 @@
 //! A paraboloid on a coated body, in the scales of the Hertzian contact of a reference material.
 
 use nacre::{
-    Contact, Grid, HalfSpace, Method, Motion, Options, Paraboloid, Result, Setup, Solution, hertz,
+    Contact, Grid, HalfSpace, Method, Motion, Options, Paraboloid, Result, Solution, hertz,
 };
+
+use crate::support::settings::{converged, converted};
 
 /// Peak pressure, approach and contact radius, each divided by its Hertzian scale.
 #[derive(Debug, Clone, Copy)]
@@ -37,18 +39,12 @@ impl Measures {
 /// A solved contact on n² cells over a side of 6, in units in which the Hertzian contact of the reference
 /// material (`modulus` E*) has a radius of 1.
 pub(crate) fn solve(body: &HalfSpace, modulus: f64, n: usize, method: Method) -> Result<Solution> {
-    let setup = Setup {
-        method,
-        ..Setup::default()
-    };
-    let contact = Contact::plan(body, Grid::new([n; 2], [6.0; 2])?, setup)?;
-    let options = Options::default();
-    let solution = contact.solve(
-        &Paraboloid::new(RADIUS, RADIUS)?,
-        &Motion::load(load(modulus)),
-        &options,
-    )?;
-    solution.require_converged(options.tolerance)
+    let contact = Contact::plan(body, Grid::new([n; 2], [6.0; 2])?, converted(method))?;
+    let (shape, motion) = (
+        Paraboloid::new(RADIUS, RADIUS)?,
+        Motion::load(load(modulus)),
+    );
+    converged(&contact, &shape, &motion, &Options::default())
 }
 
 /// Radius of the paraboloid, far larger than the contact radius.

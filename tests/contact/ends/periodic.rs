@@ -3,14 +3,16 @@
 use std::f64::consts::PI;
 
 use nacre::{
-    Contact, Elastic, Grid, HalfSpace, HeightMap, Layer, Motion, Result, Setup, Solution,
-    ends::QuarterSpace,
+    Contact, Elastic, Grid, HalfSpace, HeightMap, Motion, Result, Solution, ends::QuarterSpace,
 };
 use ndarray::{Array2, concatenate};
 
-use super::{differ, plan, tight, unit};
+use super::{pair, tight, unit};
+
+use crate::support::checks::{difference, largest};
 use crate::support::random::uniform;
 use crate::support::reference::{cases, number};
+use crate::support::settings::{Controls, converged, plan, stack};
 
 /// Error of the displacement that is stated for one end.
 const STATED: f64 = 1e-5;
@@ -26,7 +28,7 @@ fn repeated(shape: [usize; 2], size: [f64; 2]) -> Result<Grid> {
 fn amplitudes(poisson: f64, end: f64, places: &[f64]) -> Result<Vec<f64>> {
     const DX: f64 = 0.0125;
     let grid = repeated([1120, 512], [1120.0 * DX, 2.0 * PI])?;
-    let contact = Contact::plan(unit(poisson, [Some(0.0), None])?, grid, Setup::default())?;
+    let contact = plan(unit(poisson, [Some(0.0), None])?, grid)?;
     let (x, y) = (grid.x(), grid.y());
     let load = |(i, j): (usize, usize)| if x[i] < end { y[j].cos() } else { 0.0 };
     let u = contact
@@ -76,7 +78,7 @@ fn waves_of_the_period_are_exact() -> Result<()> {
             let found = amplitudes(poisson, end, &places)?;
             for ((x, due), found) in places.iter().zip(&due).zip(found) {
                 let error = (found - due) / largest;
-                assert!(error.abs() < STATED, "{file} {poisson} {x}: {error:e}");
+                below!(error.abs(), STATED, file, poisson, x);
             }
         }
     }
@@ -85,8 +87,7 @@ fn waves_of_the_period_are_exact() -> Result<()> {
 
 /// Bodies with ends in the grid, at its edge, and far outside; bare and coated.
 fn bodies() -> Result<Vec<HalfSpace>> {
-    let coat = Layer::new(Elastic::new(5.0, 0.2)?, 0.3)?;
-    let coated = HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?;
+    let coated = stack(Elastic::new(1.0, 0.3)?, [[5.0, 0.2, 0.3]])?;
     Ok(vec![
         unit(0.3, [Some(0.0), None])?,
         unit(0.0, [None, Some(3.0)])?,
@@ -104,58 +105,41 @@ fn bodies() -> Result<Vec<HalfSpace>> {
 #[test]
 fn twice_a_period_is_the_same() -> Result<()> {
     for (cells, period) in [(6, 0.4), (9, 3.0), (40, 20.0)] {
-        let grids = [1, 2].map(|times| repeated([8, times * cells], [4.0, times as f64 * period]));
-        let [once, twice] = grids;
-        let (once, twice) = (once?, twice?);
+        let once = repeated([8, cells], [4.0, period])?;
+        let twice = repeated([8, 2 * cells], [4.0, 2.0 * period])?;
         for (number, body) in bodies()?.iter().enumerate() {
             let name = format!("{period}, body {number}");
             let other = unit(0.2, [None; 2])?;
-            let contacts = [once, twice].map(|grid| plan([body, &other], grid));
-            let [first, second] = contacts;
-            let (first, second) = (first?, second?);
+            let (first, second) = (pair([body, &other], once)?, pair([body, &other], twice)?);
             let p = uniform(once.shape(), 3);
             let double = |field: &Array2<f64>| {
                 concatenate(ndarray::Axis(1), &[field.view(), field.view()]).expect("same rows")
             };
             let one = first.convolution().apply(&p)?;
             let two = second.convolution().apply(&double(&p))?;
-            let largest = one.fold(0.0_f64, |most, u| most.max(u.abs()));
-            let worst = differ(&double(&one), &two) / largest;
-            assert!(worst < 1e-8, "{name}: {worst:e}");
+            below!(difference(&two, &double(&one)), 1e-8, name);
 
             let heights = uniform(once.shape(), 5) * (1e-3 * period);
             let solved = |contact: &Contact, grid: &Grid, heights: Array2<f64>, motion: &Motion| {
                 let shape = HeightMap::new(heights, grid.spacing())?
                     .centered_at(grid.center())?
                     .periodic([false, true])?;
-                contact
-                    .solve(&shape, motion, &tight())?
-                    .require_converged(1e-11)
+                converged(contact, &shape, motion, &tight())
             };
-            let motion = Motion {
-                eccentricity: [Some(2.2), None],
-                ..Motion::load(2e-4 * period)
-            };
-            let twofold = Motion {
-                load: motion.load.map(|load| 2.0 * load),
-                ..motion
-            };
+            let motion = Motion::load(2e-4 * period).with_eccentricity([Some(2.2), None]);
+            let twofold = Motion::load(4e-4 * period).with_eccentricity([Some(2.2), None]);
             let a = solved(&first, &once, heights.clone(), &motion)?;
             let b = solved(&second, &twice, double(&heights), &twofold)?;
             let same = |a: &Solution, b: &Solution, name: &str| {
                 let found = Array2::from_shape_fn(a.pressure.dim(), |at| b.pressure[at]);
-                let worst = differ(&a.pressure, &found) / a.peak_pressure();
-                assert!(worst < 1e-6, "{name}: {worst:e}");
-                assert!((b.approach / a.approach - 1.0).abs() < 1e-6, "{name}");
+                below!(difference(&found, &a.pressure), 1e-6, name);
+                near!(b.approach, a.approach, 1e-6, name);
             };
             same(&a, &b, &name);
             let [k, l] = [a.stiffness()?, b.stiffness()?].map(|k| k[0][0]);
-            assert!((l / (2.0 * k) - 1.0).abs() < 1e-5, "{name} {k} {l}");
+            near!(l, 2.0 * k, 1e-5, name, k);
             // Under its approach, the contact is the same.
-            let motion = Motion {
-                tilt: [Some(a.tilt[0]), None],
-                ..Motion::approach(a.approach)
-            };
+            let motion = Motion::approach(a.approach).with_tilt([Some(a.tilt[0]), None]);
             let c = solved(&first, &once, heights, &motion)?;
             same(&a, &c, &format!("{name}, approach"));
         }
@@ -172,7 +156,7 @@ fn a_uniform_pressure_is_that_of_plane_strain() -> Result<()> {
     for poisson in [0.0, 0.3, 0.5] {
         let material = unit(poisson, [None; 2])?.surface_material();
         let body = HalfSpace::from(material).with_ends([Some(0.0), None])?;
-        let contact = Contact::plan(body, grid, Setup::default())?;
+        let contact = plan(body, grid)?;
         let loaded = |i: usize| x[i] > 0.5 && x[i] < 2.0;
         let p = Array2::from_shape_fn((320, 6), |(i, _)| f64::from(u8::from(loaded(i))));
         let u = contact.convolution().apply(&p)?;
@@ -182,10 +166,8 @@ fn a_uniform_pressure_is_that_of_plane_strain() -> Result<()> {
         };
         for i in [0, 1, 5, 30, 80, 140, 200] {
             let due = 2.0 * apart(6000.0, i)? - apart(3000.0, i)?;
-            let error = (u[[i, 2]] - u[[319, 2]]) / due - 1.0;
             // The mean over a cell instead of the middle: 1e-5 beside the end, by the square of the cell.
-            let bar = 2.0 * STATED;
-            assert!(error.abs() < bar, "{poisson} {i}: {error:e}");
+            near!(u[[i, 2]] - u[[319, 2]], due, 2.0 * STATED, poisson, i);
         }
     }
     Ok(())
@@ -206,25 +188,16 @@ fn flush_plates_without_contraction_have_the_pressure_of_a_repeated_cylinder() -
             let body = unit(0.0, ends)?;
             // The wave touches over half of it.
             let load = 5e-4 * period * length;
-            let contact = plan([&body, &body], grid)?;
-            contact
-                .solve(&shape, &Motion::load(load), &tight())?
-                .require_converged(1e-11)
+            let contact = pair([&body, &body], grid)?;
+            converged(&contact, &shape, &Motion::load(load), &tight())
         };
         let ends = [Some(-0.5 * length), Some(0.5 * length)];
         let plate = wave([12, 40], [false, true], ends)?;
         let whole = wave([2, 40], [true; 2], [None; 2])?;
         assert!(plate.pressure[[6, 20]] > 0.0 && plate.pressure[[6, 0]] <= 0.0);
-        let mut worst = 0.0_f64;
-        for row in plate.pressure.rows() {
-            worst = (&row - &whole.pressure.row(0)).fold(worst, |worst, d| worst.max(d.abs()));
-        }
-        let error = worst / whole.peak_pressure();
+        let error = largest(&(&plate.pressure - &whole.pressure.row(0))) / whole.peak_pressure();
         let stated = plate.report.free_ends().and_then(|form| form.error);
-        assert!(
-            error < stated.expect("a plate's"),
-            "{length} {period}: {error:e}"
-        );
+        below!(error, stated.expect("a plate's"), length, period);
     }
     Ok(())
 }

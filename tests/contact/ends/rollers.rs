@@ -8,12 +8,15 @@ use nacre::ends::QuarterSpace;
 use nacre::influence::CellInfluence;
 use nacre::{
     Body, Contact, Cylinder, Elastic, Grid, HalfSpace, LogarithmicProfile, Motion, Options, Result,
-    Roller, Setup, Solution, Sphere, Surface, Warning, solve,
+    Roller, Solution, Sphere, Surface, Warning, solve,
 };
 use ndarray::Axis;
 
-use super::{BOTH, HALF_LENGTH, LOAD, ROLLER, Straight, WHOLE, plan, straight, unit};
+use super::{BOTH, HALF_LENGTH, LOAD, ROLLER, Straight, WHOLE, pair, straight, unit};
+
+use crate::support::checks::largest;
 use crate::support::reference::{cases, list, number};
+use crate::support::settings::{against, converged, plan, pressed, steel};
 
 /// For ν = 0 a pressure that is independent of x leaves the ends of both bodies free, so that the pressure is uniform
 /// along x. Superposed quarter spaces leave 1.5 % for the roller of 20 half-widths; the plate's table leaves 2e-5 of the
@@ -23,23 +26,13 @@ fn flush_bodies_without_lateral_strain_have_uniform_pressure() -> Result<()> {
     for (half_length, rows) in [(HALF_LENGTH, 160), (2.0, 32)] {
         let body = unit(0.0, [Some(-half_length), Some(half_length)])?;
         let grid = Grid::new([rows, 32], [2.0 * half_length, 3.0])?;
-        let solution = plan([&body, &body], grid)?
-            .solve(
-                &Straight(half_length),
-                &Motion::load(half_length * PI),
-                &Options::default(),
-            )?
-            .require_converged(1e-8)?;
+        let (contact, motion) = (pair([&body, &body], grid)?, Motion::load(half_length * PI));
+        let solution = pressed(&contact, &Straight(half_length), &motion)?;
         let mean = solution.pressure.mean_axis(Axis(0)).expect("rows");
-        let mut worst = 0.0_f64;
-        for row in solution.pressure.rows() {
-            worst = (&row - &mean).fold(worst, |worst, d| worst.max(d.abs()));
-        }
-        assert!(worst < 5e-4, "{half_length}: {worst}");
+        below!(largest(&(&solution.pressure - &mean)), 5e-4, half_length);
         // Hertz's line, but for the outermost cells in contact, of 0.094, which the circle cuts.
         for (y, p) in grid.y().iter().zip(&mean).filter(|(y, _)| y.abs() < 0.8) {
-            let hertz = (1.0 - y * y).sqrt();
-            assert!((p / hertz - 1.0).abs() < 5e-3, "{y}: {p}");
+            near!(p, (1.0 - y * y).sqrt(), 5e-3, y);
         }
         let warnings = &solution.report.warnings;
         assert!(warnings.is_empty(), "{warnings:?}");
@@ -60,10 +53,11 @@ fn pressure_falls_towards_flush_ends() -> Result<()> {
         assert!(solution.report.warnings.is_empty());
         beside.push(solution.pressure[[0, 16]]);
     }
-    assert!(
-        beside[0] > 0.99 && beside[1] < 0.7 && beside[2] < beside[1] && beside[2] > 0.0,
-        "{beside:?}"
-    );
+    let [first, middle, last] = beside[..] else {
+        unreachable!()
+    };
+    let falls = first > 0.99 && middle < 0.7 && last < middle && last > 0.0;
+    assert!(falls, "{beside:?}");
     Ok(())
 }
 
@@ -75,10 +69,8 @@ fn the_pressure_at_a_sharp_end_grows_slowly() -> Result<()> {
     let solution = straight([&whole, &free], &Motion::load(LOAD))?;
     assert_eq!(solution.report.warnings, [Warning::FreeEnd]);
     let message = solution.report.warnings[0].to_string();
-    assert!(
-        message.contains("the free end of one body along x, and the other goes on"),
-        "{message}"
-    );
+    let words = "the free end of one body along x, and the other goes on";
+    assert!(message.contains(words), "{message}");
     let half_space = straight([&whole, &whole], &Motion::load(LOAD))?;
     assert_eq!(half_space.report.warnings, [Warning::SharpEnd { axis: 0 }]);
     assert_eq!(half_space.report.free_ends(), None);
@@ -87,7 +79,7 @@ fn the_pressure_at_a_sharp_end_grows_slowly() -> Result<()> {
     let at_end = |solution: &Solution| solution.pressure[[0, 16]];
     assert!(at_end(&half_space) > 1.7 * at_end(&solution));
     let at_half = 0.5 * (solution.pressure[[3, 16]] + solution.pressure[[4, 16]]);
-    assert!((at_half / 1.062 - 1.0).abs() < 4e-3, "{at_half}");
+    near!(at_half, 1.062, 4e-3);
     Ok(())
 }
 
@@ -106,9 +98,7 @@ fn pressure_at(solution: &Solution, x: f64) -> f64 {
 /// The straight roller on cells of 1/16 of the half-width.
 fn fine(bodies: [&HalfSpace; 2]) -> Result<Solution> {
     let grid = Grid::new([320, 48], [2.0 * HALF_LENGTH, 3.0])?;
-    plan(bodies, grid)?
-        .solve(&ROLLER, &Motion::load(LOAD), &Options::default())?
-        .require_converged(1e-8)
+    pressed(&pair(bodies, grid)?, &ROLLER, &Motion::load(LOAD))
 }
 
 /// Two quarter spaces, one for each end, are those of two equal bodies with one free end each. The reference of this form
@@ -127,8 +117,7 @@ fn superposed_ends_agree_with_the_reference() -> Result<()> {
         let low = unit(poisson, [Some(-HALF_LENGTH), None])?;
         let high = unit(poisson, [None, Some(HALF_LENGTH)])?;
         let solution = fine([&low, &high])?;
-        let error = solution.approach / number(&case, "approach") - 1.0;
-        assert!(error.abs() < 2e-4, "{name}: {error:e}");
+        near!(solution.approach, number(&case, "approach"), 2e-4, name);
         let values = list(&case, "x_over_b").iter().zip(list(&case, "p_axis"));
         for (x, p) in values {
             let [x, p] = [x, p].map(|value| value.as_f64().unwrap_or(f64::NAN));
@@ -139,7 +128,7 @@ fn superposed_ends_agree_with_the_reference() -> Result<()> {
                 _ if poisson > 0.0 => 1e-3,
                 _ => 1.5e-3,
             };
-            assert!(error.abs() < tolerance, "{name}, {x}: {error:e}");
+            below!(error.abs(), tolerance, name, x);
         }
     }
     assert_eq!(count, 2);
@@ -159,10 +148,10 @@ fn a_plate_differs_from_superposed_ends_by_a_percent() -> Result<()> {
         let two = fine([&low, &high])?;
         let plate = fine([&unit(poisson, WHOLE)?, &unit(poisson, BOTH)?])?;
         let found = plate.approach / two.approach - 1.0;
-        assert!((found - approach).abs() < 2e-5, "{poisson} {found}");
+        below!((found - approach).abs(), 2e-5, poisson, found);
         for (x, expected) in [0.1, 0.5, 3.0, 8.0].into_iter().zip(pressures) {
             let found = pressure_at(&plate, x) / pressure_at(&two, x) - 1.0;
-            assert!((found - expected).abs() < 2e-5, "{poisson} {x} {found}");
+            below!((found - expected).abs(), 2e-5, poisson, x, found);
         }
     }
     Ok(())
@@ -172,7 +161,7 @@ fn a_plate_differs_from_superposed_ends_by_a_percent() -> Result<()> {
 /// the last only in its middle; the race goes on, or ends with the roller.
 #[test]
 fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
-    let steel = Elastic::new(210e9, 0.3)?;
+    let steel = steel()?;
     let crowned = Roller::new(5e-3, 6e-3, 2.0)?.with_length(10e-3)?;
     let profile = LogarithmicProfile::new(2e-6, 10e-3, 0.0, 0.99)?;
     let logarithmic = Roller::with_profile(5e-3, profile)?;
@@ -181,15 +170,9 @@ fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
     let options = Options::default();
     for race_ends in [WHOLE, ends] {
         let race = HalfSpace::from(steel).with_ends(race_ends)?;
-        let setup = Setup {
-            counterbody: Some((&roller).into()),
-            ..Setup::default()
-        };
-        for (shape, load) in [
-            (&crowned as &dyn Surface, 3000.0),
-            (&logarithmic, 3000.0),
-            (&logarithmic, 300.0),
-        ] {
+        let setup = against(&roller);
+        let flat: &dyn Surface = &crowned;
+        for (shape, load) in [(flat, 3e3), (&logarithmic, 3e3), (&logarithmic, 300.0)] {
             let motion = Motion::load(load);
             let body = Body::from(&race);
             let mut go_on = |_: &Report| ControlFlow::Continue(());
@@ -199,16 +182,17 @@ fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
             let [reached, half_width] = found.contact_extent().map(|[_, high]| high);
             assert!(length <= 10e-3 * (1.0 + 1e-12) && width > 2.0 * half_width);
             if reached > 4.9e-3 {
-                assert!((length / 10e-3 - 1.0).abs() < 1e-12, "{length}");
+                near!(length, 10e-3, 1e-12);
             }
             let whole = Grid::new([512, 128], [10e-3, 2.4 * half_width])?;
-            let expected = Contact::plan(&race, whole, setup.clone())?
-                .solve(shape, &motion, &options)?
-                .require_converged(options.tolerance)?;
-            let ratio = found.approach / expected.approach;
-            let middle = found.central_pressure() / expected.central_pressure();
-            assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
-            assert!((middle - 1.0).abs() < 5e-3, "{middle}");
+            let expected = converged(
+                &Contact::plan(&race, whole, setup.clone())?,
+                shape,
+                &motion,
+                &options,
+            )?;
+            near!(found.approach, expected.approach, 1e-3);
+            near!(found.central_pressure(), expected.central_pressure(), 5e-3);
         }
     }
     // A shape that goes on is cut where the body ends.
@@ -228,34 +212,19 @@ fn a_far_end_adds_to_the_approach_alone() -> Result<()> {
         let a = hertz.radius;
         let end = -100.0 * a;
         let grid = Grid::new([64, 64], [3.0 * a, 3.0 * a])?;
-        let solved = |body: HalfSpace| {
-            let contact = Contact::plan(body, grid, Setup::default())?;
-            contact.solve(
-                &Sphere::new(radius)?,
-                &Motion::load(load),
-                &Options::default(),
-            )
-        };
+        let (ball, motion) = (Sphere::new(radius)?, Motion::load(load));
+        let solved = |body: HalfSpace| pressed(&plan(body, grid)?, &ball, &motion);
         let whole = solved(material.into())?;
         let ended = solved(HalfSpace::from(material).with_ends([Some(end), None])?)?;
-        let ratio = ended.peak_pressure() / whole.peak_pressure();
-        assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+        near!(ended.peak_pressure(), whole.peak_pressure(), 1e-4);
         // A square of side a as the force.
         let at = QuarterSpace::new(material, -end - 0.5 * a, [a, 0.5 * a])?;
         let square = CellInfluence::plan(material, [a, a], 10.0 * a)?;
         let added = (at.displacement([-end, 0.0])? - square.at([0.0, 0.0])) * load / (a * a);
-        let found = ended.approach - whole.approach;
-        assert!(
-            (found / added - 1.0).abs() < 2e-3,
-            "{poisson}: {found:e} {added:e}"
-        );
+        near!(ended.approach - whole.approach, added, 2e-3, poisson);
         // Of the order of the mirror image, W/(π E* 2d), for ν = 0, and three times that for ν = ½.
         let image = load / (PI * material.plane_strain_modulus() * 200.0 * a);
-        assert!(
-            added > image && added < 5.0 * image,
-            "{poisson} {}",
-            added / image
-        );
+        assert!(added > image && added < 5.0 * image, "{poisson} {added}");
     }
     Ok(())
 }
