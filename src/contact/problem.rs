@@ -23,7 +23,7 @@ use crate::model::grid::Window;
 use crate::numerics::parallel::{
     Lanes, ONE, Row, Rows, Total, ZERO, all, sum, update, update_with_largest, where_positive,
 };
-use bounds::{Bounds, not_allowed, residual};
+use bounds::{Bounds, is_below, not_allowed, residual};
 use fit::FitSums;
 use freedoms::Freedoms;
 use scale::LocalDisplacement;
@@ -366,14 +366,14 @@ fn works_of(multipliers: Multipliers, row: Row, [p, limit, u, h]: [&[f64]; 4]) -
 /// Overlap of cells below the hardness, and the magnitude of the displacement of cells that can touch.
 pub(super) fn depths(p: Lanes, limit: Lanes, u: Lanes, overlap: Lanes) -> [Lanes; 2] {
     let touches = overlap.simd_gt(all(f64::NEG_INFINITY));
-    [p.simd_lt(limit) & overlap, touches & u.abs()]
+    [is_below(p, limit) & overlap, touches & u.abs()]
 }
 
 /// Work p u of cells, mismatch p|g| where no bound holds the pressure, and 1 in cells at the hardness.
 pub(super) fn works(p: Lanes, limit: Lanes, u: Lanes, overlap: Lanes) -> [Lanes; 3] {
     // The gap is infinite only where there is no pressure.
     let mismatch = where_positive(p, p * residual(p, limit, overlap).abs());
-    [p * u, mismatch, p.simd_ge(limit) & ONE]
+    [p * u, mismatch, is_below(p, limit).select(ZERO, ONE)]
 }
 
 /// Multipliers λ in two parts: at small loads h − Bλ is far smaller than either term, and taking the larger

@@ -412,7 +412,7 @@ FRICTION_TYPES = {
     "plot.creep_curve(None, axes=3)": r"axes must be axes of Matplotlib, got 3",
     "plot.friction(3)": r"solution must be a FrictionSolution, got 3",
     "curve(creepages=[1e-3], colour=3)": r"Contact\.roll must be among .*'colour'",
-    "FrictionSolution()": r"FrictionSolution",
+    "nacre.types.FrictionSolution()": r"FrictionSolution",
     "slides(steps=3)": "steps must be",
     "rolls(direction=3)": "direction must be",
     "coefficients(STEEL, STEEL, 1.0)": "pair of numbers",

@@ -304,7 +304,8 @@ def test_a_full_disk_is_an_error_and_the_process_goes_on(tmp_path: Path) -> None
     names = [line.split()[0] for line in done.stdout.splitlines()]
     assert names == ["a.nc", "a.vtr", "b.vtr", "a.csv", "a.png", "study"]
     assert [path.name for path in tmp_path.iterdir()] == ["study.journal"]
-    assert (tmp_path / "study.journal").read_bytes() == b""
+    head = f"nacre {nacre.__version__}, journal of format 1\n"
+    assert (tmp_path / "study.journal").read_text() == head
 
 
 def rewritten(path: Path, **changes: Any) -> Path:

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use crate::contact::hardness::Hardness;
 use crate::model::grid::Window;
-use crate::numerics::parallel::{Lanes, ONE, ZERO, where_positive};
+use crate::numerics::parallel::{Lanes, ONE, ZERO, all, where_positive};
 
 /// The bounds 0 ≤ p ≤ H of the cells of a grid or window.
 #[derive(Debug, Clone)]
@@ -87,7 +87,12 @@ impl<'a> Bounds<'a> {
 
     /// Whether the pressure `p` of a cell is free to change.
     pub(crate) fn is_free(&self, cell: usize, p: f64) -> bool {
-        p > 0.0 && p < self.limit(cell)
+        p > 0.0 && !self.is_held(cell, p)
+    }
+
+    /// Whether the upper bound holds the pressure `p` of a cell.
+    fn is_held(&self, cell: usize, p: f64) -> bool {
+        p >= self.limit(cell) && self.is_limited
     }
 
     /// The gap of a cell, positive where it is of the wrong sign for the bound that holds the pressure `p`; 0 where the
@@ -95,22 +100,27 @@ impl<'a> Bounds<'a> {
     pub(crate) fn wrong(&self, cell: usize, p: f64, gap: f64) -> f64 {
         if p <= 0.0 {
             -gap
-        } else if p >= self.limit(cell) {
+        } else if self.is_held(cell, p) {
             gap
         } else {
             0.0
         }
     }
 
-    /// The allowed pressure nearest to `p`.
+    /// The allowed pressure nearest to `p`; NaN where it is NaN.
     pub(crate) fn nearest(&self, cell: usize, p: f64) -> f64 {
-        p.max(0.0).min(self.limit(cell))
+        p.clamp(0.0, self.limit(cell))
     }
+}
+
+/// A mask of the cells whose pressure no upper bound holds. One that overflows is not at a bound of +∞.
+pub(crate) fn is_below(p: Lanes, limit: Lanes) -> Lanes {
+    p.simd_lt(limit) | limit.simd_ge(all(f64::INFINITY))
 }
 
 /// A mask of the cells whose pressure is free to change.
 pub(crate) fn is_free(p: Lanes, limit: Lanes) -> Lanes {
-    p.simd_gt(ZERO) & p.simd_lt(limit)
+    p.simd_gt(ZERO) & is_below(p, limit)
 }
 
 /// A mask of the cells in the contact; `r` is the residual, 0 outside it.
@@ -120,7 +130,7 @@ pub(crate) fn in_contact(p: Lanes, limit: Lanes, r: Lanes) -> Lanes {
 
 /// The residual of cells with this `overlap`: 0 where a bound holds the pressure.
 pub(crate) fn residual(p: Lanes, limit: Lanes, overlap: Lanes) -> Lanes {
-    let rises = p.simd_lt(limit) & overlap.simd_gt(ZERO);
+    let rises = is_below(p, limit) & overlap.simd_gt(ZERO);
     let falls = p.simd_gt(ZERO) & overlap.simd_lt(ZERO);
     (rises | falls) & overlap
 }
