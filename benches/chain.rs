@@ -61,12 +61,8 @@ fn coefficients(c: &mut Criterion) {
     }
     let grid = square(128).expect("valid");
     let image = Method::Image { refinement: 4 };
-    group.bench_function("image/128", |b| {
-        b.iter(|| influence_coefficients(&one, &grid, image))
-    });
-    group.bench_function("tables", |b| {
-        b.iter(|| CellInfluence::plan(&one, [1.0; 2], 1500.0))
-    });
+    group.bench_function("image/128", |b| b.iter(|| influence_coefficients(&one, &grid, image)));
+    group.bench_function("tables", |b| b.iter(|| CellInfluence::plan(&one, [1.0; 2], 1500.0)));
     group.finish();
 }
 
@@ -87,14 +83,8 @@ fn convolution(c: &mut Criterion) {
             let mut point = Array2::zeros((n, n));
             point[[0, 0]] = 1.0;
             let mut out = Array2::zeros((n, n));
-            convolution
-                .apply_into(&point, &mut out, &mut workspace)
-                .expect("same shape");
-            assert!(
-                (&out - &coefficients)
-                    .iter()
-                    .all(|d| d.abs() < 1e-14 * coefficients[[0, 0]])
-            );
+            convolution.apply_into(&point, &mut out, &mut workspace).expect("same shape");
+            assert!((&out - &coefficients).iter().all(|d| d.abs() < 1e-14 * coefficients[[0, 0]]));
             group.bench_function(BenchmarkId::new(name, n), |b| {
                 b.iter(|| convolution.apply_into(black_box(&point), &mut out, &mut workspace));
             });
@@ -105,18 +95,11 @@ fn convolution(c: &mut Criterion) {
 
 fn hertz(n: usize, threads: usize) -> Result<(Contact, Paraboloid, Motion)> {
     let grid = Grid::new([n, n], [2.0, 2.0])?;
-    let setup = Setup {
-        threads: Some(threads),
-        ..Setup::default()
-    };
+    let setup = Setup { threads: Some(threads), ..Setup::default() };
     let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     // The load 4/3 E* a³/R for a contact radius a of a third.
     let load = 4.0 / 81.0 / HERTZ_RADIUS;
-    Ok((
-        contact,
-        Paraboloid::new(HERTZ_RADIUS, HERTZ_RADIUS)?,
-        Motion::load(load),
-    ))
+    Ok((contact, Paraboloid::new(HERTZ_RADIUS, HERTZ_RADIUS)?, Motion::load(load)))
 }
 
 fn converged(
@@ -144,10 +127,7 @@ fn contact(c: &mut Criterion) {
             });
         }
     }
-    let reference = Options {
-        algorithm: Algorithm::PolonskyKeer,
-        ..Options::default()
-    };
+    let reference = Options { algorithm: Algorithm::PolonskyKeer, ..Options::default() };
     let (plan, shape, motion) = hertz(256, 1).expect("valid");
     group.bench_function("hertz_polonsky_keer/256", |b| {
         b.iter(|| converged(&plan, &shape, &motion, &reference));
@@ -176,10 +156,7 @@ fn free_ends(c: &mut Criterion) {
     let mut group = c.benchmark_group("ends");
     group.sample_size(10);
     let shape = Cylinder::new(0.25).expect("valid");
-    let (motion, options) = (
-        Motion::load(10.0 * std::f64::consts::PI),
-        Options::default(),
-    );
+    let (motion, options) = (Motion::load(10.0 * std::f64::consts::PI), Options::default());
     for (name, ends) in [
         ("none", [None; 2]),
         ("quarter_space", [Some(-10.0), None]),
@@ -188,9 +165,7 @@ fn free_ends(c: &mut Criterion) {
         let contact = straight(ends).expect("valid");
         let solution = converged(&contact, &shape, &motion, &options);
         assert!(solution.peak_pressure() > 1.0);
-        group.bench_function(BenchmarkId::new("plan", name), |b| {
-            b.iter(|| straight(ends))
-        });
+        group.bench_function(BenchmarkId::new("plan", name), |b| b.iter(|| straight(ends)));
         group.bench_function(BenchmarkId::new("solve", name), |b| {
             b.iter(|| converged(&contact, &shape, &motion, &options));
         });
@@ -203,14 +178,8 @@ fn roller() -> Result<(Contact, Motion)> {
     let steel = Elastic::new(210e9, 0.3)?;
     let body = HalfSpace::new(steel, [Layer::new(Elastic::new(840e9, 0.3)?, 40e-6)?])?;
     let grid = Grid::new([1024, 128], [29e-3, 0.16e-3])?;
-    let setup = Setup {
-        threads: Some(1),
-        ..Setup::default()
-    };
-    let motion = Motion {
-        eccentricity: [Some(2.8695e-3), Some(0.0)],
-        ..Motion::load(1e3)
-    };
+    let setup = Setup { threads: Some(1), ..Setup::default() };
+    let motion = Motion { eccentricity: [Some(2.8695e-3), Some(0.0)], ..Motion::load(1e3) };
     Ok((Contact::plan(&body, grid, setup)?, motion))
 }
 
@@ -219,10 +188,7 @@ fn interior(c: &mut Criterion) {
     group.sample_size(10);
     let body = coated(1).expect("valid");
     let depths: Vec<f64> = (0..16).map(|k| 0.5 + f64::from(k)).collect();
-    let options = StressOptions {
-        threads: Some(1),
-        ..StressOptions::default()
-    };
+    let options = StressOptions { threads: Some(1), ..StressOptions::default() };
     for n in [128, 512] {
         let grid = square(n).expect("valid");
         let inside = |i: usize| (n / 4..3 * n / 4).contains(&i);
@@ -238,13 +204,5 @@ fn interior(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(
-    chain,
-    response,
-    coefficients,
-    convolution,
-    contact,
-    free_ends,
-    interior
-);
+criterion_group!(chain, response, coefficients, convolution, contact, free_ends, interior);
 criterion_main!(chain);

@@ -21,9 +21,8 @@ const SECONDS: f64 = 2.0;
 fn random(shape: [usize; 2]) -> Array2<f64> {
     let mut state = 1_u64;
     Array2::from_shape_simple_fn(shape, || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     })
 }
@@ -53,10 +52,7 @@ fn best(cells: usize, threads: usize) -> Result<f64> {
 /// share outside kernels, transforms and products.
 fn solve(cells: usize, threads: usize) -> Result<(f64, f64)> {
     const SIDE: f64 = 2.0;
-    let setup = Setup {
-        threads: Some(threads),
-        ..Setup::default()
-    };
+    let setup = Setup { threads: Some(threads), ..Setup::default() };
     let grid = Grid::new([cells, cells], [SIDE; 2])?;
     let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, setup)?;
     let shape = Paraboloid::new(1.0, 1.0)?;

@@ -27,11 +27,8 @@ impl Pair {
         let steel = Elastic::new(2.0 * 1.42, 0.42)?;
         let layer = Layer::new(Elastic::new(8.0 * 1.42, 0.42)?, 0.3)?;
         let body = HalfSpace::new(steel, coated.then_some(layer))?;
-        let setup = Setup {
-            counterbody: Some(body.clone().into()),
-            threads: Some(1),
-            ..Setup::default()
-        };
+        let setup =
+            Setup { counterbody: Some(body.clone().into()), threads: Some(1), ..Setup::default() };
         let width = 2.0 / 0.83;
         Ok(Self {
             contact: Contact::plan(&body, Grid::new([cells, cells], [width, width])?, setup)?,
@@ -73,10 +70,7 @@ impl Pair {
 const CREEPAGE: f64 = 0.17;
 
 fn options() -> FrictionOptions {
-    FrictionOptions {
-        tolerance: 1e-6,
-        ..FrictionOptions::default()
-    }
+    FrictionOptions { tolerance: 1e-6, ..FrictionOptions::default() }
 }
 
 fn friction(c: &mut Criterion) {
@@ -95,10 +89,7 @@ fn friction(c: &mut Criterion) {
                 ("adhesion", pair.roll(1e3, CREEPAGE)),
             ];
             for (problem, solution) in counts {
-                println!(
-                    "{problem}/{name}/{cells}: {} convolutions",
-                    solution.report.convolutions
-                );
+                println!("{problem}/{name}/{cells}: {} convolutions", solution.report.convolutions);
             }
             group.bench_function(id("normal"), |b| {
                 let motion = Motion::load(pair.load);

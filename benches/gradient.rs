@@ -41,10 +41,7 @@ fn gradients(solution: &Solution, count: usize) -> Result<f64> {
     ];
     let plan = Linearisation::plan(solution, Some(&ball), &LinearOptions::default())?;
     let found = plan.gradients(&outputs[..count], None)?;
-    Ok(found
-        .iter()
-        .filter_map(|gradient| gradient.get("load"))
-        .sum())
+    Ok(found.iter().filter_map(|gradient| gradient.get("load")).sum())
 }
 
 fn benches(criterion: &mut Criterion) {

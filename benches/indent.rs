@@ -13,10 +13,7 @@ fn body() -> Result<Body> {
 }
 
 fn indent() -> Result<Indent> {
-    Ok(Indent::new(
-        &Stack::plan(&[body()?])?,
-        &Tip::paraboloid(10.0)?,
-    ))
+    Ok(Indent::new(&Stack::plan(&[body()?])?, &Tip::paraboloid(10.0)?))
 }
 
 /// A curve of 60 points up to a contact radius of 3 layers, with three derivatives.
@@ -33,9 +30,7 @@ fn curve(indent: &Indent, approaches: &[f64]) -> Result<f64> {
 fn run(criterion: &mut Criterion) -> Result<()> {
     let planned = indent()?;
     let mut group = criterion.benchmark_group("indent");
-    group.bench_function("plan", |b| {
-        b.iter(|| indent().and_then(|i| i.at_radius(0.3)).ok())
-    });
+    group.bench_function("plan", |b| b.iter(|| indent().and_then(|i| i.at_radius(0.3)).ok()));
     for ratio in [0.3, 1.0, 3.0, 30.0] {
         assert!(planned.at_radius(ratio)?.load > 0.0);
         group.bench_function(BenchmarkId::new("point", ratio), |b| {
@@ -43,16 +38,10 @@ fn run(criterion: &mut Criterion) -> Result<()> {
         });
     }
     let deepest = planned.at_radius(3.0)?;
-    let approaches: Vec<f64> = (1..=60)
-        .map(|k| deepest.approach * f64::from(k) / 60.0)
-        .collect();
+    let approaches: Vec<f64> = (1..=60).map(|k| deepest.approach * f64::from(k) / 60.0).collect();
     assert!((curve(&planned, &approaches)? / deepest.load - 1.0).abs() < 1e-8);
     group.bench_function("curve", |b| {
-        b.iter(|| {
-            indent()
-                .and_then(|indent| curve(&indent, black_box(&approaches)))
-                .ok()
-        });
+        b.iter(|| indent().and_then(|indent| curve(&indent, black_box(&approaches))).ok());
     });
     group.bench_function("load", |b| b.iter(|| planned.at_load(black_box(1.0)).ok()));
     group.finish();

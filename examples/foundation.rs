@@ -26,11 +26,7 @@ impl Response for Winkler {
     }
 
     fn asymptotes(&self) -> Asymptotes {
-        Asymptotes {
-            long: 0.0,
-            constant: 0.0,
-            short: 0.0,
-        }
+        Asymptotes { long: 0.0, constant: 0.0, short: 0.0 }
     }
 
     fn lengths(&self) -> Option<[f64; 2]> {
@@ -54,11 +50,7 @@ impl Response for Pasternak {
     }
 
     fn asymptotes(&self) -> Asymptotes {
-        Asymptotes {
-            long: 0.0,
-            constant: 1.0 / STIFFNESS,
-            short: 0.0,
-        }
+        Asymptotes { long: 0.0, constant: 1.0 / STIFFNESS, short: 0.0 }
     }
 
     fn lengths(&self) -> Option<[f64; 2]> {
@@ -101,11 +93,8 @@ pub(crate) fn approaches(lengths: &[f64]) -> Result<Vec<f64>> {
         let peak = STIFFNESS * (approach + 2.0 * length * length / RADIUS);
         let area = PI * CONTACT * CONTACT;
         let load = area * (peak - 0.25 * STIFFNESS * CONTACT * CONTACT / RADIUS);
-        let solution = if length > 0.0 {
-            press(Pasternak { length }, load)?
-        } else {
-            press(Winkler, load)?
-        };
+        let solution =
+            if length > 0.0 { press(Pasternak { length }, load)? } else { press(Winkler, load)? };
         println!(
             "{:4.1}   {load:8.3}   {:11.4}   {:11.4}   {:8.3}   {:11.3}",
             1e3 * length,

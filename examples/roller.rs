@@ -19,19 +19,13 @@ pub(crate) fn peaks(fractions: &[f64]) -> Result<Vec<f64>> {
     let mut peaks = Vec::new();
     for fraction in fractions {
         let eccentricity = [Some(fraction * HALF_FLAT), None];
-        let motion = Motion {
-            eccentricity,
-            ..Motion::load(1e3)
-        };
+        let motion = Motion { eccentricity, ..Motion::load(1e3) };
         let options = Options::default();
         let solution = contact.solve(&roller, &motion, &options)?;
         let solution = solution.require_converged(options.tolerance)?;
         let [from, to] = solution.contact_extent()[0].map(|x| x * 1e3);
         let (tilt, peak) = (solution.tilt[0] * 1e5, solution.peak_pressure());
-        println!(
-            "{fraction:3.1}   {tilt:9.3}   {:8.0}   {from:15.2}   {to:5.2}",
-            peak / 1e6
-        );
+        println!("{fraction:3.1}   {tilt:9.3}   {:8.0}   {from:15.2}   {to:5.2}", peak / 1e6);
         peaks.push(peak);
     }
     Ok(peaks)

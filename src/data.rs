@@ -234,19 +234,15 @@ mod tests {
 
     /// Message of the error with which JSON is refused.
     fn refused<T: DeserializeOwned>(text: &str) -> String {
-        serde_json::from_str::<T>(text)
-            .err()
-            .map_or_else(String::new, |error| error.to_string())
+        serde_json::from_str::<T>(text).err().map_or_else(String::new, |error| error.to_string())
     }
 
     #[test]
     fn values_come_back_from_json() -> std::result::Result<(), Box<dyn std::error::Error>> {
         let steel = Elastic::new(210e9, 0.3)?;
         let layer = Layer::new(Elastic::new(1e11 / 3.0, 0.2)?, 1e-6)?;
-        let layers = [
-            layer.clone().with_name("DLC")?,
-            layer.with_interface(Interface::Frictionless),
-        ];
+        let layers =
+            [layer.clone().with_name("DLC")?, layer.with_interface(Interface::Frictionless)];
         kept(HalfSpace::new(steel, layers.clone())?)?;
         kept(HalfSpace::new(steel, layers.clone())?.with_ends([Some(-1e-2 / 3.0), None])?)?;
         kept(HalfSpace::new(Substrate::Rigid, layers)?)?;
@@ -260,16 +256,10 @@ mod tests {
         kept(Roller::new(5e-3, 1e-2, 1.0)?.with_length(2e-2)?)?;
         let logarithmic = LogarithmicProfile::iso16281(1e-2, 3e-2)?;
         kept(Roller::with_profile(5e-3, logarithmic)?.with_counter_radius(0.1)?)?;
-        kept(Roller::with_profile(
-            5e-3,
-            SampledProfile::new(&[0.0, 0.1], &[0.0, 1e-6])?,
-        )?)?;
+        kept(Roller::with_profile(5e-3, SampledProfile::new(&[0.0, 0.1], &[0.0, 1e-6])?)?)?;
         let heights = Array2::from_shape_fn((2, 3), |(i, j)| (i + j) as f64 / 3.0);
         kept(HeightMap::new(heights, [0.1, 0.2])?)?;
-        kept(Motion {
-            tilt: [Some(1e-3), None],
-            ..Motion::load(10.0)
-        })?;
+        kept(Motion { tilt: [Some(1e-3), None], ..Motion::load(10.0) })?;
         kept([Algorithm::Cascade, Algorithm::PolonskyKeer])?;
         kept([Method::Exact, Method::Image { refinement: 4 }])?;
         Ok(())

@@ -272,10 +272,7 @@ pub enum Error {
 impl Error {
     /// The refusal of a derivative.
     pub(crate) fn no_derivative(what: impl Into<String>, reason: &'static str) -> Self {
-        Self::NotDifferentiable {
-            what: what.into(),
-            reason,
-        }
+        Self::NotDifferentiable { what: what.into(), reason }
     }
 }
 
@@ -293,9 +290,7 @@ fn missed([residual, overlap, balance]: [f64; 3], tolerance: f64) -> String {
     const BALANCED: f64 = 1e-12;
     let above = [("residual", residual), ("overlap", overlap)];
     let above = above.iter().filter(|(_, value)| *value > tolerance);
-    let above: Vec<String> = above
-        .map(|(name, value)| format!("{name} {value:.2e}"))
-        .collect();
+    let above: Vec<String> = above.map(|(name, value)| format!("{name} {value:.2e}")).collect();
     let mut missed = Vec::new();
     if !above.is_empty() {
         let above = above.join(", ");
@@ -316,11 +311,7 @@ pub(crate) fn require(
 ) -> Result<f64> {
     match holds {
         true => Ok(value),
-        false => Err(Error::Parameter {
-            name,
-            requirement,
-            value,
-        }),
+        false => Err(Error::Parameter { name, requirement, value }),
     }
 }
 
@@ -343,11 +334,7 @@ pub(crate) fn same_shape<T>(
 ) -> Result<()> {
     match array.dim().into() {
         found if found == expected => Ok(()),
-        found => Err(Error::Shape {
-            name,
-            expected,
-            found,
-        }),
+        found => Err(Error::Shape { name, expected, found }),
     }
 }
 
@@ -359,22 +346,10 @@ mod tests {
     #[test]
     fn conditions_that_were_not_met() {
         for (errors, expected) in [
-            (
-                [2e-6, 1e-9, 1e-15],
-                "residual 2.00e-6 above the tolerance 1e-8",
-            ),
-            (
-                [2e-6, 3e-3, 1e-15],
-                "residual 2.00e-6, overlap 3.00e-3 above the tolerance 1e-8",
-            ),
-            (
-                [7e-17, 0.0, 4e-10],
-                "force and moments in error by 4.00e-10",
-            ),
-            (
-                [7e-17, 0.0, 4e-13],
-                "force and moments in error by 4.00e-13",
-            ),
+            ([2e-6, 1e-9, 1e-15], "residual 2.00e-6 above the tolerance 1e-8"),
+            ([2e-6, 3e-3, 1e-15], "residual 2.00e-6, overlap 3.00e-3 above the tolerance 1e-8"),
+            ([7e-17, 0.0, 4e-10], "force and moments in error by 4.00e-10"),
+            ([7e-17, 0.0, 4e-13], "force and moments in error by 4.00e-13"),
             (
                 [0.0, 1e-4, 3e-2],
                 "overlap 1.00e-4 above the tolerance 1e-8, force and moments in error by 3.00e-2",

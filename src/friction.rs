@@ -93,13 +93,7 @@ impl Contact {
         options: &FrictionOptions,
     ) -> Result<FrictionSolution> {
         let mut progress = |_: &_| ControlFlow::Continue(());
-        self.friction_step(
-            shape,
-            Move::RollSteadily(rolling),
-            options,
-            None,
-            &mut progress,
-        )
+        self.friction_step(shape, Move::RollSteadily(rolling), options, None, &mut progress)
     }
 
     /// Rolls cell by cell from `last` on, or from the first touch, one solution for each of `rolling`.
@@ -144,10 +138,10 @@ impl Contact {
             let session = Session::new(self, shape, *options)?;
             let mut solutions: Vec<FrictionSolution> = Vec::new();
             for (number, next) in moves.enumerate() {
-                let last = solutions.last().or(given).map(|solution| Last {
-                    solution,
-                    is_own: number > 0,
-                });
+                let last = solutions
+                    .last()
+                    .or(given)
+                    .map(|solution| Last { solution, is_own: number > 0 });
                 let mut progress = |_: &_| ControlFlow::Continue(());
                 solutions.push(session.solve(next, last, &mut progress)?);
             }

@@ -60,24 +60,15 @@ mod core {
         module.setattr("Point", module.py().get_type::<PyPoint>())?;
         module.setattr("Line", module.py().get_type::<PyLine>())?;
         module.setattr("Ellipse", module.py().get_type::<PyEllipse>())?;
-        module.setattr(
-            "equivalent_radius",
-            wrap_pyfunction!(equivalent_radius, module)?,
-        )?;
-        module.setattr(
-            "contact_modulus",
-            wrap_pyfunction!(contact_modulus, module)?,
-        )?;
+        module.setattr("equivalent_radius", wrap_pyfunction!(equivalent_radius, module)?)?;
+        module.setattr("contact_modulus", wrap_pyfunction!(contact_modulus, module)?)?;
         // The names of `nacre.indent`.
         let py = module.py();
         module.setattr("Tip", py.get_type::<indent::PyTip>())?;
         module.setattr("Adhesion", py.get_type::<indent::PyAdhesion>())?;
         module.setattr("Indentation", py.get_type::<indent::PyIndentation>())?;
         module.setattr("IndentState", py.get_type::<indent::PyIndentState>())?;
-        module.setattr(
-            "StateDerivative",
-            py.get_type::<indent::PyStateDerivative>(),
-        )?;
+        module.setattr("StateDerivative", py.get_type::<indent::PyStateDerivative>())?;
         module.setattr("IndentCurve", py.get_type::<indent::PyIndentCurve>())?;
         module.setattr("PullOff", py.get_type::<indent::PyPullOff>())?;
         module.setattr("slope_of", wrap_pyfunction!(indent::slope_of, module)?)?;

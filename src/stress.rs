@@ -83,11 +83,7 @@ pub fn stress<'a>(
     depths: &[f64],
     options: impl Into<WatchedStress<'a>>,
 ) -> Result<Stress> {
-    stress_once(
-        &PressureSource::uniform(body, grid, pressure),
-        depths,
-        options.into(),
-    )
+    stress_once(&PressureSource::uniform(body, grid, pressure), depths, options.into())
 }
 
 /// One of the two bodies of a contact.
@@ -189,12 +185,7 @@ impl Solution {
         body: &HalfSpace,
         pressure: &Array2<f64>,
     ) -> Result<StressPlan> {
-        let source = PressureSource {
-            body,
-            pressure,
-            solved: None,
-            ..self.source(member)?
-        };
+        let source = PressureSource { body, pressure, solved: None, ..self.source(member)? };
         source.planned((&StressOptions::default()).into())
     }
 
@@ -206,9 +197,9 @@ impl Solution {
         match (member, &self.report.counterbody) {
             (Member::Body, _) => layered(&self.report.body),
             (Member::Counterbody, Some(counterbody)) => layered(counterbody),
-            (Member::Counterbody, None) => Err(Error::Inconsistent(
-                "body must be \"body\" where the counterbody is rigid",
-            )),
+            (Member::Counterbody, None) => {
+                Err(Error::Inconsistent("body must be \"body\" where the counterbody is rigid"))
+            }
         }
     }
 

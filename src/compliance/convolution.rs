@@ -110,26 +110,13 @@ impl Convolution {
     ) -> Result<Self> {
         let shape = [coefficients.nrows(), coefficients.ncols()];
         if coefficients.is_empty() {
-            return Err(Error::Shape {
-                name: "coefficients",
-                expected: [1, 1],
-                found: shape,
-            });
+            return Err(Error::Shape { name: "coefficients", expected: [1, 1], found: shape });
         }
         if let Some((index, _)) = coefficients.indexed_iter().find(|(_, c)| !c.is_finite()) {
-            return Err(Error::NonFinite {
-                name: "coefficients",
-                index: [index.0, index.1],
-            });
+            return Err(Error::NonFinite { name: "coefficients", index: [index.0, index.1] });
         }
         let transform = PaddedTransform::plan_repeated(shape, periodic, &threads);
-        Ok(Self::with(
-            coefficients,
-            transform,
-            &threads,
-            Pool::default(),
-            Arc::default(),
-        ))
+        Ok(Self::with(coefficients, transform, &threads, Pool::default(), Arc::default()))
     }
 
     fn with(
@@ -272,24 +259,14 @@ impl Convolution {
         displacement: &mut ArrayRef2<f64>,
         workspace: &mut Workspace,
     ) -> Result<()> {
-        for (name, found) in [
-            ("pressure", pressure.dim()),
-            ("displacement", displacement.dim()),
-        ] {
+        for (name, found) in [("pressure", pressure.dim()), ("displacement", displacement.dim())] {
             if [found.0, found.1] != self.shape {
                 let found = [found.0, found.1];
-                return Err(Error::Shape {
-                    name,
-                    expected: self.shape,
-                    found,
-                });
+                return Err(Error::Shape { name, expected: self.shape, found });
             }
         }
         if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-            return Err(Error::NonFinite {
-                name: "pressure",
-                index: index.into(),
-            });
+            return Err(Error::NonFinite { name: "pressure", index: index.into() });
         }
         let standard = pressure.as_standard_layout();
         let input = standard.as_slice().unwrap_or(&[]);
@@ -298,10 +275,7 @@ impl Convolution {
         } else {
             let mut output = vec![0.0; input.len()];
             self.apply_slices(input, &mut output, workspace);
-            displacement
-                .iter_mut()
-                .zip(output)
-                .for_each(|(d, o)| *d = o);
+            displacement.iter_mut().zip(output).for_each(|(d, o)| *d = o);
         }
         match displacement.iter().all(|d| d.is_finite()) {
             true => Ok(()),
@@ -322,8 +296,7 @@ impl Convolution {
         self.transform.reserve(&mut memory.fft);
         self.clock.during(|| {
             let (spectrum, threads) = (&self.spectrum, &self.threads);
-            self.transform
-                .convolve_into(spectrum, input, output, &mut memory.fft, threads);
+            self.transform.convolve_into(spectrum, input, output, &mut memory.fft, threads);
             self.respond(input, 0..self.shape[0], &mut memory.added);
             self.add_rows(0, output, &memory.added);
         });

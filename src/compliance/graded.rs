@@ -79,9 +79,7 @@ pub fn graded_layers(
     let samples = Samples::of(thickness, tolerance, breakpoints, &mut material)?;
     let respond = |layers: &[Layer]| -> Result<Vec<f64>> {
         let body = HalfSpace::new(substrate, layers.iter().cloned())?;
-        let response = WAVENUMBERS
-            .iter()
-            .map(|x| frequency_response(&body, x / thickness));
+        let response = WAVENUMBERS.iter().map(|x| frequency_response(&body, x / thickness));
         response.collect()
     };
     let mut before: Option<Vec<f64>> = None;
@@ -94,9 +92,8 @@ pub fn graded_layers(
         }
         let response = respond(&layers)?;
         // Second order: the error is a third of the last change.
-        let enough = before
-            .as_ref()
-            .is_some_and(|before| change(&response, before) / 3.0 <= tolerance);
+        let enough =
+            before.as_ref().is_some_and(|before| change(&response, before) / 3.0 <= tolerance);
         if enough && agreed {
             let mean = samples.mean_layers(&layers)?;
             if change(&respond(&mean)?, &response) <= tolerance {
@@ -116,10 +113,7 @@ pub fn graded_layers(
 
 /// Largest relative change of a response.
 fn change(new: &[f64], old: &[f64]) -> f64 {
-    let changes = new
-        .iter()
-        .zip(old)
-        .map(|(new, old)| (new / old - 1.0).abs());
+    let changes = new.iter().zip(old).map(|(new, old)| (new / old - 1.0).abs());
     changes.fold(0.0, f64::max)
 }
 

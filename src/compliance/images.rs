@@ -112,10 +112,7 @@ impl Images {
 
     /// Place of an image relative to `at`.
     pub(crate) fn place(&self, at: [f64; 2], [k, l]: [i64; 2]) -> [f64; 2] {
-        [
-            at[0] - k as f64 * self.size[0],
-            at[1] - l as f64 * self.size[1],
-        ]
+        [at[0] - k as f64 * self.size[0], at[1] - l as f64 * self.size[1]]
     }
 
     /// Periods along each direction; an open direction has the cell itself.
@@ -143,10 +140,7 @@ impl Images {
         let nodes = chebyshev_nodes::<NODES>();
         let at = |node: usize| {
             let [[x, _], [y, _]] = [nodes[node / NODES], nodes[node % NODES]];
-            let at = [
-                0.5 * self.span(0) * (1.0 + x),
-                0.5 * self.span(1) * (1.0 + y),
-            ];
+            let at = [0.5 * self.span(0) * (1.0 + x), 0.5 * self.span(1) * (1.0 + y)];
             let mut sums = self.beyond(&block, at).map(|value| -value);
             for k in -self.all[0]..=self.all[0] {
                 for l in -self.all[1]..=self.all[1] {
@@ -182,14 +176,10 @@ impl Images {
         for (k, a) in (-3..=3).zip(along) {
             for (l, b) in (-3..=3).zip(across) {
                 if a * b != 0.0 {
-                    let place = [
-                        at[0] + f64::from(k) * periods[0],
-                        at[1] + f64::from(l) * periods[1],
-                    ];
+                    let place =
+                        [at[0] + f64::from(k) * periods[0], at[1] + f64::from(l) * periods[1]];
                     let values = block(place);
-                    sums.iter_mut()
-                        .zip(values)
-                        .for_each(|(s, v)| *s += share * a * b * v);
+                    sums.iter_mut().zip(values).for_each(|(s, v)| *s += share * a * b * v);
                 }
             }
         }
@@ -248,10 +238,7 @@ fn interpolation(span: f64, offsets: &[f64]) -> Array2<f64> {
     let nodes = chebyshev_nodes::<NODES>();
     let mut matrix = Array2::zeros((offsets.len(), NODES));
     for (offset, mut row) in offsets.iter().zip(matrix.rows_mut()) {
-        row.assign(&ArrayView1::from(&barycentric(
-            &nodes,
-            2.0 * offset / span - 1.0,
-        )));
+        row.assign(&ArrayView1::from(&barycentric(&nodes, 2.0 * offset / span - 1.0)));
     }
     matrix
 }

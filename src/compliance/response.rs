@@ -128,19 +128,12 @@ pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
             let (g, nu) = (layer.material().shear(), layer.material().poisson());
             (layer.thickness(), g, nu)
         });
-        let free = group
-            .last()
-            .is_some_and(|layer| layer.interface() == Interface::Frictionless);
+        let free = group.last().is_some_and(|layer| layer.interface() == Interface::Frictionless);
         if free {
             let (push, stiffness) =
-                terms
-                    .clone()
-                    .fold((0.0, 0.0), |(push, stiffness), (h, g, nu)| {
-                        (
-                            push + h * nu / (1.0 - nu),
-                            stiffness + h * 2.0 * g / (1.0 - nu),
-                        )
-                    });
+                terms.clone().fold((0.0, 0.0), |(push, stiffness), (h, g, nu)| {
+                    (push + h * nu / (1.0 - nu), stiffness + h * 2.0 * g / (1.0 - nu))
+                });
             let e = push / stiffness;
             constant += terms
                 .map(|(h, g, nu)| h * ((1.0 - 2.0 * nu) / (2.0 * g) + nu * e) / (1.0 - nu))

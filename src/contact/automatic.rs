@@ -87,20 +87,12 @@ pub fn solve_watched(
     let mut stopped = false;
     let mut watched = |report: &Report| {
         stopped = stopped || progress(report).is_break();
-        if stopped {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
-        hardness: options
-            .hardness
-            .as_ref()
-            .and_then(Hardness::uniform)
-            .cloned(),
+        hardness: options.hardness.as_ref().and_then(Hardness::uniform).cloned(),
         indentation: None,
         ..options.clone()
     };
@@ -171,9 +163,7 @@ fn solve_on_fit_grid(
             .unwrap_or_default();
         let warning;
         if let Some(missed) = missed {
-            warning = Some(Warning::OutsideGrid {
-                depth: missed.depth,
-            });
+            warning = Some(Warning::OutsideGrid { depth: missed.depth });
             if enlargements == ENLARGEMENTS {
                 return Ok((solution, warning));
             }

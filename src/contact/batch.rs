@@ -45,12 +45,8 @@ pub(super) fn solve_many(
         solutions[number] = Some(solved);
         done.fetch_add(1, Ordering::Relaxed);
     };
-    solve_each(plan, cases, options, &keep, &mut || {
-        progress(done.load(Ordering::Relaxed))
-    })?;
-    Ok(solutions
-        .into_inner()
-        .unwrap_or_else(PoisonError::into_inner))
+    solve_each(plan, cases, options, &keep, &mut || progress(done.load(Ordering::Relaxed)))?;
+    Ok(solutions.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// Solves all cases and hands over each solution; see

@@ -58,20 +58,14 @@ impl Coarser {
         tally: &mut Tally,
     ) -> Option<Self> {
         let levels = planned.coarser(freedoms, gap, shape)?;
-        let mut solved = Self {
-            pressure: None,
-            results: Vec::new(),
-            stopped: None,
-        };
+        let mut solved = Self { pressure: None, results: Vec::new(), stopped: None };
         for (number, level) in levels.iter().enumerate().rev() {
             let tolerance = match number {
                 0 => COARSE_TOLERANCE,
                 _ => COARSER_TOLERANCE,
             };
-            let criteria = StopCriteria {
-                tolerance: criteria.tolerance.max(tolerance),
-                ..criteria
-            };
+            let criteria =
+                StopCriteria { tolerance: criteria.tolerance.max(tolerance), ..criteria };
             let Some(mut patch) = solved.start(level) else {
                 continue;
             };
@@ -137,12 +131,7 @@ impl<'a> Cascade<'a> {
         }
         let finest = planned.finest(problem, gap);
         let patch = coarser.start(&finest)?;
-        Some(Self {
-            finest,
-            patch,
-            results: coarser.results,
-            stopped: coarser.stopped,
-        })
+        Some(Self { finest, patch, results: coarser.results, stopped: coarser.stopped })
     }
 
     /// Starts the finest grid from a `given` pressure.
@@ -157,12 +146,7 @@ impl<'a> Cascade<'a> {
         if let Some(contact) = patch.contact() {
             patch = patch.moved(widened(&contact, finest.shape()));
         }
-        Self {
-            finest,
-            patch,
-            results: Vec::new(),
-            stopped: None,
-        }
+        Self { finest, patch, results: Vec::new(), stopped: None }
     }
 
     /// Solves in a window, which opens until nothing overlaps on the whole grid. Where the iteration breaks down, the
@@ -210,9 +194,7 @@ impl<'a> Cascade<'a> {
         let [x, y] = self.patch.window.clone();
         let outside = |i: usize, j: usize| !(x.contains(&i) && y.contains(&j));
         let g = fields.gap(problem);
-        let found = bounds(&full_window(shape), |i, j| {
-            outside(i, j) && g[i * shape[1] + j] < 0.0
-        });
+        let found = bounds(&full_window(shape), |i, j| outside(i, j) && g[i * shape[1] + j] < 0.0);
         if let Some(cells) = &found {
             let window = enclosing(cells, &self.patch.window);
             self.patch = self.patch.moved(widened(&window, shape));

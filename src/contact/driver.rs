@@ -69,11 +69,7 @@ impl Plan {
         let freedoms = Freedoms::new(motion, &self.grid)?;
         let columns = self.grid.shape()[1];
         let limits = (options.hardness.as_ref())
-            .map(|hardness| {
-                hardness
-                    .check(&self.grid)
-                    .map(|()| Bounds::of(hardness, columns))
-            })
+            .map(|hardness| hardness.check(&self.grid).map(|()| Bounds::of(hardness, columns)))
             .transpose()?;
         if !freedoms.loaded[0] {
             self.datum.check_approach()?;
@@ -114,10 +110,7 @@ impl Plan {
         };
         let stopped = outcome.termination == Termination::Stopped;
         let limits = limits.filter(|limits| !stopped && exceeded(limits));
-        let problem = Problem {
-            bounds: limits.as_ref().unwrap_or(elastic.bounds),
-            ..elastic
-        };
+        let problem = Problem { bounds: limits.as_ref().unwrap_or(elastic.bounds), ..elastic };
         if problem.bounds.is_limited() {
             outcome = steps.let_yield(&problem, &gap, &mut fields, tally)?;
         }
@@ -289,11 +282,7 @@ impl<'a> Steps<'a> {
         report.warnings = warnings;
         // Where cells yield, the coarser grids say nothing.
         if report.converged() && indentation.is_none() {
-            let finest = GridResult {
-                peak_pressure: carried.peak,
-                approach,
-                load: carried.force,
-            };
+            let finest = GridResult { peak_pressure: carried.peak, approach, load: carried.force };
             report.discretisation = self.discretisation(results, finest, &fields, &report.warnings);
         }
         let raised = plan.datum.raise() * carried.force;
@@ -338,11 +327,7 @@ impl<'a> Steps<'a> {
     /// Sum of the responses α û/p̂ of both bodies to waves of the length of two cells \[1/Pa\].
     fn short_waves(&self) -> f64 {
         let [dx, dy] = self.plan.grid.spacing();
-        let finest = if self.plan.grid.is_line() {
-            dy
-        } else {
-            dx.min(dy)
-        };
+        let finest = if self.plan.grid.is_line() { dy } else { dx.min(dy) };
         let bodies = bodies(&self.plan.body, &self.plan.setup);
         bodies.iter().map(|body| body.normal(PI / finest)).sum()
     }
@@ -419,21 +404,14 @@ mod tests {
         let contact = Contact::plan(Elastic::new(1.0, 0.0)?, grid, Setup::default())?;
         let (shape, motion) = (Paraboloid::new(1e3, 1e3)?, Motion::load(1e-3));
         for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-            let options = Options {
-                algorithm,
-                ..Options::default()
-            };
+            let options = Options { algorithm, ..Options::default() };
             let mut last = 1;
             for stop in 1.. {
                 let (mut calls, mut work) = (0, 0.0);
                 let mut progress = |report: &Report| {
                     calls += 1;
                     work = report.convolutions;
-                    if calls == stop {
-                        ControlFlow::Break(())
-                    } else {
-                        ControlFlow::Continue(())
-                    }
+                    if calls == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 };
                 let solution = contact.solve_watched(&shape, &motion, &options, &mut progress)?;
                 let report = &solution.report;

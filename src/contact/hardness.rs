@@ -37,11 +37,7 @@ impl Hardness {
             }
         };
         match values.iter().find(|h| h.is_nan() || **h <= 0.0) {
-            Some(&value) => Err(Error::Parameter {
-                name,
-                requirement,
-                value,
-            }),
+            Some(&value) => Err(Error::Parameter { name, requirement, value }),
             None => Ok(()),
         }
     }
@@ -73,11 +69,7 @@ fn check_shape(name: &'static str, values: &ArrayRef2<f64>, grid: &Grid) -> Resu
     let (expected, found) = (grid.shape(), [values.nrows(), values.ncols()]);
     match found == expected {
         true => Ok(()),
-        false => Err(Error::Shape {
-            name,
-            expected,
-            found,
-        }),
+        false => Err(Error::Shape { name, expected, found }),
     }
 }
 
@@ -86,17 +78,10 @@ pub(super) fn check_indentation(indentation: &ArrayRef2<f64>, grid: &Grid) -> Re
     let name = "indentation";
     check_shape(name, indentation, grid)?;
     if let Some((index, _)) = indentation.indexed_iter().find(|(_, w)| !w.is_finite()) {
-        return Err(Error::NonFinite {
-            name,
-            index: index.into(),
-        });
+        return Err(Error::NonFinite { name, index: index.into() });
     }
     match indentation.iter().find(|w| **w < 0.0) {
-        Some(&value) => Err(Error::Parameter {
-            name,
-            requirement: "at least 0 everywhere",
-            value,
-        }),
+        Some(&value) => Err(Error::Parameter { name, requirement: "at least 0 everywhere", value }),
         None => Ok(()),
     }
 }

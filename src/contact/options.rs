@@ -121,10 +121,7 @@ pub struct Motion {
 impl Motion {
     /// A force `load` \[N\], with both tilts locked at 0.
     pub fn load(load: f64) -> Self {
-        Self {
-            load: Some(load),
-            ..Self::default()
-        }
+        Self { load: Some(load), ..Self::default() }
     }
 
     /// This motion, with what it leaves open as in one `before`: load or approach, and on each axis the eccentricity,
@@ -146,9 +143,6 @@ impl Motion {
 
     /// A prescribed `approach` \[m\], with both tilts locked at 0.
     pub fn approach(approach: f64) -> Self {
-        Self {
-            approach: Some(approach),
-            ..Self::default()
-        }
+        Self { approach: Some(approach), ..Self::default() }
     }
 }

@@ -133,10 +133,7 @@ impl Plan {
 
 /// The two bodies, or the one that is not rigid.
 pub(super) fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
-    [Some(body), setup.counterbody.as_ref()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [Some(body), setup.counterbody.as_ref()].into_iter().flatten().collect()
 }
 
 /// Coefficients of body and counterbody together with which a contact on `grid` is solved beside the `additions` of
@@ -152,12 +149,7 @@ pub(super) fn operator(
     threads: &Arc<Threads>,
 ) -> Result<(Array2<f64>, Datum)> {
     let coefficients = total_coefficients(body, setup, grid, threads)?;
-    let datum = Datum::find(
-        &bodies(body, setup),
-        grid,
-        (&coefficients, additions),
-        threads,
-    )?;
+    let datum = Datum::find(&bodies(body, setup), grid, (&coefficients, additions), threads)?;
     let coefficients = datum.moved(coefficients, grid);
     // No coefficient of a positive definite operator is larger than that of the loaded cell.
     let own = coefficients[[0, 0]];

@@ -97,13 +97,8 @@ pub(super) struct QualitySums {
 }
 
 impl Total for QualitySums {
-    const ZERO: Self = Self {
-        overlap: 0.0,
-        displacement: 0.0,
-        work: 0.0,
-        mismatch: 0.0,
-        held: 0.0,
-    };
+    const ZERO: Self =
+        Self { overlap: 0.0, displacement: 0.0, work: 0.0, mismatch: 0.0, held: 0.0 };
 
     fn joined(self, other: Self) -> Self {
         let larger = |a: f64, b: f64| if b > a { b } else { a };
@@ -123,13 +118,7 @@ impl QualitySums {
         [overlap, displacement]: [f64; 2],
         [work, mismatch, held]: [f64; 3],
     ) -> Self {
-        Self {
-            overlap,
-            displacement,
-            work,
-            mismatch,
-            held,
-        }
+        Self { overlap, displacement, work, mismatch, held }
     }
 }
 
@@ -209,10 +198,7 @@ impl Problem<'_> {
         // λ depends on the window's rows alone: they come first.
         let fit = rows.blocks(inputs, [&mut *u], |block, [p, h], [u]| {
             let local = block.local(&window[0]);
-            displace(
-                block.first + local.start,
-                &mut u[local.start * ny..local.end * ny],
-            );
+            displace(block.first + local.start, &mut u[local.start * ny..local.end * ny]);
             block.each([p, u, h], [], |row, [p, u, h], []| {
                 let inside = row.within(window, [p, u, h, self.bounds.row(row.number)]);
                 inside.map_or(FitSums::ZERO, |(row, [p, u, h, limit])| {
@@ -220,10 +206,7 @@ impl Problem<'_> {
                 })
             })
         });
-        let multipliers = Multipliers {
-            base: near,
-            change: self.freedoms.fitted(fit),
-        };
+        let multipliers = Multipliers { base: near, change: self.freedoms.fitted(fit) };
         let (sums, [not_finite, not_allowed]) = rows.blocks(inputs, [u], |block, [p, h], [u]| {
             let local = block.local(&window[0]);
             displace(block.first, &mut u[..local.start * ny]);
@@ -405,8 +388,6 @@ impl Multipliers {
     /// Writes the gap of a row.
     pub(super) fn gap(self, row: Row, [u, h]: [&[f64]; 2], g: &mut [f64]) {
         let overlap = self.overlap(row);
-        update([u, h, row.y], [g], |fields, _| {
-            ([ZERO - overlap(fields)], [])
-        });
+        update([u, h, row.y], [g], |fields, _| ([ZERO - overlap(fields)], []));
     }
 }

@@ -76,19 +76,12 @@ impl Solution {
         for (name, field) in ["pressure", "gap", "displacement"].into_iter().zip(fields) {
             let found = [field.nrows(), field.ncols()];
             if found != expected {
-                return Err(Error::Shape {
-                    name,
-                    expected,
-                    found,
-                });
+                return Err(Error::Shape { name, expected, found });
             }
         }
         for (name, field) in [("pressure", &pressure), ("displacement", &displacement)] {
             if let Some((index, _)) = field.indexed_iter().find(|(_, v)| !v.is_finite()) {
-                return Err(Error::NonFinite {
-                    name,
-                    index: index.into(),
-                });
+                return Err(Error::NonFinite { name, index: index.into() });
             }
         }
         for (name, requirement, field, smallest) in [
@@ -96,11 +89,7 @@ impl Solution {
             ("gap", "a number or +inf", &gap, f64::MIN),
         ] {
             if let Some(&value) = field.iter().find(|&&v| v.is_nan() || v < smallest) {
-                return Err(Error::Parameter {
-                    name,
-                    requirement,
-                    value,
-                });
+                return Err(Error::Parameter { name, requirement, value });
             }
         }
         finite("approach", approach)?;
@@ -135,11 +124,7 @@ impl Solution {
         if let Some(indentation) = &indentation {
             check_indentation(indentation, self.grid())?;
         }
-        Ok(Self {
-            hardness,
-            indentation,
-            ..self
-        })
+        Ok(Self { hardness, indentation, ..self })
     }
 
     /// The solution itself, if the tolerance was met.
@@ -187,8 +172,7 @@ impl Solution {
     /// Point where the force acts \[m\]; the origin where there is no force.
     pub fn eccentricity(&self) -> [f64; 2] {
         let load = self.load();
-        self.moment()
-            .map(|moment| if load > 0.0 { moment / load } else { 0.0 })
+        self.moment().map(|moment| if load > 0.0 { moment / load } else { 0.0 })
     }
 
     /// Area of the cells in contact \[m²\].
@@ -279,9 +263,7 @@ impl Solution {
     pub fn contact_extent(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|axis| {
             let lanes = self.pressure.lanes(ndarray::Axis(axis)).into_iter();
-            let ends = lanes
-                .filter_map(line_ends)
-                .reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+            let ends = lanes.filter_map(line_ends).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
             let first = self.grid().coordinates(axis)[0];
             let spacing = self.grid().spacing()[axis];
             ends.map_or([0.0; 2], |ends| ends.map(|end| first + spacing * end))
@@ -332,9 +314,5 @@ fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
     }
     let zero = -2.0 * constant / (slope + discriminant.sqrt());
     let beyond = -(zero + half + FIRST as f64);
-    if (-1.0..=1.0).contains(&beyond) {
-        beyond
-    } else {
-        OUTER_CELL
-    }
+    if (-1.0..=1.0).contains(&beyond) { beyond } else { OUTER_CELL }
 }

@@ -61,11 +61,7 @@ type Caller<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
 impl<'a> Tally<'a> {
     /// Nothing is done yet.
     pub(super) fn new(caller: &'a mut Caller<'a>) -> Self {
-        Self {
-            iterations: 0,
-            work: 0.0,
-            caller,
-        }
+        Self { iterations: 0, work: 0.0, caller }
     }
 
     /// Tells the caller of a pressure of this quality; a break ends the solve.

@@ -39,29 +39,18 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
     let gaps = shape.gaps(grid)?;
     let found = [gaps.nrows(), gaps.ncols()];
     if found != grid.shape() {
-        return Err(Error::Shape {
-            name: "shape",
-            expected: grid.shape(),
-            found,
-        });
+        return Err(Error::Shape { name: "shape", expected: grid.shape(), found });
     }
-    let gaps = if gaps.is_standard_layout() {
-        gaps
-    } else {
-        gaps.as_standard_layout().into_owned()
-    };
+    let gaps =
+        if gaps.is_standard_layout() { gaps } else { gaps.as_standard_layout().into_owned() };
     let lowest = f64::NEG_INFINITY;
-    let [good] = rows.each([slice(&gaps)], [], |_, gaps, []| {
-        sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE])
-    });
+    let [good] = rows
+        .each([slice(&gaps)], [], |_, gaps, []| sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE]));
     // Counts of cells are exact in f64.
     if good < gaps.len() as f64 {
         let bad = |h: &f64| h.is_nan() || *h <= lowest;
         let cell = slice(&gaps).iter().position(bad).unwrap_or(0);
-        return Err(Error::NonFinite {
-            name: "shape",
-            index: [cell / found[1], cell % found[1]],
-        });
+        return Err(Error::NonFinite { name: "shape", index: [cell / found[1], cell % found[1]] });
     }
     Ok(gaps)
 }
@@ -91,10 +80,7 @@ pub(super) fn check_seam(shape: &dyn Surface, grid: &Grid) -> Result<()> {
             let most = range.into_iter().fold(0.0, f64::max);
             // NaN where neither end can touch.
             if (low - high).abs() > 1e-6 * most {
-                return Err(Error::Seam {
-                    axis: ["x", "y"][axis],
-                    gaps: [low, high],
-                });
+                return Err(Error::Seam { axis: ["x", "y"][axis], gaps: [low, high] });
             }
         }
     }
@@ -112,29 +98,16 @@ pub(super) fn given_pressure(
     let (name, expected) = ("initial", problem.convolution.shape());
     let found = [initial.nrows(), initial.ncols()];
     if found != expected {
-        return Err(Error::Shape {
-            name,
-            expected,
-            found,
-        });
+        return Err(Error::Shape { name, expected, found });
     }
     if let Some(((i, j), _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
-        return Err(Error::NonFinite {
-            name,
-            index: [i, j],
-        });
+        return Err(Error::NonFinite { name, index: [i, j] });
     }
     if let Some(&value) = initial.iter().find(|p| **p < 0.0) {
-        return Err(Error::Parameter {
-            name,
-            requirement: "at least 0 everywhere",
-            value,
-        });
+        return Err(Error::Parameter { name, requirement: "at least 0 everywhere", value });
     }
     let cells = initial.iter().zip(problem.gap);
-    let mut p: Vec<f64> = cells
-        .map(|(&p, h)| if h.is_finite() { p } else { 0.0 })
-        .collect();
+    let mut p: Vec<f64> = cells.map(|(&p, h)| if h.is_finite() { p } else { 0.0 }).collect();
     let balanced = problem.freedoms.balance(&mut p, problem.bounds);
     Ok(balanced.then(|| array(expected, p)))
 }

@@ -88,20 +88,13 @@ pub fn creep_coefficients(
     }
     require("cells", cells as f64, cells >= 8, "at least 8")?;
     for body in std::iter::once(&body).chain(&counterbody) {
-        if body
-            .half_space()
-            .is_some_and(|layers| layers.ends() != [None; 2])
-        {
+        if body.half_space().is_some_and(|layers| layers.ends() != [None; 2]) {
             return Err(Error::Inconsistent(crate::compliance::traction::GO_ON));
         }
     }
     let shear = shear(&body, counterbody.as_ref())?;
     let threads = Arc::new(Threads::new(None)?);
-    let mut ask = || {
-        watch
-            .as_mut()
-            .map_or(ControlFlow::Continue(()), |watch| watch())
-    };
+    let mut ask = || watch.as_mut().map_or(ControlFlow::Continue(()), |watch| watch());
     let mut on = |cells: usize| {
         let on = EllipticContact::plan(&body, counterbody.as_ref(), semi_axes, cells, &threads)?;
         threads.run(|| on.coefficients(shear, &mut ask))
@@ -213,19 +206,13 @@ impl EllipticContact {
             (given[at], given[cells + at]) = (along * d, across * d);
         }
         let problem = TractionProblem {
-            operator: Operator {
-                window: &window,
-                rolling: Some(RollingDirection::PlusX),
-            },
+            operator: Operator { window: &window, rolling: Some(RollingDirection::PlusX) },
             law: &self.law,
             given,
             columns: Vec::new(),
             forces: Vec::new(),
         };
-        let effort = Effort {
-            tolerance: TOLERANCE,
-            most: MOST,
-        };
+        let effort = Effort { tolerance: TOLERANCE, most: MOST };
         let found = problem.solve(vec![0.0; 2 * cells], effort, &mut |_, _| watch());
         if found.stopped {
             return Err(Error::Stopped);

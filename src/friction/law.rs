@@ -54,10 +54,9 @@ impl Law {
             let size = x.hypot(*y);
             match *bound > 0.0 {
                 false => CellState::Free,
-                true if size >= AT_BOUND * bound => CellState::Slip {
-                    n: [x / size, y / size],
-                    weight: 0.0,
-                },
+                true if size >= AT_BOUND * bound => {
+                    CellState::Slip { n: [x / size, y / size], weight: 0.0 }
+                }
                 true => CellState::Stick,
             }
         };

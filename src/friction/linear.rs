@@ -161,12 +161,8 @@ impl<'a> NewtonSystem<'a> {
         columns: Vec<Vec<f64>>,
     ) -> Self {
         let size = 2 * states.len();
-        let mut linear = Self {
-            operator,
-            states,
-            constraints: Constraints::default(),
-            memory: vec![0.0; size],
-        };
+        let mut linear =
+            Self { operator, states, constraints: Constraints::default(), memory: vec![0.0; size] };
         for mut column in columns {
             restrict(states, &mut column);
             let mut z = vec![0.0; size];
@@ -178,25 +174,17 @@ impl<'a> NewtonSystem<'a> {
     }
 
     fn precondition(&mut self, r: &[f64], z: &mut [f64]) {
-        self.operator
-            .precondition(self.states, r, &mut self.memory, z);
+        self.operator.precondition(self.states, r, &mut self.memory, z);
     }
 
     /// Coefficients y with S y = `right`; 0 for columns that are 0.
     fn small(&self, right: &[f64]) -> Vec<f64> {
-        small_system(
-            &self.constraints.preconditioned,
-            &self.constraints.columns,
-            right,
-        )
+        small_system(&self.constraints.preconditioned, &self.constraints.columns, right)
     }
 
     /// Replaces z = M r by G r.
     fn project(&self, z: &mut [f64]) {
-        let Constraints {
-            columns,
-            preconditioned,
-        } = &self.constraints;
+        let Constraints { columns, preconditioned } = &self.constraints;
         let forces: Vec<f64> = columns.iter().map(|c| dot(c, z)).collect();
         for (y, column) in self.small(&forces).into_iter().zip(preconditioned) {
             add(z, -y, column);
@@ -231,11 +219,7 @@ impl<'a> NewtonSystem<'a> {
     ) -> (Vec<f64>, usize) {
         let size = b.len();
         let mut d = vec![0.0; size];
-        for (y, column) in self
-            .small(c)
-            .into_iter()
-            .zip(&self.constraints.preconditioned)
-        {
+        for (y, column) in self.small(c).into_iter().zip(&self.constraints.preconditioned) {
             add(&mut d, y, column);
         }
         let (mut r, mut z) = (vec![0.0; size], vec![0.0; size]);
@@ -300,9 +284,7 @@ pub(super) fn small_system(z: &[Vec<f64>], columns: &[Vec<f64>], right: &[f64]) 
 
 /// to += factor · from
 fn add(to: &mut [f64], factor: f64, from: &[f64]) {
-    to.iter_mut()
-        .zip(from)
-        .for_each(|(to, from)| *to += factor * from);
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
 }
 
 /// The least squares of GMRES, kept triangular by Givens's rotations.
@@ -315,12 +297,7 @@ struct LeastSquares {
 
 impl LeastSquares {
     fn new(norm: f64) -> Self {
-        Self {
-            columns: Vec::new(),
-            rotations: Vec::new(),
-            right: vec![norm],
-            residual: norm,
-        }
+        Self { columns: Vec::new(), rotations: Vec::new(), right: vec![norm], residual: norm }
     }
 
     /// Adds a column of Hessenberg's matrix, and returns the residual.
@@ -332,11 +309,7 @@ impl LeastSquares {
         let k = self.rotations.len();
         let (a, b) = (column[k], column[k + 1]);
         let length = a.hypot(b);
-        let [c, s] = if length > 0.0 {
-            [a / length, b / length]
-        } else {
-            [1.0, 0.0]
-        };
+        let [c, s] = if length > 0.0 { [a / length, b / length] } else { [1.0, 0.0] };
         column[k] = length;
         column.truncate(k + 1);
         let last = self.right[k];
@@ -354,11 +327,7 @@ impl LeastSquares {
         for k in (0..n).rev() {
             let rest: f64 = (k + 1..n).map(|m| self.columns[m][k] * y[m]).sum();
             let pivot = self.columns[k][k];
-            y[k] = if pivot == 0.0 {
-                0.0
-            } else {
-                (self.right[k] - rest) / pivot
-            };
+            y[k] = if pivot == 0.0 { 0.0 } else { (self.right[k] - rest) / pivot };
         }
         y
     }

@@ -102,12 +102,7 @@ impl TractionProblem<'_> {
         residual = rest;
         self.release(&mut residual, &multipliers);
         let misfit = self.misfit(q, &residual, largest, &states);
-        Standing {
-            states,
-            multipliers,
-            residual,
-            misfit,
-        }
+        Standing { states, multipliers, residual, misfit }
     }
 
     /// δ with which the residuals `r` − C δ vanish in the mean: those of sticking cells, and those across the tractions of
@@ -121,9 +116,7 @@ impl TractionProblem<'_> {
             return NewtonSystem::new(self.operator, states, self.columns.clone()).multipliers(r);
         }
         let mut weights = weights.to_vec();
-        weights
-            .iter_mut()
-            .for_each(|weight| restrict(states, weight));
+        weights.iter_mut().for_each(|weight| restrict(states, weight));
         let right: Vec<f64> = weights.iter().map(|weight| dot(weight, r)).collect();
         small_system(&self.columns, &weights, &right)
     }
@@ -141,12 +134,8 @@ impl TractionProblem<'_> {
         let (mut convolutions, mut outer, mut stopped) = (0, 0, false);
         let (mut best, mut stalled) = (f64::INFINITY, 0);
         loop {
-            let Standing {
-                states,
-                multipliers,
-                mut residual,
-                misfit,
-            } = self.stand(&q, &mut response, &weights);
+            let Standing { states, multipliers, mut residual, misfit } =
+                self.stand(&q, &mut response, &weights);
             convolutions += 1;
             let left = effort.most.saturating_sub(convolutions);
             let good = misfit.worst() <= effort.tolerance;
@@ -163,13 +152,9 @@ impl TractionProblem<'_> {
             restrict(&states, &mut residual);
             residual.iter_mut().for_each(|r| *r = -*r);
             let pairs = self.columns.iter().zip(&self.forces);
-            let missing: Vec<f64> = pairs
-                .map(|(column, force)| force - dot(column, &q))
-                .collect();
+            let missing: Vec<f64> = pairs.map(|(column, force)| force - dot(column, &q)).collect();
             let [most, factor, least] = INNER;
-            let sticks = !states
-                .iter()
-                .any(|state| matches!(state, CellState::Slip { .. }));
+            let sticks = !states.iter().any(|state| matches!(state, CellState::Slip { .. }));
             let sought = if sticks && outer > 0 {
                 // Nothing slipped after a first solve: the problem is linear.
                 0.0
@@ -178,11 +163,7 @@ impl TractionProblem<'_> {
             };
             let floor = (least * effort.tolerance / misfit.worst()).min(most);
             // Loose systems may send the sets to and fro; so may exact ones, and shorter steps then lead on.
-            stalled = if misfit.worst() < 0.9 * best {
-                0
-            } else {
-                stalled + 1
-            };
+            stalled = if misfit.worst() < 0.9 * best { 0 } else { stalled + 1 };
             best = best.min(misfit.worst());
             let inner = (sought * 0.1_f64.powi(stalled)).max(floor);
             let part = if stalled > PATIENCE { 0.5 } else { 1.0 };
@@ -215,20 +196,13 @@ impl TractionProblem<'_> {
         let scale = if largest > 0.0 { largest } else { given };
         let (x, y) = q.split_at(states.len());
         let used: f64 = x.iter().zip(y).map(|(x, y)| x.hypot(*y)).sum();
-        let bearing = if self.law.most() > 0.0 {
-            self.law.most()
-        } else {
-            used
-        };
+        let bearing = if self.law.most() > 0.0 { self.law.most() } else { used };
         let forces = self.columns.iter().zip(&self.forces);
         let imbalance = forces.fold(0.0_f64, |worst, (column, force)| {
             let arm = column.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
             worst.max((force - dot(column, q)).abs() / (bearing * arm))
         });
         let violation = self.law.violation(r, states);
-        Misfit {
-            violation: if scale > 0.0 { violation / scale } else { 0.0 },
-            imbalance,
-        }
+        Misfit { violation: if scale > 0.0 { violation / scale } else { 0.0 }, imbalance }
     }
 }

@@ -141,14 +141,12 @@ impl<'a> Session<'a> {
             (Some(motion), Some(before)) => Some(motion.after(&before)),
             (motion, before) => motion.or(before),
         };
-        let motion = motion.ok_or(Error::Inconsistent(
-            "the first step must have a load or an approach",
-        ))?;
+        let motion =
+            motion.ok_or(Error::Inconsistent("the first step must have a load or an approach"))?;
         let friction = step.friction.as_ref();
         let friction = friction.or_else(|| last.map(|last| &last.friction));
-        let friction = friction.ok_or(Error::Inconsistent(
-            "the first step must have a coefficient of friction",
-        ))?;
+        let friction = friction
+            .ok_or(Error::Inconsistent("the first step must have a coefficient of friction"))?;
         friction.check(grid)?;
         let freedoms = step.freedoms(grid)?;
         let before = before_of(last, grid)?;
@@ -231,11 +229,8 @@ impl<'a> Session<'a> {
                 true => self.starts(motion, &normal, [x, y], friction, &traction)?,
                 false => vec![traction.clone()],
             };
-            let pressed = PressedCells {
-                grid,
-                bound: &bound,
-                spreading: &self.spreading(&normal.pressure),
-            };
+            let pressed =
+                PressedCells { grid, bound: &bound, spreading: &self.spreading(&normal.pressure) };
             let solved = self.tractions(task, pressed, &starts, goal, &mut course);
             if let Some(solved) = &solved {
                 traction = solved.tractions(grid.shape());
@@ -261,10 +256,8 @@ impl<'a> Session<'a> {
         course: &mut FrictionCourse,
     ) -> Option<SolvedTask> {
         let counted = course.report.convolutions;
-        let effort = Effort {
-            tolerance,
-            most: self.options.max_convolutions.saturating_sub(counted),
-        };
+        let effort =
+            Effort { tolerance, most: self.options.max_convolutions.saturating_sub(counted) };
         let mut watch = |convolutions: usize, misfit: Misfit| {
             course.report.convolutions = counted + convolutions;
             course.report.violation = misfit.violation;
@@ -346,10 +339,7 @@ impl<'a> Session<'a> {
         pressure: Option<&Array2<f64>>,
         course: &mut FrictionCourse,
     ) -> Result<Solution> {
-        let mut options = Options {
-            tolerance: self.options.tolerance,
-            ..Options::default()
-        };
+        let mut options = Options { tolerance: self.options.tolerance, ..Options::default() };
         let mut watch = |_: &crate::contact::Report| course.tell();
         let (contact, grid) = (self.contact, self.contact.grid());
         if !self.coupled {
@@ -409,15 +399,9 @@ impl<'a> Session<'a> {
         if force <= 0.0 {
             return Ok(tractions);
         }
-        let less = Motion {
-            load: Some(normal.load() * (1.0 - force / bears)),
-            approach: None,
-            ..*motion
-        };
-        let options = Options {
-            tolerance: START,
-            ..Options::default()
-        };
+        let less =
+            Motion { load: Some(normal.load() * (1.0 - force / bears)), approach: None, ..*motion };
+        let options = Options { tolerance: START, ..Options::default() };
         let sticking = self.contact.solve(self.shape, &less, &options)?;
         for ((i, j), p) in normal.pressure.indexed_iter() {
             let q = friction.at([i, j]) * (p - sticking.pressure[[i, j]]).max(0.0);

@@ -159,8 +159,7 @@ impl FrictionSolution {
         options: impl Into<WatchedStress<'a>>,
     ) -> Result<StressPlan> {
         let tractions = self.traction.each_ref();
-        self.normal
-            .stress_plan_with(member, tractions, options.into())
+        self.normal.stress_plan_with(member, tractions, options.into())
     }
 
     /// The solution itself, if its fields fit the grid and are finite.
@@ -175,16 +174,10 @@ impl FrictionSolution {
             ("displacement", &self.displacement),
             ("slip", &self.slip),
         ];
-        for (name, field) in named
-            .into_iter()
-            .flat_map(|(name, [x, y])| [(name, x), (name, y)])
-        {
+        for (name, field) in named.into_iter().flat_map(|(name, [x, y])| [(name, x), (name, y)]) {
             same_shape(name, field, expected)?;
             if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
-                return Err(Error::NonFinite {
-                    name,
-                    index: index.into(),
-                });
+                return Err(Error::NonFinite { name, index: index.into() });
             }
         }
         Ok(self)
@@ -222,9 +215,7 @@ impl FrictionSolution {
         let (bound, size) = (self.bound(), self.traction_size());
         let sticks =
             |(index, p): ((usize, usize), &f64)| *p > 0.0 && size[index] < AT_BOUND * bound[index];
-        Array2::from_shape_fn(bound.dim(), |cell| {
-            sticks((cell, &self.normal.pressure[cell]))
-        })
+        Array2::from_shape_fn(bound.dim(), |cell| sticks((cell, &self.normal.pressure[cell])))
     }
 
     /// Energy that friction dissipates in the step, by area: q · s \[J/m²\]; in rolling, over the distance rolled

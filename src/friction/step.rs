@@ -100,11 +100,7 @@ fn bounded(name: &'static str, value: f64, unit: f64) -> Result<f64> {
 impl Step {
     /// A first step: the motion along z and the friction.
     pub fn press(motion: Motion, friction: impl Into<Friction>) -> Self {
-        Self {
-            motion: Some(motion),
-            friction: Some(friction.into()),
-            ..Self::default()
-        }
+        Self { motion: Some(motion), friction: Some(friction.into()), ..Self::default() }
     }
 
     /// Degrees of freedom along x, along y, and about z.
@@ -133,9 +129,7 @@ impl Step {
             }
         }
         if grid.is_line() && (self.twist.is_some() || self.torque.is_some()) {
-            return Err(Error::Inconsistent(
-                "twist and torque must not be given in line contact",
-            ));
+            return Err(Error::Inconsistent("twist and torque must not be given in line contact"));
         }
         Ok(given.map(|(motion, load)| match (motion, load) {
             (_, Some(force)) => Freedom::Loaded(force),
@@ -242,9 +236,8 @@ impl Rolling {
         let [lx, ly] = grid.size();
         bounded("spin", self.spin, 1.0 / lx.hypot(ly))?;
         let mut freedoms = [Freedom::Prescribed(0.0); 2];
-        for (freedom, (creepage, force)) in freedoms
-            .iter_mut()
-            .zip(self.creepage.iter().zip(self.force))
+        for (freedom, (creepage, force)) in
+            freedoms.iter_mut().zip(self.creepage.iter().zip(self.force))
         {
             *freedom = match (*creepage, force) {
                 (Some(_), Some(_)) => {
@@ -286,10 +279,6 @@ pub struct FrictionOptions {
 
 impl Default for FrictionOptions {
     fn default() -> Self {
-        Self {
-            tolerance: 1e-8,
-            max_convolutions: 4000,
-            coupling: true,
-        }
+        Self { tolerance: 1e-8, max_convolutions: 4000, coupling: true }
     }
 }

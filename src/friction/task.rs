@@ -109,10 +109,7 @@ impl TractionTask<'_> {
                 true => bound.len_of(axis) - 1,
                 false => 0,
             };
-            bound
-                .index_axis(axis, edge)
-                .iter()
-                .any(|bound| *bound > 0.0)
+            bound.index_axis(axis, edge).iter().any(|bound| *bound > 0.0)
         };
         match self.direction().is_some_and(leaves) {
             false => Ok(()),
@@ -123,9 +120,7 @@ impl TractionTask<'_> {
     /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;
     /// `None` where no cell has friction.
     fn window(&self, pressed: PressedCells) -> Option<Window> {
-        let PressedCells {
-            bound, spreading, ..
-        } = pressed;
+        let PressedCells { bound, spreading, .. } = pressed;
         if bound.iter().all(|bound| *bound <= 0.0) {
             return None;
         }
@@ -179,9 +174,7 @@ impl TractionTask<'_> {
     ) -> Option<SolvedTask> {
         let window = self.window(pressed)?;
         let operators = tangential.window([window[0].len(), window[1].len()]);
-        let law = Law {
-            bound: cut(pressed.bound, &window),
-        };
+        let law = Law { bound: cut(pressed.bound, &window) };
         let problem = self.problem(&operators, &law, pressed, &window);
         let mut starts: Vec<Vec<f64>> = (starts.iter())
             .map(|start| start.each_ref().map(|q| cut(q, &window)).concat())
@@ -203,12 +196,7 @@ impl TractionTask<'_> {
                 *moved = *loaded.next()?;
             }
         }
-        Some(SolvedTask {
-            window,
-            cells: operators.cells(),
-            found,
-            moved,
-        })
+        Some(SolvedTask { window, cells: operators.cells(), found, moved })
     }
 
     /// The problem on a window: what the displacements must be, and the columns and forces of the loaded degrees of freedom.
@@ -219,10 +207,7 @@ impl TractionTask<'_> {
         pressed: PressedCells,
         window: &Window,
     ) -> TractionProblem<'p> {
-        let operator = Operator {
-            window: operators,
-            rolling: self.steady(),
-        };
+        let operator = Operator { window: operators, rolling: self.steady() };
         let mut given = operators.spread(&cut(pressed.spreading, window));
         if let Some(direction) = operator.rolling {
             operator.difference(direction, &mut given);
@@ -255,13 +240,7 @@ impl TractionTask<'_> {
                 _ => {}
             }
         }
-        TractionProblem {
-            operator,
-            law,
-            given,
-            columns,
-            forces,
-        }
+        TractionProblem { operator, law, given, columns, forces }
     }
 
     /// Fields on the whole grid, with the operator of the whole grid.
@@ -367,9 +346,7 @@ pub(super) struct SolvedTask {
 impl SolvedTask {
     /// Cells of the window, and what they do.
     fn states(&self) -> impl Iterator<Item = ([usize; 2], &CellState)> {
-        each(&self.window)
-            .map(|(i, j)| [i, j])
-            .zip(&self.found.states)
+        each(&self.window).map(|(i, j)| [i, j]).zip(&self.found.states)
     }
 
     /// Tractions on the whole grid, 0 outside of the window.
@@ -401,15 +378,8 @@ const LARGE: f64 = 0.1;
 impl FrictionFields {
     pub(super) fn are_finite(&self) -> bool {
         let fields = [&self.traction, &self.displacement, &self.slip];
-        let (TangentialMotion::Slide {
-            shift: [x, y],
-            twist: z,
-        }
-        | TangentialMotion::Roll {
-            creepage: [x, y],
-            spin: z,
-            ..
-        }) = &self.motion;
+        let (TangentialMotion::Slide { shift: [x, y], twist: z }
+        | TangentialMotion::Roll { creepage: [x, y], spin: z, .. }) = &self.motion;
         let mut values = fields.into_iter().flatten().flatten().chain([x, y, z]);
         values.all(|value| value.is_finite())
     }

@@ -28,10 +28,7 @@ pub struct LinearOptions<'a> {
 
 impl Default for LinearOptions<'_> {
     fn default() -> Self {
-        Self {
-            tolerance: 1e-9,
-            watch: None,
-        }
+        Self { tolerance: 1e-9, watch: None }
     }
 }
 
@@ -121,9 +118,7 @@ impl<'a> Linearisation<'a> {
             Some(paths) => {
                 // Only stresses depend on friction, each by itself.
                 let slides = outputs.iter().any(|one| matches!(one, Output::Stress(_)));
-                let others = paths
-                    .iter()
-                    .filter(|path| !(slides && **path == "friction"));
+                let others = paths.iter().filter(|path| !(slides && **path == "friction"));
                 named(&self.parameters, &others.copied().collect::<Vec<_>>())?
             }
         };

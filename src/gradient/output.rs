@@ -60,13 +60,7 @@ pub struct StressOutput {
 impl StressOutput {
     /// `measure` of the stress in the body at `place`, without friction.
     pub fn new(measure: Measure, place: StressPlace) -> Self {
-        Self {
-            member: Member::Body,
-            measure,
-            place,
-            friction: 0.0,
-            direction: None,
-        }
+        Self { member: Member::Body, measure, place, friction: 0.0, direction: None }
     }
 }
 
@@ -143,9 +137,7 @@ impl Gradient {
     /// Derivative with respect to the parameter of this path.
     pub fn get(&self, path: &str) -> Option<f64> {
         let mut values = self.values.iter();
-        values
-            .find(|(parameter, _)| parameter.to_string() == path)
-            .map(|(_, value)| *value)
+        values.find(|(parameter, _)| parameter.to_string() == path).map(|(_, value)| *value)
     }
 }
 

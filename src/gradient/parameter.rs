@@ -73,10 +73,8 @@ fn layered(body: &Body, path: &str) -> Result<HalfSpace> {
 /// All parameters of `solution` with respect to which outputs have derivatives; those of the shape if it is given.
 pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Parameter> {
     let report = &solution.report;
-    let bodies = [
-        (Member::Body, Some(&report.body)),
-        (Member::Counterbody, report.counterbody.as_ref()),
-    ];
+    let bodies =
+        [(Member::Body, Some(&report.body)), (Member::Counterbody, report.counterbody.as_ref())];
     let mut parameters = Vec::new();
     for (member, body) in bodies {
         let Some(Ok(body)) = body.map(|body| layered(body, "")) else {
@@ -175,10 +173,8 @@ impl Slope {
                     Member::Body => Some(&report.body),
                     Member::Counterbody => report.counterbody.as_ref(),
                 };
-                let body = layered(
-                    body.ok_or_else(|| unknown(parameter))?,
-                    &parameter.to_string(),
-                )?;
+                let body =
+                    layered(body.ok_or_else(|| unknown(parameter))?, &parameter.to_string())?;
                 Self::of_body(solution, state, &ResponseSlope::new(&body, *one), reach)?
             }
             Parameter::Shape(name) => {
@@ -226,11 +222,7 @@ impl Slope {
         let companion = convolution.companion(&corner, repeating(grid, window));
         let mut field = vec![0.0; state.pressure.len()];
         companion.apply_slices(&state.pressure, &mut field, &mut companion.workspace());
-        Ok(Self {
-            field,
-            target: [0.0; 3],
-            source: SlopeSource::Coefficients(coefficients),
-        })
+        Ok(Self { field, target: [0.0; 3], source: SlopeSource::Coefficients(coefficients) })
     }
 
     fn of_target(state: &Linearised, target: [f64; 3]) -> Self {
@@ -243,11 +235,7 @@ impl Slope {
 
     fn of_motion(state: &Linearised, motion: [f64; 3]) -> Self {
         let field = state.moved(motion).iter().map(|moved| -moved).collect();
-        Self {
-            field,
-            target: [0.0; 3],
-            source: SlopeSource::Motion(motion),
-        }
+        Self { field, target: [0.0; 3], source: SlopeSource::Motion(motion) }
     }
 
     /// b of a parameter that moves the gap by `slopes` (nx, ny) per unit.

@@ -87,10 +87,7 @@ impl Seed {
                 let (value, slopes) = area_estimate(state, area)?;
                 let warning = "the area is an estimate by level sets: its derivative is in error by 1 to 2 % from 50 \
                                cells a radius on, and more below";
-                Self {
-                    warning: Some(warning.to_owned()),
-                    ..Self::linear(state, value, slopes)
-                }
+                Self { warning: Some(warning.to_owned()), ..Self::linear(state, value, slopes) }
             }
             Output::Weighted(weights) => {
                 let name = "weights of the pressure";
@@ -121,10 +118,7 @@ impl Seed {
 
     /// A seed with `slopes` with respect to the pressure.
     pub(super) fn linear(state: &Linearised, value: f64, slopes: Vec<f64>) -> Self {
-        Self {
-            pressure: slopes,
-            ..Self::new(state, value)
-        }
+        Self { pressure: slopes, ..Self::new(state, value) }
     }
 
     /// A seed with this slope with respect to the pressure of each cell in contact.
@@ -169,9 +163,7 @@ impl Seed {
         let p = &state.pressure;
         let [(first, value), _] = largest(p);
         let ny = state.tangent.window()[1].len();
-        let tied: Vec<usize> = (0..p.len())
-            .filter(|&k| value - p[k] <= TIE * value)
-            .collect();
+        let tied: Vec<usize> = (0..p.len()).filter(|&k| value - p[k] <= TIE * value).collect();
         let mut seed = Self::new(state, 0.0);
         let share = 1.0 / tied.len() as f64;
         for &k in &tied {
@@ -225,9 +217,7 @@ impl Seed {
         let [x0, y0] = [0, 1].map(|axis| state.tangent.window()[axis].start);
         let ny = state.tangent.window()[1].len();
         let mut seed = Self::new(state, 0.0);
-        state
-            .tangent
-            .reach(offsets(state.tangent.window(), &cells))?;
+        state.tangent.reach(offsets(state.tangent.window(), &cells))?;
         for &(cell, weight) in &cells {
             let mut displaced = 0.0;
             for (k, slope) in seed.pressure.iter_mut().enumerate() {
@@ -275,12 +265,7 @@ pub(super) fn offsets(window: &Window, cells: &[([usize; 2], f64)]) -> [usize; 2
             let [first, last] = [range.start, range.end - 1].map(|end| end.abs_diff(cell[axis]));
             first.max(last) + 1
         };
-        cells
-            .iter()
-            .map(distance)
-            .max()
-            .unwrap_or(0)
-            .max(range.len())
+        cells.iter().map(distance).max().unwrap_or(0).max(range.len())
     })
 }
 
@@ -327,9 +312,8 @@ pub(super) fn area_estimate(state: &Linearised, area: f64) -> Result<(f64, Vec<f
     }
     let inner = eroded(&left, [nx, ny]);
     let ring = left.iter().zip(&inner).map(|(left, inner)| *left && !inner);
-    let squares: Vec<f64> = (ring.zip(&state.pressure))
-        .filter_map(|(ring, p)| ring.then_some(p * p))
-        .collect();
+    let squares: Vec<f64> =
+        (ring.zip(&state.pressure)).filter_map(|(ring, p)| ring.then_some(p * p)).collect();
     if squares.is_empty() {
         return Err(Error::no_derivative(
             "the solution",
@@ -341,11 +325,7 @@ pub(super) fn area_estimate(state: &Linearised, area: f64) -> Result<(f64, Vec<f
     let slopes = state.pressure.iter().map(|p| {
         let step = |level: f64| {
             let s = (0.5 * p * p / level).min(1.0);
-            let slope = if s < 1.0 {
-                6.0 * s * (1.0 - s) * p / level
-            } else {
-                0.0
-            };
+            let slope = if s < 1.0 { 6.0 * s * (1.0 - s) * p / level } else { 0.0 };
             [s * s * (3.0 - 2.0 * s), slope]
         };
         let ([one, d_one], [two, d_two]) = (step(level), step(2.0 * level));

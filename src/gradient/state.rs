@@ -71,9 +71,7 @@ impl Linearised {
         let shape = grid.shape();
         let touching = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
         let Some(inner) = bounds(&full_window(shape), touching) else {
-            return Err(refused(
-                "nothing touches, so that every derivative is 0 or undefined",
-            ));
+            return Err(refused("nothing touches, so that every derivative is 0 or undefined"));
         };
         let window: Window = [0, 1].map(|axis| {
             let cells = &inner[axis];
@@ -101,16 +99,8 @@ impl Linearised {
         };
         let (gap, displacement) = (flat(&gap), flat(&solution.displacement));
         let pressure = flat(&solution.pressure);
-        let mut state = Self {
-            pressure,
-            gap,
-            motion,
-            loaded,
-            target,
-            columns: Vec::new(),
-            outside,
-            tangent,
-        };
+        let mut state =
+            Self { pressure, gap, motion, loaded, target, columns: Vec::new(), outside, tangent };
         if !loaded[0] {
             state.tangent.centre_at_origin();
         }
@@ -134,9 +124,7 @@ impl Linearised {
     pub(super) fn moved(&self, [delta, sx, sy]: [f64; 3]) -> Vec<f64> {
         let [x, y] = &self.tangent.coordinates;
         let row = |x: &f64| delta + sx * x;
-        x.iter()
-            .flat_map(|x| y.iter().map(move |y| row(x) + sy * y))
-            .collect()
+        x.iter().flat_map(|x| y.iter().map(move |y| row(x) + sy * y)).collect()
     }
 
     /// K `pressure` in all cells of the window.
@@ -228,9 +216,7 @@ impl Linearised {
     /// `values` in contact, 0 elsewhere.
     pub(super) fn masked(&self, values: &[f64]) -> Vec<f64> {
         let cells = values.iter().zip(&self.tangent.contact);
-        cells
-            .map(|(v, inside)| if *inside { *v } else { 0.0 })
-            .collect()
+        cells.map(|(v, inside)| if *inside { *v } else { 0.0 }).collect()
     }
 
     /// Σ `factor`(cell) p over the cells in contact, numbered as in the grid.
@@ -263,11 +249,7 @@ impl Linearised {
             }
             values.iter_mut().for_each(|v| *v /= rest);
             factors.push(rest);
-            columns.push(LoadedColumn {
-                freedom,
-                values,
-                factors,
-            });
+            columns.push(LoadedColumn { freedom, values, factors });
         }
         self.columns = columns;
         Ok(())
@@ -288,11 +270,7 @@ impl Linearised {
         let mut psi = vec![0.0; right.len()];
         let mut sums: Vec<f64> = Vec::new();
         for (k, column) in self.columns.iter().enumerate() {
-            let known: f64 = column.factors[..k]
-                .iter()
-                .zip(&sums)
-                .map(|(r, w)| r * w)
-                .sum();
+            let known: f64 = column.factors[..k].iter().zip(&sums).map(|(r, w)| r * w).sum();
             let sum = (-balance[column.freedom] - known) / column.factors[k];
             for (psi, q) in psi.iter_mut().zip(&column.values) {
                 *psi += sum * q;
@@ -303,22 +281,15 @@ impl Linearised {
         let mut rest = right.to_vec();
         if sums.iter().any(|sum| *sum != 0.0) {
             self.tangent.apply(&psi, &mut image);
-            rest.iter_mut()
-                .zip(&image)
-                .for_each(|(r, image)| *r -= image);
+            rest.iter_mut().zip(&image).for_each(|(r, image)| *r -= image);
         }
         let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
         let mut ask = || watch.map_or(ControlFlow::Continue(()), |watch| watch());
-        let found = self
-            .tangent
-            .solve_beside(&rest, &span, tolerance, &mut ask)?;
+        let found = self.tangent.solve_beside(&rest, &span, tolerance, &mut ask)?;
         let found = found.ok_or(Error::Stopped)?;
         psi.iter_mut().zip(found).for_each(|(psi, y)| *psi += y);
         self.tangent.apply(&psi, &mut image);
-        image
-            .iter_mut()
-            .zip(right)
-            .for_each(|(image, r)| *image -= r);
+        image.iter_mut().zip(right).for_each(|(image, r)| *image -= r);
         let mut scaled = [0.0; 3];
         for (k, column) in self.columns.iter().enumerate().rev() {
             let mut factor = dot(&column.values, &image);
@@ -336,11 +307,7 @@ impl Linearised {
     /// Smaller of the least pressure in contact over the largest, and the least gap outside over the deepest displacement.
     pub(super) fn margin(&self) -> f64 {
         let (peak, depth) = (peak(&self.pressure), self.depth());
-        let cells = self
-            .tangent
-            .contact
-            .iter()
-            .zip(self.pressure.iter().zip(&self.gap));
+        let cells = self.tangent.contact.iter().zip(self.pressure.iter().zip(&self.gap));
         let relative = |(inside, (p, g)): (&bool, (&f64, &f64))| match inside {
             true => p / peak,
             false => g / depth,
@@ -365,9 +332,7 @@ fn check(solution: &Solution) -> Result<()> {
         ));
     }
     if !matches!(solution.report.method, Method::Exact | Method::Spectral) {
-        return Err(refused(
-            "its coefficients are conversions: take the method \"exact\"",
-        ));
+        return Err(refused("its coefficients are conversions: take the method \"exact\""));
     }
     Ok(())
 }

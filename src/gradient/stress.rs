@@ -56,17 +56,11 @@ fn depths(body: &HalfSpace, place: &StressPlace) -> Result<Vec<(f64, Side)>> {
     };
     Ok(match *place {
         StressPlace::Point([_, _, z], side) => vec![(z, side)],
-        StressPlace::Interface {
-            interface, side, ..
-        } => vec![(find(interface)?, side)],
+        StressPlace::Interface { interface, side, .. } => vec![(find(interface)?, side)],
         StressPlace::Layer { layer, depths, .. } => {
             require("number of depths", depths as f64, depths >= 2, "at least 2")?;
             let bottom = find(layer)?;
-            let top = if layer > 0 {
-                interfaces[layer - 1]
-            } else {
-                0.0
-            };
+            let top = if layer > 0 { interfaces[layer - 1] } else { 0.0 };
             let along = |k: usize| {
                 let part = k as f64 / (depths - 1) as f64;
                 match k + 1 == depths {
@@ -128,9 +122,8 @@ impl StressSeed {
                 soft_maximum(output, sharpness, &fields)?
             }
         };
-        let planes: Vec<Plane> = (at.into_iter().zip(weights))
-            .map(|(at, weights)| Plane { at, weights })
-            .collect();
+        let planes: Vec<Plane> =
+            (at.into_iter().zip(weights)).map(|(at, weights)| Plane { at, weights }).collect();
         let plan = solution.uniform_stress_plan(output.member, &body, &pressure)?;
         let mut slopes = Array2::zeros(pressure.dim());
         for plane in &planes {
@@ -142,12 +135,7 @@ impl StressSeed {
         let window: Vec<f64> = window.iter().copied().collect();
         let mut seed = Seed::linear(state, value, state.masked(&window));
         seed.warning = warning;
-        let source = Self {
-            output: output.clone(),
-            body,
-            pressure,
-            planes,
-        };
+        let source = Self { output: output.clone(), body, pressure, planes };
         Ok((seed, source))
     }
 
@@ -200,11 +188,7 @@ impl StressSeed {
 
     /// Whether the stress depends on the coefficient of friction: a direction is known, and nothing slips inside the body.
     pub(super) fn slides(&self, solution: &Solution) -> bool {
-        let known = self
-            .output
-            .direction
-            .or(solution.report.rolling_direction)
-            .is_some();
+        let known = self.output.direction.or(solution.report.rolling_direction).is_some();
         let mut layers = self.body.layers().iter();
         known && layers.all(|layer| layer.interface() == Interface::Bonded)
     }
@@ -263,10 +247,7 @@ fn soft_mean(values: &[f64], sharpness: f64) -> (f64, Vec<f64>) {
     let powers = values.iter().map(|v| (v / most).powi(ORDER));
     let size = most * (powers.sum::<f64>() / count).powf(1.0 / f64::from(ORDER));
     let beta = sharpness / size;
-    let shares: Vec<f64> = values
-        .iter()
-        .map(|v| (beta * (v - largest)).exp())
-        .collect();
+    let shares: Vec<f64> = values.iter().map(|v| (beta * (v - largest)).exp()).collect();
     let sum: f64 = shares.iter().sum();
     let value = largest + (sum / count).ln() / beta;
     let weighted = values.iter().zip(&shares).map(|(v, w)| v * w).sum::<f64>() / sum;
@@ -297,23 +278,20 @@ fn soft_maximum(
     let (value, slopes) = soft_mean(&values, sharpness);
     let largest = slopes.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
     let mut repeated = false;
-    let weights = planes
-        .iter()
-        .zip(slopes.chunks(cells))
-        .map(|(plane, slopes)| {
-            let mut weights: Weights = std::array::from_fn(|_| vec![0.0; cells]);
-            for (k, share) in slopes.iter().enumerate() {
-                if share.abs() < NEGLIGIBLE * largest {
-                    continue;
-                }
-                let found = measured(output.measure, stress(plane, k));
-                repeated |= found.is_repeated;
-                for (weights, slope) in weights.iter_mut().zip(found.slopes) {
-                    weights[k] = share * slope;
-                }
+    let weights = planes.iter().zip(slopes.chunks(cells)).map(|(plane, slopes)| {
+        let mut weights: Weights = std::array::from_fn(|_| vec![0.0; cells]);
+        for (k, share) in slopes.iter().enumerate() {
+            if share.abs() < NEGLIGIBLE * largest {
+                continue;
             }
-            weights
-        });
+            let found = measured(output.measure, stress(plane, k));
+            repeated |= found.is_repeated;
+            for (weights, slope) in weights.iter_mut().zip(found.slopes) {
+                weights[k] = share * slope;
+            }
+        }
+        weights
+    });
     let weights = weights.collect();
     let warning = repeated.then(|| {
         "a principal stress is repeated in a cell of the soft maximum, whose share is left out: take von Mises' stress or a \
@@ -336,11 +314,7 @@ pub(super) struct Measured {
 
 impl Measured {
     fn smooth(value: f64, slopes: [f64; 6]) -> Self {
-        Self {
-            value,
-            slopes,
-            is_repeated: false,
-        }
+        Self { value, slopes, is_repeated: false }
     }
 }
 
@@ -366,19 +340,12 @@ pub(super) fn measured(measure: Measure, s: [f64; 6]) -> Measured {
             let value = (1.5 * square).sqrt();
             let over = |t: f64| if value > 0.0 { 1.5 * t / value } else { 0.0 };
             let [a, b, c] = deviator.map(over);
-            Measured::smooth(
-                value,
-                [a, b, c, over(2.0 * xy), over(2.0 * yz), over(2.0 * xz)],
-            )
+            Measured::smooth(value, [a, b, c, over(2.0 * xy), over(2.0 * yz), over(2.0 * xz)])
         }
         Measure::Principal(k) => {
             let values = Tensor::new(s).principal();
             let near = (0..3).filter(|&j| j != k).any(|j| are_equal(values, k, j));
-            Measured {
-                value: values[k],
-                slopes: dyad(s, values, k),
-                is_repeated: near,
-            }
+            Measured { value: values[k], slopes: dyad(s, values, k), is_repeated: near }
         }
         Measure::MaxShear => {
             let values = Tensor::new(s).principal();
@@ -422,9 +389,7 @@ mod tests {
     /// differences: their error is 1e-6² of a third derivative of some κ³.
     #[test]
     fn slopes_of_soft_maxima() {
-        let values: Vec<f64> = (0..50)
-            .map(|k| (f64::from(k) * 12.9898).sin() * 3.0)
-            .collect();
+        let values: Vec<f64> = (0..50).map(|k| (f64::from(k) * 12.9898).sin() * 3.0).collect();
         let largest = values.iter().fold(0.0, |a: f64, v| a.max(*v));
         let size = values.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
         for sharpness in [5.0, 40.0, 200.0] {

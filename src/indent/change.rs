@@ -171,10 +171,8 @@ impl Point {
             return Ok(Effect::default());
         };
         let (stack, tip) = (&self.parts.stack, &self.parts.tip);
-        let mut effect = Effect {
-            outside: self.adhesion.outside_rate(tip, parameter),
-            ..Effect::default()
-        };
+        let mut effect =
+            Effect { outside: self.adhesion.outside_rate(tip, parameter), ..Effect::default() };
         let unknown = Error::Inconsistent(
             "the state does not depend on this parameter: take one of the bodies, the tip or the adhesion",
         );
@@ -236,11 +234,7 @@ impl Point {
             add(&mut right, -1.0, &system.couple(g));
         }
         let values = system.solve(right);
-        let mut change = Answer {
-            hat: system.transform(&values),
-            values,
-            edge: 0.0,
-        };
+        let mut change = Answer { hat: system.transform(&values), values, edge: 0.0 };
         if let Some(zone) = &self.zone {
             change.add(effect.stress, &zone.answer);
         }
@@ -257,9 +251,7 @@ impl Point {
         };
         if let (Some(zone), Some(outer)) = (&self.zone, &free.outer) {
             let displaced = own.displaced(zone.outer) + effect.stress * zone.abel(zone.outer);
-            let shape = effect
-                .rate
-                .map_or(0.0, |rate| parts.tip.gap_rate(rate, zone.outer));
+            let shape = effect.rate.map_or(0.0, |rate| parts.tip.gap_rate(rate, zone.outer));
             let gap = self.displacement(&[zone.outer])?[0] * effect.short
                 + parts.stack.short() * displaced
                 + shape
@@ -301,11 +293,7 @@ impl Point {
             Held::Load => (given - load) / load_slope,
             Held::Approach => (given - approach) / approach_slope,
         };
-        Ok([
-            approach + approach_slope * radius,
-            radius,
-            load + load_slope * radius,
-        ])
+        Ok([approach + approach_slope * radius, radius, load + load_slope * radius])
     }
 
     /// A change of the density at fixed place, of which `g` oscillates.
@@ -317,9 +305,7 @@ impl Point {
         g: Vec<f64>,
     ) -> Density<'_> {
         let (parts, a) = (&*self.parts, self.radius);
-        let shape = effect
-            .rate
-            .map_or(0.0, |rate| parts.f() * parts.tip.rate(rate, &[a])[0][0]);
+        let shape = effect.rate.map_or(0.0, |rate| parts.f() * parts.tip.rate(rate, &[a])[0][0]);
         Density {
             parts,
             known,
@@ -396,11 +382,7 @@ impl Change<'_> {
     fn wider(&self, level: &Arc<StackLevel>) -> Vec<f64> {
         let (point, waves) = (self.point, &level.waves);
         let system = &point.parts.system;
-        if system
-            .level
-            .as_ref()
-            .is_some_and(|own| Arc::ptr_eq(own, level))
-        {
+        if system.level.as_ref().is_some_and(|own| Arc::ptr_eq(own, level)) {
             return self.density.g.clone();
         }
         let values = point.values();
@@ -452,11 +434,7 @@ impl Point {
     /// What a unit of approach does at fixed contact radius.
     fn free(&self) -> Free {
         let outer = self.zone.as_ref().map(|zone| self.outer(zone));
-        let mut free = Free {
-            edge: self.parts.edge[0],
-            load: self.stiffness,
-            outer: None,
-        };
+        let mut free = Free { edge: self.parts.edge[0], load: self.stiffness, outer: None };
         if let Some(outer) = &outer {
             let following = outer.following(outer.gap_of_approach);
             free.edge += outer.answer.edge * following;
@@ -525,19 +503,13 @@ impl Point {
         let of_outer = density(0.0, &answer.hat, answer.edge);
         let of_outer = of_outer.displaced(c);
         // The place itself moves; ∫ ψ/√(c²−t²) is in proportion to c − a.
-        let own = Density {
-            edge: self.edge(),
-            ..self.density()
-        };
+        let own = Density { edge: self.edge(), ..self.density() };
         let moved = own.displaced_slope(c) + zone.abel(c) / (c - zone.inner);
         Outer {
             load: 2.0 * PI * dot(&answer.values, &system.ones) + zone.load_rate([0.0, 1.0]),
             gap: parts.tip.slope(c) + short * (moved + of_outer),
             gap_of_approach: short * of_approach - 1.0,
-            answer: Answer {
-                edge: answer.edge - zone.density_rate([0.0, 1.0]),
-                ..answer
-            },
+            answer: Answer { edge: answer.edge - zone.density_rate([0.0, 1.0]), ..answer },
         }
     }
 }
@@ -558,21 +530,14 @@ mod tests {
         for body in [base.into(), coated.into()] {
             let stack = Stack::plan(&[body])?;
             for strength in [0.02, 0.1, 0.5] {
-                let adhesion = Adhesion::Maugis {
-                    work: 0.02,
-                    strength,
-                };
+                let adhesion = Adhesion::Maugis { work: 0.02, strength };
                 let indent = Indent::new(&stack, &Tip::paraboloid(2.0)?).with_adhesion(adhesion)?;
                 let point = indent.at_radius(0.4)?;
                 let free = point.free();
                 let outer = free.outer.as_ref().expect("a cohesive zone");
                 let c = point.outer_radius.expect("a cohesive zone");
                 let due = 2.0 * PI * c * strength * outer.gap_of_approach;
-                assert!(
-                    (outer.load / due - 1.0).abs() < 1e-9,
-                    "{c}: {} {due}",
-                    outer.load
-                );
+                assert!((outer.load / due - 1.0).abs() < 1e-9, "{c}: {} {due}", outer.load);
             }
         }
         Ok(())

@@ -48,11 +48,8 @@ pub(super) fn contact(
         }
         let zone = Zone::around(&parts, outer, strength);
         let approach = parts.hertzian() + (zone.density() - zone.answer.edge) / parts.edge[0];
-        let mut point = Point::new(
-            Arc::clone(&parts),
-            Adhesion::Maugis { work, strength },
-            approach,
-        );
+        let mut point =
+            Point::new(Arc::clone(&parts), Adhesion::Maugis { work, strength }, approach);
         point.load += zone.load() + 2.0 * PI * dot(&zone.answer.values, &parts.system.ones);
         point.outer_radius = Some(outer);
         point.zone = Some(zone);
@@ -102,9 +99,7 @@ impl Apart {
         let (mut edge, mut axis) = (-2.0 / PI * strength * c, -strength * c);
         if let Some(level) = stack.level(2.0 * c) {
             let alpha = &level.waves.alpha;
-            let hat = alpha
-                .iter()
-                .map(|alpha| -strength * c * j1(alpha * c) / alpha);
+            let hat = alpha.iter().map(|alpha| -strength * c * j1(alpha * c) / alpha);
             let g = times(&level.excess, &hat.collect::<Vec<f64>>());
             edge += bessel_sum(&g, alpha, c);
             axis += g.iter().sum::<f64>();

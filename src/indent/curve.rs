@@ -73,12 +73,7 @@ impl CurveTable {
         logs: usize,
         row: impl Fn(f64) -> Result<CurveRow>,
     ) -> Result<Option<Self>> {
-        let mut table = Self {
-            low,
-            high,
-            has_root,
-            rows: Vec::new(),
-        };
+        let mut table = Self { low, high, has_root, rows: Vec::new() };
         for k in 0..=FIRST {
             table.rows.push(row(table.place(chebyshev(k, FIRST)))?);
         }
@@ -111,9 +106,7 @@ impl CurveTable {
             };
             2.0 / n as f64 * self.rows.iter().enumerate().map(term).sum::<f64>()
         };
-        (n - 2..=n)
-            .map(|j| coefficient(j).abs())
-            .fold(0.0, f64::max)
+        (n - 2..=n).map(|j| coefficient(j).abs()).fold(0.0, f64::max)
     }
 
     /// Barycentric weights of the rows at ln a, normed.
@@ -131,11 +124,7 @@ impl CurveTable {
     }
 
     fn column(&self, weights: &[f64], column: usize) -> f64 {
-        weights
-            .iter()
-            .zip(&self.rows)
-            .map(|(w, row)| w * row[column])
-            .sum()
+        weights.iter().zip(&self.rows).map(|(w, row)| w * row[column]).sum()
     }
 }
 
@@ -179,11 +168,8 @@ impl Indent {
         let nothing: CurvePoint = (0.0, 0.0, 0.0, vec![0.0; parameters.len()]);
         let mut entries = vec![nothing; approaches.len()];
         let is_shallow = |approach: f64| !is_adhering && approach < SHALLOW * most;
-        let deep: Vec<f64> = approaches
-            .iter()
-            .copied()
-            .filter(|a| touches(*a) && !is_shallow(*a))
-            .collect();
+        let deep: Vec<f64> =
+            approaches.iter().copied().filter(|a| touches(*a) && !is_shallow(*a)).collect();
         let tables = match deep.len() > FEW && self.tip().fixed_radius().is_none() {
             true => self.tables(&deep, parameters)?,
             false => None,

@@ -40,10 +40,7 @@ impl Density<'_> {
         let (mut cos, mut sin) = (vec![0.0; count], vec![0.0; count]);
         let value = |(k, t): (usize, &f64)| {
             let [value, slope, _] = parts.tip.transform(*t);
-            let mut found = [
-                self.known[0] - self.known[1] * value,
-                -self.known[1] * slope,
-            ];
+            let mut found = [self.known[0] - self.known[1] * value, -self.known[1] * slope];
             if let Some(rates) = &rates {
                 found[0] -= parts.f() * rates[k][0];
                 found[1] -= parts.f() * rates[k][1];
@@ -121,10 +118,7 @@ impl Density<'_> {
         let (panels, is_axis) = match r > 0.0 {
             true => {
                 let angle = |t: f64| (t / r).max(1.0).acosh();
-                (
-                    Panel::between(0.0, &mapped(&breaks, angle), angle(a)),
-                    false,
-                )
+                (Panel::between(0.0, &mapped(&breaks, angle), angle(a)), false)
             }
             false => (Panel::between(0.0, &breaks, a), true),
         };
@@ -177,10 +171,7 @@ impl Density<'_> {
 
 /// Breaks at the places that `place` makes of theirs.
 fn mapped(breaks: &[Break], place: impl Fn(f64) -> f64) -> Vec<Break> {
-    let moved = |b: &Break| Break {
-        at: place(b.at),
-        ..*b
-    };
+    let moved = |b: &Break| Break { at: place(b.at), ..*b };
     breaks.iter().map(moved).collect()
 }
 
@@ -203,10 +194,7 @@ pub(super) fn oscillating(
 
 /// ∫ g J₀(αr) over waves.
 pub(super) fn bessel_sum(g: &[f64], alpha: &[f64], r: f64) -> f64 {
-    g.iter()
-        .zip(alpha)
-        .map(|(g, alpha)| g * j0(alpha * r))
-        .sum()
+    g.iter().zip(alpha).map(|(g, alpha)| g * j0(alpha * r)).sum()
 }
 
 /// Derivative of ∫ g J₀(αr) with respect to r.

@@ -73,11 +73,7 @@ impl Indent {
                  Kendall and Roberts",
             ));
         }
-        Ok(Self {
-            adhesion: adhesion.checked()?,
-            lasts: Default::default(),
-            ..self
-        })
+        Ok(Self { adhesion: adhesion.checked()?, lasts: Default::default(), ..self })
     }
 
     /// Bodies.
@@ -187,11 +183,7 @@ impl Indent {
             let least = control.of([last.approach, last.load]);
             // Where the tip lets go before it touches, no contact has the least value itself.
             let is_open = branch == Branch::Stable && last.radius <= 0.0;
-            let touches = if is_open {
-                value > least
-            } else {
-                value >= least
-            };
+            let touches = if is_open { value > least } else { value >= least };
             let requirement = "at least that of pull-off, or nothing touches";
             require(name, value, touches, requirement)?;
             if branch == Branch::Unstable {
@@ -199,9 +191,7 @@ impl Indent {
             }
             low = low.max(last.radius);
         } else if branch == Branch::Unstable {
-            return Err(Error::Adhesion(
-                "only adhesion within the contact has an unstable branch",
-            ));
+            return Err(Error::Adhesion("only adhesion within the contact has an unstable branch"));
         }
         let too_large = Error::Parameter {
             name,
@@ -324,9 +314,7 @@ impl Indent {
                 return Ok(point);
             }
         }
-        Err(Error::NoState(
-            "no state of the unstable branch has this load or approach",
-        ))
+        Err(Error::NoState("no state of the unstable branch has this load or approach"))
     }
 
     /// The contact of a flat punch.
@@ -369,10 +357,7 @@ impl Indent {
     /// # Errors
     /// As [`Indent::at_radius`].
     pub fn error_at(&self, point: &Point) -> Result<f64> {
-        let finer = Self {
-            stack: self.stack.refined(1.5)?,
-            ..self.clone()
-        };
+        let finer = Self { stack: self.stack.refined(1.5)?, ..self.clone() };
         let parts = Arc::new(Parts::new(&finer.stack, &finer.tip, point.radius, 0.0)?);
         let again = match self.tip.fixed_radius() {
             Some(_) => Point::new(parts, self.adhesion, point.approach),

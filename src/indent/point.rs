@@ -106,9 +106,9 @@ impl Point {
         match (self.adhesion, &self.zone) {
             (_, Some(_)) => self.edge(),
             (Adhesion::None | Adhesion::Dmt { .. }, None) if !is_sharp => 0.0,
-            (Adhesion::Jkr { .. }, None) if !is_sharp => self
-                .adhesion
-                .edge(self.parts.stack.surface_modulus(), self.radius),
+            (Adhesion::Jkr { .. }, None) if !is_sharp => {
+                self.adhesion.edge(self.parts.stack.surface_modulus(), self.radius)
+            }
             _ => self.edge(),
         }
     }
@@ -128,11 +128,7 @@ impl Point {
             if let Some(zone) = &self.zone {
                 // φ continues into the zone, so that no edge is singular.
                 let from_contact = match *r < a {
-                    true => Density {
-                        edge: 0.0,
-                        ..self.density()
-                    }
-                    .pressure(*r),
+                    true => Density { edge: 0.0, ..self.density() }.pressure(*r),
                     false => 0.0,
                 };
                 return from_contact + zone.inside(*r);
@@ -167,9 +163,8 @@ impl Point {
                 return self.approach - self.parts.tip.gap(*r);
             }
             let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(*r));
-            let layers = waves
-                .as_ref()
-                .map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
+            let layers =
+                waves.as_ref().map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
             short * (density.abel(*r) + zone + layers)
         };
         Ok(r.iter().map(at).collect())
@@ -195,11 +190,7 @@ impl Point {
         let own = self.parts.system.level.as_ref()?;
         // The level of a cohesive zone may already be wider.
         let level = self.parts.stack.level(self.radius + far)?;
-        let level = if level.length > own.length {
-            level
-        } else {
-            own
-        };
+        let level = if level.length > own.length { level } else { own };
         let hat = match Arc::ptr_eq(level, own) {
             true => self.hat(),
             false => {

@@ -56,9 +56,9 @@ impl Indent {
             return Ok(touching(Point::new(parts, self.adhesion, approach)));
         }
         match self.adhesion {
-            Adhesion::None => Err(Error::Adhesion(
-                "a tip without adhesion is not pulled off: give an adhesion",
-            )),
+            Adhesion::None => {
+                Err(Error::Adhesion("a tip without adhesion is not pulled off: give an adhesion"))
+            }
             // The force outside stays until the last point parts.
             Adhesion::Dmt { work } => Ok(PullOff {
                 control,
@@ -138,9 +138,8 @@ impl Indent {
             log += 1.0 / SCAN;
         }
         let inner = 1..values.len().saturating_sub(1);
-        let mut minima: Vec<usize> = inner
-            .filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1])
-            .collect();
+        let mut minima: Vec<usize> =
+            inner.filter(|k| values[*k] <= values[k - 1] && values[*k] < values[k + 1]).collect();
         minima.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
         let mut found = Err(Error::NoState(
             "the load and the approach have no minimum within the radii that can be computed",

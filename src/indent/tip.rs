@@ -53,23 +53,15 @@ impl Tip {
             Form::Sphere { radius } => vec![ProfileTerm::Sphere { radius: *radius }],
             Form::Cone { slope } => vec![ProfileTerm::power(*slope, 1.0)],
             Form::Power { factor, exponent } => vec![ProfileTerm::power(*factor, *exponent)],
-            Form::RoundedCone { slope, radius } => vec![ProfileTerm::Rounded {
-                at: slope * radius,
-                curvature: 1.0 / radius,
-            }],
-            Form::RoundedPunch { flat, radius } => vec![ProfileTerm::Hinge {
-                at: *flat,
-                curvature: 1.0 / radius,
-            }],
-            Form::FlatCone { flat, slope } => vec![ProfileTerm::Step {
-                at: *flat,
-                slope: *slope,
-            }],
+            Form::RoundedCone { slope, radius } => {
+                vec![ProfileTerm::Rounded { at: slope * radius, curvature: 1.0 / radius }]
+            }
+            Form::RoundedPunch { flat, radius } => {
+                vec![ProfileTerm::Hinge { at: *flat, curvature: 1.0 / radius }]
+            }
+            Form::FlatCone { flat, slope } => vec![ProfileTerm::Step { at: *flat, slope: *slope }],
             Form::Profile { radii, heights } => term::profile(radii, heights)?,
-            Form::Area {
-                coefficients,
-                depth,
-            } => term::area_function(coefficients, *depth)?,
+            Form::Area { coefficients, depth } => term::area_function(coefficients, *depth)?,
         };
         let mut kinks: Vec<f64> = terms.iter().filter_map(ProfileTerm::kink).collect();
         kinks.sort_by(f64::total_cmp);
@@ -161,10 +153,7 @@ impl Tip {
             Form::Sphere { radius } => [0.0, *radius],
             Form::RoundedPunch { flat, .. } | Form::FlatCone { flat, .. } => [*flat, f64::INFINITY],
             Form::Profile { radii, .. } => [0.0, radii[radii.len() - 1]],
-            Form::Area {
-                coefficients,
-                depth,
-            } => [0.0, term::radius(coefficients, *depth)],
+            Form::Area { coefficients, depth } => [0.0, term::radius(coefficients, *depth)],
             _ => [0.0, f64::INFINITY],
         }
     }
@@ -194,9 +183,7 @@ impl Tip {
     pub(super) fn is_convex(&self) -> bool {
         self.terms.iter().all(|term| match term {
             ProfileTerm::Hinge { curvature, .. } => *curvature >= 0.0,
-            ProfileTerm::Power {
-                factor, exponent, ..
-            } => *factor >= 0.0 && *exponent >= 1.0,
+            ProfileTerm::Power { factor, exponent, .. } => *factor >= 0.0 && *exponent >= 1.0,
             _ => true,
         })
     }
@@ -208,11 +195,7 @@ impl Tip {
 
     /// Places \[m\] of the kinks of a sampled profile, ascending, which are too many for panels of a quadrature.
     pub(super) fn knots(&self) -> impl Iterator<Item = f64> {
-        let terms = if self.kinks.is_empty() {
-            &self.terms[..]
-        } else {
-            &[]
-        };
+        let terms = if self.kinks.is_empty() { &self.terms[..] } else { &[] };
         terms.iter().filter_map(ProfileTerm::kink)
     }
 
@@ -238,45 +221,29 @@ impl Tip {
                 let ProfileTerm::Power { rate, .. } = ProfileTerm::power(*factor, *exponent) else {
                     return vec![];
                 };
-                vec![ProfileTerm::ExponentRate {
-                    exponent: *exponent,
-                    rate,
-                }]
+                vec![ProfileTerm::ExponentRate { exponent: *exponent, rate }]
             }
             // b = m R; ∂Rounded/∂b is a step of its curvature.
-            (Form::RoundedCone { slope, radius }, 0) => vec![ProfileTerm::Step {
-                at: slope * radius,
-                slope: 1.0,
-            }],
+            (Form::RoundedCone { slope, radius }, 0) => {
+                vec![ProfileTerm::Step { at: slope * radius, slope: 1.0 }]
+            }
             (Form::RoundedCone { slope, radius }, _) => {
                 let (at, rate) = (slope * radius, -radius.powi(-2));
                 vec![
-                    ProfileTerm::Rounded {
-                        at,
-                        curvature: rate,
-                    },
-                    ProfileTerm::Step {
-                        at,
-                        slope: slope / radius,
-                    },
+                    ProfileTerm::Rounded { at, curvature: rate },
+                    ProfileTerm::Step { at, slope: slope / radius },
                 ]
             }
-            (Form::RoundedPunch { flat, radius }, 0) => vec![ProfileTerm::Step {
-                at: *flat,
-                slope: -1.0 / radius,
-            }],
-            (Form::RoundedPunch { flat, radius }, _) => vec![ProfileTerm::Hinge {
-                at: *flat,
-                curvature: -radius.powi(-2),
-            }],
-            (Form::FlatCone { flat, slope }, 0) => vec![ProfileTerm::PlaceRate {
-                at: *flat,
-                slope: *slope,
-            }],
-            (Form::FlatCone { flat, .. }, _) => vec![ProfileTerm::Step {
-                at: *flat,
-                slope: 1.0,
-            }],
+            (Form::RoundedPunch { flat, radius }, 0) => {
+                vec![ProfileTerm::Step { at: *flat, slope: -1.0 / radius }]
+            }
+            (Form::RoundedPunch { flat, radius }, _) => {
+                vec![ProfileTerm::Hinge { at: *flat, curvature: -radius.powi(-2) }]
+            }
+            (Form::FlatCone { flat, slope }, 0) => {
+                vec![ProfileTerm::PlaceRate { at: *flat, slope: *slope }]
+            }
+            (Form::FlatCone { flat, .. }, _) => vec![ProfileTerm::Step { at: *flat, slope: 1.0 }],
             _ => vec![],
         }
     }
@@ -480,10 +447,7 @@ impl Tip {
     /// Places up to the contact radius `a` at which panels end, ascending, where the profile has `most` kinks there at most; none
     /// where F is smooth from the axis to `a`.
     pub(super) fn breaks(&self, a: f64, most: usize) -> Option<Vec<Break>> {
-        let smooth = |at: f64| Break {
-            at,
-            has_root: false,
-        };
+        let smooth = |at: f64| Break { at, has_root: false };
         let root = |at: f64| Break { at, has_root: true };
         let mut breaks = Vec::new();
         match self.form {

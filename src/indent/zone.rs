@@ -60,12 +60,7 @@ impl Answer {
 impl Zone {
     /// The zone from `inner` to `outer` without an answer.
     fn alone(inner: f64, outer: f64, strength: f64) -> Self {
-        Self {
-            inner,
-            outer,
-            strength,
-            answer: Answer::default(),
-        }
+        Self { inner, outer, strength, answer: Answer::default() }
     }
 
     /// The zone around the contact of `parts`.
@@ -79,10 +74,7 @@ impl Zone {
     pub(super) fn answer(&self, parts: &Parts, rate: Rate) -> Answer {
         let system = &parts.system;
         let Some(level) = &system.level else {
-            return Answer {
-                values: vec![0.0; system.ones.len()],
-                ..Answer::default()
-            };
+            return Answer { values: vec![0.0; system.ones.len()], ..Answer::default() };
         };
         let own = self.transform_rate(rate, &level.waves);
         let right = system.couple(&times(&level.excess, &own));
@@ -161,10 +153,7 @@ impl Zone {
         waves: &Waves,
         [low, high]: [f64; 2],
     ) -> Vec<f64> {
-        let shortest = waves
-            .alpha
-            .iter()
-            .fold(0.0_f64, |most, alpha| most.max(*alpha));
+        let shortest = waves.alpha.iter().fold(0.0_f64, |most, alpha| most.max(*alpha));
         let phase = shortest * self.outer * (low.cos() - high.cos());
         let panels = (phase / PHASE).ceil().max(1.0);
         // The phase is up to twice as dense as on average.
@@ -280,11 +269,7 @@ mod tests {
                 })
                 .sum();
             let due = -2.0 / PI * strength * sum * FRAC_PI_2 / f64::from(fine);
-            assert!(
-                (zone.abel(r) / due - 1.0).abs() < 1e-6,
-                "{r}: {} {due}",
-                zone.abel(r)
-            );
+            assert!((zone.abel(r) / due - 1.0).abs() < 1e-6, "{r}: {} {due}", zone.abel(r));
         }
     }
 }

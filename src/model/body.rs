@@ -38,12 +38,7 @@ impl Layer {
     /// Unless `thickness` \[m\] is finite and above 0.
     pub fn new(material: Elastic, thickness: f64) -> Result<Self> {
         positive("thickness", thickness)?;
-        Ok(Self {
-            material,
-            thickness,
-            interface: Interface::Bonded,
-            name: None,
-        })
+        Ok(Self { material, thickness, interface: Interface::Bonded, name: None })
     }
 
     /// This layer with `interface` below it.
@@ -66,10 +61,7 @@ impl Layer {
                 value: name,
             });
         }
-        Ok(Self {
-            name: Some(name),
-            ..self
-        })
+        Ok(Self { name: Some(name), ..self })
     }
 
     /// Material of the layer.
@@ -144,11 +136,7 @@ impl HalfSpace {
                 "layers must hold at least one layer where the substrate is rigid",
             ));
         }
-        Ok(Self {
-            substrate,
-            layers,
-            ends: [None; 2],
-        })
+        Ok(Self { substrate, layers, ends: [None; 2] })
     }
 
     /// This body with free ends at these coordinates x \[m\]: it is cut off there, across the axis of a roller,
@@ -180,10 +168,7 @@ impl HalfSpace {
                 "ends must not be given for a body on a rigid substrate: its face is not free there",
             ));
         }
-        Ok(Self {
-            ends: ends.map(|end| end.map(|x| x + 0.0)),
-            ..self
-        })
+        Ok(Self { ends: ends.map(|end| end.map(|x| x + 0.0)), ..self })
     }
 
     /// Coordinates x \[m\] of the free ends; `None` where the body extends further.
@@ -230,11 +215,7 @@ impl HalfSpace {
 
 impl From<Elastic> for HalfSpace {
     fn from(material: Elastic) -> Self {
-        Self {
-            substrate: material.into(),
-            layers: Vec::new(),
-            ends: [None; 2],
-        }
+        Self { substrate: material.into(), layers: Vec::new(), ends: [None; 2] }
     }
 }
 

@@ -59,13 +59,7 @@ impl Grid {
                 "between 1e-100 and 1e100, so that products of lengths do not overflow",
             )?;
         }
-        Ok(Self {
-            shape,
-            size,
-            center: [0.0; 2],
-            plane_strain: false,
-            periodic: [false; 2],
-        })
+        Ok(Self { shape, size, center: [0.0; 2], plane_strain: false, periodic: [false; 2] })
     }
 
     /// A grid for line contact in plane strain: `cells` strips over `width` \[m\] along y, of
@@ -84,11 +78,7 @@ impl Grid {
     pub fn line(cells: usize, width: f64) -> Result<Self> {
         positive("width", width)?;
         let grid = Self::new([2, cells], [1.0, width])?;
-        Ok(Self {
-            shape: [1, cells],
-            plane_strain: true,
-            ..grid
-        })
+        Ok(Self { shape: [1, cells], plane_strain: true, ..grid })
     }
 
     /// This grid, repeated along x, along y, or both: shape, pressure and displacement are periodic, with the sides of
@@ -133,10 +123,7 @@ impl Grid {
         finite("center", center[0])?;
         finite("center", center[1])?;
         // Adding 0.0 turns −0.0 into 0.0: equal values then print alike.
-        Ok(Self {
-            center: center.map(|c| c + 0.0),
-            ..self
-        })
+        Ok(Self { center: center.map(|c| c + 0.0), ..self })
     }
 
     /// An error unless a solution to start from, if there is one, is on this grid.
@@ -144,10 +131,7 @@ impl Grid {
         match found {
             None => Ok(()),
             Some(found) if found == self => Ok(()),
-            Some(found) => Err(Error::OtherGrid {
-                expected: self.words(),
-                found: found.words(),
-            }),
+            Some(found) => Err(Error::OtherGrid { expected: self.words(), found: found.words() }),
         }
     }
 
@@ -190,10 +174,7 @@ impl Grid {
 
     /// Side lengths of a cell `[dx, dy]` \[m\].
     pub fn spacing(&self) -> [f64; 2] {
-        [
-            self.size[0] / self.shape[0] as f64,
-            self.size[1] / self.shape[1] as f64,
-        ]
+        [self.size[0] / self.shape[0] as f64, self.size[1] / self.shape[1] as f64]
     }
 
     /// Area of a cell \[m²\].

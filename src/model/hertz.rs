@@ -98,11 +98,7 @@ impl Point {
         positive("contact_modulus", contact_modulus)?;
         positive("load", load)?;
         let a = (0.75 * load * radius / contact_modulus).cbrt();
-        Ok(Self {
-            radius: a,
-            peak_pressure: 1.5 * load / (PI * a * a),
-            approach: a * a / radius,
-        })
+        Ok(Self { radius: a, peak_pressure: 1.5 * load / (PI * a * a), approach: a * a / radius })
     }
 
     /// Pressure at distance `r` from the axis \[Pa\]: p0 √(1 − r²/a²), 0 outside.
@@ -149,10 +145,7 @@ impl Line {
         positive("contact_modulus", contact_modulus)?;
         positive("line_load", line_load)?;
         let b = (4.0 * line_load * radius / (PI * contact_modulus)).sqrt();
-        Ok(Self {
-            half_width: b,
-            peak_pressure: 2.0 * line_load / (PI * b),
-        })
+        Ok(Self { half_width: b, peak_pressure: 2.0 * line_load / (PI * b) })
     }
 
     /// Pressure at distance `y` from the middle \[Pa\]: p0 √(1 − y²/b²), 0 outside.
@@ -366,12 +359,7 @@ fn largest(
     peak: f64,
     scale: f64,
 ) -> Result<Shear> {
-    require(
-        "poisson",
-        poisson,
-        poisson > -1.0 && poisson <= 0.5,
-        "above -1 and at most 0.5",
-    )?;
+    require("poisson", poisson, poisson > -1.0 && poisson <= 0.5, "above -1 and at most 0.5")?;
     let shear = |z: f64| {
         let [x, y, z] = stresses(z);
         0.5 * (x.max(y).max(z) - x.min(y).min(z))
@@ -392,15 +380,8 @@ fn largest(
     }
     let middle = 0.5 * (low + high);
     // At the surface itself, the section ends beside it.
-    let z = if shear(best) >= shear(middle) {
-        best
-    } else {
-        middle
-    };
-    Ok(Shear {
-        stress: peak * shear(z),
-        depth: scale * z,
-    })
+    let z = if shear(best) >= shear(middle) { best } else { middle };
+    Ok(Shear { stress: peak * shear(z), depth: scale * z })
 }
 
 #[cfg(test)]
@@ -414,11 +395,9 @@ mod tests {
     /// m = 1 − k² = 0, 0.5 and 0.9.
     #[test]
     fn mean_gives_the_complete_integral_of_the_first_kind() {
-        for (m, exact) in [
-            (0.0, 0.5 * PI),
-            (0.5, 1.854_074_677_301_372),
-            (0.9, 2.578_092_113_348_173),
-        ] {
+        for (m, exact) in
+            [(0.0, 0.5 * PI), (0.5, 1.854_074_677_301_372), (0.9, 2.578_092_113_348_173)]
+        {
             let k = 0.5 * PI / arithmetic_geometric_mean(1.0, f64::sqrt(1.0 - m));
             assert!((k / exact - 1.0).abs() < ROUNDING, "{m}: {k}");
         }

@@ -23,17 +23,9 @@ impl Elastic {
     /// Unless `young` > 0 and −1 < `poisson` ≤ 0.5.
     pub fn new(young: f64, poisson: f64) -> Result<Self> {
         positive("young", young)?;
-        require(
-            "poisson",
-            poisson,
-            poisson > -1.0 && poisson <= 0.5,
-            "above -1 and at most 0.5",
-        )?;
+        require("poisson", poisson, poisson > -1.0 && poisson <= 0.5, "above -1 and at most 0.5")?;
         // Adding 0.0 turns −0.0 into 0.0: equal values then print alike.
-        Ok(Self {
-            young,
-            poisson: poisson + 0.0,
-        })
+        Ok(Self { young, poisson: poisson + 0.0 })
     }
 
     /// Young's modulus E \[Pa\].

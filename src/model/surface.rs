@@ -127,10 +127,7 @@ pub trait Surface: fmt::Debug + Send + Sync {
     where
         Self: Sized,
     {
-        Ok(Shifted::by(
-            self,
-            [finite("x", x)? + 0.0, finite("y", y)? + 0.0],
-        ))
+        Ok(Shifted::by(self, [finite("x", x)? + 0.0, finite("y", y)? + 0.0]))
     }
 
     /// The sum of this shape and `other`, for example of a sphere and a rough surface. For a long list of shapes,
@@ -307,9 +304,7 @@ impl<S> Superposition<S> {
     pub fn new(shapes: impl IntoIterator<Item = S>) -> Result<Self> {
         let shapes: Vec<S> = shapes.into_iter().collect();
         if shapes.is_empty() {
-            return Err(Error::Inconsistent(
-                "shapes must hold at least one shape to be added",
-            ));
+            return Err(Error::Inconsistent("shapes must hold at least one shape to be added"));
         }
         Ok(Self(shapes))
     }
@@ -346,9 +341,7 @@ impl<S: Surface> Surface for Superposition<S> {
 
     fn radii(&self) -> [f64; 2] {
         let radii = self.0.iter().map(Surface::radii);
-        radii.fold([f64::INFINITY; 2], |[ax, ay], [bx, by]| {
-            [ax.min(bx), ay.min(by)]
-        })
+        radii.fold([f64::INFINITY; 2], |[ax, ay], [bx, by]| [ax.min(bx), ay.min(by)])
     }
 
     fn grid(&self) -> Option<Grid> {
@@ -402,9 +395,7 @@ impl<S: Surface> Surface for Superposition<S> {
     fn rolling_direction(&self) -> Option<[f64; 2]> {
         let mut directions = self.0.iter().filter_map(Surface::rolling_direction);
         let [x, y] = directions.next()?;
-        directions
-            .all(|other| (x - other[0]).hypot(y - other[1]) < f64::EPSILON)
-            .then_some([x, y])
+        directions.all(|other| (x - other[0]).hypot(y - other[1]) < f64::EPSILON).then_some([x, y])
     }
 }
 
@@ -442,11 +433,7 @@ impl Extent {
         // Rounding of sides that are products of spacings.
         match times >= 0.5 && (times - times.round()).abs() <= 1e-9 * times {
             true => Ok(()),
-            false => Err(Error::Period {
-                axis: ["x", "y"][axis],
-                period,
-                grid,
-            }),
+            false => Err(Error::Period { axis: ["x", "y"][axis], period, grid }),
         }
     }
 

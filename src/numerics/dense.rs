@@ -120,10 +120,7 @@ impl Factors {
                 rest.for_each(|(other, entry)| *other -= factor * entry);
             }
         }
-        Self {
-            both: matrix,
-            order,
-        }
+        Self { both: matrix, order }
     }
 
     /// The solution for each column of `right`.
@@ -205,9 +202,7 @@ mod tests {
         assert!(cholesky(2, 0.0, |_, _| 1.0).is_none());
         assert!(cholesky(1, 0.0, |_, _| f64::NAN).is_none());
         assert!(
-            cholesky(CELLS, 0.0, |a, b| matrix(a, b)
-                - if a == b { 9.0 } else { 0.0 })
-            .is_none()
+            cholesky(CELLS, 0.0, |a, b| matrix(a, b) - if a == b { 9.0 } else { 0.0 }).is_none()
         );
         let diagonal = cholesky(2, 0.0, |a, b| if a == b { 4.0 } else { 0.0 });
         assert_eq!(diagonal, Some(vec![vec![2.0], vec![0.0, 2.0]]));
@@ -232,11 +227,7 @@ mod tests {
     /// An unknown that is not used, and one that the others determine, stay 0; the others solve the rest.
     #[test]
     fn elimination_leaves_out_what_is_determined() {
-        let b = [
-            [1.0, 0.0, 2.0, 2.0],
-            [1.0, 1.0, 1.0, 1.0],
-            [1.0, 2.0, -1.0, -1.0],
-        ];
+        let b = [[1.0, 0.0, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], [1.0, 2.0, -1.0, -1.0]];
         let gram = |a: usize, c: usize| b.iter().map(|row: &[f64; 4]| row[a] * row[c]).sum::<f64>();
         let mut matrix = [0, 1, 2, 3].map(|a| [0, 1, 2, 3].map(|c| gram(a, c)));
         let mut x = [0, 1, 2, 3].map(|a| gram(a, 1) + 2.0 * gram(a, 2));
@@ -244,10 +235,8 @@ mod tests {
         let mut left_out = [0, 1, 2, 3].map(|a| vec![gram(a, 0), 1.0, gram(a, 2), gram(a, 3)]);
         let mut y = [0, 1, 2, 3].map(|a| 3.0 * gram(a, 0));
         eliminate(&mut left_out, &mut y, |k, _| k != 1);
-        for (found, expected) in x
-            .iter()
-            .zip([0.0, 1.0, 2.0, 0.0])
-            .chain(y.iter().zip([3.0, 0.0, 0.0, 0.0]))
+        for (found, expected) in
+            x.iter().zip([0.0, 1.0, 2.0, 0.0]).chain(y.iter().zip([3.0, 0.0, 0.0, 0.0]))
         {
             assert!((found - expected).abs() < 1e-12, "{x:?} {y:?}");
         }

@@ -158,11 +158,7 @@ impl PaddedTransform {
 
     /// A copy of this transform for other threads.
     pub(crate) fn on_threads(&self, threads: &Threads) -> Self {
-        Self {
-            tasks: tasks(self.shape, threads),
-            threads: threads.count(),
-            ..self.clone()
-        }
+        Self { tasks: tasks(self.shape, threads), threads: threads.count(), ..self.clone() }
     }
 
     /// Cost of a transform, in arbitrary units: points of the mesh times their logarithm.
@@ -230,10 +226,7 @@ impl PaddedTransform {
             .max(self.column_inverse.get_inplace_scratch_len())
             .max(self.row_forward.get_scratch_len())
             .max(self.row_inverse.get_scratch_len());
-        let Workspace {
-            mesh,
-            scratches: Scratches(scratches),
-        } = workspace;
+        let Workspace { mesh, scratches: Scratches(scratches) } = workspace;
         at_least(mesh, self.blocks() * self.block_rows(), [ZERO; BLOCK]);
         if scratches.len() < self.scratches() {
             scratches.resize_with(self.scratches(), Mutex::default);
@@ -241,11 +234,7 @@ impl PaddedTransform {
         for scratch in &mut scratches[..self.scratches()] {
             let scratch = scratch.get_mut().unwrap_or_else(PoisonError::into_inner);
             at_least(&mut scratch.real, self.padded[1], 0.0);
-            at_least(
-                &mut scratch.spectra,
-                ROW_GROUP * self.blocks() * BLOCK,
-                ZERO,
-            );
+            at_least(&mut scratch.spectra, ROW_GROUP * self.blocks() * BLOCK, ZERO);
             at_least(&mut scratch.columns, BLOCK * self.padded[0], ZERO);
             at_least(&mut scratch.fft, fft, ZERO);
         }
@@ -309,11 +298,7 @@ impl PaddedTransform {
     /// Calls `work`, which divides itself into tasks, on `threads`; a single task runs on the calling
     /// thread.
     fn divided<R: Send>(&self, threads: &Threads, work: impl FnOnce() -> R + Send) -> R {
-        if self.tasks == 1 {
-            work()
-        } else {
-            threads.run(work)
-        }
+        if self.tasks == 1 { work() } else { threads.run(work) }
     }
 
     /// Transforms rows back along y into `values`, from row `first` on and as many as fit. `blocks` are

@@ -35,18 +35,12 @@ impl Rule {
 
     /// ∫ f over \[middle − half, middle + half\], which keeps the digits of a short interval.
     pub(crate) fn around(&self, middle: f64, half: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-        half * self
-            .0
-            .iter()
-            .map(|&(x, w)| w * f(middle + half * x))
-            .sum::<f64>()
+        half * self.0.iter().map(|&(x, w)| w * f(middle + half * x)).sum::<f64>()
     }
 
     /// The nodes and weights on \[middle − half, middle + half\].
     pub(crate) fn nodes(&self, middle: f64, half: f64) -> impl Iterator<Item = (f64, f64)> {
-        self.0
-            .iter()
-            .map(move |&(x, w)| (middle + half * x, half * w))
+        self.0.iter().map(move |&(x, w)| (middle + half * x, half * w))
     }
 
     /// The nodes and weights on \[a, b\], in panels of length 1 at most.
@@ -71,16 +65,9 @@ mod tests {
         for n in [2, 3, 5, 8, 11] {
             let rule = Rule::gauss_legendre(n);
             for degree in 0..2 * n {
-                let exact = if degree % 2 == 0 {
-                    2.0 / (degree as f64 + 1.0)
-                } else {
-                    0.0
-                };
+                let exact = if degree % 2 == 0 { 2.0 / (degree as f64 + 1.0) } else { 0.0 };
                 let sum = rule.around(0.0, 1.0, |x| x.powi(degree as i32));
-                assert!(
-                    (sum - exact).abs() < 1e-14,
-                    "n {n}, degree {degree}: {sum} {exact}"
-                );
+                assert!((sum - exact).abs() < 1e-14, "n {n}, degree {degree}: {sum} {exact}");
             }
             let beyond = rule.around(0.0, 1.0, |x| x.powi(2 * n as i32));
             assert!((beyond - 2.0 / (2.0 * n as f64 + 1.0)).abs() > 1e-8);

@@ -109,9 +109,6 @@ mod tests {
             let found = found.expect("a root");
             assert!((found - root).abs() < 1e-13, "{found} {root}");
         }
-        assert_eq!(
-            bracketed(|x| Ok(x + 1.0), [0.0, 3.0]).expect("no error"),
-            None
-        );
+        assert_eq!(bracketed(|x| Ok(x + 1.0), [0.0, 3.0]).expect("no error"), None);
     }
 }

@@ -39,9 +39,7 @@ pub(crate) fn chebyshev_nodes<const N: usize>() -> [[f64; 2]; N] {
 /// of the nodes. Berrut & Trefethen, SIAM Rev. 46 (2004) 501, doi:10.1137/S0036144502417715, eq. (4.2).
 pub(crate) fn barycentric(nodes: &[[f64; 2]], x: f64) -> Vec<f64> {
     if let Some(at) = nodes.iter().position(|[node, _]| (x - node).abs() < 1e-14) {
-        return (0..nodes.len())
-            .map(|k| f64::from(u8::from(k == at)))
-            .collect();
+        return (0..nodes.len()).map(|k| f64::from(u8::from(k == at))).collect();
     }
     let terms = nodes.iter().map(|[node, weight]| weight / (x - node));
     let sum: f64 = terms.clone().sum();
@@ -116,11 +114,7 @@ pub(crate) fn carlson_rd(arguments: [f64; 3]) -> f64 {
         let lambda = rx * ry + ry * rz + rz * rx;
         sum += factor / (rz * (z + lambda));
         factor *= 0.25;
-        (x, y, z) = (
-            0.25 * (x + lambda),
-            0.25 * (y + lambda),
-            0.25 * (z + lambda),
-        );
+        (x, y, z) = (0.25 * (x + lambda), 0.25 * (y + lambda), 0.25 * (z + lambda));
     }
     let mean = 0.2 * (x + y + 3.0 * z);
     let [dx, dy] = [(mean - x) / mean, (mean - y) / mean];
@@ -160,11 +154,7 @@ mod tests {
         let mut j = vec![0.0; 120];
         for y in [1e-9, 1e-3, 0.7, 20.0, 60.0] {
             spherical_bessel(y, &mut j);
-            let sum: f64 = j
-                .iter()
-                .enumerate()
-                .map(|(k, j)| (2 * k + 1) as f64 * j * j)
-                .sum();
+            let sum: f64 = j.iter().enumerate().map(|(k, j)| (2 * k + 1) as f64 * j * j).sum();
             assert!((sum - 1.0).abs() < 1e-13, "{y}: {sum}");
             assert!((j[0] - if y > 0.0 { y.sin() / y } else { 1.0 }).abs() < 1e-15);
         }

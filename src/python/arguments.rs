@@ -27,11 +27,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Real {
             Ok(number) => Ok(Self(number)),
             Err(error) if error.is_instance_of::<PyOverflowError>(object.py()) => {
                 let negative = object.lt(0)?;
-                Ok(Self(if negative {
-                    f64::NEG_INFINITY
-                } else {
-                    f64::INFINITY
-                }))
+                Ok(Self(if negative { f64::NEG_INFINITY } else { f64::INFINITY }))
             }
             Err(_) => Err(no_real_number(&object)),
         }
@@ -79,10 +75,7 @@ pub(super) fn items<'py, T: FromPyObjectOwned<'py>>(
     object: &Bound<'py, PyAny>,
 ) -> PyResult<Vec<T>> {
     let listed = object.try_iter().map_err(|_| {
-        PyTypeError::new_err(format!(
-            "{name} must be a sequence of {kind}, got {}",
-            Repr(object)
-        ))
+        PyTypeError::new_err(format!("{name} must be a sequence of {kind}, got {}", Repr(object)))
     })?;
     listed
         .map(|item| {
@@ -163,21 +156,13 @@ pub(super) fn count(name: &str, least: usize, value: &Bound<'_, PyAny>) -> PyRes
     let refuse = || {
         let few = value.lt(least).unwrap_or(false);
         let least = format!("an integer of at least {least}");
-        let asked = if few {
-            &least
-        } else {
-            "an integer that this machine can count to"
-        };
+        let asked = if few { &least } else { "an integer that this machine can count to" };
         PyValueError::new_err(format!("{name} must be {asked}, got {value}"))
     };
     let index = value.call_method0("__index__").map_err(|_| {
         PyTypeError::new_err(format!("{name} must be an integer, got {}", Repr(value)))
     })?;
-    index
-        .extract::<usize>()
-        .ok()
-        .filter(|&n| n >= least)
-        .ok_or_else(refuse)
+    index.extract::<usize>().ok().filter(|&n| n >= least).ok_or_else(refuse)
 }
 
 /// Pair of numbers, each of which may be `None`; no numbers where `value` is `None`.
@@ -200,10 +185,7 @@ pub(super) fn flags(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<[b
         return Ok([false; 2]);
     };
     value.extract().map_err(|_| {
-        PyTypeError::new_err(format!(
-            "{name} must be a pair of bools, got {}",
-            Repr(value)
-        ))
+        PyTypeError::new_err(format!("{name} must be a pair of bools, got {}", Repr(value)))
     })
 }
 
@@ -215,20 +197,16 @@ pub(super) fn truth(value: bool) -> &'static str {
 /// Coordinates of the free ends of a body; it goes on where one is `None`, or infinite on its own side.
 pub(super) fn ends(value: Option<&Bound<'_, PyAny>>) -> PyResult<[Option<f64>; 2]> {
     let [low, high] = pair("ends", value)?;
-    Ok([
-        low.filter(|x| *x != f64::NEG_INFINITY),
-        high.filter(|x| *x != f64::INFINITY),
-    ])
+    Ok([low.filter(|x| *x != f64::NEG_INFINITY), high.filter(|x| *x != f64::INFINITY)])
 }
 
 /// Real number, or `None` where `value` is.
 pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
     let extract = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
         Ok(number) => Ok(number.0),
-        Err(_) => Err(PyTypeError::new_err(format!(
-            "{name} must be a real number, got {}",
-            Repr(value)
-        ))),
+        Err(_) => {
+            Err(PyTypeError::new_err(format!("{name} must be a real number, got {}", Repr(value))))
+        }
     };
     value.map(extract).transpose()
 }
@@ -270,11 +248,7 @@ pub(super) fn array_repr<D: ndarray::Dimension>(
 ) -> PyResult<String> {
     let short = array.len() <= 1000;
     let array = read_only(py, array)?;
-    let text = if short {
-        array.call_method0("tolist")?.repr()?
-    } else {
-        array.repr()?
-    };
+    let text = if short { array.call_method0("tolist")?.repr()? } else { array.repr()? };
     Ok(text.to_string())
 }
 

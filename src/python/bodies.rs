@@ -79,11 +79,7 @@ impl PyElastic {
 }
 
 fn elastic_repr(material: &Elastic) -> String {
-    format!(
-        "Elastic(young={:?}, poisson={:?})",
-        material.young(),
-        material.poisson()
-    )
+    format!("Elastic(young={:?}, poisson={:?})", material.young(), material.poisson())
 }
 
 /// Type of `nacre.RIGID`, a rigid base.
@@ -191,12 +187,7 @@ impl PyLayer {
 
     /// Callable and arguments that make the layer again.
     fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, LayerArguments<'_>) {
-        let arguments = (
-            self.material(),
-            self.0.thickness(),
-            self.interface(),
-            self.0.name(),
-        );
+        let arguments = (self.material(), self.0.thickness(), self.interface(), self.0.name());
         (py.get_type::<Self>(), arguments)
     }
 }
@@ -335,10 +326,7 @@ impl PyHalfSpace {
             [None, None] => String::new(),
             [low, high] => format!(", ends=({}, {})", written(low), written(high)),
         };
-        format!(
-            "HalfSpace({substrate}, layers=[{}]{ends})",
-            layers.join(", ")
-        )
+        format!("HalfSpace({substrate}, layers=[{}]{ends})", layers.join(", "))
     }
 
     fn __hash__(&self) -> u64 {
@@ -350,10 +338,7 @@ impl PyHalfSpace {
         &self,
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let (class, arguments) = (
-            py.get_type::<Self>(),
-            (self.substrate(py)?, self.layers(py)?),
-        );
+        let (class, arguments) = (py.get_type::<Self>(), (self.substrate(py)?, self.layers(py)?));
         if self.0.ends() == [None; 2] {
             // Earlier versions read it.
             return Ok((class.into_any(), arguments.into_pyobject(py)?));

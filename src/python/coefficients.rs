@@ -103,12 +103,8 @@ pub(super) fn surface_compliance<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let wavenumbers = real_array("wavenumber", wavenumber)?;
     let at = |alpha: &f64| response::surface_compliance(&body, *alpha);
-    let compliances = py.detach(|| {
-        wavenumbers
-            .iter()
-            .map(at)
-            .collect::<crate::Result<Vec<_>>>()
-    })?;
+    let compliances =
+        py.detach(|| wavenumbers.iter().map(at).collect::<crate::Result<Vec<_>>>())?;
     let component = |value: fn(&Compliance) -> f64| {
         let mut values = wavenumbers.clone();
         let targets = values.iter_mut().zip(&compliances);
@@ -118,15 +114,9 @@ pub(super) fn surface_compliance<'py>(
             _ => Ok(values.into_pyarray(py).into_any()),
         }
     };
-    let components = (
-        component(|c| c.c11)?,
-        component(|c| c.c12)?,
-        component(|c| c.c22)?,
-        component(|c| c.ct)?,
-    );
-    let class = py
-        .import("nacre._compliance")?
-        .getattr("SurfaceCompliance")?;
+    let components =
+        (component(|c| c.c11)?, component(|c| c.c12)?, component(|c| c.c22)?, component(|c| c.ct)?);
+    let class = py.import("nacre._compliance")?.getattr("SurfaceCompliance")?;
     class.call1(components)
 }
 
@@ -255,11 +245,7 @@ pub(super) fn graded_layers(
     let breakpoints: Vec<f64> = breakpoints.iter().map(|depth| depth.0).collect();
     let mut failure = None;
     let at = |name: &str, property: &Bound<'_, PyAny>, z: f64| -> PyResult<f64> {
-        let value = if property.is_callable() {
-            property.call1((z,))?
-        } else {
-            property.clone()
-        };
+        let value = if property.is_callable() { property.call1((z,))? } else { property.clone() };
         match value.extract::<Real>() {
             Ok(number) => Ok(number.0),
             Err(_) => Err(PyTypeError::new_err(format!(

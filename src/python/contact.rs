@@ -83,9 +83,7 @@ impl PyContact {
         let contact = background::run(py, None, move |_: &mut Caller<()>| {
             Contact::plan(&body, grid.0, setup)
         })??;
-        Ok(Self {
-            contact: Arc::new(contact),
-        })
+        Ok(Self { contact: Arc::new(contact) })
     }
 
     /// Body that the shape is pressed into.
@@ -97,11 +95,7 @@ impl PyContact {
     /// Body that carries the shape; rigid where `None`.
     #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
-        self.contact
-            .setup()
-            .counterbody
-            .as_ref()
-            .map(PyHalfSpace::of)
+        self.contact.setup().counterbody.as_ref().map(PyHalfSpace::of)
     }
 
     /// Cells of the pressure.
@@ -310,10 +304,7 @@ impl PyContact {
             self.body().__repr__(),
             self.grid().__repr__(),
             self.counterbody().map_or_else(none, |body| body.__repr__()),
-            self.contact
-                .setup()
-                .threads
-                .map_or_else(none, |threads| threads.to_string()),
+            self.contact.setup().threads.map_or_else(none, |threads| threads.to_string()),
         )
     }
 

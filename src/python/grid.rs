@@ -91,9 +91,7 @@ impl PyGrid {
     #[staticmethod]
     #[pyo3(signature = (cells, width, center=Real(0.0)), text_signature = "(cells, width, center=0.0)")]
     fn line(cells: &Bound<'_, PyAny>, width: Real, center: Real) -> PyResult<Self> {
-        Ok(Self(
-            Grid::line(count("cells", 2, cells)?, width.0)?.centered_at([0.0, center.0])?,
-        ))
+        Ok(Self(Grid::line(count("cells", 2, cells)?, width.0)?.centered_at([0.0, center.0])?))
     }
 
     /// Whether this is the grid of a line contact.

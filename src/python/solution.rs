@@ -98,10 +98,7 @@ impl PySolution {
             let message = CString::new(warning.to_string())?;
             PyErr::warn(py, &category, &message, 1)?;
         }
-        let made = |solution: Solution| Self {
-            shape: Some(shape.clone()),
-            ..solution.into()
-        };
+        let made = |solution: Solution| Self { shape: Some(shape.clone()), ..solution.into() };
         if !check || solution.report.termination != Termination::IterationLimit {
             return Ok(made(solution));
         }
@@ -146,9 +143,7 @@ impl PySolution {
     /// Normal displacement of both bodies together [m], positive into them.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        cached(py, &self.displacement, || {
-            self.solution.displacement.clone()
-        })
+        cached(py, &self.displacement, || self.solution.displacement.clone())
     }
 
     /// Largest pressure that the surfaces bear [Pa], of all cells or of each; None where they do not yield.
@@ -292,10 +287,7 @@ impl PySolution {
         let stiffness = background::run(py, None, move |caller: &mut Caller<()>| {
             solution.stiffness_watched(&mut || caller.go_on())
         })??;
-        Ok(PyArray2::from_owned_array(
-            py,
-            Array2::from(stiffness.unwrap_or_default().to_vec()),
-        ))
+        Ok(PyArray2::from_owned_array(py, Array2::from(stiffness.unwrap_or_default().to_vec())))
     }
 
     /// Derivatives of an output with respect to all parameters of the contact.
@@ -617,12 +609,7 @@ impl PySolution {
         let plan = watched(slf.py(), None, move |progress| {
             solution.stress_plan(member, options.watched(progress))
         })?;
-        Ok(PyStressPlan::new(
-            plan,
-            member,
-            threads,
-            slf.clone().into_any().unbind(),
-        ))
+        Ok(PyStressPlan::new(plan, member, threads, slf.clone().into_any().unbind()))
     }
 
     /// Report: how the solution came about, and how good it is.
@@ -864,8 +851,5 @@ where
     let first = PyTuple::new(solution.py(), [solution])?;
     let arguments = first.add(arguments.into_pyobject(solution.py())?)?;
     let arguments = arguments.cast_into::<PyTuple>()?;
-    solution
-        .py()
-        .import(module)?
-        .call_method1(function, arguments)
+    solution.py().import(module)?.call_method1(function, arguments)
 }

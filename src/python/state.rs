@@ -105,10 +105,7 @@ pub(super) struct Fields<'py> {
 
 impl<'py> Fields<'py> {
     fn new(py: Python<'py>, place: &str) -> Self {
-        Self {
-            place: place.into(),
-            dict: PyDict::new(py),
-        }
+        Self { place: place.into(), dict: PyDict::new(py) }
     }
 
     fn of(place: &str, data: &Bound<'py, PyAny>) -> PyResult<Self> {
@@ -118,10 +115,7 @@ impl<'py> Fields<'py> {
                 Repr(data)
             ))
         })?;
-        Ok(Self {
-            place: place.into(),
-            dict: dict.copy()?,
-        })
+        Ok(Self { place: place.into(), dict: dict.copy()? })
     }
 
     fn py(&self) -> Python<'py> {
@@ -212,11 +206,7 @@ impl<'py> Fields<'py> {
         &self,
         name: &str,
     ) -> PyResult<Option<Array<f64, D>>> {
-        match self
-            .dict
-            .get_item(name)?
-            .is_some_and(|value| !value.is_none())
-        {
+        match self.dict.get_item(name)?.is_some_and(|value| !value.is_none()) {
             true => self.get_array(name).map(Some),
             false => self.get_newer::<Option<f64>>(name).map(|_| None),
         }

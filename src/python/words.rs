@@ -64,12 +64,8 @@ impl Word for Algorithm {
 
 impl Word for Termination {
     const ARGUMENT: &'static str = "termination";
-    const VALUES: &'static [Self] = &[
-        Self::Running,
-        Self::Converged,
-        Self::IterationLimit,
-        Self::Stopped,
-    ];
+    const VALUES: &'static [Self] =
+        &[Self::Running, Self::Converged, Self::IterationLimit, Self::Stopped];
 
     fn word(self) -> &'static str {
         match self {
@@ -173,10 +169,7 @@ pub(super) fn warning(kind: &str, axis: usize, figure: f64) -> PyResult<Warning>
         Warning::SharpEdge,
         Warning::MapRim { axis },
         Warning::Coarse { axis, cells },
-        Warning::CoarseSpots {
-            axis,
-            cells: figure,
-        },
+        Warning::CoarseSpots { axis, cells: figure },
         Warning::LargeContact { axis, ratio },
         Warning::OutsideGrid { depth: figure },
         Warning::PeakError { error: figure },

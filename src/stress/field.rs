@@ -96,28 +96,13 @@ impl Stress {
                 "every component must have shape (len(z), len(x), len(y))",
             ));
         }
-        if uncertainty
-            .as_ref()
-            .is_some_and(|errors| errors.len() != z.len())
-        {
-            return Err(Error::Inconsistent(
-                "uncertainty must have a value for each depth",
-            ));
+        if uncertainty.as_ref().is_some_and(|errors| errors.len() != z.len()) {
+            return Err(Error::Inconsistent("uncertainty must have a value for each depth"));
         }
         for coordinate in [&z, &x, &y].into_iter().flatten() {
             finite("coordinates of a stress", *coordinate)?;
         }
-        Ok(Self {
-            z,
-            x,
-            y,
-            body,
-            side,
-            friction,
-            components,
-            uncertainty,
-            displacement,
-        })
+        Ok(Self { z, x, y, body, side, friction, components, uncertainty, displacement })
     }
 
     /// Warnings about what the cells do not resolve, the depth at which the estimated error is largest
@@ -225,23 +210,12 @@ pub struct Peak {
 impl Tensor {
     /// The tensor from its components in the order of [`Stress::components`].
     pub(crate) fn new([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> Self {
-        Self {
-            xx,
-            yy,
-            zz,
-            xy,
-            yz,
-            xz,
-        }
+        Self { xx, yy, zz, xy, yz, xz }
     }
 
     fn matrix(&self) -> [[f64; 3]; 3] {
         let [xz, yz] = [self.xz, self.yz];
-        [
-            [self.xx, self.xy, xz],
-            [self.xy, self.yy, yz],
-            [xz, yz, self.zz],
-        ]
+        [[self.xx, self.xy, xz], [self.xy, self.yy, yz], [xz, yz, self.zz]]
     }
 
     /// Von Mises' equivalent stress,
@@ -309,11 +283,8 @@ impl Stress {
         let mut all = [0, 1, 2].map(|_| Array3::zeros(self.components[0].raw_dim()));
         let [first, second, third] = &mut all;
         let tensors = self.tensors();
-        for (((a, b), c), tensor) in first
-            .iter_mut()
-            .zip(second.iter_mut())
-            .zip(third.iter_mut())
-            .zip(tensors)
+        for (((a, b), c), tensor) in
+            first.iter_mut().zip(second.iter_mut()).zip(third.iter_mut()).zip(tensors)
         {
             [*a, *b, *c] = tensor.principal();
         }
@@ -357,10 +328,7 @@ impl Stress {
 
     fn map(&self, f: impl Fn(&Tensor) -> f64) -> Array3<f64> {
         let mut values = Array3::zeros(self.components[0].raw_dim());
-        values
-            .iter_mut()
-            .zip(self.tensors())
-            .for_each(|(value, tensor)| *value = f(&tensor));
+        values.iter_mut().zip(self.tensors()).for_each(|(value, tensor)| *value = f(&tensor));
         values
     }
 }

@@ -66,10 +66,7 @@ pub(super) struct SurfaceLoad {
 
 impl SurfaceLoad {
     /// The pressure itself.
-    pub(super) const PRESSURE: Self = Self {
-        factor: 1.0,
-        axis: None,
-    };
+    pub(super) const PRESSURE: Self = Self { factor: 1.0, axis: None };
 
     /// Whether each component is odd in x and in y.
     fn odd(self) -> [[bool; 2]; COMPONENTS] {
@@ -90,15 +87,10 @@ impl Loading {
     /// The pressure, and the tractions of `friction` that are not 0.
     pub(super) fn new(friction: [f64; 2], displacement: bool) -> Self {
         let tractions = friction.into_iter().enumerate();
-        let tractions = tractions.map(|(axis, factor)| SurfaceLoad {
-            factor,
-            axis: Some(axis),
-        });
+        let tractions = tractions.map(|(axis, factor)| SurfaceLoad { factor, axis: Some(axis) });
         let tractions = tractions.filter(|load| load.factor != 0.0);
         Self {
-            loads: std::iter::once(SurfaceLoad::PRESSURE)
-                .chain(tractions)
-                .collect(),
+            loads: std::iter::once(SurfaceLoad::PRESSURE).chain(tractions).collect(),
             friction,
             displacement,
         }
@@ -106,11 +98,7 @@ impl Loading {
 
     /// One load, which may be other than the pressure.
     fn one(load: SurfaceLoad, displacement: bool) -> Self {
-        Self {
-            loads: vec![load],
-            friction: [0.0; 2],
-            displacement,
-        }
+        Self { loads: vec![load], friction: [0.0; 2], displacement }
     }
 
     fn components(&self) -> usize {
@@ -148,10 +136,8 @@ impl HalfSpacePlan {
         let transformed =
             |input: &[f64]| transform.transform(input, &mut transform.workspace(), &threads);
         let uniform = transformed(uniform);
-        let solved = subcell.map(|subcell| SolvedPressure {
-            subcell,
-            given: transformed(&pressure),
-        });
+        let solved =
+            subcell.map(|subcell| SolvedPressure { subcell, given: transformed(&pressure) });
         Self {
             body: body.clone(),
             grid: *grid,
@@ -188,10 +174,7 @@ impl HalfSpacePlan {
         let arrays = 8 + if is_solved { 24 } else { 0 };
         // The coefficients of a component, at all offsets.
         let repeats = grid.is_periodic() != [false; 2];
-        transforms_memory(
-            grid,
-            arrays + if repeats { 2 * COMPONENTS as u64 } else { 0 },
-        )
+        transforms_memory(grid, arrays + if repeats { 2 * COMPONENTS as u64 } else { 0 })
     }
 
     /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
@@ -259,11 +242,7 @@ impl Coefficients<'_> {
         let slides = self.loading.loads.iter().any(|load| load.axis.is_some());
         match &self.plan.kernels {
             Kernels::Line(plan) => self.strips(plan, take),
-            Kernels::Plane {
-                plan,
-                pressure,
-                traction,
-            } => {
+            Kernels::Plane { plan, pressure, traction } => {
                 // Made without rayon, so that a thread that waits for it cannot be asked to make it.
                 let traction =
                     slides.then(|| traction.get_or_init(|| plan.multipliers::<9, Traction>()));
@@ -387,17 +366,10 @@ pub(super) fn checked_pressure(
     check_magnitudes(body, grid)?;
     let found = [pressure.nrows(), pressure.ncols()];
     if found != grid.shape() {
-        return Err(Error::Shape {
-            name: "pressure",
-            expected: grid.shape(),
-            found,
-        });
+        return Err(Error::Shape { name: "pressure", expected: grid.shape(), found });
     }
     if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-        return Err(Error::NonFinite {
-            name: "pressure",
-            index: [index.0, index.1],
-        });
+        return Err(Error::NonFinite { name: "pressure", index: [index.0, index.1] });
     }
     Ok(pressure.iter().copied().collect())
 }

@@ -76,18 +76,12 @@ impl Default for StressOptions {
 impl StressOptions {
     /// Default options on `threads` threads; none: all of the machine's.
     pub fn with_threads(threads: Option<usize>) -> Self {
-        Self {
-            threads,
-            ..Self::default()
-        }
+        Self { threads, ..Self::default() }
     }
 
     /// These options, with a callback that is told the fraction of the work done, and that may break to stop it.
     pub fn watched<'a>(&'a self, progress: &'a mut StressProgress<'a>) -> WatchedStress<'a> {
-        WatchedStress {
-            options: self,
-            progress: Some(progress),
-        }
+        WatchedStress { options: self, progress: Some(progress) }
     }
 
     /// Residual stress of every layer and of the substrate.
@@ -134,10 +128,7 @@ impl<'a> WatchedStress<'a> {
 
 impl<'a> From<&'a StressOptions> for WatchedStress<'a> {
     fn from(options: &'a StressOptions) -> Self {
-        Self {
-            options,
-            progress: None,
-        }
+        Self { options, progress: None }
     }
 }
 

@@ -123,20 +123,11 @@ impl<'a> PressureSource<'a> {
             if traction.iter().any(|q| *q != 0.0) {
                 let traction: Array2<f64> = traction.mapv(|q| self.sliding.sign * q);
                 let plan = HalfSpacePlan::uniform(body, grid, &traction, &whole.threads)?;
-                let load = SurfaceLoad {
-                    factor: 1.0,
-                    axis: Some(axis),
-                };
+                let load = SurfaceLoad { factor: 1.0, axis: Some(axis) };
                 parts.push(Box::new(HalfSpacePart::new(plan, load)));
             }
         }
-        Ok(Some(StressPlan {
-            whole,
-            sliding: self.sliding,
-            span,
-            parts,
-            ends: errors,
-        }))
+        Ok(Some(StressPlan { whole, sliding: self.sliding, span, parts, ends: errors }))
     }
 
     /// [`PressureSource::plan`], of which a stop is an error.
@@ -284,14 +275,11 @@ impl<'a> Evaluation<'a> {
         let (plan, loading) = (self.plan, &self.loading);
         let memory = || plan.whole.plane_memory(loading);
         let memory = self.whole.get_or_insert_with(memory);
-        plan.whole
-            .plane(loading, place, memory, outputs, progress)?;
+        plan.whole.plane(loading, place, memory, outputs, progress)?;
         for (part, memory) in plan.parts.iter().zip(&mut self.parts) {
             part.plane(place, self.displacement, memory, outputs, progress)?;
         }
-        outputs
-            .iter_mut()
-            .for_each(|output| plan.span.blank(output));
+        outputs.iter_mut().for_each(|output| plan.span.blank(output));
         ControlFlow::Continue(())
     }
 
@@ -323,10 +311,7 @@ impl<'a> Evaluation<'a> {
         (end, row): (usize, usize),
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Vec<Vec<f64>>> {
-        let mut lines = self
-            .plan
-            .whole
-            .line(&self.loading, (place, row), progress)?;
+        let mut lines = self.plan.whole.line(&self.loading, (place, row), progress)?;
         for part in &self.plan.parts {
             part.on_face(place, self.displacement, (end, row), &mut lines, progress)?;
         }
@@ -500,9 +485,7 @@ impl<'a> Request<'a> {
         let found = evaluation.points(place, &cells, progress)?;
         for (k, value) in here.iter_mut().enumerate() {
             let parts = found.iter().zip(&weights);
-            value[0] = parts
-                .map(|(components, weight)| weight * components[k])
-                .sum();
+            value[0] = parts.map(|(components, weight)| weight * components[k]).sum();
         }
         ControlFlow::Continue(())
     }
@@ -529,10 +512,7 @@ impl<'a> Request<'a> {
             friction: self.friction,
             components: std::array::from_fn(|_| next()),
             uncertainty,
-            displacement: self
-                .options
-                .displacement
-                .then(|| std::array::from_fn(|_| next())),
+            displacement: self.options.displacement.then(|| std::array::from_fn(|_| next())),
         }
     }
 }

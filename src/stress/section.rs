@@ -22,11 +22,7 @@ const CENTRE_TOLERANCE: f64 = 1e-9;
 /// Place of the depth `z` in `body`.
 pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
     if !(z >= 0.0 && z.is_finite()) {
-        return Err(Error::Parameter {
-            name: "z",
-            requirement: "finite and at least 0",
-            value: z,
-        });
+        return Err(Error::Parameter { name: "z", requirement: "finite and at least 0", value: z });
     }
     if z > MAGNITUDES[1] {
         return Err(Error::Parameter {
@@ -50,12 +46,9 @@ pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
         top = if on { z } else { interface };
     }
     match body.substrate() {
-        Substrate::Elastic(material) => Ok(Place {
-            layer: body.layers().len(),
-            below_top: z - top,
-            depth: z,
-            material,
-        }),
+        Substrate::Elastic(material) => {
+            Ok(Place { layer: body.layers().len(), below_top: z - top, depth: z, material })
+        }
         Substrate::Rigid => Err(Error::Parameter {
             name: "z",
             requirement: "above the rigid substrate (on it, with side \"above\")",
@@ -120,11 +113,7 @@ impl Points {
                 _ => interpolation(position, grid.shape()[axis], grid.is_periodic()[axis]),
             });
             points.shape[axis] = 1;
-            let centres = if axis == 0 {
-                &mut points.x
-            } else {
-                &mut points.y
-            };
+            let centres = if axis == 0 { &mut points.x } else { &mut points.y };
             *centres = Array1::from_elem(1, at);
         }
         Ok(points)
@@ -236,19 +225,11 @@ fn position(grid: &Grid, axis: usize, at: f64) -> Result<f64> {
     finite(name, at)?;
     let position = (at - grid.center()[axis]) / grid.spacing()[axis] + 0.5 * (n - 1) as f64;
     if !(-0.5 - CENTRE_TOLERANCE..=n as f64 - 0.5 + CENTRE_TOLERANCE).contains(&position) {
-        return Err(Error::Parameter {
-            name,
-            requirement: "on the grid",
-            value: at,
-        });
+        return Err(Error::Parameter { name, requirement: "on the grid", value: at });
     }
     // Rounding must not mix a neighbour into a line through cell centres.
     let nearest = position.round();
-    Ok(if (position - nearest).abs() < CENTRE_TOLERANCE {
-        nearest
-    } else {
-        position
-    })
+    Ok(if (position - nearest).abs() < CENTRE_TOLERANCE { nearest } else { position })
 }
 
 /// Interpolation between `count` cells, or beyond the outer ones, to a `position`. Where they are periodic, the first
@@ -257,11 +238,7 @@ fn interpolation(position: f64, count: usize, periodic: bool) -> Interpolation {
     let below = position.floor();
     if periodic {
         let lower = below.rem_euclid(count as f64) as usize;
-        return Interpolation {
-            lower,
-            upper: (lower + 1) % count,
-            weight: position - below,
-        };
+        return Interpolation { lower, upper: (lower + 1) % count, weight: position - below };
     }
     let lower = below.clamp(0.0, count.saturating_sub(2) as f64);
     Interpolation {

@@ -121,8 +121,7 @@ impl SubcellStress {
 
     /// Largest steps of the pressure that are felt in the cells of `window`.
     pub(super) fn steps(&self, window: &Window) -> LocalSteps {
-        self.uncertainty
-            .steps(&self.given, &self.margin.window(window))
+        self.uncertainty.steps(&self.given, &self.margin.window(window))
     }
 
     /// Estimated error \[Pa\] of the stress in `body` at `place`, from the size of the cells, where the
@@ -164,30 +163,25 @@ impl SubcellStress {
                     sum(normal.at(y, half), along, across)
                 })
             }
-            Kernels::Plane {
-                plan,
-                pressure,
-                traction,
-            } => {
+            Kernels::Plane { plan, pressure, traction } => {
                 let slides = fx != 0.0 || fy != 0.0;
                 let normal = Kernel::new::<PressureStress>(plan, pressure, place);
                 let lateral = slides.then(|| {
                     let traction = traction.get_or_init(|| plan.multipliers::<6, TractionStress>());
                     Kernel::new::<TractionStress>(plan, traction, place)
                 });
-                self.near
-                    .table(place.depth, |[x, y], [a, b]| -> Components {
-                        let pressed = normal.at::<PressureStress>([x, y], [a, b]);
-                        let Some(lateral) = &lateral else {
-                            return sum(pressed, none, none);
-                        };
-                        let stresses = |at, half| lateral.at::<TractionStress>(at, half);
-                        let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
-                        // Traction along y is traction along x with both exchanged.
-                        let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
-                        let across = across.map(|values| EXCHANGED.map(|k| values[k]));
-                        sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
-                    })
+                self.near.table(place.depth, |[x, y], [a, b]| -> Components {
+                    let pressed = normal.at::<PressureStress>([x, y], [a, b]);
+                    let Some(lateral) = &lateral else {
+                        return sum(pressed, none, none);
+                    };
+                    let stresses = |at, half| lateral.at::<TractionStress>(at, half);
+                    let along = (fx != 0.0).then(|| stresses([x, y], [a, b]));
+                    // Traction along y is traction along x with both exchanged.
+                    let across = (fy != 0.0).then(|| stresses([y, x], [b, a]));
+                    let across = across.map(|values| EXCHANGED.map(|k| values[k]));
+                    sum(pressed, along.unwrap_or(none), across.unwrap_or(none))
+                })
             }
         }
     }
@@ -195,8 +189,7 @@ impl SubcellStress {
     /// Adds the stresses of a table to those of the uniform part, one plane of each component; at the
     /// surface, sets the tractions to those of the solver's pressure. On the threads of the caller.
     pub(super) fn add(&self, near: &NearTable, friction: [f64; 2], stresses: &mut [&mut [f64]]) {
-        self.margin
-            .add(stresses, |stresses| self.near.add(near, stresses));
+        self.margin.add(stresses, |stresses| self.near.add(near, stresses));
         if near.at_surface() {
             let given = self.margin.middle(&self.given);
             for (k, factor) in tractions(friction) {
@@ -247,9 +240,7 @@ impl Margin {
     fn of(grid: &Grid) -> Self {
         Self {
             shape: grid.shape(),
-            width: grid
-                .is_periodic()
-                .map(|repeats| if repeats { MARGIN_CELLS } else { 0 }),
+            width: grid.is_periodic().map(|repeats| if repeats { MARGIN_CELLS } else { 0 }),
         }
     }
 
@@ -285,19 +276,14 @@ impl Margin {
         };
         debug_assert!(nx > 0 && ny > 0);
         let cells = (0..wx).flat_map(|i| (0..wy).map(move |j| (i, j)));
-        Cow::Owned(
-            cells
-                .map(|(i, j)| values[place(0, i) * ny + place(1, j)])
-                .collect(),
-        )
+        Cow::Owned(cells.map(|(i, j)| values[place(0, i) * ny + place(1, j)]).collect())
     }
 
     /// Values of the cells from those with the margin.
     fn middle(self, wide: &[f64]) -> Vec<f64> {
         let ([nx, ny], [_, wy]) = (self.shape, self.wide_shape());
         let rows = (0..nx).map(|i| (i + self.width[0]) * wy + self.width[1]);
-        rows.flat_map(|start| wide[start..start + ny].iter().copied())
-            .collect()
+        rows.flat_map(|start| wide[start..start + ny].iter().copied()).collect()
     }
 
     /// Number of a cell along both directions, counted with the margin.

@@ -96,17 +96,8 @@ impl StressSummary {
             (!said.is_empty()).then(|| said.join(", "))
         };
         let layers = self.layers.iter().filter_map(|layer| {
-            let LayerSummary {
-                von_mises,
-                tension,
-                shear,
-                ..
-            } = layer;
-            let peaks = [
-                ("von Mises", von_mises),
-                ("tension", tension),
-                ("shear", shear),
-            ];
+            let LayerSummary { von_mises, tension, shear, .. } = layer;
+            let peaks = [("von Mises", von_mises), ("tension", tension), ("shear", shear)];
             // Compression everywhere is no tension to be known.
             let known = if tension.value > 0.0 { 3 } else { 1 };
             let said = unresolved(&peaks[..known])?;
@@ -183,10 +174,7 @@ struct SummaryRequest<'a> {
 impl Strengths {
     /// Refuses a strength that is not finite and above 0.
     fn check(&self) -> Result<()> {
-        let yields = self
-            .yield_stress
-            .iter()
-            .map(|value| ("yield_stress", value));
+        let yields = self.yield_stress.iter().map(|value| ("yield_stress", value));
         let strengths = self.strength.iter().map(|value| ("strength", value));
         for (name, value) in yields.chain(strengths) {
             value.map(|value| positive(name, value)).transpose()?;
@@ -250,9 +238,7 @@ impl<'a> SummaryRequest<'a> {
             summary.layers.push(layer);
         }
         for (number, layer) in body.layers().iter().enumerate() {
-            summary
-                .interfaces
-                .push(interface(planes, body, number, layer)?);
+            summary.interfaces.push(interface(planes, body, number, layer)?);
         }
         ControlFlow::Continue(())
     }
@@ -272,9 +258,7 @@ fn layer(
     }
     for which in 0..3 {
         for _ in 0..REFINEMENTS {
-            let values = evaluated
-                .iter()
-                .map(|(place, peaks)| (*place, peaks[which].value));
+            let values = evaluated.iter().map(|(place, peaks)| (*place, peaks[which].value));
             let values: Vec<_> = values.collect();
             let Some(place) = refined_peak(&values) else {
                 break;
@@ -331,12 +315,9 @@ fn interface(
     })?;
     let jump = match below {
         None => None,
-        Some(material) => Some(planes.jump(&Place {
-            layer: number + 1,
-            below_top: 0.0,
-            depth,
-            material,
-        })?),
+        Some(material) => {
+            Some(planes.jump(&Place { layer: number + 1, below_top: 0.0, depth, material })?)
+        }
     };
     ControlFlow::Continue(InterfaceSummary {
         interface: number,
@@ -372,10 +353,7 @@ struct Largest {
 
 impl Largest {
     /// Before any value.
-    const NONE: Self = Self {
-        value: f64::NEG_INFINITY,
-        cell: 0,
-    };
+    const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
 
     fn offer(&mut self, value: f64, cell: usize) {
         if value > self.value {
@@ -482,11 +460,7 @@ impl<'a, 'b> Planes<'a, 'b> {
         let above = above_xx.iter().zip(&above_yy).zip(&above_xy).enumerate();
         for (cell, ((above_xx, above_yy), above_xy)) in above {
             let below = self.tensor(cell);
-            let (xx, yy, xy) = (
-                below.xx - above_xx,
-                below.yy - above_yy,
-                below.xy - above_xy,
-            );
+            let (xx, yy, xy) = (below.xx - above_xx, below.yy - above_yy, below.xy - above_xy);
             let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
             largest.offer(mean.abs() + half.hypot(xy), cell);
         }
@@ -496,9 +470,8 @@ impl<'a, 'b> Planes<'a, 'b> {
 
 /// Depths below the top of a layer, in half-widths of the contact: dense where the
 /// shear stress of a contact has its peak (0.48 below a sphere, 0.79 below a cylinder).
-const DEPTHS_SEARCHED: [f64; 13] = [
-    0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8, 2.5, 4.0,
-];
+const DEPTHS_SEARCHED: [f64; 13] =
+    [0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8, 2.5, 4.0];
 
 /// Depths within a layer, in its thickness.
 const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
@@ -533,9 +506,7 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
         top += h;
     }
     if let Substrate::Elastic(material) = body.substrate() {
-        let depths = [0.0]
-            .into_iter()
-            .chain(DEPTHS_SEARCHED.map(|d| d * half_width));
+        let depths = [0.0].into_iter().chain(DEPTHS_SEARCHED.map(|d| d * half_width));
         let place = |z: f64| at(body.layers().len(), top, z, material);
         regions.push(depths.map(place).collect());
     }
@@ -559,10 +530,7 @@ fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
     }
     let z = |k: usize| evaluated[k].0.below_top;
     let (a, b) = (z(best) - z(best - 1), z(best + 1) - z(best));
-    let (left, right) = (
-        (value(best) - value(best - 1)) / a,
-        (value(best) - value(best + 1)) / b,
-    );
+    let (left, right) = ((value(best) - value(best - 1)) / a, (value(best) - value(best + 1)) / b);
     if left + right <= 0.0 {
         return None;
     }
@@ -574,11 +542,7 @@ fn refined_peak(evaluated: &[(Place, f64)]) -> Option<Place> {
     }
     let step = step.clamp(-LONGEST_REFINEMENT * a, LONGEST_REFINEMENT * b);
     let place = evaluated[best].0;
-    Some(Place {
-        below_top: place.below_top + step,
-        depth: place.depth + step,
-        ..place
-    })
+    Some(Place { below_top: place.below_top + step, depth: place.depth + step, ..place })
 }
 
 #[cfg(test)]
@@ -609,20 +573,12 @@ mod tests {
         const ROUNDING: f64 = 1e-15;
         let material = Elastic::new(1.0, 0.3)?;
         let at = |z: f64| {
-            let place = Place {
-                layer: 0,
-                below_top: z,
-                depth: z,
-                material,
-            };
+            let place = Place { layer: 0, below_top: z, depth: z, material };
             (place, 3.0 - 2.0 * (z - 0.7) * (z - 0.7))
         };
         let mut evaluated = vec![at(0.0), at(0.5), at(1.1), at(2.0)];
         let vertex = refined_peak(&evaluated).map(|place| place.depth);
-        assert!(
-            vertex.is_some_and(|z| (z - 0.7).abs() < ROUNDING),
-            "{vertex:?}"
-        );
+        assert!(vertex.is_some_and(|z| (z - 0.7).abs() < ROUNDING), "{vertex:?}");
         evaluated.insert(2, at(0.7));
         assert_eq!(refined_peak(&evaluated), None);
         assert_eq!(refined_peak(&[at(0.7), at(1.0), at(2.0)]), None);

@@ -15,15 +15,10 @@ const ROUNDING: f64 = 1e-12;
 
 /// u[i, j] = Σ C[|i−k|, |j−l|] p[k, l]
 fn double_sum(coefficients: &ArrayRef2<f64>, pressure: &ArrayRef2<f64>) -> Array2<f64> {
-    let loaded: Vec<_> = pressure
-        .indexed_iter()
-        .filter(|(_, p)| p.abs() > 0.0)
-        .collect();
+    let loaded: Vec<_> = pressure.indexed_iter().filter(|(_, p)| p.abs() > 0.0).collect();
     Array2::from_shape_fn(pressure.raw_dim(), |(i, j)| {
         let terms = loaded.iter();
-        terms
-            .map(|((k, l), p)| coefficients[[i.abs_diff(*k), j.abs_diff(*l)]] * *p)
-            .sum()
+        terms.map(|((k, l), p)| coefficients[[i.abs_diff(*k), j.abs_diff(*l)]] * *p).sum()
     })
 }
 

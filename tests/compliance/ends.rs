@@ -110,12 +110,9 @@ fn quarter_spaces_scale() -> Result<()> {
 #[test]
 fn senseless_quarter_spaces_are_refused() -> Result<()> {
     let steel = steel()?;
-    for (distance, sides) in [
-        (-1.0, [1.0, 1.0]),
-        (f64::NAN, [1.0, 1.0]),
-        (0.0, [0.0, 1.0]),
-        (0.0, [1.0, f64::INFINITY]),
-    ] {
+    for (distance, sides) in
+        [(-1.0, [1.0, 1.0]), (f64::NAN, [1.0, 1.0]), (0.0, [0.0, 1.0]), (0.0, [1.0, f64::INFINITY])]
+    {
         let made = QuarterSpace::new(steel, distance, sides);
         assert!(made.is_err(), "{distance} {sides:?}");
     }

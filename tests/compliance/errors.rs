@@ -37,9 +37,7 @@ fn materials_and_bodies() -> Result<()> {
     assert_eq!(named("DLC")?.name(), Some("DLC"));
     assert_ne!(named("DLC")?, Layer::new(steel()?, 1.0)?);
     let graded = |thickness, tolerance, young| {
-        graded_layers(steel()?, thickness, tolerance, &[], |_| {
-            Elastic::new(young, 0.3)
-        })
+        graded_layers(steel()?, thickness, tolerance, &[], |_| Elastic::new(young, 0.3))
     };
     refused! {
         HalfSpace::new(Substrate::Rigid, []) => "layers must hold at least one layer where the substrate is rigid";

@@ -15,16 +15,10 @@ use crate::support::settings::coated;
 const EXACT: f64 = 1e-9;
 
 fn pasternak(length: f64) -> Foundation {
-    Foundation {
-        stiffness: 3.0,
-        shear: 3.0 * length * length,
-    }
+    Foundation { stiffness: 3.0, shear: 3.0 * length * length }
 }
 
-const WINKLER: Foundation = Foundation {
-    stiffness: 3.0,
-    shear: 0.0,
-};
+const WINKLER: Foundation = Foundation { stiffness: 3.0, shear: 0.0 };
 
 /// ∫ f over [a, b], by the tanh–sinh rule (Takahasi & Mori 1974).
 fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
@@ -204,11 +198,7 @@ impl Response for Told {
     }
     fn asymptotes(&self) -> Asymptotes {
         let [long, constant, short] = self.asymptotes;
-        Asymptotes {
-            long,
-            constant,
-            short,
-        }
+        Asymptotes { long, constant, short }
     }
     fn lengths(&self) -> Option<[f64; 2]> {
         self.lengths
@@ -220,12 +210,7 @@ impl Response for Told {
 
 #[test]
 fn a_response_that_contradicts_itself_is_refused() -> Result<()> {
-    let told = |asymptotes, lengths, local, normal| Told {
-        asymptotes,
-        lengths,
-        local,
-        normal,
-    };
+    let told = |asymptotes, lengths, local, normal| Told { asymptotes, lengths, local, normal };
     let grid = Grid::new([4, 4], [1.0, 1.0])?;
     let sound = told([1.0, 0.0, 1.0], None, 0.0, 1.0);
     assert!(influence_coefficients(sound, &grid, Method::Exact).is_ok());

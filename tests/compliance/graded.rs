@@ -47,9 +47,8 @@ fn coatings() -> Result<[(Material, Substrate); 4]> {
 /// Equal layers, each of the material at its middle.
 fn cut(substrate: Substrate, count: usize, material: Material) -> Result<HalfSpace> {
     let each = THICKNESS / count as f64;
-    let layers: Result<Vec<Layer>> = (0..count)
-        .map(|k| Layer::new(material((k as f64 + 0.5) * each)?, each))
-        .collect();
+    let layers: Result<Vec<Layer>> =
+        (0..count).map(|k| Layer::new(material((k as f64 + 0.5) * each)?, each)).collect();
     HalfSpace::new(substrate, layers?)
 }
 
@@ -240,19 +239,13 @@ fn what_waves_between_the_samples_is_resolved() -> Result<()> {
         let fine = 100_000;
         let each = THICKNESS / f64::from(fine);
         // Layers of the mean compliance, which the exact limit has wherever waves are long.
-        let exact: Result<Vec<Layer>> = (0..fine)
-            .map(|k| Layer::new(material((f64::from(k) + 0.5) * each)?, each))
-            .collect();
+        let exact: Result<Vec<Layer>> =
+            (0..fine).map(|k| Layer::new(material((f64::from(k) + 0.5) * each)?, each)).collect();
         let exact = HalfSpace::new(steel()?, exact?)?;
         let found = HalfSpace::new(steel()?, layers)?;
         for x in [0.01, 0.3, 1.0, 3.0, 10.0, 30.0] {
             let due = frequency_response(&exact, x / THICKNESS)?;
-            near!(
-                frequency_response(&found, x / THICKNESS)?,
-                due,
-                tolerance,
-                name
-            );
+            near!(frequency_response(&found, x / THICKNESS)?, due, tolerance, name);
         }
     }
     Ok(())

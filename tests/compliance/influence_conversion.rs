@@ -67,10 +67,9 @@ fn errors_stay_below_what_the_documentation_states() -> Result<()> {
         (4, [5.9e-4, 4.3e-2], [1.3e-5, 1.2e-3]),
         (8, [2.9e-4, 2.45e-2], [1.72e-6, 1.54e-4]),
     ] {
-        for (method, bounds) in [
-            (Method::Difference { refinement }, difference),
-            (Method::Image { refinement }, image),
-        ] {
+        for (method, bounds) in
+            [(Method::Difference { refinement }, difference), (Method::Image { refinement }, image)]
+        {
             let errors = errors(&body, &square()?, method)?;
             below!(errors[[0, 0]].abs(), bounds[0], method);
             below!(largest(&errors), bounds[1], method);
@@ -130,10 +129,7 @@ fn only_image_serves_a_long_thin_domain() -> Result<()> {
 fn conversions_of_a_bare_body_are_its_closed_form() -> Result<()> {
     // Nothing is left to transform but rounding.
     let body: HalfSpace = Elastic::new(1.0, 0.3)?.into();
-    for method in [
-        Method::Difference { refinement: 2 },
-        Method::Image { refinement: 2 },
-    ] {
+    for method in [Method::Difference { refinement: 2 }, Method::Image { refinement: 2 }] {
         below!(largest(&errors(&body, &square()?, method)?), 1e-12, method);
     }
     Ok(())

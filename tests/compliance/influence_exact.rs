@@ -35,11 +35,7 @@ const SECOND_PROGRAM: f64 = 3e-10;
 fn love(material: Elastic, [dx, dy]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     let corner = |x: f64, y: f64| {
         let term = |a: f64, b: f64| {
-            if a == 0.0 {
-                0.0
-            } else {
-                a * (b / a.abs()).asinh()
-            }
+            if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() }
         };
         term(x, y) + term(y, x)
     };
@@ -149,9 +145,9 @@ fn estimated_error_bounds_the_true_one_and_is_no_guess() -> Result<()> {
 
         // The estimate meets what is asked: 1e-9 of the softer of surface and substrate.
         let softest = match body.substrate() {
-            Substrate::Elastic(s) => s
-                .plane_strain_modulus()
-                .min(body.surface_material().plane_strain_modulus()),
+            Substrate::Elastic(s) => {
+                s.plane_strain_modulus().min(body.surface_material().plane_strain_modulus())
+            }
             Substrate::Rigid => body.surface_material().plane_strain_modulus(),
         };
         let asked = 1e-9 / (PI * softest);

@@ -131,12 +131,8 @@ fn closed_form_with_the_printed_plus_sign_is_another_function() -> Result<()> {
 #[test]
 fn thin_layer_is_the_substrate_and_its_own_compression() -> Result<()> {
     // c11 = A/α + h (1+g)(1−2ν1−g) / 2G1(1−ν1) + O(α h²), g = (1−2ν2) G1/G2.
-    for (ratio, nu1, nu2) in [
-        (4.0, 0.3, 0.3),
-        (0.25, 0.45, 0.2),
-        (0.1, 0.0, 0.5),
-        (2.0, 0.2, 0.4),
-    ] {
+    for (ratio, nu1, nu2) in [(4.0, 0.3, 0.3), (0.25, 0.45, 0.2), (0.1, 0.0, 0.5), (2.0, 0.2, 0.4)]
+    {
         let (coating, substrate) = (Elastic::new(ratio, nu1)?, Elastic::new(1.0, nu2)?);
         let g1 = coating.shear();
         let g = (1.0 - 2.0 * nu2) * g1 / substrate.shear();
@@ -218,12 +214,7 @@ fn equal_layers_are_a_half_space() -> Result<()> {
 fn layer_cut_in_ten_is_the_layer() -> Result<()> {
     let [soft, rigid] = [Elastic::new(1.0, 0.3)?.into(), Substrate::Rigid];
     let (bonded, slips) = (Interface::Bonded, Interface::Frictionless);
-    let ends = [
-        (soft, bonded),
-        (soft, slips),
-        (rigid, bonded),
-        (rigid, slips),
-    ];
+    let ends = [(soft, bonded), (soft, slips), (rigid, bonded), (rigid, slips)];
     for (ratio, nu) in [(1e4, 0.3), (1e-4, 0.499), (4.0, 0.0), (0.25, 0.5)] {
         let coating = Elastic::new(ratio, nu)?;
         for (substrate, interface) in ends {

@@ -166,14 +166,11 @@ fn limits_have_the_derivatives_of_their_differences() -> Result<()> {
         let body = random_body(seed)?;
         let parameters = body.parameters();
         let limits = asymptote_derivatives(&body, &parameters);
-        let largest = parameters
-            .iter()
-            .zip(&limits)
-            .fold([0.0_f64; 3], |most, (one, slope)| {
-                let theta = body.value(*one).unwrap_or(0.0).abs();
-                let [a, b, c] = numbers(*slope).map(|x| (x * theta).abs());
-                [most[0].max(a), most[1].max(b), most[2].max(c)]
-            });
+        let largest = parameters.iter().zip(&limits).fold([0.0_f64; 3], |most, (one, slope)| {
+            let theta = body.value(*one).unwrap_or(0.0).abs();
+            let [a, b, c] = numbers(*slope).map(|x| (x * theta).abs());
+            [most[0].max(a), most[1].max(b), most[2].max(c)]
+        });
         for (parameter, slope) in parameters.iter().zip(limits) {
             let theta = body.value(*parameter).unwrap_or(0.0);
             let step = STEP * theta.abs().max(1e-2);
@@ -230,12 +227,7 @@ fn a_derivative_takes_a_fraction_of_a_microsecond() -> Result<()> {
     let runs = 20_000;
     for k in 0..runs {
         let alpha = 1e-3 + 1e-3 * f64::from(k);
-        black_box(normal_derivatives(
-            black_box(&body),
-            &parameters,
-            alpha,
-            &mut out,
-        ));
+        black_box(normal_derivatives(black_box(&body), &parameters, alpha, &mut out));
     }
     let each = start.elapsed().as_secs_f64() / f64::from(runs) / parameters.len() as f64;
     below!(each, 20e-6);

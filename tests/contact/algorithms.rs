@@ -24,8 +24,7 @@ fn motions() -> [Motion; 8] {
         load,
         load.with_eccentricity([Some(2e-5), Some(1e-5)]),
         load.with_eccentricity([Some(2e-5), None]),
-        load.with_moment([Some(1e-4), None])
-            .with_tilt([None, Some(1e-4)]),
+        load.with_moment([Some(1e-4), None]).with_tilt([None, Some(1e-4)]),
         approach,
         approach.with_moment([Some(1e-5), Some(0.0)]),
         approach.with_tilt([Some(1e-4), None]),
@@ -36,13 +35,8 @@ fn motions() -> [Motion; 8] {
 /// A sum of waves with about the roughness of a ground surface.
 fn rough(grid: &Grid) -> Result<HeightMap> {
     let (x, y) = (grid.x(), grid.y());
-    let waves = [
-        (1.0, 3.0, 0.3),
-        (5.0, 2.0, 1.1),
-        (4.0, 7.0, 2.9),
-        (9.0, 8.0, 4.2),
-        (3.0, 12.0, 5.5),
-    ];
+    let waves =
+        [(1.0, 3.0, 0.3), (5.0, 2.0, 1.1), (4.0, 7.0, 2.9), (9.0, 8.0, 4.2), (3.0, 12.0, 5.5)];
     let heights = Array2::from_shape_fn(grid.shape(), |(i, j)| {
         waves
             .iter()
@@ -213,11 +207,7 @@ fn algorithms_agree_on_hard_coatings() -> Result<()> {
 /// took six times its own iterations; the default may take half as many more.
 #[test]
 fn a_fallback_costs_little_more_than_the_reference() -> Result<()> {
-    let coat = [
-        2e9 * 9645.085696111506,
-        0.22699389922019508,
-        0.342305015032e-6,
-    ];
+    let coat = [2e9 * 9645.085696111506, 0.22699389922019508, 0.342305015032e-6];
     let body = stack(Elastic::new(2e9, 0.4269278355736329)?, [coat])?;
     let grid = Grid::new([40, 40], [40e-6 * 2.3293554948876647, 40e-6])?;
     let contact = plan(body, grid)?;

@@ -41,10 +41,7 @@ fn assert_whole(name: &str, shape: &dyn Surface, motion: &Motion, whole: Grid) -
         None => (found.load(), expected.load(), a.load + b.load),
     };
     let bar = (ESTIMATES * error).max(SMALL * expected);
-    assert!(
-        (found - expected).abs() <= bar,
-        "{name}: {found} {expected}"
-    );
+    assert!((found - expected).abs() <= bar, "{name}: {found} {expected}");
     Ok(())
 }
 
@@ -80,10 +77,7 @@ fn contacts_away_from_the_middle_of_the_shape_are_found() -> Result<()> {
 
 #[test]
 fn lands_that_touch_later_are_found() -> Result<()> {
-    let shape = lands(
-        &[[-5e-3, -4e-3], [-0.9e-3, 0.9e-3], [4e-3, 5e-3]],
-        &[5e-7, 0.0, 5e-7],
-    )?;
+    let shape = lands(&[[-5e-3, -4e-3], [-0.9e-3, 0.9e-3], [4e-3, 5e-3]], &[5e-7, 0.0, 5e-7])?;
     let grid = Grid::new([512, 128], [1.02e-2, 6e-4])?;
     assert_whole("under a load", &shape, &Motion::load(1000.0), grid)?;
     assert_whole("at an approach", &shape, &Motion::approach(3.05e-6), grid)?;
@@ -173,10 +167,7 @@ fn rectangle_below(shape: &dyn Surface, tilt: [f64; 2], level: f64) -> Result<Op
     let mut grid = Grid::new(LOOKED_AT, [0.012, 0.012])?;
     for _ in 0..8 {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for (_, at) in heights(shape, tilt, &grid)?
-            .iter()
-            .filter(|(h, _)| *h < level)
-        {
+        for (_, at) in heights(shape, tilt, &grid)?.iter().filter(|(h, _)| *h < level) {
             low = [0, 1].map(|k| low[k].min(at[k]));
             high = [0, 1].map(|k| high[k].max(at[k]));
         }
@@ -275,10 +266,7 @@ fn other_options_solve_on_the_grid_of_the_default_ones() -> Result<()> {
         |options: &Options| solve_watched(&shape, &body, &setup, &motion, options, &mut go_on);
     let found = solve(&default)?;
     assert_eq!(*found.grid(), grid);
-    let from = |initial| Options {
-        initial: Some(initial),
-        ..Options::default()
-    };
+    let from = |initial| Options { initial: Some(initial), ..Options::default() };
     let reference = by(Algorithm::PolonskyKeer, 1e-8);
     for options in [reference, from(found.pressure.clone())] {
         let other = solve(&options)?;

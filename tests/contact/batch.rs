@@ -60,18 +60,12 @@ fn cases_side_by_side_are_those_alone_in_their_order() -> Result<()> {
 #[test]
 fn a_bad_case_is_its_own_result_and_none_are_none() -> Result<()> {
     let sphere = Sphere::new(50.0)?;
-    let cases = [0.02, -1.0, 0.01].map(|load| Case {
-        shape: &sphere,
-        motion: Motion::load(load),
-    });
+    let cases = [0.02, -1.0, 0.01].map(|load| Case { shape: &sphere, motion: Motion::load(load) });
     let go_on = &mut |_| ControlFlow::Continue(());
     let contact = contact(2)?;
     let solved = contact.solve_many(&cases, &Options::default(), go_on)?;
     assert!(matches!(solved[0], Some(Ok(_))) && matches!(solved[2], Some(Ok(_))));
-    assert!(matches!(
-        solved[1],
-        Some(Err(Error::Parameter { name: "load", .. }))
-    ));
+    assert!(matches!(solved[1], Some(Err(Error::Parameter { name: "load", .. }))));
     let none = contact.solve_many(&[], &Options::default(), go_on)?;
     assert!(none.is_empty());
     Ok(())
@@ -80,18 +74,11 @@ fn a_bad_case_is_its_own_result_and_none_are_none() -> Result<()> {
 #[test]
 fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
     let sphere = Sphere::new(50.0)?;
-    let cases = [0.02; 2000].map(|load| Case {
-        shape: &sphere,
-        motion: Motion::load(load),
-    });
+    let cases = [0.02; 2000].map(|load| Case { shape: &sphere, motion: Motion::load(load) });
     let mut last = 0;
     let solved = contact(2)?.solve_many(&cases, &Options::default(), &mut |done| {
         last = done;
-        if done < 5 {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
-        }
+        if done < 5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     })?;
     let finished: Vec<_> = solved.into_iter().flatten().collect();
     assert!((5..2000).contains(&finished.len()) && finished.len() == last);
@@ -105,10 +92,7 @@ fn what_is_stopped_keeps_what_is_finished() -> Result<()> {
 fn each_solution_is_given_away_once() -> Result<()> {
     let (sphere, contact) = (Sphere::new(50.0)?, contact(2)?);
     let cases: Vec<Case> = (1..=200)
-        .map(|k| Case {
-            shape: &sphere,
-            motion: Motion::load(1e-5 * f64::from(k)),
-        })
+        .map(|k| Case { shape: &sphere, motion: Motion::load(1e-5 * f64::from(k)) })
         .collect();
     for stop in [false, true] {
         let given = Mutex::new(vec![0; cases.len()]);
@@ -151,16 +135,10 @@ impl Surface for Counted {
 
 #[test]
 fn cases_of_one_shape_share_its_undeformed_gap() -> Result<()> {
-    let counted = |sphere| Counted {
-        sphere,
-        sampled: AtomicUsize::new(0),
-    };
+    let counted = |sphere| Counted { sphere, sampled: AtomicUsize::new(0) };
     let shapes = [counted(Sphere::new(50.0)?), counted(Sphere::new(80.0)?)];
     let cases: Vec<Case> = (0..12)
-        .map(|k| Case {
-            shape: &shapes[k / 6],
-            motion: Motion::load(1e-3 * (k + 1) as f64),
-        })
+        .map(|k| Case { shape: &shapes[k / 6], motion: Motion::load(1e-3 * (k + 1) as f64) })
         .collect();
     let go_on = &mut |_| ControlFlow::Continue(());
     let solved = contact(1)?.solve_many(&cases, &Options::default(), go_on)?;

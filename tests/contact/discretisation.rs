@@ -83,13 +83,7 @@ fn peak_at_a_sharp_edge_has_no_estimate() -> Result<()> {
     let punch = FlatPunch::new(0.83)?.shifted(0.02, -0.013)?;
     let tilted = Motion::approach(0.01).with_tilt([Some(0.04), Some(0.03)]);
     let (loaded, moved) = (Motion::load(1.0), Motion::approach(0.01));
-    let cases = [
-        (loaded, false),
-        (moved, false),
-        (tilted, false),
-        (loaded, true),
-        (moved, true),
-    ];
+    let cases = [(loaded, false), (moved, false), (tilted, false), (loaded, true), (moved, true)];
     for (motion, line) in cases {
         let grid = |n: usize| match line {
             true => Grid::line(n, 2.5),
@@ -128,10 +122,7 @@ fn thin_incompressible_layers_are_seen_not_to_be_resolved() -> Result<()> {
         let (found, peak) = (estimate(&coarse)?, fine.peak_pressure());
         for (ratio, estimate) in [
             (coarse.peak_pressure() / peak, peak_error(found) / peak),
-            (
-                coarse.approach / fine.approach,
-                found.approach / fine.approach,
-            ),
+            (coarse.approach / fine.approach, found.approach / fine.approach),
         ] {
             let error = (ratio - 1.0).abs();
             // The error is some per cent: the estimate is of its size.
@@ -230,10 +221,7 @@ fn without_coarser_grids_there_is_no_estimate() -> Result<()> {
         let motion = Motion::load(5e-4);
         let mut solution = contact.solve(&shape, &motion, &Options::default())?;
         if initial {
-            let options = Options {
-                initial: Some(solution.pressure),
-                ..Options::default()
-            };
+            let options = Options { initial: Some(solution.pressure), ..Options::default() };
             solution = contact.solve(&shape, &motion, &options)?;
         }
         assert_eq!(solution.report.discretisation, None, "{cells:?}");
@@ -249,9 +237,8 @@ fn corners_of_a_sampled_profile_are_estimated() -> Result<()> {
     let steel = steel()?;
     let half = 5e-3;
     for (points, sharp) in [(101, true), (1001, false)] {
-        let x: Vec<f64> = (0..points)
-            .map(|k| half * (2.0 * k as f64 / (points - 1) as f64 - 1.0))
-            .collect();
+        let x: Vec<f64> =
+            (0..points).map(|k| half * (2.0 * k as f64 / (points - 1) as f64 - 1.0)).collect();
         let drop: Vec<f64> = x.iter().map(|x| 30e-6 * (x / half).powi(4)).collect();
         let roller = Roller::with_profile(5e-3, SampledProfile::new(&x, &drop)?)?;
         let motion = Motion::load(2000.0).with_tilt([Some(2e-3), None]);

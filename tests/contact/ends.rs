@@ -34,11 +34,7 @@ const LOAD: f64 = 2.0 * HALF_LENGTH * FRAC_PI_2;
 
 impl Surface for Straight {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        if x.abs() <= self.0 {
-            2.0 * y * y
-        } else {
-            f64::INFINITY
-        }
+        if x.abs() <= self.0 { 2.0 * y * y } else { f64::INFINITY }
     }
 
     fn extent(&self) -> [Extent; 2] {
@@ -176,12 +172,9 @@ fn stiffness_is_that_of_differences() -> Result<()> {
 #[test]
 fn windows_keep_their_distance_from_the_end() -> Result<()> {
     let grid = Grid::new([128, 96], [8.0, 6.0])?;
-    for ends in [
-        [Some(-4.0), None],
-        [Some(-1.5), None],
-        [Some(-4.0), Some(1.25)],
-        [None, Some(1.25)],
-    ] {
+    for ends in
+        [[Some(-4.0), None], [Some(-1.5), None], [Some(-4.0), Some(1.25)], [None, Some(1.25)]]
+    {
         let contact = pair([&unit(0.3, ends)?, &unit(0.2, WHOLE)?], grid)?;
         let shape = Sphere::new(50.0)?;
         let motion = Motion::load(0.5 * 4.0 / 3.0 / 50.0);

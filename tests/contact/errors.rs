@@ -28,13 +28,7 @@ fn controls() -> Result<()> {
     let ball = Paraboloid::new(1.0, 1.0)?;
     let (load, approach) = (Motion::load(10.0), Motion::approach(1e-6));
     let moved = |motion: Motion| solved(&ball, &motion);
-    let (both, zero) = (
-        Motion {
-            approach: Some(1e-6),
-            ..load
-        },
-        Some(0.0),
-    );
+    let (both, zero) = (Motion { approach: Some(1e-6), ..load }, Some(0.0));
     refused! {
         moved(Motion::default()) => "exactly one of load and approach must be given";
         moved(both) => "exactly one of load and approach must be given";
@@ -114,21 +108,14 @@ fn plans_and_options() -> Result<()> {
         Contact::plan(&body, Grid::line(64, 1.0)?, converted(Method::Image { refinement: 4 }))
             => "method must be \"exact\" on the grid of a line contact";
     }
-    let refined = Method::Plain {
-        refinement: usize::MAX / 8,
-    };
+    let refined = Method::Plain { refinement: usize::MAX / 8 };
     let text = message(influence_coefficients(&body, &grid, refined));
     let begins = "refinement must be small enough";
     assert!(text.starts_with(begins), "{text}");
 
     let shape = Paraboloid::new(1.0, 1.0)?;
     let with = |options: Options| contact()?.solve(&shape, &Motion::load(1.0), &options);
-    let start = |initial| {
-        with(Options {
-            initial: Some(initial),
-            ..Options::default()
-        })
-    };
+    let start = |initial| with(Options { initial: Some(initial), ..Options::default() });
     let mut broken = Array2::zeros([16, 12]);
     broken[[7, 8]] = NAN;
     let to = |asked| with(tolerance(asked));
@@ -219,11 +206,7 @@ fn grids_that_are_not_to_be_found() -> Result<()> {
 
 #[test]
 fn an_iteration_that_did_not_converge_says_how_far_it_came() -> Result<()> {
-    let options = Options {
-        max_iterations: Some(1),
-        tolerance: 1e-10,
-        ..Options::default()
-    };
+    let options = Options { max_iterations: Some(1), tolerance: 1e-10, ..Options::default() };
     let shape = Paraboloid::new(1.0, 1.0)?;
     let solution = contact()?.solve(&shape, &Motion::load(1e4), &options)?;
     assert!(!solution.report.converged());

@@ -35,11 +35,7 @@ fn solve(
     motion: &Motion,
     algorithm: Algorithm,
 ) -> Result<Option<Solution>> {
-    let options = Options {
-        algorithm,
-        max_iterations: Some(ITERATIONS),
-        ..Options::default()
-    };
+    let options = Options { algorithm, max_iterations: Some(ITERATIONS), ..Options::default() };
     let solution = contact.solve(shape, motion, &options)?;
     let report = &solution.report;
     if !report.converged() {

@@ -25,15 +25,9 @@ const RADIUS: f64 = 1e4;
 /// Side of the grids: the contact has radius 1.
 const WIDTH: f64 = 2.6;
 
-const PASTERNAK: Foundation = Foundation {
-    stiffness: 2.0,
-    shear: 0.5,
-};
+const PASTERNAK: Foundation = Foundation { stiffness: 2.0, shear: 0.5 };
 
-const WINKLER: Foundation = Foundation {
-    stiffness: 2.0,
-    shear: 0.0,
-};
+const WINKLER: Foundation = Foundation { stiffness: 2.0, shear: 0.0 };
 
 /// Error of the pressure three cells inside the edge, over that at the centre. The jump at the edge
 /// leaves an overshoot that falls from cell to cell, and not with their size.
@@ -56,11 +50,7 @@ fn exact(is_line: bool) -> Exact {
     let approach = 0.5 / RADIUS + length / RADIUS * ratio;
     let pressure = |r: f64| k * (approach - 0.5 * r * r / RADIUS) + curvature * shear / RADIUS;
     // The area, and the mean of r²/2 over it.
-    let (area, mean) = if is_line {
-        (2.0, 1.0 / 6.0)
-    } else {
-        (PI, 0.25)
-    };
+    let (area, mean) = if is_line { (2.0, 1.0 / 6.0) } else { (PI, 0.25) };
     Exact {
         approach,
         load: area * (k * (approach - mean / RADIUS) + curvature * shear / RADIUS),
@@ -85,9 +75,7 @@ fn pressure_error(solution: &Solution, margin: f64, exact: impl Fn(f64) -> f64) 
     });
     inside
         .filter(|(r, _)| *r < 1.0 - margin)
-        .fold(0.0, |worst, (r, p)| {
-            worst.max((p - exact(r)).abs() / exact(0.0))
-        })
+        .fold(0.0, |worst, (r, p)| worst.max((p - exact(r)).abs() / exact(0.0)))
 }
 
 /// Errors of a contact on cells of side `dx`. The jump at the edge is a ring of cells that are in contact or not: the area

@@ -76,16 +76,9 @@ fn case() -> impl Strategy<Value = Case> {
     let side = || 4..34_usize;
     let maybe = || prop::option::weighted(0.3, -0.3..0.3);
     (
-        (
-            [side(), side()],
-            prop::bool::weighted(0.2),
-            powers(-0.5, 0.5),
-        ),
+        ([side(), side()], prop::bool::weighted(0.2), powers(-0.5, 0.5)),
         ([-3.0..3.0, -3.0..3.0], 0.0..0.5),
-        (
-            prop::collection::vec(coat(), 0..3),
-            prop::bool::weighted(0.15),
-        ),
+        (prop::collection::vec(coat(), 0..3), prop::bool::weighted(0.15)),
         (kind(), 0.1..0.9, any::<bool>()),
         ([maybe(), maybe()], [maybe(), maybe()]),
     )
@@ -179,12 +172,7 @@ impl Case {
                 motion.tilt[axis] = Some(tilt * half / radius);
             }
         }
-        Ok(Problem {
-            body,
-            grid,
-            shape,
-            motion,
-        })
+        Ok(Problem { body, grid, shape, motion })
     }
 }
 
@@ -215,22 +203,16 @@ fn difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
 
 fn expect(found: f64, limit: f64, what: &str) -> TestCaseResult {
     // Not `found > limit`, which a NaN passes.
-    if found <= limit {
-        Ok(())
-    } else {
-        Err(broken(format!("{what}: {found:e} > {limit:e}")))
-    }
+    if found <= limit { Ok(()) } else { Err(broken(format!("{what}: {found:e} > {limit:e}"))) }
 }
 
 /// Twenty cases that are equal in every run, or as many others as the environment variable `NACRE_FUZZ` says.
 fn fuzzed() -> ProptestConfig {
     let asked = std::env::var("NACRE_FUZZ").ok();
     match asked.and_then(|cases| cases.parse().ok()) {
-        Some(cases) => ProptestConfig {
-            rng_seed: RngSeed::Random,
-            max_shrink_iters: 200,
-            ..seeded(cases)
-        },
+        Some(cases) => {
+            ProptestConfig { rng_seed: RngSeed::Random, max_shrink_iters: 200, ..seeded(cases) }
+        }
         None => seeded(20),
     }
 }

@@ -18,10 +18,7 @@ const TOLERANCE: f64 = 1e-8;
 
 /// Options with a hardness of all cells.
 fn limited(hardness: f64) -> Options {
-    Options {
-        hardness: Some(Hardness::Uniform(hardness)),
-        ..Options::default()
-    }
+    Options { hardness: Some(Hardness::Uniform(hardness)), ..Options::default() }
 }
 
 /// Options of the step after `before`.
@@ -84,10 +81,7 @@ fn surfaces_that_do_not_yield_are_elastic_to_the_bit() -> Result<()> {
     let steel = Elastic::new(1.0, 0.3)?;
     let body = HalfSpace::new(steel, [Layer::new(Elastic::new(4.0, 0.2)?, 0.3)?])?;
     let contact = Contact::plan(&body, Grid::new([96, 80], [4.0, 4.0])?, Setup::default())?;
-    let motion = Motion {
-        eccentricity: [Some(0.1), None],
-        ..Motion::load(1e-3)
-    };
+    let motion = Motion { eccentricity: [Some(0.1), None], ..Motion::load(1e-3) };
     let elastic = contact.solve(&sphere()?, &motion, &Options::default())?;
     for hardness in [f64::INFINITY, 1.0001 * elastic.peak_pressure()] {
         let found = contact.solve(&sphere()?, &motion, &limited(hardness))?;
@@ -111,18 +105,12 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
         HalfSpace::new(Substrate::Rigid, [Layer::new(soft, 0.5)?])?,
     ];
     let grid = Grid::new([64, 60], [4.0, 4.0])?;
-    let grids = [
-        grid,
-        Grid::line(200, 4.0)?,
-        grid.periodic([true; 2])?,
-        grid.periodic([true, false])?,
-    ];
+    let grids =
+        [grid, Grid::line(200, 4.0)?, grid.periodic([true; 2])?, grid.periodic([true, false])?];
     for (number, body) in bodies.iter().enumerate() {
         for grid in grids {
-            let setup = Setup {
-                counterbody: (number == 1).then(|| soft.into()),
-                ..Setup::default()
-            };
+            let setup =
+                Setup { counterbody: (number == 1).then(|| soft.into()), ..Setup::default() };
             let contact = Contact::plan(body, grid, setup)?;
             let [px, py] = grid.is_periodic();
             let wave = |x: f64, y: f64| {
@@ -143,10 +131,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
             let mut motions = vec![Motion::load(load)];
             if !py {
                 let eccentricity = [None, Some(0.05)];
-                motions.push(Motion {
-                    eccentricity,
-                    ..Motion::load(load)
-                });
+                motions.push(Motion { eccentricity, ..Motion::load(load) });
             }
             let elastic = contact.solve(shape, &motions[0], &Options::default())?;
             motions.push(Motion::approach(elastic.approach));
@@ -155,10 +140,7 @@ fn both_bounds_hold_for_every_domain_body_and_control() -> Result<()> {
                     let name = format!("body {number}, {grid:?}, {motion:?}, {algorithm:?}");
                     let elastic = contact.solve(shape, &motion, &Options::default())?;
                     let hardness = 0.6 * elastic.peak_pressure();
-                    let options = Options {
-                        algorithm,
-                        ..limited(hardness)
-                    };
+                    let options = Options { algorithm, ..limited(hardness) };
                     let found = contact.solve(shape, &motion, &options);
                     let found = found.unwrap_or_else(|error| panic!("{name}: {error}"));
                     check_bounds(&name, &contact, shape, &found, &|_| hardness)?;
@@ -187,10 +169,8 @@ fn random_contacts_keep_both_bounds() -> Result<()> {
         let least = random.between(0.3, 1.0) * elastic.peak_pressure();
         let spread = if random.choice(2) == 0 { 0.0 } else { 1.0 };
         let cells = uniform(case.grid.shape(), number).mapv(|r| least * (1.0 + spread * r));
-        let options = Options {
-            hardness: Some(Hardness::Cells(cells.clone())),
-            ..Options::default()
-        };
+        let options =
+            Options { hardness: Some(Hardness::Cells(cells.clone())), ..Options::default() };
         let found = contact.solve(&*shape, &case.motion, &options);
         if matches!(found, Err(Error::Overload { .. })) {
             continue;
@@ -230,11 +210,8 @@ fn full_plasticity_bears_hardness_times_area() -> Result<()> {
 /// A load of exactly so many cells at the hardness leaves nothing for the others, and is balanced to rounding.
 #[test]
 fn a_load_of_whole_cells_is_borne() -> Result<()> {
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.3)?,
-        Grid::new([32, 32], [4.0, 4.0])?,
-        Setup::default(),
-    )?;
+    let contact =
+        Contact::plan(Elastic::new(1.0, 0.3)?, Grid::new([32, 32], [4.0, 4.0])?, Setup::default())?;
     let heights = uniform([32, 32], 5).mapv(|h| 1e-3 * h);
     let rough = HeightMap::new(heights, contact.grid().spacing())?;
     // So soft that the cells touch one after the other.
@@ -251,17 +228,11 @@ fn a_load_of_whole_cells_is_borne() -> Result<()> {
 /// largest load so far; and the dent does not change.
 #[test]
 fn the_order_of_unloading_does_not_matter() -> Result<()> {
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.3)?,
-        Grid::new([96, 96], [4.0, 4.0])?,
-        Setup::default(),
-    )?;
+    let contact =
+        Contact::plan(Elastic::new(1.0, 0.3)?, Grid::new([96, 96], [4.0, 4.0])?, Setup::default())?;
     let shape = sphere()?;
     let hardness = 3e-4;
-    let options = |options: Options| Options {
-        tolerance: 1e-10,
-        ..options
-    };
+    let options = |options: Options| Options { tolerance: 1e-10, ..options };
     let loaded = contact.solve(&shape, &Motion::load(1e-3), &options(limited(hardness)))?;
     let dent = loaded.indentation.clone().expect("it yields");
     let mut ends = Vec::new();
@@ -299,11 +270,8 @@ fn the_order_of_unloading_does_not_matter() -> Result<()> {
 /// the work times a factor of some ten, for a force that begins as δ^{3/2} and leaves as steeply.
 #[test]
 fn the_loop_of_loading_and_unloading_dissipates_the_plastic_work() -> Result<()> {
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.3)?,
-        Grid::new([64, 64], [4.0, 4.0])?,
-        Setup::default(),
-    )?;
+    let contact =
+        Contact::plan(Elastic::new(1.0, 0.3)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     let shape = sphere()?;
     let hardness = 2.5e-4;
     let steps = 40;
@@ -311,9 +279,7 @@ fn the_loop_of_loading_and_unloading_dissipates_the_plastic_work() -> Result<()>
     let path = (0..=2 * steps).map(|k| deepest * (1.0 - (k as f64 / f64::from(steps) - 1.0).abs()));
     let (mut loop_work, mut last): (f64, Option<Solution>) = (0.0, None);
     for approach in path {
-        let options = last
-            .as_ref()
-            .map_or_else(|| limited(hardness), |last| next(last, hardness));
+        let options = last.as_ref().map_or_else(|| limited(hardness), |last| next(last, hardness));
         let found = contact.solve(&shape, &Motion::approach(approach), &options)?;
         if let Some(last) = &last {
             loop_work += 0.5 * (found.load() + last.load()) * (found.approach - last.approach);
@@ -323,10 +289,7 @@ fn the_loop_of_loading_and_unloading_dissipates_the_plastic_work() -> Result<()>
     let last = last.expect("steps were made");
     assert!(last.load().abs() <= 0.0);
     let work = last.plastic_work();
-    assert!(
-        work > 0.0 && (loop_work / work - 1.0).abs() < 0.01,
-        "{loop_work:e} {work:e}"
-    );
+    assert!(work > 0.0 && (loop_work / work - 1.0).abs() < 0.01, "{loop_work:e} {work:e}");
     Ok(())
 }
 
@@ -345,11 +308,7 @@ fn the_dent_of_a_sphere_is_that_of_an_axisymmetric_computation() -> Result<()> {
     let rings = Rings::new(1.5, 400);
     let (pressure, approach) = rings.solve(radius, load, hardness);
     let ring_dent: Vec<f64> = rings.dent(radius, &pressure, approach, hardness);
-    assert!(
-        (found.approach / approach - 1.0).abs() < 1e-3,
-        "{:e} {approach:e}",
-        found.approach
-    );
+    assert!((found.approach / approach - 1.0).abs() < 1e-3, "{:e} {approach:e}", found.approach);
     let deepest = ring_dent[0];
     let (x, y) = (contact.grid().x(), contact.grid().y());
     let mut worst = 0.0_f64;
@@ -392,11 +351,8 @@ fn a_grid_is_chosen_for_contacts_that_yield() -> Result<()> {
 /// A load that the surfaces cannot bear is refused with both numbers; so are wrong hardnesses and indentations.
 #[test]
 fn wrong_input_is_refused() -> Result<()> {
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.3)?,
-        Grid::new([8, 8], [2.0, 2.0])?,
-        Setup::default(),
-    )?;
+    let contact =
+        Contact::plan(Elastic::new(1.0, 0.3)?, Grid::new([8, 8], [2.0, 2.0])?, Setup::default())?;
     let (shape, motion) = (sphere()?, Motion::load(1e-3));
     let message = |options: &Options| {
         let refused = contact.solve(&shape, &motion, options);
@@ -409,52 +365,25 @@ fn wrong_input_is_refused() -> Result<()> {
     // A punch that bears 99 % of what it can has 1 % of its area left to shift the force with: by 1 % of its radius, not
     // by a tenth.
     let punch = FlatPunch::new(0.9)?;
-    let touching = punch
-        .gaps(contact.grid())?
-        .iter()
-        .filter(|h| h.is_finite())
-        .count();
+    let touching = punch.gaps(contact.grid())?.iter().filter(|h| h.is_finite()).count();
     let area = touching as f64 * contact.grid().cell_area();
-    let eccentric = Motion {
-        eccentricity: [Some(0.1), None],
-        ..Motion::load(0.99 * 1e-3 * area)
-    };
+    let eccentric = Motion { eccentricity: [Some(0.1), None], ..Motion::load(0.99 * 1e-3 * area) };
     let refused = contact.solve(&punch, &eccentric, &limited(1e-3));
     let refused = refused.expect_err("it must be refused").to_string();
     let expected = "moment, or load times eccentricity, along x must be between ";
     assert!(refused.starts_with(expected), "{refused}");
     for wrong in [0.0, -1.0, f64::NAN] {
-        assert_eq!(
-            message(&limited(wrong)),
-            format!("hardness must be above 0, got {wrong}")
-        );
+        assert_eq!(message(&limited(wrong)), format!("hardness must be above 0, got {wrong}"));
     }
-    let cells = Options {
-        hardness: Some(Hardness::Cells(Array2::ones((8, 7)))),
-        ..Options::default()
-    };
-    assert_eq!(
-        message(&cells),
-        "hardness: expected shape [8, 8], got [8, 7]"
-    );
+    let cells =
+        Options { hardness: Some(Hardness::Cells(Array2::ones((8, 7)))), ..Options::default() };
+    assert_eq!(message(&cells), "hardness: expected shape [8, 8], got [8, 7]");
     for (field, expected) in [
-        (
-            Array2::zeros((2, 8)),
-            "indentation: expected shape [8, 8], got [2, 8]",
-        ),
-        (
-            Array2::from_elem((8, 8), -1.0),
-            "indentation must be at least 0 everywhere, got -1",
-        ),
-        (
-            Array2::from_elem((8, 8), f64::NAN),
-            "indentation is not finite at [0, 0]",
-        ),
+        (Array2::zeros((2, 8)), "indentation: expected shape [8, 8], got [2, 8]"),
+        (Array2::from_elem((8, 8), -1.0), "indentation must be at least 0 everywhere, got -1"),
+        (Array2::from_elem((8, 8), f64::NAN), "indentation is not finite at [0, 0]"),
     ] {
-        let options = Options {
-            indentation: Some(field),
-            ..Options::default()
-        };
+        let options = Options { indentation: Some(field), ..Options::default() };
         assert_eq!(message(&options), expected);
     }
     Ok(())
@@ -463,11 +392,8 @@ fn wrong_input_is_refused() -> Result<()> {
 /// A break stops the solve in the middle of yielding, with a balanced pressure.
 #[test]
 fn a_break_stops_yielding() -> Result<()> {
-    let contact = Contact::plan(
-        Elastic::new(1.0, 0.3)?,
-        Grid::new([64, 64], [4.0, 4.0])?,
-        Setup::default(),
-    )?;
+    let contact =
+        Contact::plan(Elastic::new(1.0, 0.3)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
     let (shape, motion) = (sphere()?, Motion::load(1e-3));
     let elastic = contact.solve(&shape, &motion, &Options::default())?;
     let options = limited(0.5 * elastic.peak_pressure());
@@ -492,18 +418,14 @@ fn few_cells_below_the_hardness_are_solved_to_the_tolerance() -> Result<()> {
     let steel = Elastic::new(210e9, 0.3)?;
     let contact = Contact::plan(steel, Grid::new([64, 64], [4e-4, 4e-4])?, Setup::default())?;
     let (ball, hardness) = (Paraboloid::new(5e-3, 5e-3)?, 3.6985e8);
-    for load in [
-        0.5125, 0.8619, 2.2637, 4.6412, 4.995, 5.0, 5.05, 5.5195, 6.8972,
-    ] {
+    for load in [0.5125, 0.8619, 2.2637, 4.6412, 4.995, 5.0, 5.05, 5.5195, 6.8972] {
         let found = contact.solve(&ball, &Motion::load(load), &limited(hardness))?;
         check_bounds(&load.to_string(), &contact, &ball, &found, &|_| hardness)?;
     }
     let loads = crate::support::random::uniform([1, 40], 11).mapv(|r| 10_f64.powf(2.3 * r - 1.0));
     let mut last: Option<Solution> = None;
     for load in &loads {
-        let options = last
-            .as_ref()
-            .map_or_else(|| limited(hardness), |s| next(s, hardness));
+        let options = last.as_ref().map_or_else(|| limited(hardness), |s| next(s, hardness));
         let found = contact.solve(&ball, &Motion::load(*load), &options)?;
         assert!(found.report.converged(), "{load}: {:?}", found.report);
         last = Some(found);

@@ -147,11 +147,7 @@ fn locked_tilt_is_zero_and_carries_a_moment() -> Result<()> {
     let contact = plan(&stack()?)?;
     let shape = paraboloid()?.shifted(3e-5, -4e-5)?;
     let solution = contact.solve(&shape, &Motion::load(30.0), &tight())?;
-    assert!(
-        solution.tilt.iter().all(|tilt| tilt.abs() <= 0.0),
-        "{:?}",
-        solution.tilt
-    );
+    assert!(solution.tilt.iter().all(|tilt| tilt.abs() <= 0.0), "{:?}", solution.tilt);
     let [ex, ey] = solution.eccentricity();
     // The discrete contact is symmetric only to a fraction of a cell.
     near!(ex, 3e-5, 5e-3);
@@ -194,10 +190,7 @@ fn any_consistent_units_give_the_same_contact() -> Result<()> {
     let si = solve(1.0, 1.0)?;
     for (length, pressure) in [(1e3, 1e-6), (1.0, 3.0)] {
         let other = solve(length, pressure)?;
-        below!(
-            difference(&(&other.pressure / pressure), &si.pressure),
-            SAME_PRESSURE
-        );
+        below!(difference(&(&other.pressure / pressure), &si.pressure), SAME_PRESSURE);
         near!(other.approach, si.approach * length, SAME_MOTION);
         near!(other.tilt[0], si.tilt[0], SAME_MOTION);
         let moment = si.moment()[0] * length.powi(3) * pressure;
@@ -220,11 +213,7 @@ fn solution_does_not_depend_on_the_start_or_the_algorithm() -> Result<()> {
     ];
     for initial in starts {
         for algorithm in [Algorithm::Cascade, Algorithm::PolonskyKeer] {
-            let options = Options {
-                algorithm,
-                initial: initial.clone(),
-                ..tight()
-            };
+            let options = Options { algorithm, initial: initial.clone(), ..tight() };
             let found = contact.solve(&paraboloid()?, &motion, &options)?;
             assert_same(&found, &known, &format!("{algorithm:?}"));
         }
@@ -314,9 +303,7 @@ fn displacement_is_the_convolution_of_the_pressure() -> Result<()> {
     let c = influence_coefficients(&stack()?, contact.grid(), Method::Exact)?;
     for (i, j) in [(0_usize, 0_usize), (22, 31), (44, 10)] {
         let pressed = solution.pressure.indexed_iter();
-        let sum: f64 = pressed
-            .map(|((k, l), p)| c[[i.abs_diff(k), j.abs_diff(l)]] * p)
-            .sum();
+        let sum: f64 = pressed.map(|((k, l), p)| c[[i.abs_diff(k), j.abs_diff(l)]] * p).sum();
         near!(solution.displacement[[i, j]], sum, 1e-11);
     }
     Ok(())

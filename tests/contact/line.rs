@@ -60,12 +60,7 @@ fn datum() -> Result<f64> {
 
 fn press(body: &HalfSpace, grid: Grid, load: f64) -> Result<Solution> {
     let (contact, motion) = (plan(body, grid)?, Motion::load(load));
-    converged(
-        &contact,
-        &Cylinder::new(RADIUS)?,
-        &motion,
-        &tolerance(1e-11),
-    )
+    converged(&contact, &Cylinder::new(RADIUS)?, &motion, &tolerance(1e-11))
 }
 
 fn line(body: &HalfSpace, cells: usize, width: f64) -> Result<Solution> {
@@ -177,12 +172,9 @@ fn endless_strips_are_rows_of_rectangles() -> Result<()> {
     // coefficients along x. Cells beyond X = (n − ½) dx are replaced by point loads on the substrate: A
     // dy/π ∫_X^∞ (1/x − 1/√(x² + y²)) dx = A dy/π ln [(1 + √(1 + y²/X²))/2], A = 2/E*.
     let (dy, n, ny) = (HALF_WIDTH / 8.0, 1500, 12);
-    for (ratio, thickness, aspect) in [
-        (1.0, 1.0, 1.0),
-        (4.0, 2.0, 1.5),
-        (0.25, 0.1, 0.7),
-        (10.0, 6.0, 1.0),
-    ] {
+    for (ratio, thickness, aspect) in
+        [(1.0, 1.0, 1.0), (4.0, 2.0, 1.5), (0.25, 0.1, 0.7), (10.0, 6.0, 1.0)]
+    {
         let (body, dx) = (coated(ratio, thickness * dy)?, aspect * dy);
         let flat = Grid::new([n, ny], [n as f64 * dx, ny as f64 * dy])?;
         let cells = influence_coefficients(&body, &flat, Method::Exact)?;

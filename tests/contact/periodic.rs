@@ -304,10 +304,7 @@ fn threads_change_no_bit() -> Result<()> {
     let body = &bodies(0.01)?[1];
     let solve = |threads: usize, hardness: Option<f64>| -> Result<Solution> {
         let setup = settings::threads(threads);
-        let options = Options {
-            hardness: hardness.map(Hardness::Uniform),
-            ..Options::default()
-        };
+        let options = Options { hardness: hardness.map(Hardness::Uniform), ..Options::default() };
         Contact::plan(body, grid, setup)?.solve(&shape, &Motion::load(2e-3), &options)
     };
     let elastic = solve(1, None)?;

@@ -31,11 +31,7 @@ fn peak(body: &HalfSpace, refinement: usize, is_line: bool) -> Result<f64> {
     let side = CELLS as f64 * CELL;
     let (shape, grid, load): (Box<dyn Surface>, _, _) = if is_line {
         let load = std::f64::consts::PI * modulus * HALF_WIDTH.powi(2) / (4.0 * RADIUS);
-        (
-            Box::new(Cylinder::new(RADIUS)?),
-            Grid::line(cells, side)?,
-            load,
-        )
+        (Box::new(Cylinder::new(RADIUS)?), Grid::line(cells, side)?, load)
     } else {
         let load = 4.0 * modulus * HALF_WIDTH.powi(3) / (3.0 * RADIUS);
         let shape = Paraboloid::new(RADIUS, RADIUS)?;

@@ -28,10 +28,7 @@ fn bodies() -> Result<[HalfSpace; 2]> {
 }
 
 fn plan(body: &HalfSpace, counterbody: Option<HalfSpace>) -> Result<Contact> {
-    let setup = Setup {
-        counterbody: counterbody.map(Body::from),
-        ..Setup::default()
-    };
+    let setup = Setup { counterbody: counterbody.map(Body::from), ..Setup::default() };
     Contact::plan(body, grid()?, setup)
 }
 
@@ -76,10 +73,9 @@ fn two_bodies_are_one_of_the_summed_response() -> Result<()> {
     let modulus = 1.0 / (1.0 / a.plane_strain_modulus() + 1.0 / b.plane_strain_modulus());
     let bare = Elastic::new(modulus, 0.0)?;
     let (loaded, moved) = (Motion::load(20.0), Motion::approach(2e-6));
-    for (two, one, motion) in [
-        ([body(1.0)?, body(1.0)?], body(0.5)?, loaded),
-        ([a.into(), b.into()], bare.into(), moved),
-    ] {
+    for (two, one, motion) in
+        [([body(1.0)?, body(1.0)?], body(0.5)?, loaded), ([a.into(), b.into()], bare.into(), moved)]
+    {
         let [first, second] = two;
         let two = press(&plan(&first, Some(second))?, &motion)?;
         same(&two, &press(&plan(&one, None)?, &motion)?);

@@ -79,9 +79,8 @@ fn force_in_proportion_to_the_load() -> Result<()> {
     let (contact, load, share) = (pair(0.0, 64)?, load(0.0), 0.3);
     let excess = |steps: u32| -> Result<f64> {
         let parts = (1..=steps).map(|k| f64::from(k) / f64::from(steps));
-        let steps: Vec<Step> = parts
-            .map(|part| press_and_pull(part * load, part * share * load))
-            .collect();
+        let steps: Vec<Step> =
+            parts.map(|part| press_and_pull(part * load, part * share * load)).collect();
         let solutions = contact.slide(&ball()?, &steps, &FrictionOptions::default(), None)?;
         let last = solutions.last().expect("steps");
         let pairs = last.traction[0].iter().zip(&last.normal.pressure);
@@ -104,9 +103,8 @@ fn loops_dissipate() -> Result<()> {
         let leg = (1..=legs).map(|k| 1.0 - 2.0 * f64::from(k) / f64::from(legs));
         let forces = leg.clone().chain(leg.map(|f| -f));
         let first = press_and_pull(load, most);
-        let steps: Vec<Step> = std::iter::once(first)
-            .chain(forces.map(|f| pull(f * most)))
-            .collect();
+        let steps: Vec<Step> =
+            std::iter::once(first).chain(forces.map(|f| pull(f * most))).collect();
         let options = precise(1e-9);
         let solutions = contact.slide(&ball()?, &steps, &options, None)?;
         let sum = 2.0 * (2.0 - nu);
@@ -174,9 +172,8 @@ fn stiffnesses(body: impl Fn(f64) -> Result<HalfSpace>, cells: usize) -> Result<
     let count = inside.filter(|r| *r < 1.0).count();
     let radius = (count as f64 * grid.cell_area() / PI).sqrt();
     let contact = equal(body(radius)?, grid)?;
-    let step = Step::press(Motion::load(1.0), 1e3)
-        .with_force([Some(1e-4), None])
-        .with_torque(Some(1e-4));
+    let step =
+        Step::press(Motion::load(1.0), 1e3).with_force([Some(1e-4), None]).with_torque(Some(1e-4));
     let solution = slide_once(&contact, &FlatPunch::new(1.0)?, step, &precise(1e-8))?;
     let stuck = solution.stick().iter().filter(|stick| **stick).count();
     assert_eq!(stuck, count);
@@ -195,10 +192,7 @@ fn stiffness_of_a_coated_circle() -> Result<()> {
     for case in cases("friction/stick_stiffness.json") {
         let body = |radius: f64| match case.get("layers") {
             Some(_) => body_by(["E", "nu", "h_over_a"], &case, radius),
-            None => coated(
-                number(&case, "E1_over_E2"),
-                number(&case, "h_over_a") * radius,
-            ),
+            None => coated(number(&case, "E1_over_E2"), number(&case, "h_over_a") * radius),
         };
         let [coarse, fine] = cells.map(|cells| stiffnesses(body, cells));
         let (coarse, fine) = (coarse?, fine?);

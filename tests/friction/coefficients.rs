@@ -41,11 +41,7 @@ fn bare_cells_are_in_closed_form() -> Result<()> {
     let coated = HalfSpace::new(bare, [Layer::new(bare, 0.5)?])?;
     let integrated = traction_coefficients(coated, &grid)?;
     let asinh = |y: f64, x: f64| {
-        if y == 0.0 || x == 0.0 {
-            0.0
-        } else {
-            (y / x.abs()).asinh()
-        }
+        if y == 0.0 || x == 0.0 { 0.0 } else { (y / x.abs()).asinh() }
     };
     let own = c.xx[[0, 0]];
     for [i, j] in [[0, 0], [1, 0], [0, 1], [3, 2], [1, 20], [10, 7], [60, 11]] {
@@ -103,11 +99,7 @@ fn coefficients_have_their_symmetries() -> Result<()> {
         }
     };
     let c = traction_coefficients(&coated, &grid)?;
-    close(
-        &c,
-        &exchanged(traction_coefficients(&coated, &turned)?),
-        1e-11,
-    );
+    close(&c, &exchanged(traction_coefficients(&coated, &turned)?), 1e-11);
     let split = stack(soft, [[4.0, 0.3, 0.1], [4.0, 0.3, 0.3]])?;
     close(&c, &traction_coefficients(&split, &grid)?, 1e-10);
     let bare = traction_coefficients(Elastic::new(3.0, 0.5)?, &grid)?;
@@ -127,10 +119,9 @@ fn strips_are_rows_of_cells() -> Result<()> {
     let (coarse, fine) = (cells(1024)?, cells(2048)?);
     let row = |c: &Array2<f64>, j: usize| c.column(j).sum() * 2.0 - c[[0, j]];
     for j in 1..16 {
-        for (strip, coarse, fine) in [
-            (&strips.xx, &coarse.xx, &fine.xx),
-            (&strips.yy, &coarse.yy, &fine.yy),
-        ] {
+        for (strip, coarse, fine) in
+            [(&strips.xx, &coarse.xx, &fine.xx), (&strips.yy, &coarse.yy, &fine.yy)]
+        {
             let [coarse, fine] = [coarse, fine].map(|c| row(c, j) - row(c, 0));
             let due = (4.0 * fine - coarse) / 3.0;
             near!(strip[[0, j]] - strip[[0, 0]], due, 1e-6, j);

@@ -43,9 +43,7 @@ fn prescribed_and_loaded_motions_are_the_same_problem() -> Result<()> {
         }
         assert!(torque.is_none_or(|torque| (torque - loaded.torque()).abs() < 1e-10 * unit));
         let (shift, twist) = slid(&loaded);
-        let step = press(load)
-            .with_shift(shift.map(Some))
-            .with_twist(Some(twist));
+        let step = press(load).with_shift(shift.map(Some)).with_twist(Some(twist));
         let moved = slide(&contact, step, &options)?;
         let most = FRICTION * loaded.normal.peak_pressure();
         // The compliance's condition amplifies the tolerance.
@@ -71,10 +69,7 @@ fn a_resumed_history_is_the_same() -> Result<()> {
             force: [Some(-0.2 * unit), None],
             ..Step::default()
         },
-        Step {
-            friction: Some(0.5.into()),
-            ..Step::default()
-        },
+        Step { friction: Some(0.5.into()), ..Step::default() },
     ];
     let options = FrictionOptions::default();
     let whole = contact.slide(&ball()?, &steps, &options, None)?;
@@ -164,11 +159,7 @@ fn bodies_may_be_exchanged() -> Result<()> {
         let grid = Grid::new([32, 32], [2.6, 2.6])?;
         let contact = Contact::plan(body, grid, one_thread(counter))?;
         let force = [Some(sign * 0.7 * FRICTION * load(0.3)), Some(0.0)];
-        slide(
-            &contact,
-            press(load(0.3)).with_force(force),
-            &precise(1e-12),
-        )
+        slide(&contact, press(load(0.3)).with_force(force), &precise(1e-12))
     };
     let (one, other) = (solve(false)?, solve(true)?);
     let most = FRICTION * one.normal.peak_pressure();
@@ -213,10 +204,7 @@ fn coupling_is_there_where_bodies_differ() -> Result<()> {
     assert_eq!(normal.pressure, solution.normal.pressure);
     let alone = plan(coated(3.0, 0.2)?, grid()?)?;
     for coupling in [true, false] {
-        let options = FrictionOptions {
-            coupling,
-            ..FrictionOptions::default()
-        };
+        let options = FrictionOptions { coupling, ..FrictionOptions::default() };
         let solution = slide(&alone, step(), &options)?;
         assert_eq!(solution.report.coupled, coupling);
         // Without coupling, pressure alone does not rub.
@@ -251,12 +239,9 @@ fn little_friction_under_forces_and_a_torque() -> Result<()> {
     let contact = Contact::plan(Elastic::new(1.0, 0.3)?, grid, setup)?;
     let load = 4.0 / 3.0 / 0.91 / RADIUS;
     for friction in [0.01, 0.05, 0.1] {
-        for [along, across, turning] in [
-            [0.3, 0.3, 0.2],
-            [0.0, 0.0, 0.0],
-            [0.1, -0.5, 0.1],
-            [0.02, 0.0, -0.3],
-        ] {
+        for [along, across, turning] in
+            [[0.3, 0.3, 0.2], [0.0, 0.0, 0.0], [0.1, -0.5, 0.1], [0.02, 0.0, -0.3]]
+        {
             let bears = friction * load;
             let force = [along * bears, across * bears];
             let torque = turning * bears * 3.0 * std::f64::consts::PI / 16.0;

@@ -48,12 +48,7 @@ impl Line {
                 false => low = middle,
             }
         }
-        Ok(Self {
-            contact,
-            shape,
-            load: low,
-            width,
-        })
+        Ok(Self { contact, shape, load: low, width })
     }
 
     /// μP

@@ -33,10 +33,7 @@ fn power(low: f64, high: f64) -> impl Strategy<Value = f64> {
 
 fn case() -> impl Strategy<Value = Case> {
     let layer = (power(-1.0, 1.0), 0.0..0.49, power(-1.5, 0.3));
-    let pull = (
-        prop_oneof![0.0..0.9, 0.9..0.999],
-        0.0..std::f64::consts::TAU,
-    );
+    let pull = (prop_oneof![0.0..0.9, 0.9..0.999], 0.0..std::f64::consts::TAU);
     let directions = prop_oneof![
         Just(RollingDirection::PlusX),
         Just(RollingDirection::MinusX),
@@ -71,21 +68,14 @@ fn case() -> impl Strategy<Value = Case> {
 
 impl Case {
     fn contact(&self) -> Result<Contact> {
-        let layers = self
-            .layers
-            .iter()
-            .map(|(ratio, nu, h)| [2.6 * ratio, *nu, *h]);
+        let layers = self.layers.iter().map(|(ratio, nu, h)| [2.6 * ratio, *nu, *h]);
         let body = stack(Elastic::new(2.6, 0.3)?, layers)?;
         let counterbody = match self.counterbody {
             None => None,
             Some(None) => Some(body.clone().into()),
             Some(Some(ratio)) => Some(Elastic::new(2.6 * ratio, 0.2)?.into()),
         };
-        let setup = Setup {
-            counterbody,
-            threads: Some(1),
-            ..Setup::default()
-        };
+        let setup = Setup { counterbody, threads: Some(1), ..Setup::default() };
         Contact::plan(body, Grid::new([24, 24], [3.2, 3.2])?, setup)
     }
 

@@ -99,11 +99,7 @@ fn directions_are_equal() -> Result<()> {
     let most = 0.3 * ahead.normal.peak_pressure();
     // A turn by 90° takes (x, y) to (−y, x), cell (i, j) to (n − 1 − j, i), and (q_x, q_y) to (−q_y, q_x).
     let mut turned = ahead;
-    for direction in [
-        RollingDirection::PlusY,
-        RollingDirection::MinusX,
-        RollingDirection::MinusY,
-    ] {
+    for direction in [RollingDirection::PlusY, RollingDirection::MinusX, RollingDirection::MinusY] {
         let next = roll(direction)?;
         for ((i, j), qx) in turned.traction[0].indexed_iter() {
             let (k, l) = (n - 1 - j, i);

@@ -94,25 +94,14 @@ impl Case {
                 _ => {}
             }
         }
-        Ok(Self {
-            body,
-            counterbody,
-            grid,
-            shape,
-            motion,
-        })
+        Ok(Self { body, counterbody, grid, shape, motion })
     }
 
     /// The solved contact; `tolerance` is that of the solve.
     pub(crate) fn solve(&self, tolerance: f64) -> Result<Solution> {
-        let setup = Setup {
-            counterbody: self.counterbody.as_ref().map(Into::into),
-            ..Setup::default()
-        };
-        let options = Options {
-            max_iterations: Some(20_000),
-            ..settings::tolerance(tolerance)
-        };
+        let setup =
+            Setup { counterbody: self.counterbody.as_ref().map(Into::into), ..Setup::default() };
+        let options = Options { max_iterations: Some(20_000), ..settings::tolerance(tolerance) };
         Contact::plan(&self.body, self.grid, setup)?.solve(&*self.shape, &self.motion, &options)
     }
 }
@@ -122,12 +111,5 @@ pub(crate) fn linearised<'a>(
     solution: &'a Solution,
     shape: Option<&'a dyn Surface>,
 ) -> Result<Linearisation<'a>> {
-    Linearisation::plan(
-        solution,
-        shape,
-        &LinearOptions {
-            tolerance: 1e-12,
-            watch: None,
-        },
-    )
+    Linearisation::plan(solution, shape, &LinearOptions { tolerance: 1e-12, watch: None })
 }

@@ -11,13 +11,7 @@ use crate::support::settings::{plan, stack};
 const CELLS: f64 = 64.0;
 
 /// Parts of a cell by which grids are moved; the number of cells in contact differs from each to the next.
-const SHIFTS: [[f64; 2]; 5] = [
-    [0.0, 0.0],
-    [0.5, 0.0],
-    [0.5, 0.5],
-    [0.23, 0.11],
-    [0.35, 0.71],
-];
+const SHIFTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.23, 0.11], [0.35, 0.71]];
 
 /// Errors of ∂ ln δ and ∂ ln p0 at 64 cells a radius: each, their mean square over the shifts, and their mean. They are
 /// those of a fixed number of cells in contact, not of the linear solves.
@@ -40,10 +34,7 @@ const PATHS: [[&str; 3]; 6] = [
 /// Errors of all derivatives with one shift: of ln δ, then of ln p0.
 fn errors(case: &Value, shift: [f64; 2]) -> Result<Vec<f64>> {
     let of = |key: &str| number(case, key);
-    let body = stack(
-        Elastic::new(of("E2"), of("nu2"))?,
-        [[of("E1"), of("nu1"), of("h")]],
-    )?;
+    let body = stack(Elastic::new(of("E2"), of("nu2"))?, [[of("E1"), of("nu1"), of("h")]])?;
     let cell = of("a") / CELLS;
     let cells = (2.0 * CELLS) as usize + 12;
     let grid = Grid::new([cells; 2], [cells as f64 * cell; 2])?;
@@ -54,11 +45,7 @@ fn errors(case: &Value, shift: [f64; 2]) -> Result<Vec<f64>> {
     let plan = Linearisation::plan(&solution, Some(&shape), &LinearOptions::default())?;
     let outputs = [Output::Approach, Output::Pressure([0.0, 0.0])];
     let mut found = Vec::new();
-    for (gradient, name) in plan
-        .gradients(&outputs, None)?
-        .iter()
-        .zip(["ln_delta", "ln_p0"])
-    {
+    for (gradient, name) in plan.gradients(&outputs, None)?.iter().zip(["ln_delta", "ln_p0"]) {
         assert!(gradient.warnings.is_empty(), "{:?}", gradient.warnings);
         // With respect to logarithms; the data has the derivative with respect to a Poisson's ratio itself.
         let mut compare = |slope: f64, key: &str| {

@@ -195,11 +195,8 @@ fn derivatives_on_periodic_grids_equal_differences() -> Result<()> {
             shape: Box::new(Shared(gaps)),
             motion: Motion::load(0.02),
         };
-        let outputs = [
-            Output::Approach,
-            Output::PressureNorm(8.0),
-            Output::Displacement([0.7, -0.8]),
-        ];
+        let outputs =
+            [Output::Approach, Output::PressureNorm(8.0), Output::Displacement([0.7, -0.8])];
         let counts = compare(&case, &outputs, 0.0)?;
         let all = counts.is_some_and(|[compared, left]| compared > 0 && left == 0);
         assert!(all, "{counts:?}");

@@ -73,9 +73,7 @@ fn fields_satisfy_the_sum_rules() -> Result<()> {
         below!(gradients[2].gap.sum().abs() / size(2), EXACT);
         if motion.eccentricity[0].is_some() || motion.moment[0].is_some() {
             let x = case.grid.x();
-            let moment: f64 = (gradients[1].gap.indexed_iter())
-                .map(|((i, _), g)| x[i] * g)
-                .sum();
+            let moment: f64 = (gradients[1].gap.indexed_iter()).map(|((i, _), g)| x[i] * g).sum();
             below!((moment - 1.0).abs() / size(1), EXACT);
             seen[1] += 1;
         }
@@ -105,10 +103,8 @@ fn moduli_and_load_scale_together() -> Result<()> {
             let mut sum = 0.0;
             for (parameter, slope) in &gradient.values {
                 let path = parameter.to_string();
-                sum += slope
-                    * young(&case, &path)
-                        .or((path == "load").then_some(load))
-                        .unwrap_or(0.0);
+                sum +=
+                    slope * young(&case, &path).or((path == "load").then_some(load)).unwrap_or(0.0);
             }
             // The exact method's coefficients hold to 1e-9.
             below!((sum / gradient.value - degree).abs(), 1e-8);
@@ -126,10 +122,7 @@ fn young(case: &Case, path: &str) -> Option<f64> {
         ("counterbody", rest) => (case.counterbody.as_ref()?, rest),
         _ => return None,
     };
-    let found = body
-        .parameters()
-        .into_iter()
-        .find(|one| one.path(body) == rest)?;
+    let found = body.parameters().into_iter().find(|one| one.path(body) == rest)?;
     matches!(found, nacre::BodyParameter::Young(_)).then(|| body.value(found))?
 }
 

@@ -8,10 +8,7 @@ use super::cases::Case;
 use crate::support::contacts::Random;
 use crate::support::settings::{plan, tolerance};
 
-const OPTIONS: LinearOptions = LinearOptions {
-    tolerance: 1e-9,
-    watch: None,
-};
+const OPTIONS: LinearOptions = LinearOptions { tolerance: 1e-9, watch: None };
 
 fn cells(solution: &Solution) -> Result<usize> {
     let plan = Linearisation::plan(solution, None, &OPTIONS)?;
@@ -89,11 +86,7 @@ fn refusals_name_the_smooth_alternative() -> Result<()> {
     let flat = Linearisation::plan(&flat, Some(&punch), &OPTIONS)?;
     for (plan, path, words) in [
         (&round, "shape.length", "cells join and leave"),
-        (
-            &round,
-            "body.layers[0].thickness",
-            "not a number of a stack",
-        ),
+        (&round, "body.layers[0].thickness", "not a number of a stack"),
         (&round, "eccentricity[0]", "not a number of this contact"),
         (&flat, "shape.radius", "gradient.gap"),
     ] {
@@ -104,26 +97,15 @@ fn refusals_name_the_smooth_alternative() -> Result<()> {
     let slope = gradient.get("load").unwrap_or(f64::NAN);
     near!(slope * 0.02, gradient.value, 1e-9);
 
-    let few = Options {
-        max_iterations: Some(2),
-        ..Options::default()
-    };
-    let hard = Options {
-        hardness: Some(Hardness::Uniform(0.03)),
-        ..Options::default()
-    };
+    let few = Options { max_iterations: Some(2), ..Options::default() };
+    let hard = Options { hardness: Some(Hardness::Uniform(0.03)), ..Options::default() };
     let apart = Motion::approach(-0.1);
     for (motion, options, output, words) in [
         (load, few, Output::Approach, "did not converge"),
         (load, hard, Output::Approach, "history of loads"),
         (apart, Options::default(), Output::Load, "nothing touches"),
     ] {
-        refused(
-            contact
-                .solve(&ball, &motion, &options)?
-                .gradient(&output, None),
-            words,
-        );
+        refused(contact.solve(&ball, &motion, &options)?.gradient(&output, None), words);
     }
     Ok(())
 }

@@ -102,10 +102,7 @@ fn derivatives_of_stresses_at_points_equal_differences() -> Result<()> {
             compare(path, theta, richardson(2e-3 * theta, moved)?);
         }
         let friction = |step: f64| {
-            let options = StressOptions {
-                friction: 0.2 + step,
-                ..options.clone()
-            };
+            let options = StressOptions { friction: 0.2 + step, ..options.clone() };
             Ok(value(&field(&body, LOAD, at[2], &options)?))
         };
         compare("friction", 0.2, richardson(1e-3, friction)?);
@@ -126,16 +123,9 @@ fn soft(values: &[Array3<f64>], sharpness: f64) -> f64 {
 fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
     const SHARPNESS: f64 = 40.0;
     let body = body()?;
-    let layer = StressPlace::Layer {
-        layer: 0,
-        depths: 3,
-        sharpness: SHARPNESS,
-    };
-    let interface = StressPlace::Interface {
-        interface: 0,
-        side: Side::Below,
-        sharpness: SHARPNESS,
-    };
+    let layer = StressPlace::Layer { layer: 0, depths: 3, sharpness: SHARPNESS };
+    let interface =
+        StressPlace::Interface { interface: 0, side: Side::Below, sharpness: SHARPNESS };
     let shear = |s: &Stress| (s.xz() * s.xz() + s.yz() * s.yz()).sqrt();
     type Planes<'a> = &'a dyn Fn(&HalfSpace) -> Vec<(f64, Side)>;
     let three: Planes = &|body| {
@@ -143,10 +133,9 @@ fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
         vec![(0.0, Side::Below), (0.5 * h, Side::Below), (h, Side::Above)]
     };
     let one: Planes = &|body| vec![(body.thickness(), Side::Below)];
-    for (measure, place, planes) in [
-        (Measure::VonMises, layer, three),
-        (Measure::PlaneShear, interface, one),
-    ] {
+    for (measure, place, planes) in
+        [(Measure::VonMises, layer, three), (Measure::PlaneShear, interface, one)]
+    {
         let found = gradient(StressOutput::new(measure, place))?;
         let values = |body: &HalfSpace, load: f64| -> Result<Vec<Array3<f64>>> {
             let fields = planes(body).into_iter().map(|(z, side)| {
@@ -172,11 +161,7 @@ fn derivatives_of_soft_maxima_equal_differences() -> Result<()> {
             let body = body.with_value(BodyParameter::Thickness(0), h + step)?;
             Ok(soft(&values(&body, LOAD)?, SHARPNESS))
         };
-        compare(
-            "body.layers[0].thickness",
-            h,
-            richardson(2e-3 * h, thickness)?,
-        );
+        compare("body.layers[0].thickness", h, richardson(2e-3 * h, thickness)?);
     }
     Ok(())
 }

@@ -58,10 +58,9 @@ fn jkr_on_coated_bodies() -> Result<()> {
     for row in list(&data, "table") {
         let (ratio, h) = (number(row, "E1_over_E2"), number(row, "h_over_a0"));
         let indent = indent(ratio, h)?;
-        for (control, key) in [
-            (Control::Load, "load_control"),
-            (Control::Approach, "displacement_control"),
-        ] {
+        for (control, key) in
+            [(Control::Load, "load_control"), (Control::Approach, "displacement_control")]
+        {
             let Some(due) = row[key]["pull_off_over_piwR"].as_f64() else {
                 continue;
             };
@@ -184,9 +183,8 @@ fn the_load_is_the_derivative_of_the_energy() -> Result<()> {
         };
         for a in [0.6, 1.3] {
             // Differences of eighth order in 0.02 of a leave 1e-10, and the quadratures some 1e-7.
-            let near: Vec<[f64; 3]> = (-4..=4)
-                .map(|k| energy(a * (1.0 + 0.02 * f64::from(k))))
-                .collect::<Result<_>>()?;
+            let near: Vec<[f64; 3]> =
+                (-4..=4).map(|k| energy(a * (1.0 + 0.02 * f64::from(k)))).collect::<Result<_>>()?;
             let along = |quantity: usize| slope(|k| near[(4 + k) as usize][quantity]);
             let (found, due) = (along(0) / along(1), near[4][2]);
             below!((found - due).abs(), 1e-6 * due.abs().max(1.0), a);
@@ -200,10 +198,7 @@ fn the_load_is_the_derivative_of_the_energy() -> Result<()> {
 #[test]
 fn stresses_with_a_cohesive_zone() -> Result<()> {
     let stack = Stack::plan(&[Elastic::new(1.0, 0.3)?.into()])?;
-    let adhesion = Adhesion::Maugis {
-        work: 0.02,
-        strength: 0.1,
-    };
+    let adhesion = Adhesion::Maugis { work: 0.02, strength: 0.1 };
     let indent = Indent::new(&stack, &Tip::paraboloid(2.0)?).with_adhesion(adhesion)?;
     let point = indent.at_radius(0.5)?;
     let (a, c) = (0.5, point.outer_radius.expect("a cohesive zone"));

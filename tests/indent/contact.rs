@@ -19,10 +19,7 @@ fn tip(case: &Value, a: f64) -> Result<Tip> {
         Some("flat") => Tip::flat_punch(a),
         Some("sphere") => Tip::sphere(radius),
         Some("cone") => Tip::cone(radius),
-        Some("power") => Tip::new(Form::Power {
-            factor: radius,
-            exponent: n,
-        }),
+        Some("power") => Tip::new(Form::Power { factor: radius, exponent: n }),
         _ => Tip::paraboloid(radius),
     }
 }
@@ -77,10 +74,7 @@ fn two_programs_find_the_same() -> Result<()> {
 /// contact, and layers on a rigid base in those of the layer's; eleven digits.
 #[test]
 fn coated_spheres_under_a_load() -> Result<()> {
-    for (name, is_rigid) in [
-        ("sphere_coated.json", false),
-        ("sphere_rigid_base.json", true),
-    ] {
+    for (name, is_rigid) in [("sphere_coated.json", false), ("sphere_rigid_base.json", true)] {
         for case in &cases(name) {
             let get = |key: &str| number(case, key);
             let (nu, ratio) = (get("poisson"), float(&case["modulus_ratio"]).unwrap_or(1.0));
@@ -121,17 +115,10 @@ fn bare_bodies_are_sneddons() -> Result<()> {
         Tip::new(Form::Power { factor, exponent })
     };
     // δ = B n (√π/2) Γ(n/2)/Γ((n+1)/2) aⁿ, P = 2E* n/(n+1) δ a: Γ(2)/Γ(5/2) = 4/(3√π), Γ(3/4)/Γ(5/4).
-    let [fourth, other] = [
-        8.0 / 3.0 * 0.1 * a.powi(4),
-        0.1 * THREE_HALVES * a.powf(1.5),
-    ];
+    let [fourth, other] = [8.0 / 3.0 * 0.1 * a.powi(4), 0.1 * THREE_HALVES * a.powf(1.5)];
     let cone = 0.5 * PI * 0.2 * a;
     for (tip, load, approach) in [
-        (
-            Tip::paraboloid(5.0)?,
-            4.0 / 3.0 * modulus * a.powi(3) / 5.0,
-            a * a / 5.0,
-        ),
+        (Tip::paraboloid(5.0)?, 4.0 / 3.0 * modulus * a.powi(3) / 5.0, a * a / 5.0),
         (Tip::sphere(2.0)?, sphere, a * (a / 2.0).atanh()),
         (Tip::cone(0.2)?, modulus * cone * a, cone),
         (power(4.0)?, 2.0 * modulus * 0.8 * fourth * a, fourth),
@@ -228,15 +215,11 @@ fn stresses_below_the_surface() -> Result<()> {
         assert!((above.rr - below.rr).abs() > 1e-3);
     }
     // Midpoints in ln r from 1e-3 to 1e3; σ_zz falls as r⁻⁵.
-    let r: Vec<f64> = (0..600)
-        .map(|k| (-7.0 + 14.0 * (f64::from(k) + 0.5) / 600.0).exp())
-        .collect();
+    let r: Vec<f64> =
+        (0..600).map(|k| (-7.0 + 14.0 * (f64::from(k) + 0.5) / 600.0).exp()).collect();
     let stress = point.stress(0, 0.7, &r)?;
-    let force: f64 = stress
-        .iter()
-        .zip(&r)
-        .map(|(s, r)| -s.zz * 2.0 * PI * r * r * 14.0 / 600.0)
-        .sum();
+    let force: f64 =
+        stress.iter().zip(&r).map(|(s, r)| -s.zz * 2.0 * PI * r * r * 14.0 / 600.0).sum();
     near!(force, point.load, 1e-4);
     assert!(point.stress(0, 0.0, &[0.0]).is_err() && point.stress(1, 1.0, &[0.0]).is_err());
     Ok(())

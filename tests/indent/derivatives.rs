@@ -128,12 +128,7 @@ fn differences() -> Result<()> {
         let mut variables: Vec<(usize, Variable)> = Vec::new();
         let of_stack = stack(&numbers)?.parameters().to_vec();
         assert_eq!(of_stack.len(), 10);
-        variables.extend(
-            of_stack
-                .iter()
-                .map(|one| Variable::Parameter(*one))
-                .enumerate(),
-        );
+        variables.extend(of_stack.iter().map(|one| Variable::Parameter(*one)).enumerate());
         let tip = Tip::new(forms[k](3.0, 4.5))?;
         for i in 0..tip.numbers().len() {
             let number = Parameter::Tip(TipParameter::Number(i));
@@ -155,12 +150,7 @@ fn differences() -> Result<()> {
                 Ok([numbers, p.pressure(&inside)?, p.displacement(&outside)?].concat())
             };
             let change = point.derivative(variable, held)?;
-            let found = [
-                change.radius,
-                change.load,
-                change.approach,
-                change.stiffness,
-            ];
+            let found = [change.radius, change.load, change.approach, change.stiffness];
             let (pressure, displacement) =
                 (change.pressure(&inside)?, change.displacement(&outside)?);
             let found = [&found[..], &pressure, &displacement].concat();
@@ -174,15 +164,7 @@ fn differences() -> Result<()> {
             let error = if k == 1 { 2e-7 } else { 2e-8 };
             for (i, size_of) in of(&point)?.into_iter().enumerate() {
                 let bar = error * (size_of.abs() + due[i].abs());
-                below!(
-                    (found[i] * size - due[i]).abs(),
-                    bar,
-                    k,
-                    adheres,
-                    held,
-                    variable,
-                    i
-                );
+                below!((found[i] * size - due[i]).abs(), bar, k, adheres, held, variable, i);
             }
         }
     }
@@ -212,12 +194,7 @@ fn cohesive_zones() -> Result<()> {
     let of = |p: &Point| -> Result<Vec<f64>> {
         let zone = p.outer_radius.expect("a cohesive zone");
         let numbers = [p.load, p.approach, p.stiffness, zone];
-        Ok([
-            &numbers[..],
-            &p.pressure(&inside)?,
-            &p.displacement(&outside)?,
-        ]
-        .concat())
+        Ok([&numbers[..], &p.pressure(&inside)?, &p.displacement(&outside)?].concat())
     };
     let sizes = of(&point)?;
     let of_stack = stack(&numbers)?.parameters().to_vec();
@@ -230,12 +207,8 @@ fn cohesive_zones() -> Result<()> {
         let change = point.derivative(variable, Held::Radius)?;
         let zone = change.outer_radius.expect("a cohesive zone");
         let found = [change.load, change.approach, change.stiffness, zone];
-        let found = [
-            &found[..],
-            &change.pressure(&inside)?,
-            &change.displacement(&outside)?,
-        ]
-        .concat();
+        let found =
+            [&found[..], &change.pressure(&inside)?, &change.displacement(&outside)?].concat();
         // Fourth order in 1e-3 leaves 1e-10; states are known to 1e-12, which leaves 1e-9.
         let due = slopes(|step| {
             let mut moved = numbers;
@@ -257,19 +230,9 @@ fn cohesive_zones() -> Result<()> {
             for k in 0..2 {
                 let moved = slopes[k] * kept.radius;
                 let size = fixed[k].abs() + moved.abs();
-                below!(
-                    (found[k] - fixed[k] - moved).abs(),
-                    1e-12 * size,
-                    variable,
-                    held,
-                    k
-                );
+                below!((found[k] - fixed[k] - moved).abs(), 1e-12 * size, variable, held, k);
             }
-            let rate = if held == Held::Load {
-                kept.load
-            } else {
-                kept.approach
-            };
+            let rate = if held == Held::Load { kept.load } else { kept.approach };
             below!(rate.abs(), 1e-12 * fixed[0].abs().max(fixed[1].abs()));
         }
     }

@@ -50,10 +50,7 @@ fn transform(form: &Form, a: f64) -> [f64; 2] {
             // s² up to b, and s [b²/(s + √(s²−b²)) + b arccos(b/s)] beyond; a³ − √(a²−b²)³ without a difference.
             let cubes = b * b / (a + root) * (a * a + a * root + root * root);
             let [sum, value] = step(b, b, a);
-            [
-                (cubes / 3.0 + sum) / radius,
-                (a * b * b / (a + root) + value) / radius,
-            ]
+            [(cubes / 3.0 + sum) / radius, (a * b * b / (a + root) + value) / radius]
         }
         Form::RoundedPunch { flat, radius } => hinge(1.0 / radius, *flat, a),
         Form::FlatCone { flat, slope } => step(*slope, *flat, a),
@@ -103,10 +100,7 @@ fn tips() -> Vec<(Form, f64)> {
     for count in [5, 20, 60] {
         let place = |k: i32| 1.4 * (f64::from(k) / f64::from(count)).powf(1.7);
         let radii: Vec<f64> = (0..=count).map(place).collect();
-        let heights = radii
-            .iter()
-            .map(|r| 0.1 * r * r * (1.0 + 0.3 * r))
-            .collect();
+        let heights = radii.iter().map(|r| 0.1 * r * r * (1.0 + 0.3 * r)).collect();
         all.push((Form::Profile { radii, heights }, 1.0));
     }
     all
@@ -153,10 +147,7 @@ fn loads_are_closed_forms() -> Result<()> {
                 _ => 0.0,
             };
             let bar = (1e-9 + rounding) * due.abs() + 1e-14 * point.load / step;
-            assert!(
-                (found - due).abs() < bar,
-                "{form:?} number {k}: {found} {due}"
-            );
+            assert!((found - due).abs() < bar, "{form:?} number {k}: {found} {due}");
         }
     }
     Ok(())
@@ -186,9 +177,8 @@ fn layers_below_profiles_that_are_not_smooth() -> Result<()> {
                 continue;
             }
             let step = 0.02 * part.min(h);
-            let near: Result<Vec<Point>> = (-4..=4)
-                .map(|k| indent.at_radius((f64::from(k) * step).exp()))
-                .collect();
+            let near: Result<Vec<Point>> =
+                (-4..=4).map(|k| indent.at_radius((f64::from(k) * step).exp())).collect();
             // Some are lifted off at larger radii.
             let Ok(near) = near else { continue };
             let at = |k: i32| -> &Point { &near[(4 + k) as usize] };

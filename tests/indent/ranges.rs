@@ -46,9 +46,8 @@ fn random_stacks() -> Result<()> {
     let mut state = 12345_u64;
     let mut random = move || {
         // Knuth's linear congruence, upper bits.
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let mut refused = 0;

@@ -88,10 +88,7 @@ fn coatings_of_a_quarter_to_four_times_the_modulus() -> Result<()> {
 fn layer_on_a_rigid_base() -> Result<()> {
     for case in &cases("sphere_rigid_base.json") {
         let layer = Elastic::new(1.0, number(case, "poisson"))?;
-        let body = stack(
-            Substrate::Rigid,
-            [[1.0, layer.poisson(), number(case, "h")]],
-        )?;
+        let body = stack(Substrate::Rigid, [[1.0, layer.poisson(), number(case, "h")]])?;
         let errors = errors(&body, layer.plane_strain_modulus(), exact(case))?;
         check(case, errors, RADIUS_ON_RIGID);
     }

@@ -228,13 +228,10 @@ fn largest_shear_is_that_of_the_summed_pressure() -> Result<()> {
         let (x, y) = (grid.x(), grid.y());
         let mut pressure = Array2::from_shape_fn((97, 97), |(i, j)| contact.pressure(x[i], y[j]));
         pressure *= 1e3 / (pressure.sum() * grid.cell_area());
-        let depths: Vec<f64> = (-20..=20)
-            .map(|k| found.depth * (1.0 + 0.005 * f64::from(k)))
-            .collect();
-        let options = StressOptions {
-            section: Section::Axis([0.0; 2]),
-            ..StressOptions::default()
-        };
+        let depths: Vec<f64> =
+            (-20..=20).map(|k| found.depth * (1.0 + 0.005 * f64::from(k))).collect();
+        let options =
+            StressOptions { section: Section::Axis([0.0; 2]), ..StressOptions::default() };
         let field = stress(&body.into(), &grid, &pressure, &depths, &options)?;
         let shear: Vec<f64> = field.max_shear().into_iter().collect();
         let largest = shear.iter().fold(0.0_f64, |a, b| a.max(*b));

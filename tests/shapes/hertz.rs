@@ -38,9 +38,7 @@ fn loaded(shape: [usize; 2], sides: [f64; 2]) -> Result<Solution> {
 /// Relative errors of peak pressure, approach, and half the larger extent.
 fn errors(solution: &Solution) -> Result<[f64; 3]> {
     let exact = hertz::Point::new(RADIUS, modulus()?, load()?)?;
-    let [x, y] = solution
-        .contact_extent()
-        .map(|[low, high]| 0.5 * (high - low));
+    let [x, y] = solution.contact_extent().map(|[low, high]| 0.5 * (high - low));
     Ok([
         solution.peak_pressure() / exact.peak_pressure - 1.0,
         solution.approach / exact.approach - 1.0,
@@ -97,19 +95,12 @@ fn approach_converges_with_the_grid() -> Result<()> {
 
 #[test]
 fn load_gives_approach_gives_load() -> Result<()> {
-    let (contact, shape) = (
-        plan([96, 80], [3.0, 2.8])?,
-        Paraboloid::new(RADIUS, RADIUS)?,
-    );
+    let (contact, shape) = (plan([96, 80], [3.0, 2.8])?, Paraboloid::new(RADIUS, RADIUS)?);
     let solve = |motion: Motion| converged(&contact, &shape, &motion, &tolerance(1e-12));
     let given = solve(Motion::load(load()?))?;
     let moved = solve(Motion::approach(given.approach))?;
     near!(moved.load(), load()?, 1e-9);
-    near!(
-        solve(Motion::load(moved.load()))?.approach,
-        given.approach,
-        1e-9
-    );
+    near!(solve(Motion::load(moved.load()))?.approach, given.approach, 1e-9);
     Ok(())
 }
 

@@ -35,10 +35,8 @@ fn central_half_width(solution: &Solution) -> f64 {
     let section = solution.pressure.row(solution.grid().shape()[0] / 2);
     let half = solution.peak_pressure() / 2.0;
     let points = solution.grid().y().into_iter().zip(section);
-    let inner: Vec<(f64, f64)> = points
-        .filter(|(_, p)| **p > half)
-        .map(|(y, p)| (y * y, p * p))
-        .collect();
+    let inner: Vec<(f64, f64)> =
+        points.filter(|(_, p)| **p > half).map(|(y, p)| (y * y, p * p)).collect();
     let n = inner.len() as f64;
     let mean = |f: fn(&(f64, f64)) -> f64| inner.iter().map(f).sum::<f64>() / n;
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
@@ -89,10 +87,7 @@ fn eccentric_force_gives_the_known_peak_tilt_and_ends() -> Result<()> {
     below!(balance.force.max(balance.moment[0]), 1e-12);
 
     let other = solve(-0.3 * HALF_FLAT)?;
-    below!(
-        difference(&solution.pressure, &mirrored(&other.pressure, 0)),
-        SYMMETRIC
-    );
+    below!(difference(&solution.pressure, &mirrored(&other.pressure, 0)), SYMMETRIC);
     near!(solution.tilt[0], -other.tilt[0], SYMMETRIC);
     Ok(())
 }

@@ -111,9 +111,7 @@ fn johns_gohar_ends_with_a_finite_drop_and_a_sharp_end_under_load() -> Result<()
     let cut = 2.0 * (1.0 - profile.end_factor());
     near!(drop(profile, x), drop(lundberg, x), cut);
     let grid = Grid::new([128, 32], [1.02 * LENGTH, 0.25e-3])?;
-    let warnings = press(&steel()?.into(), grid, profile, load)?
-        .report
-        .warnings;
+    let warnings = press(&steel()?.into(), grid, profile, load)?.report.warnings;
     assert!(warnings.contains(&Warning::SharpEnd { axis: 0 }));
     Ok(())
 }
@@ -122,9 +120,8 @@ fn johns_gohar_ends_with_a_finite_drop_and_a_sharp_end_under_load() -> Result<()
 fn a_fine_sampling_is_the_profile() -> Result<()> {
     let profile = LogarithmicProfile::new(2e-6, LENGTH, 0.3 * LENGTH, 0.999)?;
     let samples = 4001;
-    let x: Vec<f64> = (0..samples)
-        .map(|k| LENGTH * (f64::from(k) / f64::from(samples - 1) - 0.5))
-        .collect();
+    let x: Vec<f64> =
+        (0..samples).map(|k| LENGTH * (f64::from(k) / f64::from(samples - 1) - 0.5)).collect();
     let drops: Vec<f64> = x.iter().map(|x| drop(profile, *x)).collect();
     let sampled = SampledProfile::new(&x, &drops)?;
     for k in 0..1000 {
@@ -217,13 +214,7 @@ fn ends_do_not_depend_on_where_cells_fall() -> Result<()> {
         let still = solve(0.0)?;
         for shift in [0.125, 0.25, 0.375, 0.49] {
             let moved = solve(shift)?;
-            near!(
-                moved.peak_pressure(),
-                still.peak_pressure(),
-                MOVED,
-                name,
-                shift
-            );
+            near!(moved.peak_pressure(), still.peak_pressure(), MOVED, name, shift);
             near!(end_force(&moved), end_force(&still), END, name, shift);
             let [there, here] = [&moved, &still].map(|s| s.contact_extent()[0][1]);
             below!((there - here).abs(), cell, name, shift);
@@ -275,10 +266,7 @@ fn errors_name_what_is_wrong() {
         }
     }
     let log = LogarithmicProfile::new;
-    let (lundberg, johns_gohar) = (
-        LogarithmicProfile::lundberg,
-        LogarithmicProfile::johns_gohar,
-    );
+    let (lundberg, johns_gohar) = (LogarithmicProfile::lundberg, LogarithmicProfile::johns_gohar);
     let iso = LogarithmicProfile::iso16281;
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(name(log(bad, 1.0, 0.0, 1.0)), "amplitude");

@@ -86,22 +86,14 @@ fn integral(
     [a, b]: [f64; 2],
     z: f64,
 ) -> [f64; 9] {
-    let outside = (x.abs() - a)
-        .max(0.0)
-        .hypot((y.abs() - b).max(0.0))
-        .hypot(z);
+    let outside = (x.abs() - a).max(0.0).hypot((y.abs() - b).max(0.0)).hypot(z);
     let mut sum = [0.0; 9];
     let mut add = |weight: f64, values: [f64; 9]| {
-        sum.iter_mut()
-            .zip(values)
-            .for_each(|(s, v)| *s += weight * v);
+        sum.iter_mut().zip(values).for_each(|(s, v)| *s += weight * v);
     };
     if outside < 3.0 * a.max(b) {
         for (sx, sy) in [(-0.5, -0.5), (-0.5, 0.5), (0.5, -0.5), (0.5, 0.5)] {
-            add(
-                1.0,
-                integral(f, [x + sx * a, y + sy * b], [0.5 * a, 0.5 * b], z),
-            );
+            add(1.0, integral(f, [x + sx * a, y + sy * b], [0.5 * a, 0.5 * b], z));
         }
         return sum;
     }
@@ -128,11 +120,7 @@ fn a_uniform_rectangle_is_an_integral_of_point_loads() -> Result<()> {
     });
     let depths = [0.075, 0.1, 0.3, 1.0, 2.5, 8.0];
     let pressed = displaced(StressOptions::default());
-    let sliding = StressOptions {
-        friction: 1.0,
-        direction: Some([1.0, 0.0]),
-        ..pressed.clone()
-    };
+    let sliding = StressOptions { friction: 1.0, direction: Some([1.0, 0.0]), ..pressed.clone() };
     let pressed = stress(&steel()?, &grid, &pressure, &depths, &pressed)?;
     let sliding = stress(&steel()?, &grid, &pressure, &depths, &sliding)?;
     let value = |field: &nacre::Stress, k: usize, at: [usize; 3]| match &field.displacement {
@@ -185,13 +173,7 @@ fn hertz_errors(count: usize, depth: f64) -> Result<[f64; 3]> {
     let grid = Grid::new([n, n], [n as f64 * dx; 2])?;
     let (x, y) = (grid.x(), grid.y());
     let z = depth * dx;
-    let field = stress(
-        &steel()?,
-        &grid,
-        &hertz_pressure(&grid),
-        &[z],
-        &StressOptions::default(),
-    )?;
+    let field = stress(&steel()?, &grid, &hertz_pressure(&grid), &[z], &StressOptions::default())?;
     let mut worst = [0.0_f64; 3];
     for i in 0..n {
         for j in 0..n {
@@ -225,17 +207,11 @@ fn hertz_point_contact_converges() -> Result<()> {
         "{coarse:?} {fine:?}"
     );
     let (coarse, fine) = (hertz_errors(32, 0.1)?, hertz_errors(128, 0.1)?);
-    assert!(
-        fine[1] < 3e-3 && fine[1] < 0.6 * coarse[1],
-        "{coarse:?} {fine:?}"
-    );
+    assert!(fine[1] < 3e-3 && fine[1] < 0.6 * coarse[1], "{coarse:?} {fine:?}");
     assert!(fine[2] < 2e-5, "{fine:?}");
     // Ten cells deep only the error of second order is left.
     let (coarse, fine) = (hertz_errors(32, 10.0)?, hertz_errors(128, 40.0)?);
-    assert!(
-        fine[0] < 5e-5 && fine[0] < coarse[0] / 10.0,
-        "{coarse:?} {fine:?}"
-    );
+    assert!(fine[0] < 5e-5 && fine[0] < coarse[0] / 10.0, "{coarse:?} {fine:?}");
     Ok(())
 }
 
@@ -249,9 +225,7 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     let axis = on(Section::Axis([0.0, 0.0]));
     let field = stress(&steel()?, &grid, &hertz_pressure(&grid), &depths, &axis)?;
     let shear = field.max_shear();
-    let Some(peak) = field.peak(&shear) else {
-        panic!("no depths")
-    };
+    let Some(peak) = field.peak(&shear) else { panic!("no depths") };
     claim("largest-shear", peak.value - 0.310_02);
     claim("largest-shear-depth", peak.position[2] - 0.4809);
 
@@ -261,9 +235,7 @@ fn largest_shear_below_hertz_contacts() -> Result<()> {
     let pressure = Array2::from_shape_fn((1, 201), |(_, j)| (1.0 - y[j] * y[j]).max(0.0).sqrt());
     let field = stress(&steel()?, &grid, &pressure, &depths, &axis)?;
     let shear = field.max_shear();
-    let Some(peak) = field.peak(&shear) else {
-        panic!("no depths")
-    };
+    let Some(peak) = field.peak(&shear) else { panic!("no depths") };
     claim("largest-shear", peak.value - 0.300_28);
     claim("largest-shear-depth", peak.position[2] - 0.7862);
     Ok(())
@@ -283,10 +255,7 @@ fn tension_at_the_trailing_edge_of_a_sliding_line_contact() -> Result<()> {
         Ok((largest / 0.8 - 1.0).abs())
     };
     let errors = [error(500)?, error(2000)?, error(8000)?];
-    assert!(
-        errors[1] < 0.7 * errors[0] && errors[2] < 0.7 * errors[1],
-        "{errors:?}"
-    );
+    assert!(errors[1] < 0.7 * errors[0] && errors[2] < 0.7 * errors[1], "{errors:?}");
     assert!(errors[2] < 0.02, "{errors:?}");
     Ok(())
 }
@@ -315,9 +284,7 @@ fn equilibrium_and_hookes_law_hold() -> Result<()> {
             let depths = [depth - d, depth, depth + d];
             let field = stress(&body, &grid, &pressure, &depths, &options)?;
             let [xx, yy, zz, xy, yz, xz] = &field.components;
-            let Some([ux, uy, uz]) = &field.displacement else {
-                panic!("asked for")
-            };
+            let Some([ux, uy, uz]) = &field.displacement else { panic!("asked for") };
             let g = material.shear();
             let nu = material.poisson();
             for i in (n / 4..3 * n / 4).step_by(3) {

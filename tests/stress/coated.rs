@@ -28,29 +28,18 @@ fn modulus() -> f64 {
 fn on_axis(solution: &Solution, point: &Value, thickness: f64) -> Result<Stress> {
     let options = StressOptions {
         section: Section::Axis([0.0, 0.0]),
-        side: if number(point, "layer") > 0.0 {
-            Side::Below
-        } else {
-            Side::Above
-        },
+        side: if number(point, "layer") > 0.0 { Side::Below } else { Side::Above },
         ..StressOptions::default()
     };
-    solution.stress(
-        &[number(point, "z_over_h") * thickness],
-        Member::Body,
-        &options,
-    )
+    solution.stress(&[number(point, "z_over_h") * thickness], Member::Body, &options)
 }
 
 /// Largest value of |field|, and its position along `x`.
 fn largest(field: &Array3<f64>, x: &Array1<f64>) -> (f64, f64) {
-    let found = field.iter().zip(x).fold((0.0_f64, 0.0), |best, (v, x)| {
-        if v.abs() > best.0 {
-            (v.abs(), *x)
-        } else {
-            best
-        }
-    });
+    let found = field
+        .iter()
+        .zip(x)
+        .fold((0.0_f64, 0.0), |best, (v, x)| if v.abs() > best.0 { (v.abs(), *x) } else { best });
     (found.0, found.1.abs())
 }
 
@@ -63,9 +52,7 @@ fn at(field: &Array3<f64>, x: &Array1<f64>, at: f64) -> f64 {
     (0..4)
         .map(|a| {
             let others = (0..4).filter(|b| *b != a);
-            let weight: f64 = others
-                .map(|b| (t - b as f64) / (a as f64 - b as f64))
-                .product();
+            let weight: f64 = others.map(|b| (t - b as f64) / (a as f64 - b as f64)).product();
             weight * values[first + a]
         })
         .sum()
@@ -109,9 +96,7 @@ fn sphere_errors(case: &Value, n: usize) -> Result<[f64; 5]> {
     let surface = solution.stress(&[0.0], Member::Body, &section)?;
     let radial = surface.xx();
     let reference = &case["surface"];
-    let exact = list(reference, "srr_over_pH")
-        .iter()
-        .filter_map(Value::as_f64);
+    let exact = list(reference, "srr_over_pH").iter().filter_map(Value::as_f64);
     let radii = list(reference, "r_over_a").iter().filter_map(Value::as_f64);
     for (r, exact) in radii.zip(exact) {
         if (1.05..1.6).contains(&r) {
@@ -193,31 +178,20 @@ fn disc_on_layers() -> Result<()> {
         let layers = list(&case, "layers");
         let value = |layer: &Value, k: usize| layer[k].as_f64().unwrap_or(f64::NAN);
         let material = |layer: &Value| Elastic::new(value(layer, 1), value(layer, 2));
-        let slips = |k: usize| {
-            list(&case, "slip")
-                .iter()
-                .any(|s| s.as_u64() == Some(k as u64))
-        };
+        let slips = |k: usize| list(&case, "slip").iter().any(|s| s.as_u64() == Some(k as u64));
         let coatings = layers[..layers.len() - 1]
             .iter()
             .enumerate()
             .map(|(k, layer)| {
                 let made = Layer::new(material(layer)?, value(layer, 0))?;
-                let interface = if slips(k) {
-                    Interface::Frictionless
-                } else {
-                    Interface::Bonded
-                };
+                let interface = if slips(k) { Interface::Frictionless } else { Interface::Bonded };
                 Ok(made.with_interface(interface))
             })
             .collect::<Result<Vec<_>>>()?;
         let body = HalfSpace::new(material(&layers[layers.len() - 1])?, coatings)?;
         let radius = number(&case, "load_radius");
         let rows = list(&case, "rows");
-        let reach = rows
-            .iter()
-            .map(|row| number(row, "r"))
-            .fold(radius, f64::max);
+        let reach = rows.iter().map(|row| number(row, "r")).fold(radius, f64::max);
         let d = radius / 64.0;
         let n = 2 * (1.06 * reach / d) as usize + 1;
         let grid = Grid::new([n, n], [n as f64 * d; 2])?;
@@ -233,26 +207,17 @@ fn disc_on_layers() -> Result<()> {
             }
             inside as f64 / (CUT * CUT) as f64
         });
-        let deepest = rows
-            .iter()
-            .map(|row| number(row, "uz"))
-            .fold(0.0_f64, f64::max);
+        let deepest = rows.iter().map(|row| number(row, "uz")).fold(0.0_f64, f64::max);
         let mut worst = 0.0_f64;
         for row in rows {
             let options = StressOptions {
                 section: Section::Y(0.0),
-                side: if number(row, "side") < 0.0 {
-                    Side::Above
-                } else {
-                    Side::Below
-                },
+                side: if number(row, "side") < 0.0 { Side::Above } else { Side::Below },
                 displacement: true,
                 ..StressOptions::default()
             };
             let field = stress(&body, &grid, &pressure, &[number(row, "z")], &options)?;
-            let Some(displacement) = &field.displacement else {
-                panic!("asked for")
-            };
+            let Some(displacement) = &field.displacement else { panic!("asked for") };
             for (values, name, scale) in [
                 (field.zz(), "szz", 1.0),
                 (field.xz(), "srz", 1.0),

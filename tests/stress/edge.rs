@@ -127,10 +127,7 @@ fn hertz_line_contact() -> Result<()> {
     for (depth, everywhere, far) in [(0.1, 6e-4, 2e-4), (1.0, 5e-4, 3e-5), (3.0, 1e-4, 3e-5)] {
         let (coarse, fine) = (errors(32, depth)?, errors(128, depth)?);
         claim("cylinder-stress", fine[0]);
-        assert!(
-            fine[0] < everywhere && fine[1] < far,
-            "{depth}: {coarse:?} {fine:?}"
-        );
+        assert!(fine[0] < everywhere && fine[1] < far, "{depth}: {coarse:?} {fine:?}");
         assert!(fine[0] < 0.6 * coarse[0], "{depth}: {coarse:?} {fine:?}");
     }
     Ok(())
@@ -184,14 +181,9 @@ fn surface_keeps_the_pressure_and_displacement_of_the_solution() -> Result<()> {
     let (solution, _) = sphere(32)?;
     let options = displaced(sliding(0.25, [3.0, 4.0]));
     let field = solution.stress(&[0.0], Member::Body, &options)?;
-    let alone = StressOptions {
-        friction: 0.0,
-        ..options
-    };
+    let alone = StressOptions { friction: 0.0, ..options };
     let alone = solution.stress(&[0.0], Member::Body, &alone)?;
-    let Some(displacement) = &alone.displacement else {
-        panic!("asked for")
-    };
+    let Some(displacement) = &alone.displacement else { panic!("asked for") };
     let largest = solution.displacement.fold(0.0_f64, |m, u| m.max(*u));
     for ((i, j), p) in solution.pressure.indexed_iter() {
         for (k, factor) in [(2, 1.0), (4, 0.2), (5, 0.15)] {

@@ -14,9 +14,7 @@ use crate::support::stresses::{displaced, sliding};
 fn smooth(grid: &Grid) -> Array2<f64> {
     let bell = |t: f64| (1.0 - t * t).max(0.0).powi(3);
     let (x, y) = (grid.x(), grid.y());
-    Array2::from_shape_fn((x.len(), y.len()), |(i, j)| {
-        bell((x[i] - 1.6) / 1.5) * bell(y[j] / 1.5)
-    })
+    Array2::from_shape_fn((x.len(), y.len()), |(i, j)| bell((x[i] - 1.6) / 1.5) * bell(y[j] / 1.5))
 }
 
 /// Stress of a body with a free end at x = 0, on cells of side 1/n over |y| ≤ 2 and 4 along x. The first row of cells
@@ -32,8 +30,7 @@ fn near_end(n: usize, on_face: bool, depths: &[f64], poisson: f64) -> Result<Str
 fn largest(field: &Array3<f64>, depth: usize, rows: Range<usize>) -> f64 {
     let here = field.index_axis(Axis(0), depth);
     let rows = here.rows().into_iter().skip(rows.start).take(rows.len());
-    rows.flatten()
-        .fold(0.0, |most: f64, value| most.max(value.abs()))
+    rows.flatten().fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
 /// The two half-spaces leave no shear on the face by symmetry. Their normal tractions, each 0.1 to 0.4 of the peak,
@@ -44,17 +41,11 @@ fn the_face_is_free_of_traction() -> Result<()> {
         let n = 8;
         let depths = [0.25, 1.0, 2.0, 4.0, 8.0, 16.0].map(|cells| cells / n as f64);
         let field = near_end(n, true, &depths, poisson)?;
-        let uncertainty = field
-            .uncertainty
-            .as_ref()
-            .expect("the ends have an estimate");
+        let uncertainty = field.uncertainty.as_ref().expect("the ends have an estimate");
         for (k, depth) in depths.iter().enumerate() {
             let [normal, along_y, along_z] =
                 [field.xx(), field.xy(), field.xz()].map(|component| largest(component, k, 0..1));
-            assert!(
-                along_y < 1e-13 && along_z < 1e-13,
-                "{along_y:e} {along_z:e}"
-            );
+            assert!(along_y < 1e-13 && along_z < 1e-13, "{along_y:e} {along_z:e}");
             let error = if k == 0 { uncertainty[0] } else { 1e-3 };
             assert!(normal < error, "{poisson} {depth}: {normal}");
             assert!(normal < uncertainty[k] && uncertainty[k] < 0.05);
@@ -116,10 +107,7 @@ fn a_far_end_changes_nothing() -> Result<()> {
     let ended = HalfSpace::from(steel).with_ends([Some(-20.0), None])?;
     let ended = StressPlan::plan(&ended, &grid, &pressure, None)?;
     let options = StressOptions::default();
-    let (whole, ended) = (
-        whole.stress(&[0.5], &options)?,
-        ended.stress(&[0.5], &options)?,
-    );
+    let (whole, ended) = (whole.stress(&[0.5], &options)?, ended.stress(&[0.5], &options)?);
     for (whole, ended) in whole.components.iter().zip(&ended.components) {
         let apart = (whole - ended).fold(0.0, |worst: f64, d| worst.max(d.abs()));
         // The image's force, 2.7, at a distance of 40: 2.7/2π/40² and the excess of about the same.
@@ -143,24 +131,13 @@ fn sections_and_mirrors_agree() -> Result<()> {
     let (depth, [i, j]) = (0.3, [5, 13]);
     let plane = solution.stress(&[depth], Member::Body, &planes)?;
     let at = [grid.x()[i], grid.y()[j]];
-    let point = StressOptions {
-        section: Section::Axis(at),
-        ..planes.clone()
-    };
+    let point = StressOptions { section: Section::Axis(at), ..planes.clone() };
     let point = solution.stress(&[depth], Member::Body, &point)?;
-    let line = StressOptions {
-        section: Section::Y(at[1]),
-        ..planes.clone()
-    };
+    let line = StressOptions { section: Section::Y(at[1]), ..planes.clone() };
     let line = solution.stress(&[depth], Member::Body, &line)?;
     let both = |stress: &Stress, at: [usize; 3]| -> Vec<f64> {
         let displacements = stress.displacement.iter().flatten();
-        stress
-            .components
-            .iter()
-            .chain(displacements)
-            .map(|c| c[at])
-            .collect()
+        stress.components.iter().chain(displacements).map(|c| c[at]).collect()
     };
     let expected = both(&plane, [0, i, j]);
     for found in [both(&point, [0, 0, 0]), both(&line, [0, i, 0])] {
@@ -176,18 +153,13 @@ fn sections_and_mirrors_agree() -> Result<()> {
     assert!(ratio < 1.0 && ratio > 0.98, "{ratio}");
 
     let other = Sphere::new(20.0)?.shifted(-1.0, 0.0)?;
-    let mirrored = solved(
-        steel.with_ends([None, Some(0.0)])?,
-        grid.centered_at([-1.5, 0.0])?,
-        &other,
-    )?;
+    let mirrored =
+        solved(steel.with_ends([None, Some(0.0)])?, grid.centered_at([-1.5, 0.0])?, &other)?;
     let mirrored = mirrored.stress(&[depth], Member::Body, &planes)?;
     // xy, xz and u_x change their sign.
     let signs = [1.0, 1.0, 1.0, -1.0, 1.0, -1.0, -1.0, 1.0, 1.0];
-    for ((found, expected), sign) in both(&mirrored, [0, 23 - i, j])
-        .iter()
-        .zip(&expected)
-        .zip(signs)
+    for ((found, expected), sign) in
+        both(&mirrored, [0, 23 - i, j]).iter().zip(&expected).zip(signs)
     {
         assert!((sign * found - expected).abs() < 1e-7, "{found} {expected}");
     }
@@ -202,9 +174,6 @@ fn friction_at_an_end_is_warned_of() -> Result<()> {
     let plan = StressPlan::plan(&body, &grid, &smooth(&grid), None)?;
     let sliding = sliding(0.1, [0.0, 1.0]);
     let warnings = plan.stress(&[2.0], &sliding)?.warnings();
-    assert!(
-        warnings.iter().any(|w| w.contains("friction")),
-        "{warnings:?}"
-    );
+    assert!(warnings.iter().any(|w| w.contains("friction")), "{warnings:?}");
     Ok(())
 }

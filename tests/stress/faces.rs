@@ -108,15 +108,10 @@ fn the_load_is_seen_from_the_face_itself() -> Result<()> {
     let whole = StressPlan::plan(&body, &shifted, &block(&shifted), None)?;
     let ended = body.with_ends([Some(0.0), None])?;
     let ended = StressPlan::plan(&ended, &grid, &block(&grid), None)?;
-    let sliding = StressOptions {
-        friction: 0.3,
-        direction: Some([1.0, 2.0]),
-        ..at(Section::X(0.0))
-    };
-    let (expected, found) = (
-        whole.stress(&[0.5, 3.0], &sliding)?,
-        ended.stress(&[0.5, 3.0], &sliding)?,
-    );
+    let sliding =
+        StressOptions { friction: 0.3, direction: Some([1.0, 2.0]), ..at(Section::X(0.0)) };
+    let (expected, found) =
+        (whole.stress(&[0.5, 3.0], &sliding)?, ended.stress(&[0.5, 3.0], &sliding)?);
     for (found, expected) in fields(&found).into_iter().zip(fields(&expected)) {
         let most = expected.fold(0.0, |most: f64, v| most.max(v.abs()));
         let apart = (found - expected).fold(0.0, |most: f64, d| most.max(d.abs()));
@@ -157,41 +152,23 @@ fn there_is_nothing_beyond_an_end() -> Result<()> {
         assert!(peak.value > 0.0 && (0.0..2.0).contains(&peak.position[0]));
         assert_eq!(field, field.clone());
     }
-    for (x, beyond) in [
-        (-0.01, true),
-        (0.0, false),
-        (0.06, false),
-        (2.0, false),
-        (2.01, true),
-    ] {
+    for (x, beyond) in [(-0.01, true), (0.0, false), (0.06, false), (2.0, false), (2.01, true)] {
         for section in [Section::X(x), Section::Axis([x, 0.1])] {
             let field = plan.stress(&depths, &at(section))?;
             let all = fields(&field).into_iter().flatten();
             let errors = field.uncertainty.iter().flatten();
-            assert!(
-                all.chain(errors).all(|value| value.is_nan() == beyond),
-                "{section:?}"
-            );
+            assert!(all.chain(errors).all(|value| value.is_nan() == beyond), "{section:?}");
             assert!(field.warnings().is_empty() || !beyond);
             assert_eq!(field.peak(field.zz()).is_none(), beyond);
         }
     }
     let summary = plan.summary(&Strengths::default(), &StressOptions::default())?;
-    let peaks = summary
-        .layers
-        .iter()
-        .flat_map(|l| [l.von_mises, l.tension, l.shear]);
+    let peaks = summary.layers.iter().flat_map(|l| [l.von_mises, l.tension, l.shear]);
     let tractions = summary.interfaces.iter();
-    let tractions = tractions.flat_map(|f| {
-        [f.tension, f.compression, f.shear]
-            .into_iter()
-            .chain(f.jump)
-    });
+    let tractions =
+        tractions.flat_map(|f| [f.tension, f.compression, f.shear].into_iter().chain(f.jump));
     for peak in peaks.chain(tractions) {
-        assert!(
-            peak.value.is_finite() && (0.0..2.0).contains(&peak.position[0]),
-            "{peak:?}"
-        );
+        assert!(peak.value.is_finite() && (0.0..2.0).contains(&peak.position[0]), "{peak:?}");
     }
 
     let body = HalfSpace::from(Elastic::new(1.0, 0.3)?).with_ends([None, Some(3.5)])?;
@@ -258,9 +235,7 @@ fn pressure_beyond_an_end_and_grids_that_repeat_are_refused() -> Result<()> {
     let grid = Grid::new([8, 8], [4.0, 4.0])?.centered_at([2.0, 0.0])?;
     let refused = |grid: &Grid, pressure: &Array2<f64>| {
         let plan = StressPlan::plan(&body, grid, pressure, None);
-        plan.err()
-            .map(|error| error.to_string())
-            .unwrap_or_default()
+        plan.err().map(|error| error.to_string()).unwrap_or_default()
     };
     assert!(refused(&grid, &Array2::ones((8, 8))).contains("beyond the free ends"));
     let zeros = Array2::zeros((8, 8));

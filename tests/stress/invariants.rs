@@ -28,27 +28,14 @@ fn bodies() -> Result<Vec<(&'static str, HalfSpace)>> {
             "three",
             HalfSpace::new(
                 base,
-                [
-                    layer(20.0, 0.2, 0.3)?,
-                    layer(0.3, 0.4, 0.5)?,
-                    layer(2.0, 0.0, 4.0)?,
-                ],
+                [layer(20.0, 0.2, 0.3)?, layer(0.3, 0.4, 0.5)?, layer(2.0, 0.0, 4.0)?],
             )?,
         ),
-        (
-            "incompressible",
-            HalfSpace::new(Elastic::new(1.0, 0.5)?, [layer(5.0, 0.5, 2.0)?])?,
-        ),
-        (
-            "rigid base",
-            HalfSpace::new(Substrate::Rigid, [layer(1.0, 0.3, 2.5)?])?,
-        ),
+        ("incompressible", HalfSpace::new(Elastic::new(1.0, 0.5)?, [layer(5.0, 0.5, 2.0)?])?),
+        ("rigid base", HalfSpace::new(Substrate::Rigid, [layer(1.0, 0.3, 2.5)?])?),
         (
             "soft on rigid",
-            HalfSpace::new(
-                Substrate::Rigid,
-                [layer(5.0, 0.3, 0.7)?, layer(1.0, 0.49, 1.5)?],
-            )?,
+            HalfSpace::new(Substrate::Rigid, [layer(5.0, 0.3, 0.7)?, layer(1.0, 0.49, 1.5)?])?,
         ),
     ])
 }
@@ -57,18 +44,12 @@ fn slipping() -> Result<Vec<(&'static str, HalfSpace)>> {
     let base = Elastic::new(1.0, 0.3)?;
     let slips = Interface::Frictionless;
     Ok(vec![
-        (
-            "slipping",
-            HalfSpace::new(base, [layer(4.0, 0.25, 2.0)?.with_interface(slips)])?,
-        ),
+        ("slipping", HalfSpace::new(base, [layer(4.0, 0.25, 2.0)?.with_interface(slips)])?),
         (
             "slipping on rigid",
             HalfSpace::new(
                 Substrate::Rigid,
-                [
-                    layer(4.0, 0.25, 0.5)?,
-                    layer(1.0, 0.3, 1.0)?.with_interface(slips),
-                ],
+                [layer(4.0, 0.25, 0.5)?, layer(1.0, 0.3, 1.0)?.with_interface(slips)],
             )?,
         ),
     ])
@@ -110,9 +91,7 @@ fn differences(one: &Stress, other: &Stress) -> Vec<f64> {
 
 fn every_body() -> Result<Vec<(&'static str, HalfSpace, f64)>> {
     let bonded = bodies()?.into_iter().map(|(name, body)| (name, body, 0.5));
-    let slipping = slipping()?
-        .into_iter()
-        .map(|(name, body)| (name, body, 0.0));
+    let slipping = slipping()?.into_iter().map(|(name, body)| (name, body, 0.0));
     Ok(bonded.chain(slipping).collect())
 }
 
@@ -199,10 +178,7 @@ fn tractions_and_displacements_are_continuous() -> Result<()> {
         for (layer, depth) in body.layers().iter().zip(body.interfaces()) {
             let slips = layer.interface() == Interface::Frictionless;
             let side = |side| {
-                let options = StressOptions {
-                    side,
-                    ..options(friction)
-                };
+                let options = StressOptions { side, ..options(friction) };
                 stress(&body, &grid, &pressure, &[depth], &options)
             };
             let above = side(Side::Above)?;
@@ -226,11 +202,7 @@ fn tractions_and_displacements_are_continuous() -> Result<()> {
                     _ => (false, 0.0),
                 };
                 let jump = largest(&(a - b));
-                assert!(
-                    !continuous || jump < tolerance,
-                    "{name} {}: {jump:.1e}",
-                    NAMES[k]
-                );
+                assert!(!continuous || jump < tolerance, "{name} {}: {jump:.1e}", NAMES[k]);
             }
         }
     }
@@ -240,10 +212,7 @@ fn tractions_and_displacements_are_continuous() -> Result<()> {
 /// A larger domain changes nothing: there are no periodic images.
 #[test]
 fn a_larger_domain_changes_nothing() -> Result<()> {
-    let (small, large) = (
-        Grid::new([24, 15], [24.0, 9.0])?,
-        Grid::new([48, 31], [48.0, 18.6])?,
-    );
+    let (small, large) = (Grid::new([24, 15], [24.0, 9.0])?, Grid::new([48, 31], [48.0, 18.6])?);
     let pressure = crate::support::random::uniform([24, 15], 4);
     let mut padded = Array2::zeros((48, 31));
     for ((i, j), p) in pressure.indexed_iter() {
@@ -285,11 +254,7 @@ fn splitting_a_layer_changes_nothing() -> Result<()> {
     let pressure = crate::support::random::uniform([16, 10], 6);
     for base in [Substrate::from(Elastic::new(1.0, 0.3)?), Substrate::Rigid] {
         let whole = HalfSpace::new(base, [layer(5.0, 0.2, 0.6)?, layer(0.3, 0.45, 2.0)?])?;
-        let parts = [
-            layer(5.0, 0.2, 0.1)?,
-            layer(5.0, 0.2, 0.5)?,
-            layer(0.3, 0.45, 0.7)?,
-        ];
+        let parts = [layer(5.0, 0.2, 0.1)?, layer(5.0, 0.2, 0.5)?, layer(0.3, 0.45, 0.7)?];
         let split = HalfSpace::new(base, parts.into_iter().chain([layer(0.3, 0.45, 1.3)?]))?;
         let depths = [0.05, 0.1, 0.3, 0.6, 1.0, 1.3, 2.2];
         let one = stress(&whole, &grid, &pressure, &depths, &options(0.5))?;
@@ -329,17 +294,11 @@ fn line_contact_is_the_limit_of_a_long_rectangle() -> Result<()> {
 fn axes_can_be_exchanged() -> Result<()> {
     const EXCHANGED: [usize; 9] = [1, 0, 2, 3, 5, 4, 7, 6, 8];
     let pressure = crate::support::random::uniform([14, 9], 8);
-    let (grid, turned) = (
-        Grid::new([14, 9], [14.0, 5.0])?,
-        Grid::new([9, 14], [5.0, 14.0])?,
-    );
+    let (grid, turned) = (Grid::new([14, 9], [14.0, 5.0])?, Grid::new([9, 14], [5.0, 14.0])?);
     let body = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer(4.0, 0.2, 0.8)?])?;
     let depths = depths(&body);
     let one = stress(&body, &grid, &pressure, &depths, &options(0.5))?;
-    let turned_options = StressOptions {
-        direction: Some([0.6, 0.8]),
-        ..options(0.5)
-    };
+    let turned_options = StressOptions { direction: Some([0.6, 0.8]), ..options(0.5) };
     let transposed = pressure.t().to_owned();
     let other = stress(&body, &turned, &transposed, &depths, &turned_options)?;
     for (k, from) in EXCHANGED.into_iter().enumerate() {
@@ -367,10 +326,7 @@ fn nothing_and_one_cell_loaded() -> Result<()> {
             }
             pressure[last] = 2.0;
             let one = at(&pressure)?;
-            assert!(
-                (one.zz()[[0, last[0], last[1]]] + 2.0).abs() < 1e-12,
-                "{name}"
-            );
+            assert!((one.zz()[[0, last[0], last[1]]] + 2.0).abs() < 1e-12, "{name}");
             assert!(one.zz()[[0, 0, 0]].abs() < 1e-12, "{name}");
             assert!(one.zz()[[1, 0, 0]].abs() < 2.0, "{name}");
             pressure[last] = 0.0;

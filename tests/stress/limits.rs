@@ -44,10 +44,7 @@ fn deep_planes_are_those_of_a_point_force() -> Result<()> {
                         true => 2.0 * solution.load() / (std::f64::consts::PI * z),
                         false => 1.5 * solution.load() / (std::f64::consts::PI * z * z),
                     };
-                    assert!(
-                        (zz / per_area + 1.0).abs() < 1e-3,
-                        "{z:e}: {zz:e} {per_area:e}"
-                    );
+                    assert!((zz / per_area + 1.0).abs() < 1e-3, "{z:e}: {zz:e} {per_area:e}");
                 }
                 for z in [1e61, 1e154, 1e155, 1e300] {
                     let refused = solution.stress(&[z], Member::Body, &options);
@@ -87,10 +84,7 @@ fn lengths_and_moduli_out_of_range_are_refused() -> Result<()> {
         let grid = Grid::new([4, 4], [side, side])?;
         let pressure = Array2::ones((4, 4));
         let found = stress(body, &grid, &pressure, &[0.0], &StressOptions::default());
-        Ok(found
-            .err()
-            .map(|error| error.to_string())
-            .unwrap_or_default())
+        Ok(found.err().map(|error| error.to_string()).unwrap_or_default())
     };
     for side in [1e-99, 1e-80, 1e80, 1e99] {
         assert!(refused(&material.into(), side)?.contains("between 1e-60 and 1e60"));
@@ -115,18 +109,14 @@ fn layers_thinner_than_rounding_have_a_summary() -> Result<()> {
         let body = HalfSpace::new(substrate, layers)?;
         let solution = press(&body, Grid::new([16, 16], [0.4, 0.4])?)?;
         let (strengths, options) = (Strengths::default(), StressOptions::default());
-        let StressSummary {
-            layers, interfaces, ..
-        } = solution.stress_summary(Member::Body, &strengths, &options)?;
+        let StressSummary { layers, interfaces, .. } =
+            solution.stress_summary(Member::Body, &strengths, &options)?;
         for (number, layer) in layers.iter().enumerate() {
             assert_eq!(layer.layer, number);
             for peak in [&layer.von_mises, &layer.tension, &layer.shear] {
                 assert!(peak.value.is_finite());
                 let z = peak.position[2];
-                assert!(
-                    (layer.depths[0]..=layer.depths[1]).contains(&z),
-                    "{layer:?}"
-                );
+                assert!((layer.depths[0]..=layer.depths[1]).contains(&z), "{layer:?}");
             }
         }
         assert_eq!(interfaces.len(), 3);
@@ -134,9 +124,7 @@ fn layers_thinner_than_rounding_have_a_summary() -> Result<()> {
             assert!(face.shear.value.is_finite() && face.compression.value < 0.0);
         }
         // The two faces of the thin layer are at one depth, and carry one traction.
-        let [_, upper, lower] = &interfaces[..] else {
-            panic!("three interfaces")
-        };
+        let [_, upper, lower] = &interfaces[..] else { panic!("three interfaces") };
         assert!((upper.shear.value / lower.shear.value - 1.0).abs() < 1e-6);
         assert_eq!(interfaces[2].jump.is_none(), substrate == Substrate::Rigid);
     }

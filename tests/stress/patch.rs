@@ -12,10 +12,7 @@ use serde_json::Value;
 fn field(case: &Value, friction: f64) -> Result<Stress> {
     let layers = list(case, "layers");
     let material = |layer: &Value| {
-        Elastic::new(
-            layer[1].as_f64().unwrap_or(f64::NAN),
-            layer[2].as_f64().unwrap_or(f64::NAN),
-        )
+        Elastic::new(layer[1].as_f64().unwrap_or(f64::NAN), layer[2].as_f64().unwrap_or(f64::NAN))
     };
     let coatings = layers[..layers.len() - 1]
         .iter()
@@ -28,21 +25,12 @@ fn field(case: &Value, friction: f64) -> Result<Stress> {
     let grid = Grid::new([n, n], [n as f64 / 20.0; 2])?;
     let (x, y) = (grid.x(), grid.y());
     let inside = |v: f64| v.abs() < 0.5;
-    let pressure = Array2::from_shape_fn((n, n), |(i, j)| {
-        f64::from(u8::from(inside(x[i]) && inside(y[j])))
-    });
+    let pressure =
+        Array2::from_shape_fn((n, n), |(i, j)| f64::from(u8::from(inside(x[i]) && inside(y[j]))));
     let options = StressOptions {
-        side: if number(case, "side") < 0.0 {
-            Side::Above
-        } else {
-            Side::Below
-        },
+        side: if number(case, "side") < 0.0 { Side::Above } else { Side::Below },
         friction,
-        direction: Some(if case["load"] == "qy" {
-            [0.0, 1.0]
-        } else {
-            [1.0, 0.0]
-        }),
+        direction: Some(if case["load"] == "qy" { [0.0, 1.0] } else { [1.0, 0.0] }),
         displacement: true,
         ..StressOptions::default()
     };
@@ -51,14 +39,8 @@ fn field(case: &Value, friction: f64) -> Result<Stress> {
 
 /// Value at (x, y), a corner of cells, by interpolation of sixth order along both directions.
 fn at(field: &Stress, k: usize, [x, y]: [f64; 2]) -> f64 {
-    const WEIGHTS: [f64; 6] = [
-        3.0 / 256.0,
-        -25.0 / 256.0,
-        150.0 / 256.0,
-        150.0 / 256.0,
-        -25.0 / 256.0,
-        3.0 / 256.0,
-    ];
+    const WEIGHTS: [f64; 6] =
+        [3.0 / 256.0, -25.0 / 256.0, 150.0 / 256.0, 150.0 / 256.0, -25.0 / 256.0, 3.0 / 256.0];
     let values = match (&field.displacement, k) {
         (Some(displacement), 6..) => &displacement[k - 6],
         _ => &field.components[k],
@@ -90,19 +72,12 @@ fn all_components_match_the_integrals() -> Result<()> {
         let point = [number(&case, "x"), number(&case, "y")];
         let pressure = field(&case, 0.0)?;
         let loaded = case["load"] == "p";
-        let sliding = if loaded {
-            None
-        } else {
-            Some(field(&case, 1.0)?)
-        };
+        let sliding = if loaded { None } else { Some(field(&case, 1.0)?) };
         for (k, name) in NAMES.iter().enumerate() {
             let alone = at(&pressure, k, point);
             let value = sliding.as_ref().map_or(alone, |s| at(s, k, point) - alone);
             let expected = number(&case, name);
-            println!(
-                "{} at {point:?}, z {}: {name} {value}",
-                case["load"], case["z"]
-            );
+            println!("{} at {point:?}, z {}: {name} {value}", case["load"], case["z"]);
             claim("patch", value - expected);
         }
     }

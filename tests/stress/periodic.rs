@@ -25,17 +25,13 @@ fn sliding(direction: [f64; 2]) -> StressOptions {
 /// Largest difference of any component.
 fn difference(a: &Stress, b: &Stress) -> f64 {
     let pairs = a.components.iter().zip(&b.components);
-    pairs.fold(0.0, |most, (a, b)| {
-        (a - b).iter().fold(most, |most: f64, d| most.max(d.abs()))
-    })
+    pairs.fold(0.0, |most, (a, b)| (a - b).iter().fold(most, |most: f64, d| most.max(d.abs())))
 }
 
 /// Values of a grid, moved by whole cells along both directions.
 fn rolled(values: &Array2<f64>, by: [usize; 2]) -> Array2<f64> {
     let [nx, ny] = [values.nrows(), values.ncols()];
-    Array2::from_shape_fn((nx, ny), |(i, j)| {
-        values[[(i + nx - by[0]) % nx, (j + ny - by[1]) % ny]]
-    })
+    Array2::from_shape_fn((nx, ny), |(i, j)| values[[(i + nx - by[0]) % nx, (j + ny - by[1]) % ny]])
 }
 
 /// A pressure that is moved has the same stress, moved: sums over images are made once, so that only the rounding of
@@ -61,10 +57,7 @@ fn shifts_move_the_stress_and_each_depth_bears_the_load() -> Result<()> {
         for (component, due) in [(2, -mean), (5, -0.18 * mean), (4, -0.24 * mean)] {
             let plane = here.components[component].index_axis(Axis(0), k);
             let found = plane.sum() / 280.0;
-            assert!(
-                (found - due).abs() < 1e-12,
-                "{k} {component}: {found} {due}"
-            );
+            assert!((found - due).abs() < 1e-12, "{k} {component}: {found} {due}");
         }
     }
     // Far below, nothing but the mean is left: waves of 20 have decayed by e^{−2π 30/20} (1 + …) < 2e-3.
@@ -77,15 +70,8 @@ fn shifts_move_the_stress_and_each_depth_bears_the_load() -> Result<()> {
 #[test]
 fn strips_along_the_period_are_line_contacts() -> Result<()> {
     let body = coated()?;
-    let profile: Vec<f64> = (0..24)
-        .map(|j| {
-            if (6..15).contains(&j) {
-                1.0 + 0.1 * j as f64
-            } else {
-                0.0
-            }
-        })
-        .collect();
+    let profile: Vec<f64> =
+        (0..24).map(|j| if (6..15).contains(&j) { 1.0 + 0.1 * j as f64 } else { 0.0 }).collect();
     let line = Grid::line(24, 12.0)?;
     let on_line = Array2::from_shape_fn((1, 24), |(_, j)| profile[j]);
     let depths = [0.0, 0.2, 1.5, 5.0];
@@ -121,31 +107,14 @@ fn waves_along_the_period_are_the_same_whether_the_other_direction_repeats() -> 
     let body = coated()?;
     let shape = [36, 12];
     let wave = |j: usize| (2.0 * PI * (j as f64 + 0.5) / 6.0).cos();
-    let pressure = Array2::from_shape_fn(
-        shape,
-        |(i, j)| if (16..20).contains(&i) { wave(j) } else { 0.0 },
-    );
+    let pressure =
+        Array2::from_shape_fn(shape, |(i, j)| if (16..20).contains(&i) { wave(j) } else { 0.0 });
     let grid = Grid::new(shape, [36.0, 12.0])?;
     let depths = [0.3, 1.5, 3.0];
-    let one = stress(
-        &body,
-        &grid.periodic([false, true])?,
-        &pressure,
-        &depths,
-        &sliding([1.0, 0.0]),
-    )?;
-    let both = stress(
-        &body,
-        &grid.periodic([true; 2])?,
-        &pressure,
-        &depths,
-        &sliding([1.0, 0.0]),
-    )?;
-    assert!(
-        difference(&one, &both) < 2e-6,
-        "{:e}",
-        difference(&one, &both)
-    );
+    let one =
+        stress(&body, &grid.periodic([false, true])?, &pressure, &depths, &sliding([1.0, 0.0]))?;
+    let both = stress(&body, &grid.periodic([true; 2])?, &pressure, &depths, &sliding([1.0, 0.0]))?;
+    assert!(difference(&one, &both) < 2e-6, "{:e}", difference(&one, &both));
     assert!(one.zz().iter().any(|zz| zz.abs() > 0.1));
     Ok(())
 }
@@ -163,32 +132,20 @@ fn a_lone_patch_has_the_stress_of_an_open_grid() -> Result<()> {
     let depths = [0.5, 2.0];
     let options = StressOptions::default();
     let open = stress(&body, &grid, &pressure, &depths, &options)?;
-    let periodic = stress(
-        &body,
-        &grid.periodic([true; 2])?,
-        &pressure,
-        &depths,
-        &options,
-    )?;
+    let periodic = stress(&body, &grid.periodic([true; 2])?, &pressure, &depths, &options)?;
     let mean = 16.0 / 14400.0;
     let difference = difference(&open, &periodic);
     assert!(difference < 3.0 * mean, "{difference:e} {mean:e}");
     let at = [1, 60, 60];
     let change = open.zz()[at] - periodic.zz()[at];
-    assert!(
-        change.abs() < 1e-2 * mean && open.zz()[at] < -0.5,
-        "{change:e}"
-    );
+    assert!(change.abs() < 1e-2 * mean && open.zz()[at] < -0.5, "{change:e}");
     Ok(())
 }
 
 fn map(grid: &Grid, by: [usize; 2]) -> Result<HeightMap> {
     let [nx, ny] = grid.shape();
     let heights = Array2::from_shape_fn((nx, ny), |(i, j)| {
-        let (x, y) = (
-            2.0 * PI * i as f64 / nx as f64,
-            2.0 * PI * j as f64 / ny as f64,
-        );
+        let (x, y) = (2.0 * PI * i as f64 / nx as f64, 2.0 * PI * j as f64 / ny as f64);
         0.02 * (x.cos() + (y + 0.4).cos() + 0.4 * (2.0 * x + y).cos())
     });
     HeightMap::new(rolled(&heights, by), grid.spacing())?.periodic([true; 2])
@@ -202,10 +159,7 @@ fn solved(by: [usize; 2], threads: usize) -> Result<Solution> {
         ..Setup::default()
     };
     let contact = Contact::plan(&coated()?, grid, setup)?;
-    let options = Options {
-        tolerance: 1e-11,
-        ..Options::default()
-    };
+    let options = Options { tolerance: 1e-11, ..Options::default() };
     contact.solve(&map(&grid, by)?, &Motion::load(0.2), &options)
 }
 
@@ -262,10 +216,7 @@ fn threads_change_no_bit() -> Result<()> {
     let fields: Vec<Stress> = [1, 2, 4]
         .into_iter()
         .map(|threads| {
-            let options = StressOptions {
-                threads: Some(threads),
-                ..sliding([0.0, 1.0])
-            };
+            let options = StressOptions { threads: Some(threads), ..sliding([0.0, 1.0]) };
             solved([0, 0], threads)?.stress(&[0.1, 1.0], Member::Body, &options)
         })
         .collect::<Result<_>>()?;

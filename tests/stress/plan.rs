@@ -32,11 +32,7 @@ fn solution() -> Result<Solution> {
         ..Setup::default()
     };
     let contact = Contact::plan(coated()?, grid()?, setup)?;
-    contact.solve(
-        &Paraboloid::new(1.2e3, 1e3)?,
-        &Motion::load(1e-3),
-        &Options::default(),
-    )
+    contact.solve(&Paraboloid::new(1.2e3, 1e3)?, &Motion::load(1e-3), &Options::default())
 }
 
 /// Options that need different kernels, fields and sections.
@@ -63,10 +59,7 @@ fn on_threads(count: usize) -> StressOptions {
 }
 
 fn assert_same(field: &Stress, expected: &Stress, options: &StressOptions) {
-    assert!(
-        field == expected && bits(field) == bits(expected),
-        "{options:?}"
-    );
+    assert!(field == expected && bits(field) == bits(expected), "{options:?}");
 }
 
 fn summary(plan: &StressPlan, options: &StressOptions) -> Result<StressSummary> {
@@ -105,17 +98,10 @@ fn a_point_has_the_stress_of_its_plane() -> Result<()> {
     let [x, y] = [solution.grid().x(), solution.grid().y()];
     let [dx, dy] = solution.grid().spacing();
     for options in options() {
-        let plane = StressOptions {
-            section: Section::Plane,
-            ..options.clone()
-        };
+        let plane = StressOptions { section: Section::Plane, ..options.clone() };
         let plane = solution.stress(&DEPTHS, Member::Body, &plane)?;
-        for [i, j, along, across] in [
-            [31, 29, 0, 0],
-            [12, 28, 1, 1],
-            [0, 57, 0, 0],
-            [50, 20, 1, 0],
-        ] {
+        for [i, j, along, across] in [[31, 29, 0, 0], [12, 28, 1, 1], [0, 57, 0, 0], [50, 20, 1, 0]]
+        {
             let [u, v] = [along, across].map(|part| 0.25 * part as f64);
             let point = StressOptions {
                 section: Section::Axis([x[i] + u * dx, y[j] + v * dy]),
@@ -178,15 +164,10 @@ fn threads_share_a_plan() -> Result<()> {
     let evaluate = |options: StressOptions| plan.stress(&DEPTHS, &options);
     let fields: Vec<_> = thread::scope(|scope| {
         let calls = options().map(|options| scope.spawn(move || evaluate(options)));
-        calls
-            .into_iter()
-            .map(thread::ScopedJoinHandle::join)
-            .collect()
+        calls.into_iter().map(thread::ScopedJoinHandle::join).collect()
     });
     for (field, options) in fields.into_iter().zip(options()) {
-        let Ok(field) = field else {
-            panic!("an evaluation panicked")
-        };
+        let Ok(field) = field else { panic!("an evaluation panicked") };
         assert_same(&field?, &plan.stress(&DEPTHS, &options)?, &options);
     }
     Ok(())
@@ -240,10 +221,7 @@ fn bad_input_is_refused() -> Result<()> {
     let layer = Layer::new(Elastic::new(4.0, 0.25)?, 0.2)?.with_interface(Interface::Frictionless);
     let slipping = HalfSpace::new(Elastic::new(1.0, 0.3)?, [layer])?;
     let plan = StressPlan::plan(&slipping, &grid, &Array2::zeros((4, 4)), None)?;
-    let sliding = StressOptions {
-        friction: 0.1,
-        ..StressOptions::default()
-    };
+    let sliding = StressOptions { friction: 0.1, ..StressOptions::default() };
     assert!(plan.stress(&[0.0], &sliding).is_err());
     assert!(summary(&plan, &sliding).is_err());
     assert!(plan.stress(&[-1.0], &StressOptions::default()).is_err());

@@ -24,8 +24,5 @@ pub(crate) fn claim(name: &str, error: f64) {
     }
     let bar = BARS.get(name);
     let bar = bar.unwrap_or_else(|| panic!("docs/claims.json has no claim {name}"));
-    assert!(
-        error.abs() <= *bar,
-        "{name}: {error:.2e}, the bar is {bar:e}"
-    );
+    assert!(error.abs() <= *bar, "{name}: {error:.2e}, the bar is {bar:e}");
 }

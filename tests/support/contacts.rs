@@ -78,11 +78,7 @@ fn body(random: &mut Random, cell: f64) -> Result<(String, HalfSpace)> {
         }
         3 | 4 => {
             let (young, nu) = (random.power(-5.0, -2.0), random.one_of(&[0.49, 0.499, 0.5]));
-            one(
-                "rubber",
-                base.into(),
-                [young, nu, thick(random, [-1.0, 1.0])],
-            )
+            one("rubber", base.into(), [young, nu, thick(random, [-1.0, 1.0])])
         }
         5 | 6 => {
             let nu = random.one_of(&[0.3, 0.45, 0.49, 0.499, 0.5, 0.5]);
@@ -96,10 +92,7 @@ fn body(random: &mut Random, cell: f64) -> Result<(String, HalfSpace)> {
             let below = thick(random, [-1.0, 1.0]);
             let places = format!("{:.2} {:.2}", top / cell, below / cell);
             let layers = [[1.0, 0.3, top], [young, nu, below]];
-            Ok((
-                format!("two layers {young:.0e} {nu} {places}"),
-                stack(base, layers)?,
-            ))
+            Ok((format!("two layers {young:.0e} {nu} {places}"), stack(base, layers)?))
         }
     }
 }
@@ -117,9 +110,7 @@ fn rough(random: &mut Random, shortest: f64, height: f64) -> impl Fn(f64, f64) -
         .collect();
     move |x, y| {
         let waves = waves.iter();
-        let sum: f64 = waves
-            .map(|[kx, ky, phase, a]| a * (kx * x + ky * y + phase).cos())
-            .sum();
+        let sum: f64 = waves.map(|[kx, ky, phase, a]| a * (kx * x + ky * y + phase).cos()).sum();
         height * sum / 4.5
     }
 }
@@ -178,10 +169,7 @@ impl RandomContact {
             2 => ("cylinder", Box::new(Cylinder::new(radius)?.shifted(x, y)?)),
             3 => {
                 let (flat, crown) = (random.between(0.0, 1.0), radius * random.power(0.0, 1.5));
-                (
-                    "roller",
-                    Box::new(Roller::new(radius, flat, crown)?.shifted(x, y)?),
-                )
+                ("roller", Box::new(Roller::new(radius, flat, crown)?.shifted(x, y)?))
             }
             4 => ("punch", Box::new(FlatPunch::new(width)?.shifted(x, y)?)),
             5 => {
@@ -193,9 +181,7 @@ impl RandomContact {
                 } else {
                     let x: Vec<f64> = (0..9).map(|k| length * (k as f64 / 8.0 - 0.5)).collect();
                     let wave = |x: &f64| (2.0 * x / length).powi(4);
-                    let drop = x
-                        .iter()
-                        .map(|x| depth * (wave(x) + random.between(0.0, 0.1)));
+                    let drop = x.iter().map(|x| depth * (wave(x) + random.between(0.0, 0.1)));
                     SampledProfile::new(&x, &drop.collect::<Vec<f64>>())?.into()
                 };
                 let roller = Roller::with_profile(radius, profile)?;
@@ -224,18 +210,9 @@ impl RandomContact {
                 ("smooth map", Box::new(FlatPunch::new(9.0)?))
             }
         };
-        let made = Self {
-            name: String::new(),
-            body,
-            grid,
-            shape,
-            measured,
-            motion: Motion::default(),
-        };
-        let lowest = made
-            .shape_on(&grid)?
-            .gaps(&grid)?
-            .fold(f64::INFINITY, |a, b| a.min(*b));
+        let made =
+            Self { name: String::new(), body, grid, shape, measured, motion: Motion::default() };
+        let lowest = made.shape_on(&grid)?.gaps(&grid)?.fold(f64::INFINITY, |a, b| a.min(*b));
         let slope = match random.choice(3) {
             0 => random.between(-0.3, 0.3) * depth,
             _ => 0.0,
@@ -256,11 +233,7 @@ impl RandomContact {
         let how = motion.load.map_or("approach", |_| "load");
         let line = if line { " line" } else { "" };
         let name = format!("{number}: {kind}, {how}, {body_name}, {cells:?}{line}");
-        Ok(Self {
-            name,
-            motion,
-            ..made
-        })
+        Ok(Self { name, motion, ..made })
     }
 
     /// The shape on `grid`, where it is measured if it is a map.

@@ -19,21 +19,13 @@ impl Foundation {
 
 impl Response for Foundation {
     fn normal(&self, alpha: f64) -> f64 {
-        if self.shear > 0.0 {
-            alpha / (self.stiffness + self.shear * alpha * alpha)
-        } else {
-            0.0
-        }
+        if self.shear > 0.0 { alpha / (self.stiffness + self.shear * alpha * alpha) } else { 0.0 }
     }
 
     fn asymptotes(&self) -> Asymptotes {
         Asymptotes {
             long: 0.0,
-            constant: if self.shear > 0.0 {
-                1.0 / self.stiffness
-            } else {
-                0.0
-            },
+            constant: if self.shear > 0.0 { 1.0 / self.stiffness } else { 0.0 },
             short: 0.0,
         }
     }
@@ -43,11 +35,7 @@ impl Response for Foundation {
     }
 
     fn local(&self) -> f64 {
-        if self.shear > 0.0 {
-            0.0
-        } else {
-            1.0 / self.stiffness
-        }
+        if self.shear > 0.0 { 0.0 } else { 1.0 / self.stiffness }
     }
 }
 

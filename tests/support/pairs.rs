@@ -41,10 +41,7 @@ pub(crate) fn equal(body: impl Into<HalfSpace>, grid: Grid) -> Result<Contact> {
 /// Two equal bodies with the shear modulus 1, on a square grid over which a contact of radius 1 takes 83 %.
 pub(crate) fn pair(poisson: f64, cells: usize) -> Result<Contact> {
     let width = 2.0 / 0.83;
-    equal(
-        material(poisson)?,
-        Grid::new([cells, cells], [width, width])?,
-    )
+    equal(material(poisson)?, Grid::new([cells, cells], [width, width])?)
 }
 
 /// A coated body on another one, which couples pressure and tractions.
@@ -55,10 +52,7 @@ pub(crate) fn unlike(cells: usize, width: f64) -> Result<Contact> {
 
 /// Options with this tolerance.
 pub(crate) fn precise(tolerance: f64) -> FrictionOptions {
-    FrictionOptions {
-        tolerance,
-        ..FrictionOptions::default()
-    }
+    FrictionOptions { tolerance, ..FrictionOptions::default() }
 }
 
 /// The ball after a single step, which converges.

@@ -21,11 +21,7 @@ impl Rings {
             (0..count).map(|k| disc(k + 1) - disc(k)).collect()
         };
         let influence = middles.iter().map(row).collect();
-        Self {
-            width,
-            middles,
-            influence,
-        }
+        Self { width, middles, influence }
     }
 
     fn area(&self, k: usize) -> f64 {
@@ -51,10 +47,8 @@ impl Rings {
                 .iter()
                 .map(|&i| {
                     let mut row: Vec<f64> = free.iter().map(|&k| self.influence[i][k]).collect();
-                    let under: f64 = at_limit
-                        .clone()
-                        .map(|k| hardness * self.influence[i][k])
-                        .sum();
+                    let under: f64 =
+                        at_limit.clone().map(|k| hardness * self.influence[i][k]).sum();
                     row.extend([-1.0, -gap(i) - under]);
                     row
                 })

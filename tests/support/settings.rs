@@ -28,51 +28,32 @@ pub(crate) fn stack(
 
 /// Options with this tolerance.
 pub(crate) fn tolerance(tolerance: f64) -> Options {
-    Options {
-        tolerance,
-        ..Options::default()
-    }
+    Options { tolerance, ..Options::default() }
 }
 
 /// Options with this algorithm and tolerance.
 pub(crate) fn by(algorithm: Algorithm, tolerance: f64) -> Options {
-    Options {
-        algorithm,
-        tolerance,
-        ..Options::default()
-    }
+    Options { algorithm, tolerance, ..Options::default() }
 }
 
 /// A plan on so many threads.
 pub(crate) fn threads(threads: usize) -> Setup {
-    Setup {
-        threads: Some(threads),
-        ..Setup::default()
-    }
+    Setup { threads: Some(threads), ..Setup::default() }
 }
 
 /// A plan whose coefficients are made by this method.
 pub(crate) fn converted(method: Method) -> Setup {
-    Setup {
-        method,
-        ..Setup::default()
-    }
+    Setup { method, ..Setup::default() }
 }
 
 /// A plan against another body.
 pub(crate) fn against(counterbody: impl Into<Body>) -> Setup {
-    Setup {
-        counterbody: Some(counterbody.into()),
-        ..Setup::default()
-    }
+    Setup { counterbody: Some(counterbody.into()), ..Setup::default() }
 }
 
 /// A plan against another body, on one thread.
 pub(crate) fn one_thread(counterbody: impl Into<Body>) -> Setup {
-    Setup {
-        threads: Some(1),
-        ..against(counterbody)
-    }
+    Setup { threads: Some(1), ..against(counterbody) }
 }
 
 /// A contact of one body with all defaults.
@@ -105,10 +86,7 @@ pub(crate) trait Controls {
 
 impl Controls for Motion {
     fn with_eccentricity(self, eccentricity: [Option<f64>; 2]) -> Self {
-        Self {
-            eccentricity,
-            ..self
-        }
+        Self { eccentricity, ..self }
     }
 
     fn with_moment(self, moment: [Option<f64>; 2]) -> Self {

@@ -40,10 +40,7 @@ impl Measures {
 /// material (`modulus` E*) has a radius of 1.
 pub(crate) fn solve(body: &HalfSpace, modulus: f64, n: usize, method: Method) -> Result<Solution> {
     let contact = Contact::plan(body, Grid::new([n; 2], [6.0; 2])?, converted(method))?;
-    let (shape, motion) = (
-        Paraboloid::new(RADIUS, RADIUS)?,
-        Motion::load(load(modulus)),
-    );
+    let (shape, motion) = (Paraboloid::new(RADIUS, RADIUS)?, Motion::load(load(modulus)));
     converged(&contact, &shape, &motion, &Options::default())
 }
 
@@ -57,9 +54,7 @@ fn load(modulus: f64) -> f64 {
 /// Numbers of a solution, divided by the scales of the reference material.
 pub(crate) fn measures(solution: &Solution, modulus: f64) -> Result<Measures> {
     let scale = hertz::Point::new(RADIUS, modulus, load(modulus))?;
-    let [x, y] = solution
-        .contact_extent()
-        .map(|[low, high]| 0.5 * (high - low));
+    let [x, y] = solution.contact_extent().map(|[low, high]| 0.5 * (high - low));
     Ok(Measures {
         peak: solution.peak_pressure() / scale.peak_pressure,
         approach: solution.approach / scale.approach,

@@ -5,27 +5,17 @@ use ndarray::Array3;
 
 /// Friction along a direction.
 pub(crate) fn sliding(friction: f64, direction: [f64; 2]) -> StressOptions {
-    StressOptions {
-        friction,
-        direction: Some(direction),
-        ..StressOptions::default()
-    }
+    StressOptions { friction, direction: Some(direction), ..StressOptions::default() }
 }
 
 /// A section.
 pub(crate) fn on(section: Section) -> StressOptions {
-    StressOptions {
-        section,
-        ..StressOptions::default()
-    }
+    StressOptions { section, ..StressOptions::default() }
 }
 
 /// These options, and the displacements.
 pub(crate) fn displaced(options: StressOptions) -> StressOptions {
-    StressOptions {
-        displacement: true,
-        ..options
-    }
+    StressOptions { displacement: true, ..options }
 }
 
 /// The six components, and the displacements where they are known.
@@ -42,7 +32,5 @@ pub(crate) fn bits(stress: &Stress) -> Vec<u64> {
 
 /// Largest magnitude.
 pub(crate) fn largest(field: &Array3<f64>) -> f64 {
-    field
-        .iter()
-        .fold(0.0, |most: f64, value| most.max(value.abs()))
+    field.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
 }

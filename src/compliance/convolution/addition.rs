@@ -77,10 +77,8 @@ impl Addition {
     /// to half the [`length`].
     pub(crate) fn new(rows: Vec<RowWeights>, length: usize, coefficients: &Array2<f64>) -> Self {
         let mut planner = RealFftPlanner::new();
-        let (forward, inverse) = (
-            planner.plan_fft_forward(length),
-            planner.plan_fft_inverse(length),
-        );
+        let (forward, inverse) =
+            (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
         let mut spectrum = Array2::zeros((coefficients.nrows(), length / 2 + 1));
         let (mut even, mut waves) = (vec![0.0; length], vec![ZERO; length / 2 + 1]);
         let mut scratch = vec![ZERO; forward.get_scratch_len()];
@@ -91,9 +89,7 @@ impl Addition {
             }
             let done = forward.process_with_scratch(&mut even, &mut waves, &mut scratch);
             debug_assert!(done.is_ok(), "lengths are those of the plan");
-            to.iter_mut()
-                .zip(&waves)
-                .for_each(|(to, wave)| *to = wave.re);
+            to.iter_mut().zip(&waves).for_each(|(to, wave)| *to = wave.re);
         }
         let nodes = rows.iter().map(|row| row.first + row.weights.len());
         Self {
@@ -111,10 +107,7 @@ impl Addition {
     /// This operator on `rows` of those that it has; the rows may be shorter.
     pub(crate) fn on_rows(&self, rows: Range<usize>) -> Self {
         let first = self.window.start;
-        Self {
-            window: first + rows.start..first + rows.end,
-            ..self.clone()
-        }
+        Self { window: first + rows.start..first + rows.end, ..self.clone() }
     }
 
     fn row(&self, row: usize) -> &RowWeights {
@@ -142,15 +135,10 @@ impl Addition {
         let mut scratch = vec![ZERO; self.inverse.get_scratch_len()];
         let pairs = self.spectrum.axis_iter(Axis(0));
         for (from, mut to) in pairs.zip(coefficients.axis_iter_mut(Axis(0))) {
-            waves
-                .iter_mut()
-                .zip(from)
-                .for_each(|(wave, from)| *wave = from.into());
+            waves.iter_mut().zip(from).for_each(|(wave, from)| *wave = from.into());
             let done = (self.inverse).process_with_scratch(&mut waves, &mut even, &mut scratch);
             debug_assert!(done.is_ok(), "lengths are those of the plan");
-            to.iter_mut()
-                .zip(&even)
-                .for_each(|(to, value)| *to = *value);
+            to.iter_mut().zip(&even).for_each(|(to, value)| *to = *value);
         }
         coefficients
     }
@@ -168,11 +156,7 @@ impl Addition {
         memory.values.resize(self.nodes * length, 0.0);
         memory.spectra.resize(self.nodes * waves, ZERO);
         memory.products.resize(self.nodes * waves, ZERO);
-        let Memory {
-            values,
-            spectra,
-            products,
-        } = memory;
+        let Memory { values, spectra, products } = memory;
         values.fill(0.0);
         for i in occupied {
             let RowWeights { first, weights } = self.row(i);
@@ -258,14 +242,8 @@ mod tests {
     fn rows(count: usize) -> Vec<RowWeights> {
         let row = |i: usize| match i {
             0 => RowWeights::default(),
-            1 => RowWeights {
-                first: 0,
-                weights: vec![1.0],
-            },
-            _ => RowWeights {
-                first: 1,
-                weights: vec![0.5 + i as f64, -0.25],
-            },
+            1 => RowWeights { first: 0, weights: vec![1.0] },
+            _ => RowWeights { first: 1, weights: vec![0.5 + i as f64, -0.25] },
         };
         (0..count).map(row).collect()
     }

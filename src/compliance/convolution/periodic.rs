@@ -80,9 +80,7 @@ fn raised(coefficients: &ArrayRef2<f64>) -> Array2<f64> {
         let lines = coefficients.sum_axis(Axis(1 - axis));
         let n = lines.len() as f64;
         let terms = lines.iter().enumerate();
-        terms
-            .map(|(i, c)| c * (2.0 * PI * i as f64 / n).cos())
-            .sum::<f64>()
+        terms.map(|(i, c)| c * (2.0 * PI * i as f64 / n).cos()).sum::<f64>()
     };
     let mean = coefficients.sum();
     coefficients + (wave(0).max(wave(1)).max(mean) - mean) / cells
@@ -186,10 +184,7 @@ mod tests {
                     let convolution = Convolution::plan(&coefficients, Some(1))?;
                     let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
                     let [smallest, largest] = periodic.transform.extremes(&periodic.spectrum);
-                    assert!(
-                        smallest > 0.0,
-                        "{ratio} {thickness}: {smallest:e} {largest:e}"
-                    );
+                    assert!(smallest > 0.0, "{ratio} {thickness}: {smallest:e} {largest:e}");
                     if smallest < 1e-6 * largest {
                         bounded += 1;
                         continue;

@@ -16,10 +16,7 @@ impl Convolution {
         let memory = &mut workspace.0.fft;
         self.transform.reserve(memory);
         let (rows, scratches) = self.transform.half_spectra(memory);
-        let inwards = Inwards {
-            convolution: self,
-            scratches,
-        };
+        let inwards = Inwards { convolution: self, scratches };
         (inwards, rows)
     }
 
@@ -45,13 +42,9 @@ impl Convolution {
         self.clock.during(|| {
             self.respond(input, occupied.clone(), &mut memory.added);
             let (spectrum, threads) = (&self.spectrum, &self.threads);
-            self.transform
-                .columns_through(spectrum, occupied, &mut memory.fft, threads);
+            self.transform.columns_through(spectrum, occupied, &mut memory.fft, threads);
         });
-        Outwards {
-            convolution: self,
-            memory,
-        }
+        Outwards { convolution: self, memory }
     }
 }
 
@@ -72,9 +65,7 @@ pub(crate) struct Inwards<'a> {
 impl Inwards<'_> {
     /// Transforms consecutive rows of the input into their half spectra `halves`.
     pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
-        let Convolution {
-            transform, clock, ..
-        } = self.convolution;
+        let Convolution { transform, clock, .. } = self.convolution;
         clock.during_part(transform.scratches(), || {
             transform.some_rows_in(values, halves, self.scratches);
         });
@@ -90,9 +81,7 @@ pub(crate) struct Outwards<'a> {
 impl Outwards<'_> {
     /// Computes rows of the output into `values`, from row `first` on and as many as fit.
     pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
-        let Convolution {
-            transform, clock, ..
-        } = self.convolution;
+        let Convolution { transform, clock, .. } = self.convolution;
         clock.during_part(transform.scratches(), || {
             transform.rows_out(first, values, &self.memory.fft);
             self.convolution.add_rows(first, values, &self.memory.added);
@@ -108,9 +97,7 @@ mod tests {
     use crate::error::Result;
 
     fn field([nx, ny]: [usize; 2]) -> Array2<f64> {
-        Array2::from_shape_fn((nx, ny), |(i, j)| {
-            ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0
-        })
+        Array2::from_shape_fn((nx, ny), |(i, j)| ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0)
     }
 
     /// Stages give the bits of `apply`, with groups of rows of any size, on two threads, and where only

@@ -87,10 +87,7 @@ impl Ends {
                 continue;
             };
             let ending = Ending { body, material };
-            for (side, x) in [EndSide::Low, EndSide::High]
-                .into_iter()
-                .zip(half_space.ends())
-            {
+            for (side, x) in [EndSide::Low, EndSide::High].into_iter().zip(half_space.ends()) {
                 if let Some(x) = x {
                     let ending = ending.clone();
                     ends.push(End { side, x, ending });
@@ -102,22 +99,14 @@ impl Ends {
                 plates.push(Plate { ends, ending });
             }
         }
-        Self {
-            ends,
-            plates,
-            bodies: bodies.len(),
-            layered,
-        }
+        Self { ends, plates, bodies: bodies.len(), layered }
     }
 
     /// How the ends are counted on a grid of this `width` along y; `None` where there are none.
     pub(crate) fn form(&self, width: f64) -> Option<FreeEnds> {
         let plates = !self.plates.is_empty();
         let is_short = |plate: &Plate| plate.ends[1] - plate.ends[0] < 0.25 * width;
-        let contrasts = self
-            .ends
-            .iter()
-            .map(|end| layers::contrast(&end.ending.body));
+        let contrasts = self.ends.iter().map(|end| layers::contrast(&end.ending.body));
         let error = match contrasts.reduce(f64::max)? {
             equal if equal <= 1.0 => Some(match plates {
                 true if self.plates.iter().any(is_short) => 3e-3,
@@ -212,10 +201,7 @@ impl Ends {
         let [low, high] = [0.0, finest.size()[0]].map(|part| start(finest) + part);
         let mut groups: BTreeMap<(EndSide, u64), Vec<&End>> = BTreeMap::new();
         for end in &self.ends {
-            groups
-                .entry((end.side, end.x.to_bits()))
-                .or_default()
-                .push(end);
+            groups.entry((end.side, end.x.to_bits())).or_default().push(end);
         }
         // Rollers end alike on both sides.
         let mut known: Vec<(Nodes, f64, Vec<&Ending>, Array2<f64>)> = Vec::new();
@@ -224,11 +210,7 @@ impl Ends {
             let &End { side, x, .. } = ends[0];
             let from_end = |row: usize| {
                 let center = start(grid) + (row as f64 + 0.5) * dx;
-                if side == EndSide::Low {
-                    center - x
-                } else {
-                    x - center
-                }
+                if side == EndSide::Low { center - x } else { x - center }
             };
             let rows: Vec<usize> = match side {
                 EndSide::Low => (0..nx).collect(),
@@ -281,10 +263,7 @@ pub(crate) fn check_carried(counterbody: Option<&Body>, shape: &dyn Surface) -> 
     };
     let [from, to] = Ends::of(&Vec::from_iter(counterbody)).range();
     let within = ROUNDED_PLACE * (high - low);
-    for (end, shape, inside) in [
-        (from, low, from > low + within),
-        (to, high, to < high - within),
-    ] {
+    for (end, shape, inside) in [(from, low, from > low + within), (to, high, to < high - within)] {
         if inside {
             return Err(Error::EndWithinShape { end, shape });
         }

@@ -55,10 +55,7 @@ impl Nodes {
             let first = distances.len();
             if start < NODES_THEMSELVES * spacing || doubled <= PANEL_NODES as f64 {
                 distances.push(at(rows.len()));
-                rows.push(RowWeights {
-                    first,
-                    weights: vec![1.0],
-                });
+                rows.push(RowWeights { first, weights: vec![1.0] });
                 continue;
             }
             let last = rows.len() + doubled as usize - 1;
@@ -68,17 +65,10 @@ impl Nodes {
                 .extend((nodes.iter()).map(|[x, _]| 0.5 * (low + high) + 0.5 * (high - low) * x));
             for row in rows.len()..=last {
                 let t = 2.0 * (at(row) - low) / (high - low) - 1.0;
-                rows.push(RowWeights {
-                    first,
-                    weights: barycentric(&nodes, t),
-                });
+                rows.push(RowWeights { first, weights: barycentric(&nodes, t) });
             }
         }
-        Self {
-            distances,
-            rows,
-            spacing,
-        }
+        Self { distances, rows, spacing }
     }
 
     /// Means of functions of kx over a cell around x = `distance`.
@@ -107,9 +97,7 @@ impl Nodes {
 /// Distances of nodes from an end, and weights of the nodes for `count` rows of cells of length `spacing`, of which the
 /// first has its centre at the distance `nearest`.
 pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, Vec<RowWeights>) {
-    let Nodes {
-        distances, rows, ..
-    } = Nodes::new(nearest, spacing, count);
+    let Nodes { distances, rows, .. } = Nodes::new(nearest, spacing, count);
     (distances, rows)
 }
 
@@ -136,11 +124,7 @@ pub(super) fn coefficients(
     // Means over cells leave amplitudes that fall as k⁻²; the rest is 1e-7 of the integral.
     let fallen = 150.0 / (dx * dx * dy).cbrt();
     let first = nodes.distances[0] - 0.5 * dx;
-    let highest = if first > 1e-9 * dx {
-        fallen.min(VANISHED / first)
-    } else {
-        fallen
-    };
+    let highest = if first > 1e-9 * dx { fallen.min(VANISHED / first) } else { fallen };
     let uniform = UNIFORM / nodes.distances[count - 1];
     let zeroth = [(uniform, 2.0), (2.0 * uniform, -1.0)];
     let waves = along.waves(along.farthest(), highest, &zeroth);
@@ -148,9 +132,8 @@ pub(super) fn coefficients(
 
     let pairs = pair(count - 1, count - 1) + 1;
     let mut amplitudes = Array2::zeros((waves.wavenumbers.len(), pairs));
-    (amplitudes.axis_iter_mut(Axis(0)).into_par_iter())
-        .zip(&waves.wavenumbers)
-        .for_each(|(mut row, &k)| {
+    (amplitudes.axis_iter_mut(Axis(0)).into_par_iter()).zip(&waves.wavenumbers).for_each(
+        |(mut row, &k)| {
             let near = nodes.within(VANISHED / k);
             let means: Vec<Array1<f64>> = nodes.distances[..near]
                 .iter()
@@ -162,13 +145,14 @@ pub(super) fn coefficients(
                     row[pair(a, b)] = factor * means[a].dot(&means[b]);
                 }
             }
-        });
+        },
+    );
     let short = 2.0 / material.plane_strain_modulus();
     let factor = short * dx * dy / PI.powi(2);
-    let weights = Array2::from_shape_fn(
-        (along.distances.len(), waves.wavenumbers.len()),
-        |(l, k)| factor * waves.weights[k][l],
-    );
+    let weights =
+        Array2::from_shape_fn((along.distances.len(), waves.wavenumbers.len()), |(l, k)| {
+            factor * waves.weights[k][l]
+        });
     let mut coefficients = amplitudes.t().dot(&weights.t());
 
     let apart = (0..count).flat_map(|a| (0..=a).map(move |b| [a, b]));
@@ -183,12 +167,10 @@ pub(super) fn coefficients(
     }
     let reach = 2.0 * nodes.distances[count - 1] + along.farthest();
     let mirror = CellInfluence::plan(body, [dx, dy], reach)?;
-    (coefficients.axis_iter_mut(Axis(0)).into_par_iter())
-        .zip(apart)
-        .for_each(|(row, apart)| {
-            for (c, &y) in row.into_iter().zip(&along.distances) {
-                *c += mirror.at([apart, y]);
-            }
-        });
+    (coefficients.axis_iter_mut(Axis(0)).into_par_iter()).zip(apart).for_each(|(row, apart)| {
+        for (c, &y) in row.into_iter().zip(&along.distances) {
+            *c += mirror.at([apart, y]);
+        }
+    });
     Ok(coefficients)
 }

@@ -32,12 +32,7 @@ pub(super) fn contrast(body: &HalfSpace) -> f64 {
         Substrate::Rigid => None,
     };
     let young = layers.chain(substrate).map(|material| material.young());
-    let [low, high] = young.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], e| {
-        [low.min(e), high.max(e)]
-    });
-    if body.layers().is_empty() {
-        1.0
-    } else {
-        (high / low).max(1.0 + f64::EPSILON)
-    }
+    let [low, high] =
+        young.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], e| [low.min(e), high.max(e)]);
+    if body.layers().is_empty() { 1.0 } else { (high / low).max(1.0 + f64::EPSILON) }
 }

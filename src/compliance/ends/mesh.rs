@@ -57,12 +57,7 @@ impl Mesh {
                 weights.push(0.5 * w * (high - low) * u.exp());
             }
         }
-        Self {
-            barycentric: barycentric.collect(),
-            points,
-            weights,
-            local,
-        }
+        Self { barycentric: barycentric.collect(), points, weights, local }
     }
 
     /// Panel of kx = ξ, and the weights with which its points interpolate to ξ.
@@ -100,10 +95,7 @@ pub(super) struct Modes {
 
 impl Modes {
     pub(super) fn new(values: Array2<f64>) -> Self {
-        Self {
-            means: means(&values),
-            values,
-        }
+        Self { means: means(&values), values }
     }
 
     /// Number of functions.
@@ -143,12 +135,7 @@ pub(super) fn first_reliable() -> usize {
 fn means(modes: &Array2<f64>) -> Array2<f64> {
     let mesh = &*MESH;
     let mut means = Array2::zeros(modes.dim());
-    let first = mesh
-        .points
-        .iter()
-        .position(|xi| *xi >= RELIABLE)
-        .unwrap_or(0)
-        / POINTS;
+    let first = mesh.points.iter().position(|xi| *xi >= RELIABLE).unwrap_or(0) / POINTS;
     let start = edges(first)[0].exp();
     let rule = Rule::gauss_legendre(POINTS);
     let mut sum = modes.row(first * POINTS).to_owned() * start;

@@ -56,13 +56,8 @@ struct Entry {
 static TABLE: LazyLock<Vec<Entry>> = LazyLock::new(|| {
     let text = include_str!("plate.txt");
     let lines = text.lines().filter(|line| !line.starts_with('#'));
-    let rows: Vec<Vec<f64>> = lines
-        .map(|line| {
-            line.split(' ')
-                .filter_map(|word| word.parse().ok())
-                .collect()
-        })
-        .collect();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(' ').filter_map(|word| word.parse().ok()).collect()).collect();
     (rows.chunks_exact(1 + ORDERS[0]))
         .map(|block| Entry {
             pair: [block[0][0] as usize, block[0][1] as usize],
@@ -183,9 +178,7 @@ pub(super) fn coefficients(
                 true => (here - amplitude(bound)) * weights[0],
                 false => 0.0,
             };
-            row.iter_mut()
-                .zip(weights)
-                .for_each(|(sum, weight)| *sum += here * weight - taken);
+            row.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += here * weight - taken);
         }
     }
     coefficients
@@ -217,24 +210,12 @@ mod tests {
         let pairs = [[0, 0], [1, 1], [0, 2], [1, 3], [2, 2], [1, 7]];
         // kL, ν, then D_ab.
         let expected = [
-            [
-                0.15, 0.3, 11.44901, 8.100226, -0.049933, 0.024256, -0.015702, -0.000214,
-            ],
-            [
-                0.6, 0.05, 0.903354, 0.923696, -0.036493, 0.017935, -0.014487, -0.00017,
-            ],
-            [
-                1.7, 0.28, -0.055871, 0.169065, -0.021895, 0.010039, -0.010279, -0.000097,
-            ],
-            [
-                3.3, 0.45, -0.038968, 0.044702, -0.014127, 0.005195, -0.00642, -0.000041,
-            ],
-            [
-                6.0, 0.3, -0.00063, 0.000955, -0.00049, 0.000281, -0.000404, -0.000004,
-            ],
-            [
-                11.0, 0.5, -0.000007, 0.000013, -0.000008, 0.000007, -0.000009, 0.0,
-            ],
+            [0.15, 0.3, 11.44901, 8.100226, -0.049933, 0.024256, -0.015702, -0.000214],
+            [0.6, 0.05, 0.903354, 0.923696, -0.036493, 0.017935, -0.014487, -0.00017],
+            [1.7, 0.28, -0.055871, 0.169065, -0.021895, 0.010039, -0.010279, -0.000097],
+            [3.3, 0.45, -0.038968, 0.044702, -0.014127, 0.005195, -0.00642, -0.000041],
+            [6.0, 0.3, -0.00063, 0.000955, -0.00049, 0.000281, -0.000404, -0.000004],
+            [11.0, 0.5, -0.000007, 0.000013, -0.000008, 0.000007, -0.000009, 0.0],
         ];
         for [kl, poisson, values @ ..] in expected {
             let displacement = PI / kl * (1.0 + 0.6 * poisson);
@@ -256,11 +237,7 @@ mod tests {
         for [start, end] in [[0.0, x], [x, 1.0]].into_iter().filter(|[a, b]| b > a) {
             for halving in 1..=HALVINGS {
                 let outer = (end - start) * f64::from(-halving).exp2();
-                let inner = if halving == HALVINGS {
-                    0.0
-                } else {
-                    0.5 * outer
-                };
+                let inner = if halving == HALVINGS { 0.0 } else { 0.5 * outer };
                 let (middle, half) = (0.5 * (outer + inner), 0.5 * (outer - inner));
                 points.extend(rule.nodes(start + middle, half));
                 points.extend(rule.nodes(end - middle, half));
@@ -291,11 +268,7 @@ mod tests {
         }
         sum += ends.iter().zip(&loads).map(|(a, b)| a.dot(b)).sum::<f64>();
         // 2x − 1 = φ₁/√3
-        let (loaded, load) = if linear {
-            (1, 1.0 / 3_f64.sqrt())
-        } else {
-            (0, 1.0)
-        };
+        let (loaded, load) = if linear { (1, 1.0 / 3_f64.sqrt()) } else { (0, 1.0) };
         let polynomials = &rows([x].into_iter(), 1e-6, 1.0)[0].weights;
         for a in (loaded..POLYNOMIALS).step_by(2) {
             sum += polynomials[a] * coefficient([loaded, a], k, poisson) * load;
@@ -313,33 +286,18 @@ mod tests {
         // kL, ν, then the displacements under the uniform load, and under the linear one.
         let expected = [
             [1.0, 0.0, 1.0, 1.0, 1.0, -0.476472, -0.384466, -0.09807],
-            [
-                1.0, 0.3, 1.119962, 1.107965, 1.08963, -0.599096, -0.480241, -0.121038,
-            ],
-            [
-                1.0, 0.5, 1.378805, 1.353011, 1.312686, -0.777604, -0.620476, -0.155028,
-            ],
+            [1.0, 0.3, 1.119962, 1.107965, 1.08963, -0.599096, -0.480241, -0.121038],
+            [1.0, 0.5, 1.378805, 1.353011, 1.312686, -0.777604, -0.620476, -0.155028],
             [3.0, 0.0, 1.0, 1.0, 1.0, -0.698225, -0.578733, -0.154774],
-            [
-                3.0, 0.3, 1.194517, 1.12814, 1.049244, -0.850266, -0.678296, -0.172222,
-            ],
-            [
-                3.0, 0.5, 1.562185, 1.402623, 1.197682, -1.09514, -0.847972, -0.205187,
-            ],
+            [3.0, 0.3, 1.194517, 1.12814, 1.049244, -0.850266, -0.678296, -0.172222],
+            [3.0, 0.5, 1.562185, 1.402623, 1.197682, -1.09514, -0.847972, -0.205187],
             [10.0, 0.0, 1.0, 1.0, 1.0, -0.903095, -0.762463, -0.198543],
-            [
-                10.0, 0.3, 1.23624, 1.061645, 1.001215, -1.104368, -0.814778, -0.199505,
-            ],
-            [
-                10.0, 0.5, 1.681186, 1.217087, 1.009193, -1.467622, -0.940044, -0.204383,
-            ],
+            [10.0, 0.3, 1.23624, 1.061645, 1.001215, -1.104368, -0.814778, -0.199505],
+            [10.0, 0.5, 1.681186, 1.217087, 1.009193, -1.467622, -0.940044, -0.204383],
         ];
         for [k, poisson, values @ ..] in expected {
             let places = places.into_iter();
-            let loads = places
-                .clone()
-                .map(|x| (x, false))
-                .chain(places.map(|x| (x, true)));
+            let loads = places.clone().map(|x| (x, false)).chain(places.map(|x| (x, true)));
             for ((x, linear), value) in loads.zip(values) {
                 let found = displacement(k, poisson, x, linear);
                 assert!(

@@ -59,13 +59,7 @@ impl QuarterSpace {
         not_negative("distance", distance)?;
         positive("length", length)?;
         positive("half_width", half_width)?;
-        Ok(Self {
-            body,
-            material,
-            distance,
-            length,
-            half_width,
-        })
+        Ok(Self { body, material, distance, length, half_width })
     }
 
     /// Displacement \[m/Pa\] of the surface at (x, y) \[m\], x ≥ 0, per unit pressure.
@@ -99,12 +93,8 @@ impl QuarterSpace {
                 Array1::zeros(reduction.displacement.count()),
             ];
             reduction.displacement.add(k * x, 1.0, &mut at);
-            reduction
-                .displacement
-                .add_integrals(k * end, 1.0 / k, &mut load);
-            reduction
-                .displacement
-                .add_integrals(k * self.distance, -1.0 / k, &mut load);
+            reduction.displacement.add_integrals(k * end, 1.0 / k, &mut load);
+            reduction.displacement.add_integrals(k * self.distance, -1.0 / k, &mut load);
             sum += layers::factor(&self.body, *k) * weights[0] * at.dot(&load);
         }
         let short = 2.0 / self.material.plane_strain_modulus();
@@ -116,9 +106,5 @@ fn not_negative(name: &'static str, value: f64) -> Result<()> {
     if value >= 0.0 && value.is_finite() {
         return Ok(());
     }
-    Err(Error::Parameter {
-        name,
-        requirement: "finite and at least 0",
-        value,
-    })
+    Err(Error::Parameter { name, requirement: "finite and at least 0", value })
 }

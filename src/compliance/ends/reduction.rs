@@ -72,10 +72,7 @@ impl Universal {
                 }
             }
         }
-        Self {
-            traction: [direct, integral],
-            displacement,
-        }
+        Self { traction: [direct, integral], displacement }
     }
 }
 
@@ -105,9 +102,7 @@ fn near_panel(mesh: &Mesh, xi: f64, panel: usize) -> [f64; POINTS] {
         for (u, w) in rule.nodes(middle, half) {
             let weight = w * u.exp() * even(xi, u.exp());
             let polynomials = mesh.lagrange((2.0 * u - low - high) / (high - low));
-            sums.iter_mut()
-                .zip(polynomials)
-                .for_each(|(sum, l)| *sum += weight * l);
+            sums.iter_mut().zip(polynomials).for_each(|(sum, l)| *sum += weight * l);
         }
     }
     sums
@@ -147,10 +142,7 @@ pub(super) struct EndKernel {
 
 impl EndKernel {
     fn new(values: Array2<f64>) -> Self {
-        Self {
-            values,
-            products: OnceLock::new(),
-        }
+        Self { values, products: OnceLock::new() }
     }
 
     pub(super) fn products(&self) -> &KernelProducts {
@@ -182,10 +174,7 @@ impl Reduction {
 
     fn new(poisson: f64) -> Self {
         let mesh = &*MESH;
-        let Universal {
-            traction: [direct, integral],
-            displacement,
-        } = &*UNIVERSAL;
+        let Universal { traction: [direct, integral], displacement } = &*UNIVERSAL;
         let traction = direct + &(integral * (1.0 - 2.0 * poisson));
         let squared = traction.dot(&traction);
         let identity = Array2::<f64>::eye(squared.nrows());
@@ -265,8 +254,5 @@ fn products(mut kernel: Array2<f64>) -> KernelProducts {
         let values = Array2::from_shape_fn((n, functions.len()), |(i, r)| functions[r][i]);
         Modes::new(values)
     };
-    KernelProducts {
-        targets: columns(targets),
-        sources: columns(sources),
-    }
+    KernelProducts { targets: columns(targets), sources: columns(sources) }
 }

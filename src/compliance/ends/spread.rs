@@ -88,22 +88,18 @@ impl EndPressure {
         // Means over cells leave amplitudes that fall as k⁻³; the rest is 1e-6 of the integral.
         let fallen = 3000.0 / (dx * targets.spacing * dy).cbrt();
         let first = self.nodes.distances[0] - 0.5 * dx;
-        let highest = if first > 1e-9 * dx {
-            fallen.min(VANISHED / first)
-        } else {
-            fallen
-        };
+        let highest = if first > 1e-9 * dx { fallen.min(VANISHED / first) } else { fallen };
         let waves = Waves::new(&along_y, Width::LoadAndMean(0.5 * dy), reach, highest);
         let (rows, columns) = (targets.distances.len(), self.nodes.distances.len());
         let mut amplitudes = Array2::zeros((waves.wavenumbers.len(), rows * columns));
-        (amplitudes.axis_iter_mut(Axis(0)).into_par_iter())
-            .zip(&waves.wavenumbers)
-            .for_each(|(mut row, &k)| {
+        (amplitudes.axis_iter_mut(Axis(0)).into_par_iter()).zip(&waves.wavenumbers).for_each(
+            |(mut row, &k)| {
                 let here = means(&products.targets, targets, k);
                 let there = means(&products.sources, &self.nodes, k);
                 let of_pairs = here.dot(&there.t()) * (k * dx * dy / PI);
                 row.iter_mut().zip(&of_pairs).for_each(|(a, b)| *a = *b);
-            });
+            },
+        );
         let weights = Array2::from_shape_fn((along_y.len(), waves.wavenumbers.len()), |(l, k)| {
             waves.weights[k][l]
         });
@@ -133,31 +129,29 @@ impl EndPressure {
             .collect();
         let width = self.values.ncols() + 2 * margin;
         let mut sums = Array2::zeros((targets, width));
-        (sums.axis_iter_mut(Axis(0)).into_par_iter())
-            .enumerate()
-            .for_each(|(target, mut row)| {
-                let mut total = inverse.make_input_vec();
-                for (s, source) in sources.iter().enumerate() {
-                    let by_distance = kernel.row(target * sources.len() + s);
-                    let even = |l: usize| by_distance[l.min(length - l)];
-                    let factors = transformed(&mut (0..length).map(even));
-                    for ((sum, factor), wave) in total.iter_mut().zip(factors).zip(source) {
-                        *sum += factor.re * wave;
-                    }
+        (sums.axis_iter_mut(Axis(0)).into_par_iter()).enumerate().for_each(|(target, mut row)| {
+            let mut total = inverse.make_input_vec();
+            for (s, source) in sources.iter().enumerate() {
+                let by_distance = kernel.row(target * sources.len() + s);
+                let even = |l: usize| by_distance[l.min(length - l)];
+                let factors = transformed(&mut (0..length).map(even));
+                for ((sum, factor), wave) in total.iter_mut().zip(factors).zip(source) {
+                    *sum += factor.re * wave;
                 }
-                total[0].im = 0.0;
-                if let Some(last) = total.last_mut()
-                    && length.is_multiple_of(2)
-                {
-                    last.im = 0.0;
-                }
-                let mut values = inverse.make_output_vec();
-                let done = inverse.process(&mut total, &mut values);
-                debug_assert!(done.is_ok(), "lengths are those of the plan");
-                for (j, sum) in row.iter_mut().enumerate() {
-                    *sum = values[(j + length - margin) % length] / length as f64;
-                }
-            });
+            }
+            total[0].im = 0.0;
+            if let Some(last) = total.last_mut()
+                && length.is_multiple_of(2)
+            {
+                last.im = 0.0;
+            }
+            let mut values = inverse.make_output_vec();
+            let done = inverse.process(&mut total, &mut values);
+            debug_assert!(done.is_ok(), "lengths are those of the plan");
+            for (j, sum) in row.iter_mut().enumerate() {
+                *sum = values[(j + length - margin) % length] / length as f64;
+            }
+        });
         sums
     }
 }

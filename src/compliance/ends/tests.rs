@@ -48,32 +48,15 @@ fn potential(xi: f64, [a, b]: [f64; 2]) -> f64 {
 fn waves_along_the_end() {
     let reference = [
         (0.0, [(0.05, 1.0), (0.5, 1.0), (2.0, 1.0)]),
-        (
-            0.3,
-            [
-                (0.05, 1.220_957_396_7),
-                (0.5, 1.120_291_750_4),
-                (2.0, 1.016_493_582_8),
-            ],
-        ),
-        (
-            0.5,
-            [
-                (0.05, 1.643_250_694_9),
-                (0.5, 1.382_950_631_4),
-                (2.0, 1.071_528_488_2),
-            ],
-        ),
+        (0.3, [(0.05, 1.220_957_396_7), (0.5, 1.120_291_750_4), (2.0, 1.016_493_582_8)]),
+        (0.5, [(0.05, 1.643_250_694_9), (0.5, 1.382_950_631_4), (2.0, 1.071_528_488_2)]),
     ];
     for (poisson, values) in reference {
         let reduction = Reduction::of(poisson);
         for (xi, expected) in values {
             // The load and its image are a wave on all x, for which u = 1.
             let found = 1.0 + added(&reduction, xi, VANISHED) / PI;
-            assert!(
-                (found - expected).abs() < 1e-6,
-                "{poisson} {xi}: {found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-6, "{poisson} {xi}: {found} {expected}");
         }
     }
     let edge = 1.0 + added(&Reduction::of(0.5), 0.0, VANISHED) / PI;
@@ -85,36 +68,16 @@ fn waves_along_the_end() {
 #[test]
 fn strips_against_finite_elements() {
     let reference = [
-        (
-            0.0,
-            [
-                (0.0, 0.858_413_35),
-                (0.4, 0.771_561_23),
-                (1.0, 0.462_382_95),
-            ],
-        ),
-        (
-            0.3,
-            [
-                (0.0, 1.033_744_93),
-                (0.4, 0.872_408_97),
-                (1.0, 0.507_385_13),
-            ],
-        ),
-        (
-            0.45,
-            [(0.0, 1.232_675_4), (0.4, 0.999_786_3), (1.0, 0.573_558_04)],
-        ),
+        (0.0, [(0.0, 0.858_413_35), (0.4, 0.771_561_23), (1.0, 0.462_382_95)]),
+        (0.3, [(0.0, 1.033_744_93), (0.4, 0.872_408_97), (1.0, 0.507_385_13)]),
+        (0.45, [(0.0, 1.232_675_4), (0.4, 0.999_786_3), (1.0, 0.573_558_04)]),
     ];
     for (poisson, values) in reference {
         let reduction = Reduction::of(poisson);
         for (xi, expected) in values {
             let images = potential(xi, [0.0, 1.0]) + potential(xi, [-1.0, 0.0]);
             let found = (images + added(&reduction, xi, 1.0)) / PI;
-            assert!(
-                (found - expected).abs() < 1e-5,
-                "{poisson} {xi}: {found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-5, "{poisson} {xi}: {found} {expected}");
         }
     }
 }
@@ -133,11 +96,7 @@ fn the_exponent_of_a_sharp_end() {
         }
         let n = edges.len() - 1;
         let middle = |i: usize| {
-            if i == 0 {
-                0.5 * edges[1]
-            } else {
-                (edges[i] * edges[i + 1]).sqrt()
-            }
+            if i == 0 { 0.5 * edges[1] } else { (edges[i] * edges[i + 1]).sqrt() }
         };
         let modes = &reduction.displacement;
         let mut means = Array2::zeros((n, modes.count()));

@@ -102,10 +102,7 @@ impl Waves {
     /// Wavenumbers for distances |y| up to `reach`, and amplitudes f that vanish above `highest`.
     pub(super) fn new(distances: &[f64], width: Width, reach: f64, highest: f64) -> Self {
         let rule = Rule::gauss_legendre(POINTS);
-        let mut waves = Self {
-            wavenumbers: Vec::new(),
-            weights: Vec::new(),
-        };
+        let mut waves = Self { wavenumbers: Vec::new(), weights: Vec::new() };
         let lowest = 1.0 / reach;
         for panel in (0..LOW_PANELS).rev() {
             let half = 0.5 * LOW_RATIO.ln();
@@ -135,19 +132,15 @@ impl Waves {
         zeroth: &[(f64, f64)],
     ) -> Self {
         let (step, distances) = (2.0 * PI / (cells as f64 * spacing), cells / 2 + 1);
-        let cosines: Vec<f64> = (0..cells)
-            .map(|l| (2.0 * PI * l as f64 / cells as f64).cos())
-            .collect();
+        let cosines: Vec<f64> =
+            (0..cells).map(|l| (2.0 * PI * l as f64 / cells as f64).cos()).collect();
         let column = |n: usize, factor: f64| {
             let places = (0..distances).map(|l| n % cells * l % cells);
             places.map(|at| factor * cosines[at]).collect::<Vec<f64>>()
         };
         let mut waves = Self {
             wavenumbers: zeroth.iter().map(|(k, _)| *k).collect(),
-            weights: (zeroth
-                .iter()
-                .map(|(_, share)| column(0, 0.5 * share * step)))
-            .collect(),
+            weights: (zeroth.iter().map(|(_, share)| column(0, 0.5 * share * step))).collect(),
         };
         for n in 1..SINGLE {
             let k = n as f64 * step;
@@ -156,10 +149,8 @@ impl Waves {
         }
         let rule = Rule::gauss_legendre(POINTS);
         let points: Vec<(f64, f64)> = rule.nodes(0.0, 1.0).collect();
-        let polynomials: Vec<[f64; POINTS]> = points
-            .iter()
-            .map(|(t, w)| weighted_legendre(*t, *w))
-            .collect();
+        let polynomials: Vec<[f64; POINTS]> =
+            points.iter().map(|(t, w)| weighted_legendre(*t, *w)).collect();
         let mut start = SINGLE;
         while (start as f64) * step < highest {
             let (middle, half) = (1.5 * start as f64 - 0.5, 0.5 * start as f64);
@@ -190,10 +181,7 @@ impl Waves {
         let panel = WavePanel {
             middle,
             half,
-            polynomials: points
-                .iter()
-                .map(|(t, w)| weighted_legendre(*t, *w))
-                .collect(),
+            polynomials: points.iter().map(|(t, w)| weighted_legendre(*t, *w)).collect(),
         };
         let first = self.weights.len();
         for (t, _) in &points {
@@ -306,10 +294,7 @@ mod tests {
                         (log(y + 2.0 * a) - 2.0 * log(y) + log(y - 2.0 * a)) / (4.0 * a * a)
                     }
                 };
-                assert!(
-                    (found - expected).abs() < 1e-7,
-                    "{width:?} {y}: {found} {expected}"
-                );
+                assert!((found - expected).abs() < 1e-7, "{width:?} {y}: {found} {expected}");
             }
         }
     }

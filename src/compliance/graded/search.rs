@@ -92,11 +92,7 @@ impl Samples {
             let found = depths.into_iter().map(&mut at);
             let found = found.collect::<Result<Vec<_>>>()?;
             // Intervals that are left, the next one last.
-            let mut left: Vec<_> = found
-                .windows(2)
-                .rev()
-                .map(|pair| [pair[0], pair[1]])
-                .collect();
+            let mut left: Vec<_> = found.windows(2).rev().map(|pair| [pair[0], pair[1]]).collect();
             samples.extend(found.first());
             while let Some([one, two]) = left.pop() {
                 if samples.len() > MOST {
@@ -137,15 +133,9 @@ impl Samples {
         if let Some(last) = ends.last_mut() {
             *last = thickness;
         }
-        let sections = ends
-            .windows(2)
-            .map(|ends| section(ends[0], ends[1], &samples));
+        let sections = ends.windows(2).map(|ends| section(ends[0], ends[1], &samples));
         let sections = sections.collect();
-        Ok(Self {
-            samples,
-            sections,
-            jumps,
-        })
+        Ok(Self { samples, sections, jumps })
     }
 
     /// Sections from the surface down.
@@ -244,8 +234,7 @@ fn between_any(jumps: &[f64], from: f64, to: f64) -> bool {
 
 fn section(from: f64, to: f64, samples: &[Sample]) -> Section {
     let inside = between(samples, from, to);
-    let uniform = inside
-        .first()
-        .is_some_and(|first| inside.iter().all(|s| s.material == first.material));
+    let uniform =
+        inside.first().is_some_and(|first| inside.iter().all(|s| s.material == first.material));
     Section { from, to, uniform }
 }

@@ -37,19 +37,11 @@ pub(super) fn coefficients(
     };
     let mut mesh = [0; 2];
     for (points, n) in mesh.iter_mut().zip(shape) {
-        *points = n
-            .checked_mul(2)
-            .and_then(|n| n.checked_mul(refinement))
-            .ok_or_else(too_fine)?;
+        *points = n.checked_mul(2).and_then(|n| n.checked_mul(refinement)).ok_or_else(too_fine)?;
     }
-    let half_spectrum = (mesh[1] / 2 + 1)
-        .checked_mul(8 * shape[0])
-        .ok_or_else(too_fine)?;
+    let half_spectrum = (mesh[1] / 2 + 1).checked_mul(8 * shape[0]).ok_or_else(too_fine)?;
     check_memory(shape, memory(grid) + half_spectrum as u64)?;
-    let step = [
-        2.0 * PI / (mesh[0] as f64 * dx),
-        2.0 * PI / (mesh[1] as f64 * dy),
-    ];
+    let step = [2.0 * PI / (mesh[0] as f64 * dx), 2.0 * PI / (mesh[1] as f64 * dy)];
     let longest = body.lengths().map_or(0.0, |[_, longest]| longest);
     let limits = body.asymptotes();
     let rest = limits.long - limits.short;
@@ -75,20 +67,12 @@ pub(super) fn coefficients(
             Method::Image { .. } => response - limits.short - rest * (-alpha * image_depth).exp(),
             Method::Plain { .. } | Method::Exact | Method::Spectral => response,
         } / alpha;
-        if with_cell {
-            sampled * sinc(0.5 * m * dx) * sinc(0.5 * n * dy)
-        } else {
-            sampled
-        }
+        if with_cell { sampled * sinc(0.5 * m * dx) * sinc(0.5 * n * dy) } else { sampled }
     };
     let mut coefficients = inverse_even(shape, mesh, value, threads);
     if with_cell {
         let (rules, half) = (Rules::displacement(), [0.5 * dx, 0.5 * dy]);
-        let image = if matches!(method, Method::Image { .. }) {
-            rest
-        } else {
-            0.0
-        };
+        let image = if matches!(method, Method::Image { .. }) { rest } else { 0.0 };
         threads.run(|| {
             let rows = coefficients.axis_iter_mut(ndarray::Axis(0));
             rows.into_par_iter().enumerate().for_each(|(i, mut row)| {

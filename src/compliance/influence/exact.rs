@@ -212,10 +212,7 @@ impl SurfaceKernel {
         let near = (range[1] / shortest).ln().max(0.0) + FALL.max(high - inner[1]);
         let far = (longest / range[0]).ln().max(0.0) + FALL.max(inner[0] - low);
         let period = (high - low + 4.0).max(near).max(far);
-        let order = Order {
-            nu: 0.0,
-            kind: Kind::Vanishing,
-        };
+        let order = Order { nu: 0.0, kind: Kind::Vanishing };
         let (remainder, error) = Series::resolved(remainder, [low, high], period, order, size);
         Ok(Some(Self {
             short: limits.short / (2.0 * PI),
@@ -301,11 +298,7 @@ impl Tables {
     #[inline]
     fn displacement(&self, s: f64) -> f64 {
         let [value] = self.displacement.at(s);
-        if s > self.end {
-            value * (self.end / s).sqrt()
-        } else {
-            value
-        }
+        if s > self.end { value * (self.end / s).sqrt() } else { value }
     }
 
     /// η of K − A1/2πr at the squared distance s.

@@ -95,10 +95,6 @@ pub(super) fn coefficients(
     // G at the edges of the cells, (j + ½) dy.
     let strip: Vec<f64> = (0..ny).map(|j| strips.at((j as f64 + 0.5) * dy)).collect();
     Ok(Array2::from_shape_fn((1, ny), |(_, j)| {
-        if j == 0 {
-            2.0 * strip[0]
-        } else {
-            strip[j] - strip[j - 1]
-        }
+        if j == 0 { 2.0 * strip[0] } else { strip[j] - strip[j - 1] }
     }))
 }

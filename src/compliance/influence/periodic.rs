@@ -39,17 +39,15 @@ fn sums(
     let mut sums = Array2::zeros((offsets.len(), images.kept()[1]));
     threads.run(|| {
         let far = images.far(|at| [cell.at_distance(at)], |at| [block.at_distance(at)]);
-        Zip::indexed(&mut sums)
-            .and(&far[0])
-            .par_for_each(|(i, j), sum, far| {
-                let at = [offsets[i], j as f64 * spacing[1]];
-                *sum = *far;
-                for k in images.near(0) {
-                    for l in images.near(1) {
-                        *sum += cell.at_distance(images.place(at, [k, l]));
-                    }
+        Zip::indexed(&mut sums).and(&far[0]).par_for_each(|(i, j), sum, far| {
+            let at = [offsets[i], j as f64 * spacing[1]];
+            *sum = *far;
+            for k in images.near(0) {
+                for l in images.near(1) {
+                    *sum += cell.at_distance(images.place(at, [k, l]));
                 }
-            });
+            }
+        });
     });
     Ok(sums)
 }
@@ -92,10 +90,7 @@ pub(super) fn coefficients(
     } else {
         let open = usize::from(grid.is_periodic()[0]);
         let strips = Grid::line(grid.shape()[open], size[open])?;
-        line::coefficients(body, &strips, threads)?
-            .iter()
-            .copied()
-            .collect()
+        line::coefficients(body, &strips, threads)?.iter().copied().collect()
     };
     images.with_mean(&mut whole, &mean);
     Ok(whole)
@@ -126,9 +121,9 @@ pub(super) fn sampled(body: &dyn Response, grid: &Grid, threads: &Threads) -> Re
 fn uniform(body: &dyn Response) -> f64 {
     let limits = body.asymptotes();
     // A derivative of the response of layers has limits of either sign.
-    let elastic = body.half_space().map_or(limits.long > 0.0, |body| {
-        matches!(body.substrate(), Substrate::Elastic(_))
-    });
+    let elastic = body
+        .half_space()
+        .map_or(limits.long > 0.0, |body| matches!(body.substrate(), Substrate::Elastic(_)));
     match elastic {
         true => 0.0,
         false => limits.constant,

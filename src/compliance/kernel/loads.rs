@@ -65,17 +65,11 @@ pub(crate) trait Load: Sync {
 const RADIAL: usize = 9;
 
 const fn stress(nu: f64) -> Order {
-    Order {
-        nu,
-        kind: Kind::Stress,
-    }
+    Order { nu, kind: Kind::Stress }
 }
 
 const fn displacement(nu: f64) -> Order {
-    Order {
-        nu,
-        kind: Kind::Displacement,
-    }
+    Order { nu, kind: Kind::Displacement }
 }
 
 /// Unit pressure.
@@ -83,14 +77,8 @@ const fn displacement(nu: f64) -> Order {
 pub(crate) struct UnitPressure;
 
 impl Load for UnitPressure {
-    const ORDERS: &'static [Order] = &[
-        stress(0.0),
-        stress(0.0),
-        stress(2.0),
-        stress(1.0),
-        displacement(0.0),
-        displacement(1.0),
-    ];
+    const ORDERS: &'static [Order] =
+        &[stress(0.0), stress(0.0), stress(2.0), stress(1.0), displacement(0.0), displacement(1.0)];
 
     const IS_TRACTION: bool = false;
 
@@ -104,17 +92,7 @@ impl Load for UnitPressure {
     fn components(h: &[f64; RADIAL], x: f64, y: f64) -> [f64; COMPONENTS] {
         let [p, s, d, tau, w, v, ..] = *h;
         let d2 = d * (x * x - y * y);
-        [
-            s - d2,
-            s + d2,
-            -p,
-            -2.0 * d * x * y,
-            tau * y,
-            tau * x,
-            -v * x,
-            -v * y,
-            w,
-        ]
+        [s - d2, s + d2, -p, -2.0 * d * x * y, tau * y, tau * x, -v * x, -v * y, w]
     }
 
     fn closed(material: Elastic, half: [f64; 2], at: [f64; 2], z: f64) -> [f64; COMPONENTS] {
@@ -258,11 +236,7 @@ pub(crate) struct PointLoad<const N: usize> {
 
 impl<const N: usize> PointLoad<N> {
     pub(crate) fn new<L: Radial<N>>(material: Elastic, z: f64) -> Self {
-        Self {
-            orders: L::orders(),
-            z,
-            coefficients: homogeneous(material, L::radial),
-        }
+        Self { orders: L::orders(), z, coefficients: homogeneous(material, L::radial) }
     }
 
     /// h_ν at the squared distance s = r².

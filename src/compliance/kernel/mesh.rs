@@ -137,10 +137,7 @@ impl LogMesh {
     /// Transforms of all terms for one Bessel order and kind.
     pub(crate) fn multipliers(&self, order: Order) -> Multipliers {
         let shift = order.kind.shift();
-        let (above, below) = (
-            0.5 * (1.0 + order.nu + shift),
-            0.5 * (1.0 + order.nu - shift),
-        );
+        let (above, below) = (0.5 * (1.0 + order.nu + shift), 0.5 * (1.0 + order.nu - shift));
         (0..=self.points / 2)
             .map(|m| {
                 let t = m as f64 * self.step();
@@ -166,10 +163,7 @@ impl Spectrum {
     pub(crate) fn new(body: &HalfSpace, range: [f64; 2]) -> Option<Self> {
         let top = body.layers().first()?;
         let mesh = LogMesh::new(top.thickness(), body.thickness(), range);
-        let columns = mesh
-            .wavenumbers()
-            .map(|alpha| (alpha, Column::new(body, alpha)))
-            .collect();
+        let columns = mesh.wavenumbers().map(|alpha| (alpha, Column::new(body, alpha))).collect();
         Some(Self { mesh, columns })
     }
 
@@ -205,13 +199,8 @@ pub(super) fn homogeneous<const N: usize>(
 /// ln Γ(re + i im), re > 0: ln of the modulus, and phase. Stirling's series (DLMF 5.11.1) after ten
 /// steps of the recurrence, where its five terms leave 1e-14.
 fn ln_gamma(re: f64, im: f64) -> (f64, f64) {
-    const BERNOULLI: [f64; 5] = [
-        1.0 / 12.0,
-        -1.0 / 360.0,
-        1.0 / 1260.0,
-        -1.0 / 1680.0,
-        1.0 / 1188.0,
-    ];
+    const BERNOULLI: [f64; 5] =
+        [1.0 / 12.0, -1.0 / 360.0, 1.0 / 1260.0, -1.0 / 1680.0, 1.0 / 1188.0];
     let (mut log, mut phase) = (0.0, 0.0);
     for k in 0..10 {
         let x = re + f64::from(k);

@@ -51,12 +51,7 @@ impl CellPlan {
     /// Transforms of powers of the wavenumber, for the functions of a load.
     pub(crate) fn multipliers<const N: usize, L: Radial<N>>(&self) -> Vec<Multipliers> {
         let of = |spectrum: &Spectrum| L::orders().map(|order| spectrum.mesh.multipliers(order));
-        self.spectrum
-            .as_ref()
-            .map(of)
-            .into_iter()
-            .flatten()
-            .collect()
+        self.spectrum.as_ref().map(of).into_iter().flatten().collect()
     }
 }
 
@@ -100,11 +95,7 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let half = plan.spacing.map(|d| 0.5 * d);
         let (least, most) = (half[0].min(half[1]), half[0].max(half[1]));
         // Deep enough, no cell is treated as near.
-        let nearest = if plan.cells.all_far(depth, least) {
-            0.0
-        } else {
-            plan.nearest
-        };
+        let nearest = if plan.cells.all_far(depth, least) { 0.0 } else { plan.nearest };
         let layered = FewPieces::new([nearest, plan.reach], depth * depth, |r| {
             let mut h = r.map(|r| point.at(r * r));
             if let Some(series) = &series {
@@ -123,29 +114,18 @@ impl<'a, const N: usize> Kernel<'a, N> {
         let far = FewTerms::new([start.min(plan.reach), plan.reach], depth * depth, |r| {
             r.map(|r| layered.at(r * r))
         });
-        Self {
-            plan,
-            material,
-            depth,
-            layered,
-            far,
-            mean_difference,
-        }
+        Self { plan, material, depth, layered, far, mean_difference }
     }
 
     /// Components of a unit load on a cell of half sides `half`, at (x, y) from its centre.
     pub(crate) fn at<L: Radial<N>>(&self, at: [f64; 2], half: [f64; 2]) -> [f64; COMPONENTS] {
         let mut sum = [0.0; COMPONENTS];
         let mut add = |weight: f64, values: [f64; COMPONENTS]| {
-            sum.iter_mut()
-                .zip(values)
-                .for_each(|(s, v)| *s += weight * v);
+            sum.iter_mut().zip(values).for_each(|(s, v)| *s += weight * v);
         };
         let cells = &self.plan.cells;
         let point = |x: f64, y: f64| L::components(&self.layered.at(x * x + y * y), x, y);
-        if !cells.nodes(at, half, self.depth, |weight, x, y| {
-            add(weight, point(x, y))
-        }) {
+        if !cells.nodes(at, half, self.depth, |weight, x, y| add(weight, point(x, y))) {
             add(1.0, L::Load::closed(self.material, half, at, self.depth));
             if let Some(mean) = &self.mean_difference {
                 cells.corners(at, half, |weight, r, [cos, sin]| {

@@ -37,25 +37,13 @@ impl Rules {
 
     /// Rules of 2, 3, 4, 5 and 7 points for singularities from `bounds` on, and of 11 points nearer.
     fn from_bounds([two, three, four, five, seven]: [f64; 5]) -> Self {
-        let numbers = [
-            (two, 2),
-            (three, 3),
-            (four, 4),
-            (five, 5),
-            (seven, 7),
-            (NEAREST_RULED, 11),
-        ];
-        Self {
-            rules: numbers.map(|(bound, n)| (bound, Rule::gauss_legendre(n))),
-        }
+        let numbers = [(two, 2), (three, 3), (four, 4), (five, 5), (seven, 7), (NEAREST_RULED, 11)];
+        Self { rules: numbers.map(|(bound, n)| (bound, Rule::gauss_legendre(n))) }
     }
 
     /// The rule for a singularity at `q` half-intervals; none where that is nearer than any rule serves.
     pub(crate) fn at(&self, q: f64) -> Option<&Rule> {
-        self.rules
-            .iter()
-            .find(|(bound, _)| q >= *bound)
-            .map(|(_, rule)| rule)
+        self.rules.iter().find(|(bound, _)| q >= *bound).map(|(_, rule)| rule)
     }
 }
 
@@ -77,10 +65,7 @@ const PANEL_POINTS: usize = 10;
 
 impl CellRules {
     pub(crate) fn new(rules: Rules) -> Self {
-        Self {
-            rules,
-            panel: Rule::gauss_legendre(PANEL_POINTS),
-        }
+        Self { rules, panel: Rule::gauss_legendre(PANEL_POINTS) }
     }
 
     /// The rules for single intervals.
@@ -163,12 +148,9 @@ impl CellRules {
         [a, b]: [f64; 2],
         mut node: impl FnMut(f64, f64, [f64; 2]),
     ) {
-        for (sign, x, y) in [
-            (1.0, x + a, y + b),
-            (-1.0, x - a, y + b),
-            (-1.0, x + a, y - b),
-            (1.0, x - a, y - b),
-        ] {
+        for (sign, x, y) in
+            [(1.0, x + a, y + b), (-1.0, x - a, y + b), (-1.0, x + a, y - b), (1.0, x - a, y - b)]
+        {
             let (sx, sy) = (x.signum(), y.signum());
             let (x, y) = (x.abs(), y.abs());
             for (near, far, first) in [(x, y, true), (y, x, false)] {

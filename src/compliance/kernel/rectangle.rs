@@ -94,13 +94,8 @@ fn corners<const N: usize>(
     z: f64,
     function: impl Fn(&Corner) -> [f64; N],
 ) -> [f64; N] {
-    let [pp, mp, pm, mm] = [
-        [x + a, y + b],
-        [x - a, y + b],
-        [x + a, y - b],
-        [x - a, y - b],
-    ]
-    .map(|[x, y]| function(&Corner::new(x, y, z)));
+    let [pp, mp, pm, mm] = [[x + a, y + b], [x - a, y + b], [x + a, y - b], [x - a, y - b]]
+        .map(|[x, y]| function(&Corner::new(x, y, z)));
     std::array::from_fn(|k| pp[k] - mp[k] - pm[k] + mm[k])
 }
 
@@ -224,14 +219,9 @@ mod tests {
         for (dx, dy) in [(1.0, 1.0), (1.0, 0.3), (0.02, 1.0), (1.0, 1e-3)] {
             let half = [0.5 * dx, 0.5 * dy];
             for z in [0.0, 0.4, 3.0] {
-                for (i, j) in [
-                    (1.3, 0.0),
-                    (0.0, 1.4),
-                    (1.2, 1.2),
-                    (1.6, 0.4),
-                    (3.0, 4.0),
-                    (0.2, 9.0),
-                ] {
+                for (i, j) in
+                    [(1.3, 0.0), (0.0, 1.4), (1.2, 1.2), (1.6, 0.4), (3.0, 4.0), (0.2, 9.0)]
+                {
                     let at = [i * dx, j * dy];
                     let [closed] = corners(half, at, z, |corner| [corner.f()]);
                     let value = potential(&Rules::displacement(), half, at, z);
@@ -250,14 +240,7 @@ mod tests {
     fn quadrature_over_cells_is_the_closed_form() {
         let cells = CellRules::new(Rules::displacement());
         for half in [[0.5, 0.5], [8.0, 0.5], [0.5, 40.0]] {
-            for at in [
-                [0.0, 0.0],
-                [1.0, 0.0],
-                [0.3, 3.0],
-                [17.0, 0.1],
-                [9.0, 9.0],
-                [500.0, 90.0],
-            ] {
+            for at in [[0.0, 0.0], [1.0, 0.0], [0.3, 3.0], [17.0, 0.1], [9.0, 9.0], [500.0, 90.0]] {
                 let mut sum = 0.0;
                 let far = cells.nodes(at, half, 0.0, |weight, x, y| sum += weight / x.hypot(y));
                 if !far {

@@ -202,10 +202,7 @@ impl Series<1> {
             found = sampled(spacing);
         }
         let (mesh, coefficients, tail) = found;
-        let spectrum = FourierTerms {
-            values: coefficients,
-            negligible: 1e-3 * ROUNDING * size,
-        };
+        let spectrum = FourierTerms { values: coefficients, negligible: 1e-3 * ROUNDING * size };
         let series = Self::at_surface(&mesh, &[order], &[mesh.multipliers(order)], &[spectrum]);
         (series, tail + ROUNDING * size)
     }
@@ -268,9 +265,7 @@ mod tests {
             let orders = [Kind::Stress, Kind::Displacement].map(|kind| Order { nu, kind });
             let multipliers = orders.map(|order| mesh.multipliers(order));
             let samples = orders.map(|order| {
-                mesh.wavenumbers()
-                    .map(|a| a.powf(order.kind.bias()) * (-a * z).exp())
-                    .collect()
+                mesh.wavenumbers().map(|a| a.powf(order.kind.bias()) * (-a * z).exp()).collect()
             });
             let series = Series::new(&mesh, &orders, &multipliers, samples, z);
             for r in [1e-3_f64, 0.1, 0.7, 5.0, 300.0, 1e4] {
@@ -278,10 +273,8 @@ mod tests {
                 let t = (r / (root + z)).powf(nu);
                 let [values] = series.sum(&series.terms, [r]);
                 let [stress, displacement] = [0, 1].map(|k| values[k] * orders[k].kind.scale(r));
-                let exact = [
-                    (z + nu * root) * t / root.powi(3) / (2.0 * PI),
-                    t / root / (2.0 * PI),
-                ];
+                let exact =
+                    [(z + nu * root) * t / root.powi(3) / (2.0 * PI), t / root / (2.0 * PI)];
                 // Rounding, in the units in which the transform is a sum of waves.
                 let scale = [1.0 / (z * r), 1.0 / (z * r).sqrt()];
                 for k in 0..2 {

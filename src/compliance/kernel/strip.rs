@@ -27,12 +27,7 @@ pub(crate) struct StripOutput {
 }
 
 const fn output(component: usize, sign: f64, sine: bool) -> StripOutput {
-    StripOutput {
-        component,
-        sign,
-        sine,
-        displacement: component >= 6,
-    }
+    StripOutput { component, sign, sine, displacement: component >= 6 }
 }
 
 /// A load on a strip.
@@ -87,11 +82,8 @@ impl StripLoad<6> for StripAcross {
 pub(crate) struct StripAlong;
 
 impl StripLoad<3> for StripAlong {
-    const OUTPUTS: [StripOutput; 3] = [
-        output(3, -1.0, true),
-        output(5, -1.0, false),
-        output(6, 1.0, false),
-    ];
+    const OUTPUTS: [StripOutput; 3] =
+        [output(3, -1.0, true), output(5, -1.0, false), output(6, 1.0, false)];
 
     fn functions(fields: &Fields, material: Elastic) -> [f64; 3] {
         let (q, u) = fields.twist;
@@ -176,11 +168,7 @@ impl LinePlan {
         let differences = spectrum.differences(&self.body, place, L::functions);
         let (_, limit) = *differences.first()?;
         let images = std::array::from_fn(|k| Closed {
-            c0: if L::OUTPUTS[k].displacement {
-                limit[k]
-            } else {
-                0.0
-            },
+            c0: if L::OUTPUTS[k].displacement { limit[k] } else { 0.0 },
             c1: 0.0,
             depth: image_depth,
         });
@@ -199,15 +187,10 @@ impl LinePlan {
                 samples[k].push(value * alpha.sqrt());
             }
         }
-        let orders = L::OUTPUTS.map(|output| Order {
-            nu: if output.sine { 0.5 } else { -0.5 },
-            kind: Kind::Line,
-        });
+        let orders = L::OUTPUTS
+            .map(|output| Order { nu: if output.sine { 0.5 } else { -0.5 }, kind: Kind::Line });
         let multipliers = orders.map(|order| mesh.multipliers(order));
-        Some((
-            Series::new(mesh, &orders, &multipliers, samples, 0.0),
-            images,
-        ))
+        Some((Series::new(mesh, &orders, &multipliers, samples, 0.0), images))
     }
 }
 
@@ -232,11 +215,7 @@ impl<const N: usize> StripKernel<N> {
         if let Some((series, images)) = &self.rest {
             let [mean] = series.mean([y.abs()]);
             for (k, sum) in sums.iter_mut().enumerate() {
-                let sign = if self.outputs[k].sine {
-                    1.0
-                } else {
-                    y.signum()
-                };
+                let sign = if self.outputs[k].sine { 1.0 } else { y.signum() };
                 *sum += sign * mean[k] + images[k].integral(self.outputs[k], y, self.datum);
             }
         }
@@ -275,11 +254,7 @@ impl Closed {
         let square = y * y + z * z;
         // Lengths over the datum, so that logarithms are those of numbers.
         let log = 0.5 * (square / (datum * datum)).ln();
-        let angle = if z > 0.0 {
-            (y / z).atan()
-        } else {
-            0.5 * PI * y.signum()
-        };
+        let angle = if z > 0.0 { (y / z).atan() } else { 0.5 * PI * y.signum() };
         let (first, second) = match (output.sine, output.displacement) {
             (false, false) => (angle, z * y / square),
             (true, false) => (log, -z * z / square),

@@ -44,10 +44,8 @@ impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> 
             .into_par_iter()
             .map(|piece| {
                 let bits = (piece as u64) << (52 - BITS);
-                let (start, end) = (
-                    f64::from_bits(bits),
-                    f64::from_bits(bits + (1 << (52 - BITS))),
-                );
+                let (start, end) =
+                    (f64::from_bits(bits), f64::from_bits(bits + (1 << (52 - BITS))));
                 let distance = |node: f64| {
                     let v = start + 0.5 * (1.0 + node) * (end - start);
                     (v * unit - shift).max(0.0).sqrt()
@@ -65,12 +63,7 @@ impl<const N: usize, const TERMS: usize, const BITS: u32> Table<N, TERMS, BITS> 
                 polynomials
             })
             .collect();
-        Self {
-            shift,
-            inverse_unit: 1.0 / unit,
-            last,
-            pieces,
-        }
+        Self { shift, inverse_unit: 1.0 / unit, last, pieces }
     }
 
     /// The functions at s, or at the nearer end of the table.
@@ -98,19 +91,10 @@ fn powers_of_lagrange<const NODES: usize>(nodes: &[f64; NODES]) -> [[f64; NODES]
     std::array::from_fn(|k| {
         let mut polynomial = [0.0; NODES];
         polynomial[0] = 1.0;
-        for (degree, (_, node)) in nodes
-            .iter()
-            .enumerate()
-            .filter(|(j, _)| *j != k)
-            .enumerate()
-        {
+        for (degree, (_, node)) in nodes.iter().enumerate().filter(|(j, _)| *j != k).enumerate() {
             let norm = 1.0 / (nodes[k] - node);
             for power in (0..=degree + 1).rev() {
-                let below = if power > 0 {
-                    polynomial[power - 1]
-                } else {
-                    0.0
-                };
+                let below = if power > 0 { polynomial[power - 1] } else { 0.0 };
                 polynomial[power] = (below - node * polynomial[power]) * norm;
             }
         }

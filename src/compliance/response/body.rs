@@ -183,11 +183,7 @@ impl From<&Elastic> for Body {
 /// Limits that are not finite or below 0, lengths that are not above 0 or out of order, a local
 /// compliance below 0; limits that differ where there are no lengths.
 pub(crate) fn check(body: &dyn Response) -> Result<()> {
-    let Asymptotes {
-        long,
-        constant,
-        short,
-    } = body.asymptotes();
+    let Asymptotes { long, constant, short } = body.asymptotes();
     not_negative("asymptotes().long", long)?;
     not_negative("asymptotes().short", short)?;
     finite("asymptotes().constant", constant)?;
@@ -217,11 +213,7 @@ fn not_negative(name: &'static str, value: f64) -> Result<()> {
     if value >= 0.0 && value.is_finite() {
         return Ok(());
     }
-    Err(Error::Parameter {
-        name,
-        requirement: "finite and at least 0",
-        value,
-    })
+    Err(Error::Parameter { name, requirement: "finite and at least 0", value })
 }
 
 /// Size of α û_z/p̂ \[1/Pa\] without its sign: the larger of its limits; where both are 0, the largest value at octaves

@@ -35,11 +35,7 @@ pub(crate) struct ResponseSlope {
 
 impl ResponseSlope {
     pub(crate) fn new(body: &HalfSpace, parameter: BodyParameter) -> Self {
-        Self {
-            body: body.clone(),
-            parameter,
-            limits: asymptote_derivatives(body, &[parameter])[0],
-        }
+        Self { body: body.clone(), parameter, limits: asymptote_derivatives(body, &[parameter])[0] }
     }
 }
 
@@ -111,13 +107,7 @@ pub fn normal_derivatives(
         let slab = Slab::new(layer.material(), alpha * layer.thickness());
         let below = compliance;
         compliance = slab.onto(below, layer.interface());
-        states.push(State {
-            slab,
-            below,
-            top: [0.0; 2],
-            bottom: [0.0; 2],
-            displacement: [0.0; 2],
-        });
+        states.push(State { slab, below, top: [0.0; 2], bottom: [0.0; 2], displacement: [0.0; 2] });
     }
     states.reverse();
     let mut traction = [1.0, 0.0];
@@ -248,9 +238,7 @@ fn compression(body: &HalfSpace, parameter: BodyParameter) -> f64 {
         Substrate::Elastic(material) => Some(material),
         Substrate::Rigid => None,
     };
-    let loose = layers
-        .iter()
-        .rposition(|layer| layer.interface() == Interface::Frictionless);
+    let loose = layers.iter().rposition(|layer| layer.interface() == Interface::Frictionless);
     let first_held = loose.map_or(0, |last| last + 1);
     if place >= layers.len() {
         let held = layers[first_held..].iter();
@@ -319,17 +307,10 @@ fn held_by(layer: &Layer, substrate: Elastic, parameter: BodyParameter) -> f64 {
 fn free_layer(group: &[Layer], layer: &Layer, parameter: BodyParameter) -> f64 {
     let (push, stiffness) = group.iter().fold((0.0, 0.0), |(push, stiffness), layer| {
         let (h, nu) = (layer.thickness(), layer.material().poisson());
-        (
-            push + h * nu / (1.0 - nu),
-            stiffness + h * layer.material().plane_strain_modulus(),
-        )
+        (push + h * nu / (1.0 - nu), stiffness + h * layer.material().plane_strain_modulus())
     });
     let stretch = push / stiffness;
-    let (h, e, nu) = (
-        layer.thickness(),
-        layer.material().young(),
-        layer.material().poisson(),
-    );
+    let (h, e, nu) = (layer.thickness(), layer.material().young(), layer.material().poisson());
     let eta = 1.0 - nu;
     let plane = 1.0 / (eta * (1.0 + nu));
     let alone = (1.0 + nu) * (1.0 - 2.0 * nu) / (e * eta);

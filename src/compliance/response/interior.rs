@@ -30,12 +30,7 @@ pub(crate) struct Place {
 impl Place {
     /// Place of the surface of `body`.
     pub(crate) fn surface(body: &HalfSpace) -> Self {
-        Self {
-            layer: 0,
-            below_top: 0.0,
-            depth: 0.0,
-            material: body.surface_material(),
-        }
+        Self { layer: 0, below_top: 0.0, depth: 0.0, material: body.surface_material() }
     }
 }
 
@@ -53,10 +48,7 @@ impl InPlane {
     pub(crate) fn lateral_stress(&self, material: Elastic) -> (f64, f64) {
         let nu = material.poisson();
         let stretch = 2.0 * material.shear() * self.v;
-        (
-            -(nu * self.p + stretch) / (1.0 - nu),
-            -nu * (self.p + stretch) / (1.0 - nu),
-        )
+        (-(nu * self.p + stretch) / (1.0 - nu), -nu * (self.p + stretch) / (1.0 - nu))
     }
 }
 
@@ -103,12 +95,7 @@ impl Fields {
         let unit = Self::homogeneous(material, y);
         let combine = |[p, t]: [f64; 2]| {
             let of = |f: fn(&InPlane) -> f64| p * f(&unit.pressure) + t * f(&unit.shear);
-            InPlane {
-                p: of(|s| s.p),
-                tau: of(|s| s.tau),
-                w: of(|s| s.w),
-                v: of(|s| s.v),
-            }
+            InPlane { p: of(|s| s.p), tau: of(|s| s.tau), w: of(|s| s.w), v: of(|s| s.v) }
         };
         Self {
             pressure: combine(loads.pressure),
@@ -151,11 +138,7 @@ impl Column {
             compliances.push(slab.onto(below, layer.interface()));
         }
         compliances.reverse();
-        let mut loads = Loads {
-            pressure: [1.0, 0.0],
-            shear: [0.0, 1.0],
-            twist: 1.0,
-        };
+        let mut loads = Loads { pressure: [1.0, 0.0], shear: [0.0, 1.0], twist: 1.0 };
         let mut tops = vec![(compliances[0], loads)];
         for ((slab, layer), below) in slabs.iter().zip(layers).zip(&compliances[1..]) {
             let interface = layer.interface();
@@ -202,12 +185,8 @@ impl Column {
 /// Fields at the top of a body of `compliance` under `loads`.
 fn on_top(compliance: &Compliance, loads: &Loads) -> Fields {
     let Compliance { c11, c12, c22, ct } = *compliance;
-    let state = |[p, tau]: [f64; 2]| InPlane {
-        p,
-        tau,
-        w: c11 * p + c12 * tau,
-        v: c12 * p + c22 * tau,
-    };
+    let state =
+        |[p, tau]: [f64; 2]| InPlane { p, tau, w: c11 * p + c12 * tau, v: c12 * p + c22 * tau };
     Fields {
         pressure: state(loads.pressure),
         shear: state(loads.shear),

@@ -25,12 +25,7 @@ pub struct Compliance {
 
 impl Compliance {
     /// Compliance of a rigid base.
-    pub(super) const RIGID: Self = Self {
-        c11: 0.0,
-        c12: 0.0,
-        c22: 0.0,
-        ct: 0.0,
-    };
+    pub(super) const RIGID: Self = Self { c11: 0.0, c12: 0.0, c22: 0.0, ct: 0.0 };
 
     /// α times the compliance of a homogeneous half-space \[1/Pa\], the same at every α.
     ///
@@ -40,12 +35,7 @@ impl Compliance {
     pub fn homogeneous(material: Elastic) -> Self {
         let (g, nu) = (material.shear(), material.poisson());
         let c11 = (1.0 - nu) / g;
-        Self {
-            c11,
-            c12: (1.0 - 2.0 * nu) / (2.0 * g),
-            c22: c11,
-            ct: 1.0 / g,
-        }
+        Self { c11, c12: (1.0 - 2.0 * nu) / (2.0 * g), c22: c11, ct: 1.0 / g }
     }
 
     /// All four compliances times `factor`.
@@ -162,24 +152,9 @@ impl Shapes {
             (scale * a, scale * b, scale * c)
         } else {
             let half = (-2.0 * x).exp_m1();
-            (
-                -(-4.0 * x).exp_m1() - 2.0 * xs,
-                x * cosh - sinh,
-                0.5 * half * half - x2s,
-            )
+            (-(-4.0 * x).exp_m1() - 2.0 * xs, x * cosh - sinh, 0.5 * half * half - x2s)
         };
-        Self {
-            x,
-            scale,
-            decay: [e1, e2],
-            cosh,
-            sinh,
-            xs,
-            x2s,
-            sinh2_2x,
-            xcosh_sinh,
-            sinhsq_x2,
-        }
+        Self { x, scale, decay: [e1, e2], cosh, sinh, xs, x2s, sinh2_2x, xcosh_sinh, sinhsq_x2 }
     }
 
     /// Δ times 2e^{−2x}.
@@ -225,10 +200,7 @@ impl Slab {
                     h12 * (2.0 * eta * cosh + xsinh),
                     -h12 * (2.0 * nu * xcosh + epsilon * xcosh_sinh),
                 ],
-                [
-                    h12 * (2.0 * eta * sinh + xcosh_sinh),
-                    h12 * (2.0 * eta * cosh - xsinh),
-                ],
+                [h12 * (2.0 * eta * sinh + xcosh_sinh), h12 * (2.0 * eta * cosh - xsinh)],
             ],
             h22: Symmetric(
                 h22 * eta * sinh2_2x,
@@ -236,11 +208,7 @@ impl Slab {
                 h22 * eta * (sinh2_2x + 4.0 * xs),
             ),
             det_h22: 8.0 * sinhsq_x2 / delta * g * g,
-            twist: Twist {
-                h11: x.tanh() / g,
-                h12: 2.0 * e1 / (1.0 + e2),
-                h22: x.tanh() * g,
-            },
+            twist: Twist { h11: x.tanh() / g, h12: 2.0 * e1 / (1.0 + e2), h22: x.tanh() * g },
         }
     }
 
@@ -310,10 +278,8 @@ impl Slab {
                 let (m11, m12) = (k11 * c11 + k12 * c12, k11 * c12 + k12 * c22);
                 let (m21, m22) = (k12 * c11 + k22 * c12, k12 * c12 + k22 * c22);
                 let den = 1.0 + m11 + m22 + det * self.det_h22;
-                let traction = [
-                    ((1.0 + m22) * f1 - m12 * f2) / den,
-                    ((1.0 + m11) * f2 - m21 * f1) / den,
-                ];
+                let traction =
+                    [((1.0 + m22) * f1 - m12 * f2) / den, ((1.0 + m11) * f2 - m21 * f1) / den];
                 let displacement = [
                     ((c11 + det * k22) * f1 + (c12 - det * k12) * f2) / den,
                     ((c12 - det * k12) * f1 + (c22 + det * k11) * f2) / den,

@@ -148,16 +148,15 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
             point: |x: f64, y: f64| [far(x, y)[k]; 9],
         };
         let mut rows = Array2::zeros((nx, ny));
-        rows.axis_chunks_iter_mut(Axis(0), ROWS)
-            .into_par_iter()
-            .enumerate()
-            .for_each(|(chunk, mut part)| {
+        rows.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate().for_each(
+            |(chunk, mut part)| {
                 let first = chunk * ROWS;
                 source.rows(first..first + part.nrows(), &mut |i, _, row| {
                     let mut target = part.row_mut(i - first);
                     target.iter_mut().zip(row).for_each(|(to, c)| *to = *c);
                 });
-            });
+            },
+        );
         rows
     };
     let component = |axis: usize, k: usize| threads.run(|| component(axis, k));
@@ -227,11 +226,7 @@ fn of_cells(material: Elastic, grid: &Grid) -> [Array2<f64>; 5] {
 
 /// x asinh(y/|x|)
 fn times_asinh(x: f64, y: f64) -> f64 {
-    if x == 0.0 {
-        0.0
-    } else {
-        x * (y / x.abs()).asinh()
-    }
+    if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() }
 }
 
 /// x atan(y/x)

@@ -76,9 +76,8 @@ impl Tangential {
             transform.parity_spectrum(&part, odd, &mut workspace, threads)
         };
         let TractionCoefficients { xx, xy, yy, zx, zy } = &self.coefficients;
-        let coupling = self
-            .is_coupled()
-            .then(|| [spectrum(zx, [true, false]), spectrum(zy, [false, true])]);
+        let coupling =
+            self.is_coupled().then(|| [spectrum(zx, [true, false]), spectrum(zy, [false, true])]);
         let periodic = PaddedTransform::plan_unpadded(shape, [false; 2], threads);
         TangentialWindow {
             shape,
@@ -115,11 +114,7 @@ impl Tangential {
             (self.bodies.iter().filter_map(|body| body.half_space())).collect();
         let line = self.grid.is_line();
         periodic.spectra_of([[false, false], [true, true], [false, false]], |m, n| {
-            let (m, n) = if line {
-                (0.0, n / dy)
-            } else {
-                (m / dx, n / dy)
-            };
+            let (m, n) = if line { (0.0, n / dy) } else { (m / dx, n / dy) };
             let alpha = m.hypot(n).max(least);
             let (mut along, mut across) = (0.0, 0.0);
             for body in &half_spaces {
@@ -168,9 +163,7 @@ impl std::fmt::Debug for TangentialWindow {
 
 impl TangentialWindow {
     fn memory(&self) -> MutexGuard<'_, Workspace> {
-        self.workspace
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+        self.workspace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Cells of the window.
@@ -196,47 +189,22 @@ impl TangentialWindow {
         input: &[f64],
         output: &mut [f64],
     ) {
-        let term = |output, input, spectrum| Term {
-            output,
-            input,
-            spectrum,
-            sign: 1.0,
-        };
-        let terms = [
-            term(0, 0, xx),
-            term(0, 1, xy),
-            term(1, 0, xy),
-            term(1, 1, yy),
-        ];
+        let term = |output, input, spectrum| Term { output, input, spectrum, sign: 1.0 };
+        let terms = [term(0, 0, xx), term(0, 1, xy), term(1, 0, xy), term(1, 1, yy)];
         // Antiplane shear of a line contact is apart.
-        let terms = if self.shape[0] == 1 {
-            &[terms[0], terms[3]][..]
-        } else {
-            &terms
-        };
+        let terms = if self.shape[0] == 1 { &[terms[0], terms[3]][..] } else { &terms };
         let (x, y) = input.split_at(self.cells());
         let (to_x, to_y) = output.split_at_mut(self.cells());
         let mut memory = self.memory();
         transform.reserve(&mut memory);
-        transform.convolve_tensor(
-            terms,
-            &[x, y],
-            &mut [to_x, to_y],
-            &mut memory,
-            &self.threads,
-        );
+        transform.convolve_tensor(terms, &[x, y], &mut [to_x, to_y], &mut memory, &self.threads);
     }
 
     /// u_z of both bodies together, which opens the gap, under tractions.
     pub(crate) fn lift(&self, q: &[f64]) -> Vec<f64> {
         let mut lifted = vec![0.0; self.cells()];
         if let Some([zx, zy]) = &self.coupling {
-            let term = |input, spectrum| Term {
-                output: 0,
-                input,
-                spectrum,
-                sign: 1.0,
-            };
+            let term = |input, spectrum| Term { output: 0, input, spectrum, sign: 1.0 };
             let (x, y) = q.split_at(self.cells());
             self.transform.convolve_tensor(
                 &[term(0, zx), term(1, zy)],
@@ -253,12 +221,7 @@ impl TangentialWindow {
     pub(crate) fn spread(&self, pressure: &[f64]) -> Vec<f64> {
         let mut spread = vec![0.0; 2 * self.cells()];
         if let Some([zx, zy]) = &self.coupling {
-            let term = |output, spectrum| Term {
-                output,
-                input: 0,
-                spectrum,
-                sign: -1.0,
-            };
+            let term = |output, spectrum| Term { output, input: 0, spectrum, sign: -1.0 };
             let (x, y) = spread.split_at_mut(self.cells());
             self.transform.convolve_tensor(
                 &[term(0, zx), term(1, zy)],

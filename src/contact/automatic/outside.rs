@@ -34,16 +34,11 @@ pub(super) fn overlap(task: &Task, solution: &Solution, frame: Frame) -> Result<
         return Ok(None);
     }
     let pressed = Pressed::by(solution);
-    let reach = lows
-        .iter()
-        .fold(0.0, |reach: f64, low| reach.max(pressed.farthest(low.at)));
+    let reach = lows.iter().fold(0.0, |reach: f64, low| reach.max(pressed.farthest(low.at)));
     let bodies = pressed.plan(task, reach)?;
     let mut found: Option<Overlap> = None;
     for low in lows {
-        let displacement: f64 = bodies
-            .iter()
-            .map(|body| pressed.displacement(body, low.at))
-            .sum();
+        let displacement: f64 = bodies.iter().map(|body| pressed.displacement(body, low.at)).sum();
         let depth = solution.approach - low.gap - displacement;
         if depth > 0.0 {
             let frame = low.at.map(|at| [at, at]);
@@ -146,9 +141,7 @@ impl Pressed {
     /// Largest distance of `at` from the centre of a block.
     fn farthest(&self, at: [f64; 2]) -> f64 {
         let distance = |[x, y]: [f64; 2]| (x - at[0]).hypot(y - at[1]);
-        self.blocks
-            .iter()
-            .fold(0.0, |most, (center, _)| distance(*center).max(most))
+        self.blocks.iter().fold(0.0, |most, (center, _)| distance(*center).max(most))
     }
 
     /// The influence of one block on each of the two bodies, for offsets up to `reach`.
@@ -158,16 +151,12 @@ impl Pressed {
         }
         let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
         let bodies = bodies.into_iter().flatten().cloned();
-        bodies
-            .map(|body| CellInfluence::plan(body, self.sides, reach))
-            .collect()
+        bodies.map(|body| CellInfluence::plan(body, self.sides, reach)).collect()
     }
 
     /// Displacement of one of the bodies at a place outside all blocks.
     fn displacement(&self, body: &CellInfluence, [x, y]: [f64; 2]) -> f64 {
         let blocks = self.blocks.iter();
-        blocks
-            .map(|([cx, cy], pressure)| pressure * body.at([x - cx, y - cy]))
-            .sum()
+        blocks.map(|([cx, cy], pressure)| pressure * body.at([x - cx, y - cy])).sum()
     }
 }

@@ -112,10 +112,7 @@ enum Edge {
 /// How the contact meets the edges of `shape` along both axes; it does where the solution has a warning of them.
 fn edges(solution: &Solution, shape: &dyn Surface) -> [Edge; 2] {
     let warned = |warning: &Warning| {
-        matches!(
-            warning,
-            Warning::SharpEnd { .. } | Warning::FreeEnd | Warning::SharpEdge
-        )
+        matches!(warning, Warning::SharpEnd { .. } | Warning::FreeEnd | Warning::SharpEdge)
     };
     let mut edges = [Edge::Away; 2];
     if !solution.report.warnings.iter().any(warned) {
@@ -180,10 +177,7 @@ fn touches_edge(
 /// The estimated error of the peak pressure, relative to the peak; `None` where there is no estimate.
 pub(super) fn peak_error(solution: &Solution) -> Option<f64> {
     let (peak, errors) = (solution.peak_pressure(), solution.report.discretisation?);
-    errors
-        .peak_pressure
-        .filter(|_| peak > 0.0)
-        .map(|error| error / peak)
+    errors.peak_pressure.filter(|_| peak > 0.0).map(|error| error / peak)
 }
 
 /// Along each axis: whether the pressure bends about as much as along the other, and whether few cells are in

@@ -39,11 +39,7 @@ pub(super) struct Relief<'a> {
 
 impl<'a> Relief<'a> {
     pub(super) fn new(shape: &'a dyn Surface, tilt: [f64; 2]) -> Self {
-        Self {
-            shape,
-            tilt,
-            marks: shape.marks(),
-        }
+        Self { shape, tilt, marks: shape.marks() }
     }
 
     /// h − s_x x − s_y y
@@ -57,20 +53,14 @@ impl<'a> Relief<'a> {
         let extent = self.shape.extent();
         [0, 1].map(|k| {
             let [low, high] = extent[k].range();
-            [
-                low.max(middle[k] - FAR * length),
-                high.min(middle[k] + FAR * length),
-            ]
+            [low.max(middle[k] - FAR * length), high.min(middle[k] + FAR * length)]
         })
     }
 
     /// The lowest points along lines across `region`, which are densest around `middle`.
     pub(super) fn lows(&self, region: Frame, middle: [f64; 2]) -> Vec<Low> {
         let mut lows = Vec::new();
-        if region
-            .iter()
-            .any(|[low, high]| low.partial_cmp(high).is_none_or(|o| o.is_ge()))
-        {
+        if region.iter().any(|[low, high]| low.partial_cmp(high).is_none_or(|o| o.is_ge())) {
             return lows;
         }
         let [xs, ys] = [0, 1].map(|k| stations(region[k], middle[k], &self.marks[k]));
@@ -82,10 +72,8 @@ impl<'a> Relief<'a> {
                 .map(move |(y, gap)| Low { at: [x, y], gap })
                 .collect::<Vec<_>>()
         };
-        let lowest = |lows: &[Low]| {
-            lows.iter()
-                .fold(f64::INFINITY, |least, low| least.min(low.gap))
-        };
+        let lowest =
+            |lows: &[Low]| lows.iter().fold(f64::INFINITY, |least, low| least.min(low.gap));
         let mut profile = Vec::new();
         for &x in &xs {
             let found = along(x);
@@ -114,9 +102,7 @@ impl<'a> Relief<'a> {
             ([x, [y[1].max(ey[0]), ey[1]]], [middle[0], y[1]]),
         ];
         let strips = strips.into_iter();
-        strips
-            .flat_map(|(strip, near)| self.lows(strip, near))
-            .collect()
+        strips.flat_map(|(strip, near)| self.lows(strip, near)).collect()
     }
 
     /// A rectangle around the places near `lows` whose gap is below `level`: on the lines through each of them,
@@ -152,10 +138,7 @@ pub(super) fn limited(frame: Frame, extent: [Extent; 2]) -> Frame {
         let [low, high] = extent[k].range();
         // Somewhat beyond the ends of the shape, where it has any.
         let beyond = 0.02 * (high - low);
-        [
-            frame[k][0].max(low - beyond),
-            frame[k][1].min(high + beyond),
-        ]
+        [frame[k][0].max(low - beyond), frame[k][1].min(high + beyond)]
     })
 }
 
@@ -167,10 +150,7 @@ fn stations([low, high]: [f64; 2], middle: f64, marks: &[f64]) -> Vec<f64> {
         let distance = span * 0.25_f64.powi(k);
         [middle - distance, middle + distance]
     });
-    let all = even
-        .chain(near)
-        .chain([middle])
-        .chain(marks.iter().copied());
+    let all = even.chain(near).chain([middle]).chain(marks.iter().copied());
     let mut stations: Vec<f64> = all.filter(|at| (low..=high).contains(at)).collect();
     stations.sort_by(f64::total_cmp);
     stations.dedup();

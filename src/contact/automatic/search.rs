@@ -97,11 +97,7 @@ impl<'a> Search<'a> {
     fn fit(&mut self, mut frame: Frame, progress: &mut Progress) -> Result<Grid> {
         let (mut enlargements, mut reductions) = (0, 0);
         loop {
-            let cells = if self.held.is_some() {
-                HELD_CELLS
-            } else {
-                COARSE_CELLS
-            };
+            let cells = if self.held.is_some() { HELD_CELLS } else { COARSE_CELLS };
             let grid = self.task.grid_over(frame, [cells; 2])?;
             frame = frame_of(&grid);
             let solution = self.task.solve(grid, &self.options, progress)?;
@@ -144,10 +140,7 @@ impl<'a> Search<'a> {
             }
             if grown {
                 if enlargements == ENLARGEMENTS {
-                    return Err(Error::NoGrid {
-                        enlargements,
-                        size: grid.size(),
-                    });
+                    return Err(Error::NoGrid { enlargements, size: grid.size() });
                 }
                 enlargements += 1;
             } else if shrunk && reductions < REDUCTIONS {
@@ -169,9 +162,7 @@ impl<'a> Search<'a> {
 
     /// Remembers the place of an overlap. Returns a rectangle with a margin around this place and the contact.
     fn hold(&mut self, overlap: Overlap, solution: &Solution) -> Frame {
-        let held = self
-            .held
-            .map_or(overlap.frame, |held| enclosing(held, overlap.frame));
+        let held = self.held.map_or(overlap.frame, |held| enclosing(held, overlap.frame));
         self.held = Some(held);
         let frame = enclosing(solution.contact_extent(), held);
         let wider = frame.map(|[low, high]| {
@@ -245,10 +236,7 @@ pub(super) fn touched_sides(contact: &Window, grid: &Grid, extent: [Extent; 2]) 
 
 /// A range whose `sides` are moved out by `distance`.
 pub(super) fn moved_out([low, high]: [f64; 2], sides: [bool; 2], distance: f64) -> [f64; 2] {
-    [
-        if sides[0] { low - distance } else { low },
-        if sides[1] { high + distance } else { high },
-    ]
+    [if sides[0] { low - distance } else { low }, if sides[1] { high + distance } else { high }]
 }
 
 /// The middle of the shape, or the point where the load acts, where it lies on the shape.
@@ -256,14 +244,8 @@ fn middle(task: &Task) -> [f64; 2] {
     let extent = task.shape.extent();
     std::array::from_fn(|axis| {
         let [low, high] = extent[axis].range();
-        let middle = if low.is_finite() && high.is_finite() {
-            0.5 * (low + high)
-        } else {
-            0.0
-        };
-        task.motion.eccentricity[axis]
-            .filter(|e| *e > low && *e < high)
-            .unwrap_or(middle)
+        let middle = if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 };
+        task.motion.eccentricity[axis].filter(|e| *e > low && *e < high).unwrap_or(middle)
     })
 }
 
@@ -359,16 +341,8 @@ fn first_frame(task: &Task) -> Result<Frame> {
     for [low, high] in &frame {
         if high - low <= 1e-100 || !(high - low).is_finite() {
             // Nothing overlaps: a grid around the middle shows that nothing touches.
-            let sizes = [
-                extent[0].range()[1],
-                extent[1].range()[1],
-                radii[0],
-                radii[1],
-            ];
-            let size = sizes
-                .into_iter()
-                .map(f64::abs)
-                .filter(|s| s.is_finite() && *s > 0.0);
+            let sizes = [extent[0].range()[1], extent[1].range()[1], radii[0], radii[1]];
+            let size = sizes.into_iter().map(f64::abs).filter(|s| s.is_finite() && *s > 0.0);
             let half = 0.01 * size.reduce(f64::min).unwrap_or(1.0);
             return Ok(center.map(|c| [c - half, c + half]));
         }

@@ -112,10 +112,7 @@ pub(crate) fn estimate(results: &[GridResult], singular: bool) -> Option<Discret
             None => UNKNOWN_RATE,
         };
         let growth = rate.exp2();
-        let scaled = changes
-            .iter()
-            .zip(0..CHANGES)
-            .map(|(c, k)| c / growth.powi(k));
+        let scaled = changes.iter().zip(0..CHANGES).map(|(c, k)| c / growth.powi(k));
         Some(scaled.fold(0.0, f64::max) / (growth - 1.0))
     };
     let peak_pressure = error(|f| f.peak_pressure)?;
@@ -129,10 +126,7 @@ pub(crate) fn estimate(results: &[GridResult], singular: bool) -> Option<Discret
 impl Discretisation {
     /// These errors, with that of the peak pressure raised to `peak` where it is less.
     pub(crate) fn at_least(self, peak: f64) -> Self {
-        Self {
-            peak_pressure: self.peak_pressure.map(|error| error.max(peak)),
-            ..self
-        }
+        Self { peak_pressure: self.peak_pressure.map(|error| error.max(peak)), ..self }
     }
 
     /// The sum of two independent errors.
@@ -218,15 +212,9 @@ impl Unresolved {
         }
         let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
         let local: f64 = bodies.iter().map(|body| body.local()).sum();
-        let stiffening = if short > 0.0 && local <= 0.0 {
-            (normal(PI / finest) / short).max(1.0)
-        } else {
-            1.0
-        };
-        Self {
-            aliases,
-            stiffening,
-        }
+        let stiffening =
+            if short > 0.0 && local <= 0.0 { (normal(PI / finest) / short).max(1.0) } else { 1.0 };
+        Self { aliases, stiffening }
     }
 
     /// Errors of a solution whose pressure is zero outside `window`: of the approach where it is `loaded`,
@@ -263,10 +251,7 @@ impl Unresolved {
             before = p;
         }
         if !(force > 0.0 && work.abs() > 0.0) {
-            return Discretisation {
-                peak_pressure: Some(0.0),
-                ..Discretisation::default()
-            };
+            return Discretisation { peak_pressure: Some(0.0), ..Discretisation::default() };
         }
         let [weight_x, weight_y] = [0, 1].map(|k| self.aliases[k] / grid.spacing()[k].powi(2));
         let excess = weight_x * along_x.squares + weight_y * along_y.squares;
@@ -279,28 +264,18 @@ impl Unresolved {
         };
         let rim = along_x.rim.max(along_y.rim);
         let concentrated = (rim * self.stiffening.cbrt() - peak).max(0.0);
-        let starts = if grid.is_line() {
-            along_y.starts
-        } else {
-            along_x.starts.max(along_y.starts)
-        };
+        let starts =
+            if grid.is_line() { along_y.starts } else { along_x.starts.max(along_y.starts) };
         let width = cells / starts;
-        let rim_error = if singular && grid.is_line() {
-            0.5 / width
-        } else {
-            CHANCE / (width * width)
-        };
+        let rim_error =
+            if singular && grid.is_line() { 0.5 / width } else { CHANCE / (width * width) };
         let (approach, load) = if loaded {
             (excess / force + rim_error * (work / force).abs(), 0.0)
         } else {
             let part = excess / work.abs() + rim_error;
             (0.0, part.min(1.0) * force * grid.cell_area())
         };
-        Discretisation {
-            peak_pressure: Some(peak * relative + concentrated),
-            approach,
-            load,
-        }
+        Discretisation { peak_pressure: Some(peak * relative + concentrated), approach, load }
     }
 }
 
@@ -384,9 +359,7 @@ fn corner(gap: impl Fn(f64) -> f64, length: f64) -> f64 {
         // Slopes of the parts, and of one before and after: a corner may lie on the rim.
         let at = |k: usize| gap(middle + part * (k as f64 - 0.5 * PARTS as f64 - 1.0));
         let heights: [f64; PARTS + 3] = std::array::from_fn(at);
-        let growths = heights
-            .windows(3)
-            .map(|h| (h[2] - 2.0 * h[1] + h[0]) / part);
+        let growths = heights.windows(3).map(|h| (h[2] - 2.0 * h[1] + h[0]) / part);
         total = growths.clone().sum();
         let sharpest = growths.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((place, found)) = sharpest.filter(|(_, found)| found.is_finite()) else {
@@ -463,11 +436,8 @@ mod tests {
     /// A singular pressure has no peak; other errors fall as dx, whatever the changes look like.
     #[test]
     fn a_singular_pressure_has_no_peak() {
-        let result = |value: f64| GridResult {
-            peak_pressure: value,
-            approach: value,
-            load: 2.0 * value,
-        };
+        let result =
+            |value: f64| GridResult { peak_pressure: value, approach: value, load: 2.0 * value };
         let found = estimate(&[0.0, 0.96, 1.2].map(result), true).expect("three grids");
         assert_eq!(found.peak_pressure, None);
         assert!((found.approach - 0.48).abs() < 1e-12 && (found.load - 0.96).abs() < 1e-12);
@@ -514,10 +484,7 @@ mod unresolved_tests {
         for (found, spacing) in found.aliases.into_iter().zip([0.1, 0.05]) {
             let zeta = 1.202_056_903_159_594;
             let expected = 4.0 * 2.0 * (spacing / std::f64::consts::TAU).powi(3) * 0.75 * zeta;
-            assert!(
-                (found / expected - 1.0).abs() < 1e-7,
-                "{found:e} {expected:e}"
-            );
+            assert!((found / expected - 1.0).abs() < 1e-7, "{found:e} {expected:e}");
         }
         assert!((found.stiffening - 1.0).abs() < 1e-12);
         Ok(())
@@ -532,10 +499,7 @@ mod unresolved_tests {
         let found = Unresolved::new(&[&body], &Grid::line(10, 1.0)?);
         let (expected, [along_x, along_y]) = (h.powi(3) / 3.0, found.aliases);
         assert!(along_x.abs() < f64::MIN_POSITIVE);
-        assert!(
-            (along_y / expected - 1.0).abs() < 0.02,
-            "{along_y:e} {expected:e}"
-        );
+        assert!((along_y / expected - 1.0).abs() < 0.02, "{along_y:e} {expected:e}");
         Ok(())
     }
 
@@ -573,17 +537,10 @@ mod corner_tests {
             let found = corner(gap, 1.0);
             assert!((found / 1e-3 - 1.0).abs() < 0.02, "{place}: {found}");
         }
-        for gap in [
-            |x: f64| x * x,
-            |x: f64| 1.0 - (1.0 - x * x).sqrt(),
-            |x: f64| -(0.9 - x).ln(),
-        ] {
+        for gap in [|x: f64| x * x, |x: f64| 1.0 - (1.0 - x * x).sqrt(), |x: f64| -(0.9 - x).ln()] {
             assert!(corner(gap, 1.0).abs() <= 0.0);
         }
-        assert!(
-            corner(|x| -x.abs(), 1.0).abs() <= 0.0,
-            "a reentrant corner lowers the pressure"
-        );
+        assert!(corner(|x| -x.abs(), 1.0).abs() <= 0.0, "a reentrant corner lowers the pressure");
         assert!(corner(|x| if x < 0.2 { 0.0 } else { f64::INFINITY }, 1.0).abs() <= 0.0);
     }
 }

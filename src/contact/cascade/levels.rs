@@ -36,13 +36,7 @@ fn halved(grid: &Grid) -> [bool; 2] {
 /// The grid whose cells are twice as long in the directions of `halved`; it starts where `fine` does.
 fn coarse_grid(fine: &Grid, halved: [bool; 2]) -> Result<Grid> {
     let (shape, spacing, center) = (fine.shape(), fine.spacing(), fine.center());
-    let cells = [0, 1].map(|k| {
-        if halved[k] {
-            shape[k].div_ceil(2)
-        } else {
-            shape[k]
-        }
-    });
+    let cells = [0, 1].map(|k| if halved[k] { shape[k].div_ceil(2) } else { shape[k] });
     let longer = halved.map(|halved| if halved { 2.0 } else { 1.0 });
     let sides = [0, 1].map(|k| longer[k] * spacing[k] * cells[k] as f64);
     let grown = [0, 1].map(|k| 0.5 * (sides[k] - fine.size()[k]));
@@ -177,11 +171,7 @@ impl Levels {
 fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
     let (nx, ny) = fine.dim();
     let span = |i: usize, n: usize, halved: bool| -> Range<usize> {
-        if halved {
-            2 * i..(2 * i + 2).min(n)
-        } else {
-            i..i + 1
-        }
+        if halved { 2 * i..(2 * i + 2).min(n) } else { i..i + 1 }
     };
     let half = |n: usize, halved: bool| if halved { n.div_ceil(2) } else { n };
     Array2::from_shape_fn((half(nx, halved[0]), half(ny, halved[1])), |(i, j)| {
@@ -192,11 +182,7 @@ fn coarse_gap(fine: &Array2<f64>, halved: [bool; 2]) -> Array2<f64> {
                 count += 1;
             }
         }
-        if count > 0 {
-            sum / f64::from(count)
-        } else {
-            f64::INFINITY
-        }
+        if count > 0 { sum / f64::from(count) } else { f64::INFINITY }
     })
 }
 
@@ -238,9 +224,7 @@ impl Level<'_> {
     pub(crate) fn balance(&self, patch: &mut Patch) -> bool {
         let pressures = patch.values.chunks_exact_mut(patch.window[1].len().max(1));
         for (p, gaps) in pressures.zip(patch::rows(&self.gap, &patch.window)) {
-            update([gaps], [p], |[h], [p]| {
-                ([h.simd_lt(all(f64::INFINITY)) & p], [])
-            });
+            update([gaps], [p], |[h], [p]| ([h.simd_lt(all(f64::INFINITY)) & p], []));
         }
         self.freedoms
             .in_window(patch.window.clone())

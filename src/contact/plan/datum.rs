@@ -72,21 +72,14 @@ impl Datum {
         let (width, period) = (grid.size()[open], grid.size()[1 - open]);
         let period = if grid.is_line() { 1.0 } else { period };
         let compliance: f64 = bodies.iter().map(|body| body.asymptotes().long).sum();
-        let near = Self {
-            compliance: compliance / period,
-            distance: width,
-            width,
-            ..Self::default()
-        };
+        let near =
+            Self { compliance: compliance / period, distance: width, width, ..Self::default() };
         let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
         if homogeneous || near.compliance <= 0.0 {
             return Ok(near);
         }
         for trial in 0..TRIALS {
-            let datum = Self {
-                distance: width * FARTHER.powi(trial),
-                ..near
-            };
+            let datum = Self { distance: width * FARTHER.powi(trial), ..near };
             let moved = datum.moved(coefficients.clone(), grid);
             let total = total_pressure((&moved, additions), grid, threads)?;
             let Some(total) = total.filter(|&total| total > 0.0) else {
@@ -138,10 +131,7 @@ impl Datum {
     pub(crate) fn check_gap(&self, approach: f64, gap: &Array2<f64>) -> Result<()> {
         let mean = gap.sum() / gap.len() as f64;
         match self.floats && mean <= 0.0 {
-            true => Err(Error::FullContact {
-                approach,
-                most: approach + mean,
-            }),
+            true => Err(Error::FullContact { approach, most: approach + mean }),
             false => Ok(()),
         }
     }
@@ -191,8 +181,5 @@ fn total_pressure(
         TOLERANCE,
         &mut || ControlFlow::Continue(()),
     );
-    Ok(pressure
-        .ok()
-        .flatten()
-        .map(|pressure| pressure.iter().sum()))
+    Ok(pressure.ok().flatten().map(|pressure| pressure.iter().sum()))
 }

@@ -151,11 +151,7 @@ impl Freedoms {
             add_moments(&mut sums, x, row);
         }
         let missing = |k: usize| {
-            if self.loaded[k] {
-                self.target[k] - sums[k]
-            } else {
-                0.0
-            }
+            if self.loaded[k] { self.target[k] - sums[k] } else { 0.0 }
         };
         (sums[0], [0, 1, 2].map(missing))
     }
@@ -200,21 +196,14 @@ mod tests {
     /// Freedoms under a load of 2 with these eccentricities, on a grid 2 × 3.
     fn freedoms(eccentricity: [Option<f64>; 2]) -> Result<Freedoms> {
         let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.4, -0.3])?;
-        let motion = Motion {
-            eccentricity,
-            ..Motion::load(2.0)
-        };
+        let motion = Motion { eccentricity, ..Motion::load(2.0) };
         Freedoms::new(&motion, &grid)
     }
 
     /// Pressures between 0.5 and 2.5 in no order, 0 at every seventh cell.
     fn pressure() -> Vec<f64> {
         let p = |k: usize| {
-            if k.is_multiple_of(7) {
-                0.0
-            } else {
-                0.5 + (k * 37 % 101) as f64 / 50.0
-            }
+            if k.is_multiple_of(7) { 0.0 } else { 0.5 + (k * 37 % 101) as f64 / 50.0 }
         };
         (0..CELLS[0] * CELLS[1]).map(p).collect()
     }
@@ -292,10 +281,7 @@ mod tests {
         let [f, fx, _] = freedoms.target;
         for (mismatch, expected) in [(1e-13, true), (4e-13, false)] {
             assert_eq!(freedoms.on_target([f, fx + mismatch * f, 7.0]), expected);
-            assert_eq!(
-                freedoms.on_target([f * (1.0 - mismatch), fx, 7.0]),
-                expected
-            );
+            assert_eq!(freedoms.on_target([f * (1.0 - mismatch), fx, 7.0]), expected);
         }
         Ok(())
     }

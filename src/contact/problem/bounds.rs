@@ -25,11 +25,7 @@ pub(crate) struct Bounds<'a> {
 impl<'a> Bounds<'a> {
     /// p ≥ 0 alone.
     pub(crate) fn none(columns: usize) -> Self {
-        Self {
-            limits: vec![f64::INFINITY; columns].into(),
-            columns,
-            is_limited: false,
-        }
+        Self { limits: vec![f64::INFINITY; columns].into(), columns, is_limited: false }
     }
 
     /// The bounds of surfaces with this hardness on rows of so many `columns`.
@@ -41,11 +37,7 @@ impl<'a> Bounds<'a> {
                 None => limits.iter().copied().collect(),
             },
         };
-        Self {
-            limits,
-            columns,
-            is_limited: true,
-        }
+        Self { limits, columns, is_limited: true }
     }
 
     /// The bounds in a window.
@@ -53,16 +45,10 @@ impl<'a> Bounds<'a> {
         let limits = if self.limits.len() == self.columns {
             self.limits[window[1].clone()].to_vec()
         } else {
-            let rows = window[0]
-                .clone()
-                .flat_map(|i| &self.row(i)[window[1].clone()]);
+            let rows = window[0].clone().flat_map(|i| &self.row(i)[window[1].clone()]);
             rows.copied().collect()
         };
-        Bounds {
-            limits: limits.into(),
-            columns: window[1].len(),
-            is_limited: self.is_limited,
-        }
+        Bounds { limits: limits.into(), columns: window[1].len(), is_limited: self.is_limited }
     }
 
     /// Whether pressures have an upper bound.
@@ -72,11 +58,7 @@ impl<'a> Bounds<'a> {
 
     /// H along a row.
     pub(crate) fn row(&self, number: usize) -> &[f64] {
-        let first = if self.limits.len() == self.columns {
-            0
-        } else {
-            number * self.columns
-        };
+        let first = if self.limits.len() == self.columns { 0 } else { number * self.columns };
         &self.limits[first..first + self.columns]
     }
 

@@ -30,12 +30,7 @@ impl FitSums {
 }
 
 impl Total for FitSums {
-    const ZERO: Self = Self {
-        counted: 0.0,
-        moments: [0.0; 3],
-        right: [0.0; 3],
-        gram: [0.0; 6],
-    };
+    const ZERO: Self = Self { counted: 0.0, moments: [0.0; 3], right: [0.0; 3], gram: [0.0; 6] };
 
     fn joined(self, other: Self) -> Self {
         Self {
@@ -59,11 +54,7 @@ pub(crate) struct Products {
 }
 
 impl Total for Products {
-    const ZERO: Self = Self {
-        moments: [0.0; 3],
-        with_residual: 0.0,
-        with_last: 0.0,
-    };
+    const ZERO: Self = Self { moments: [0.0; 3], with_residual: 0.0, with_last: 0.0 };
 
     fn joined(self, other: Self) -> Self {
         Self {
@@ -138,11 +129,7 @@ impl Freedoms {
             });
             [s, now, last, 0.0]
         };
-        Products {
-            moments: [s, s * row.x, sy],
-            with_residual,
-            with_last,
-        }
+        Products { moments: [s, s * row.x, sy], with_residual, with_last }
     }
 
     /// Updates `fields` of one row by `step`, and returns the row's sums for a fit over the cells whose pressure is
@@ -196,17 +183,11 @@ impl Freedoms {
     /// makes all others 0.
     pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64], bounds: &Bounds) {
         let inside = |k: usize| bounds.is_free(k, p[k]) || r[k] != 0.0;
-        let member: Vec<f64> = (0..p.len())
-            .map(|k| f64::from(u8::from(inside(k))))
-            .collect();
+        let member: Vec<f64> = (0..p.len()).map(|k| f64::from(u8::from(inside(k)))).collect();
         let no_limit = vec![f64::INFINITY; self.columns[1].len()];
         let mut sums = FitSums::ZERO;
         for (number, (x, cells)) in self.rows().enumerate() {
-            let row = Row {
-                number,
-                x,
-                y: &self.columns[1],
-            };
+            let row = Row { number, x, y: &self.columns[1] };
             let (inputs, values) = ([&member[cells.clone()], row.y, row.y], &mut values[cells]);
             let here = self.fit_row(row, &no_limit, inputs, [values], |[member, ..], [value]| {
                 let value = where_positive(member, value);
@@ -226,9 +207,7 @@ impl Freedoms {
     /// no tilt) stays 0.
     pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
         let (mut matrix, mut solution) = (*matrix, right);
-        eliminate(&mut matrix, &mut solution, |k, pivot| {
-            self.loaded[k] && pivot > 0.0
-        });
+        eliminate(&mut matrix, &mut solution, |k, pivot| self.loaded[k] && pivot > 0.0);
         solution
     }
 }
@@ -242,11 +221,7 @@ pub(crate) fn add_moments(sums: &mut [f64; 3], x: f64, [s, sy]: [f64; 2]) {
 
 /// Adds a row's sums of 1, y and y² to the symmetric matrix Σ b bᵀ, b = (1, x, y).
 pub(crate) fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3]) {
-    let row = [
-        [s, s * x, sy],
-        [s * x, s * x * x, sy * x],
-        [sy, sy * x, syy],
-    ];
+    let row = [[s, s * x, sy], [s * x, s * x * x, sy * x], [sy, sy * x, syy]];
     for (sum, value) in sums.as_flattened_mut().iter_mut().zip(row.as_flattened()) {
         *sum += value;
     }
@@ -265,10 +240,7 @@ mod tests {
 
     /// Freedoms of a load that may tilt both ways, on a grid off the origin.
     fn freedoms() -> Result<Freedoms> {
-        let motion = Motion {
-            eccentricity: [Some(0.1), Some(0.2)],
-            ..Motion::load(1.0)
-        };
+        let motion = Motion { eccentricity: [Some(0.1), Some(0.2)], ..Motion::load(1.0) };
         let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.1, 0.2])?;
         Freedoms::new(&motion, &grid)
     }
@@ -358,20 +330,11 @@ mod tests {
         let sy = 0.5 / (y[8] - y[3]);
         for (found, expected) in [
             (with(&[(cell, 2.5)])?, [2.5, 0.0, 0.0]),
-            (
-                with(&[(cell, 2.5), (along_x, 3.0)])?,
-                [2.5 - sx * x[4], sx, 0.0],
-            ),
-            (
-                with(&[(cell, 2.5), (along_y, 3.0)])?,
-                [2.5 - sy * y[3], 0.0, sy],
-            ),
+            (with(&[(cell, 2.5), (along_x, 3.0)])?, [2.5 - sx * x[4], sx, 0.0]),
+            (with(&[(cell, 2.5), (along_y, 3.0)])?, [2.5 - sy * y[3], 0.0, sy]),
         ] {
             for k in 0..3 {
-                assert!(
-                    (found[k] - expected[k]).abs() < 1e-13,
-                    "{found:?} {expected:?}"
-                );
+                assert!((found[k] - expected[k]).abs() < 1e-13, "{found:?} {expected:?}");
             }
         }
         Ok(())

@@ -62,9 +62,7 @@ impl Freedoms {
             }
             (None, Some(approach)) => prescribed[0] = finite("approach", approach)?,
             _ => {
-                return Err(Error::Inconsistent(
-                    "exactly one of load and approach must be given",
-                ));
+                return Err(Error::Inconsistent("exactly one of load and approach must be given"));
             }
         }
         // Under a load the columns may be centred, which keeps them independent.
@@ -122,11 +120,7 @@ impl Freedoms {
     /// A uniform pressure on `cells` cells whose sum is of the size of the target.
     pub(crate) fn typical_pressure(&self, cells: usize) -> f64 {
         let asked = self.target.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        if asked > 0.0 {
-            asked / cells as f64
-        } else {
-            1.0
-        }
+        if asked > 0.0 { asked / cells as f64 } else { 1.0 }
     }
 
     /// Whether the prescribed motion changes the gap.
@@ -140,9 +134,7 @@ impl Freedoms {
         let [x, y] = &self.coordinates;
         for (mut row, x) in gap.rows_mut().into_iter().zip(x) {
             let shift = delta + sx * x;
-            row.iter_mut()
-                .zip(y)
-                .for_each(|(h, y)| *h -= shift + sy * y);
+            row.iter_mut().zip(y).for_each(|(h, y)| *h -= shift + sy * y);
         }
     }
 
@@ -164,11 +156,7 @@ impl Freedoms {
     pub(crate) fn in_window(&self, [x, y]: [Range<usize>; 2]) -> Self {
         let cut =
             |lines: &[Vec<f64>; 2]| [lines[0][x.clone()].to_vec(), lines[1][y.clone()].to_vec()];
-        Self {
-            columns: cut(&self.columns),
-            coordinates: cut(&self.coordinates),
-            ..self.clone()
-        }
+        Self { columns: cut(&self.columns), coordinates: cut(&self.coordinates), ..self.clone() }
     }
 
     /// These degrees of freedom on a grid whose cells are twice as long in the directions of `halved`.
@@ -223,19 +211,13 @@ impl Freedoms {
     pub(crate) fn check_feasible(&self, gap: &ArrayRef2<f64>) -> Result<()> {
         let points = outline(gap, &self.columns);
         if points.is_empty() {
-            return Err(Error::Inconsistent(
-                "no cell of the grid can touch: the gap is infinite",
-            ));
+            return Err(Error::Inconsistent("no cell of the grid can touch: the gap is infinite"));
         }
         let half_planes = match (self.loaded[1], self.loaded[2]) {
             (false, false) => return Ok(()),
             (true, true) => convex_hull(&points),
-            (true, false) => interval(points.iter().map(|p| p[0]))
-                .map(|(s, c)| [s, 0.0, c])
-                .into(),
-            (false, true) => interval(points.iter().map(|p| p[1]))
-                .map(|(s, c)| [0.0, s, c])
-                .into(),
+            (true, false) => interval(points.iter().map(|p| p[0])).map(|(s, c)| [s, 0.0, c]).into(),
+            (false, true) => interval(points.iter().map(|p| p[1])).map(|(s, c)| [0.0, s, c]).into(),
         };
         // n · (t M) > c for some t > 0, or at t = 1/W.
         let (mut low, mut high) = if self.loaded[0] {
@@ -259,28 +241,17 @@ impl Freedoms {
         }
         let range = |k: usize| {
             let at = |c: f64| self.origin[k] + self.scale[k] * c;
-            points
-                .iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
-                    [a.min(at(p[k])), b.max(at(p[k]))]
-                })
+            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+                [a.min(at(p[k])), b.max(at(p[k]))]
+            })
         };
         let [x_range, y_range] = [range(0), range(1)];
         if !self.loaded[0] {
             let moment = |k: usize| self.target[k + 1] * self.scale[k] * self.cell_area;
-            return Err(Error::Moment {
-                moment: [moment(0), moment(1)],
-                x_range,
-                y_range,
-            });
+            return Err(Error::Moment { moment: [moment(0), moment(1)], x_range, y_range });
         }
         let at = |k: usize| self.origin[k] + self.scale[k] * self.target[k + 1] / self.target[0];
-        Err(Error::LoadPoint {
-            x: at(0),
-            y: at(1),
-            x_range,
-            y_range,
-        })
+        Err(Error::LoadPoint { x: at(0), y: at(1), x_range, y_range })
     }
 }
 
@@ -304,9 +275,8 @@ fn outline(gap: &ArrayRef2<f64>, [x, y]: &[Vec<f64>; 2]) -> Vec<[f64; 2]> {
 
 /// The inside of the interval that holds `values`, as s · v > c from both ends.
 fn interval(values: impl Iterator<Item = f64>) -> [(f64, f64); 2] {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-        (a.min(v), b.max(v))
-    });
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     [(1.0, low), (-1.0, -high)]
 }
 
@@ -359,14 +329,7 @@ mod tests {
     #[test]
     fn half_planes_of_a_triangle() {
         let corners = [[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]];
-        let more = [
-            [0.0, 0.0],
-            [0.0, 1.0],
-            [0.0, 3.0],
-            [1.0, 1.0],
-            [2.0, 0.0],
-            [4.0, 0.0],
-        ];
+        let more = [[0.0, 0.0], [0.0, 1.0], [0.0, 3.0], [1.0, 1.0], [2.0, 0.0], [4.0, 0.0]];
         for points in [&corners[..], &more] {
             let half_planes = convex_hull(points);
             assert_eq!(half_planes.len(), 3);
@@ -401,18 +364,9 @@ mod tests {
 
     #[test]
     fn interval_from_both_ends() {
-        let inside = |v: f64| {
-            interval([2.0, -1.0, 0.5].into_iter())
-                .iter()
-                .all(|(s, c)| s * v > *c)
-        };
-        let expected = [
-            (-1.01, false),
-            (-1.0, false),
-            (-0.99, true),
-            (1.99, true),
-            (2.01, false),
-        ];
+        let inside =
+            |v: f64| interval([2.0, -1.0, 0.5].into_iter()).iter().all(|(s, c)| s * v > *c);
+        let expected = [(-1.01, false), (-1.0, false), (-0.99, true), (1.99, true), (2.01, false)];
         for (v, expected) in expected {
             assert_eq!(inside(v), expected, "{v}");
         }
@@ -421,20 +375,10 @@ mod tests {
     #[test]
     fn outline_of_the_cells_that_touch() {
         const NO: f64 = f64::INFINITY;
-        let gap = array![
-            [NO, 1.0, 1.0, 1.0],
-            [NO, NO, NO, NO],
-            [0.0, 2.0, NO, NO],
-            [NO, NO, -1.0, NO]
-        ];
+        let gap =
+            array![[NO, 1.0, 1.0, 1.0], [NO, NO, NO, NO], [0.0, 2.0, NO, NO], [NO, NO, -1.0, NO]];
         let columns = [vec![0.0, 1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0, 40.0]];
-        let expected = [
-            [0.0, 20.0],
-            [0.0, 40.0],
-            [2.0, 10.0],
-            [2.0, 20.0],
-            [3.0, 30.0],
-        ];
+        let expected = [[0.0, 20.0], [0.0, 40.0], [2.0, 10.0], [2.0, 20.0], [3.0, 30.0]];
         assert_eq!(outline(&gap, &columns), expected);
     }
 }

@@ -24,11 +24,7 @@ pub(crate) fn widened(cells: &Window, shape: [usize; 2]) -> Window {
         cells[k].start.saturating_sub(WINDOW_MARGIN)..(cells[k].end + WINDOW_MARGIN).min(shape[k])
     });
     let part = (window[0].len() * window[1].len()) as f64 / (shape[0] * shape[1]) as f64;
-    if part > LARGEST_PART {
-        full_window(shape)
-    } else {
-        window
-    }
+    if part > LARGEST_PART { full_window(shape) } else { window }
 }
 
 /// The smallest window that holds both.
@@ -89,10 +85,7 @@ impl Patch {
     /// The pressure of a whole grid.
     pub(crate) fn of_grid(pressure: &Array2<f64>) -> Self {
         let window = [0..pressure.nrows(), 0..pressure.ncols()];
-        Self {
-            window,
-            values: pressure.iter().copied().collect(),
-        }
+        Self { window, values: pressure.iter().copied().collect() }
     }
 
     /// Pressure of a cell of the grid.
@@ -143,11 +136,8 @@ impl Patch {
                 return [(i, 1.0), (i, 0.0)];
             }
             let (near, last) = (i / 2, shape[k].div_ceil(2) - 1);
-            let next = if i.is_multiple_of(2) {
-                near.saturating_sub(1)
-            } else {
-                (near + 1).min(last)
-            };
+            let next =
+                if i.is_multiple_of(2) { near.saturating_sub(1) } else { (near + 1).min(last) };
             [(near, 0.75), (next, 0.25)]
         };
         let [x, y] = &self.window;
@@ -194,20 +184,10 @@ mod tests {
         ] {
             // A coordinate in fine cells.
             let centre = |k: usize, i: usize| {
-                if halved[k] {
-                    2.0 * i as f64 + 0.5
-                } else {
-                    i as f64
-                }
+                if halved[k] { 2.0 * i as f64 + 0.5 } else { i as f64 }
             };
             let field = |x: f64, y: f64| 2.0 + 0.25 * x - 0.05 * y;
-            let coarse = [0, 1].map(|k| {
-                if halved[k] {
-                    shape[k].div_ceil(2)
-                } else {
-                    shape[k]
-                }
-            });
+            let coarse = [0, 1].map(|k| if halved[k] { shape[k].div_ceil(2) } else { shape[k] });
             let values = Array2::from_shape_fn(coarse, |(i, j)| field(centre(0, i), centre(1, j)));
             let fine = Patch::of_grid(&values).interpolated(shape, halved);
             assert_eq!(fine.window, shape.map(|n| 0..n));
@@ -237,9 +217,7 @@ mod tests {
             assert_eq!(fine.contact(), Some(contact.clone()));
             assert_eq!(
                 fine.window,
-                contact
-                    .clone()
-                    .map(|c| c.start - WINDOW_MARGIN..c.end + WINDOW_MARGIN)
+                contact.clone().map(|c| c.start - WINDOW_MARGIN..c.end + WINDOW_MARGIN)
             );
             let expected = if halved == [true; 2] { 9.0_f64 } else { 12.0 };
             for i in contact[0].clone() {
@@ -254,11 +232,7 @@ mod tests {
     #[test]
     fn windows_change_nothing() {
         let values = Array2::from_shape_fn([40, 33], |(i, j)| {
-            if i > 33 && (5..12).contains(&j) {
-                (i + 3 * j) as f64
-            } else {
-                0.0
-            }
+            if i > 33 && (5..12).contains(&j) { (i + 3 * j) as f64 } else { 0.0 }
         });
         let whole = Patch::of_grid(&values);
         let part = whole.moved([31..40, 3..15]);

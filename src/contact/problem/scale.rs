@@ -44,9 +44,7 @@ impl LocalDisplacement {
             softest = softest.max(MULTIPLE * radius * response(1.0 / radius));
             softest
         });
-        Self {
-            per_pressure: per_pressure.collect(),
-        }
+        Self { per_pressure: per_pressure.collect() }
     }
 
     /// Local displacement \[m\] under a pressure with this `sum` over `cells` cells; 0 without cells.
@@ -77,10 +75,9 @@ mod tests {
     #[test]
     fn bare_bodies() -> Result<()> {
         let body = Body::from(Elastic::new(1.0, 0.0)?);
-        for (grid, line) in [
-            (Grid::new([64, 32], [4.0, 1.0])?, false),
-            (Grid::line(64, 4.0)?, true),
-        ] {
+        for (grid, line) in
+            [(Grid::new([64, 32], [4.0, 1.0])?, false), (Grid::line(64, 4.0)?, true)]
+        {
             let local = LocalDisplacement::new(&[&body], &grid);
             for cells in [1.0, 3.0, 16.0, 37.0] {
                 let area = cells * grid.cell_area();

@@ -28,11 +28,9 @@ impl Gap {
     /// The gap of the solution, for its `displacement`.
     pub(crate) fn field(&self, displacement: &Array2<f64>) -> Array2<f64> {
         let (undeformed, freedoms, multipliers) = match self {
-            Self::Computed {
-                undeformed,
-                freedoms,
-                multipliers,
-            } => (undeformed, freedoms, multipliers),
+            Self::Computed { undeformed, freedoms, multipliers } => {
+                (undeformed, freedoms, multipliers)
+            }
             Self::Known(gap) => return gap.clone(),
         };
         let mut gap = Array2::zeros(undeformed.dim());

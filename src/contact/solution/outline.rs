@@ -77,17 +77,9 @@ impl Outline {
             *line = p > 0.0;
         }
         let mean = |weighted: f64| {
-            if carried > 0.0 {
-                weighted / carried
-            } else {
-                0.0
-            }
+            if carried > 0.0 { weighted / carried } else { 0.0 }
         };
-        Self {
-            lines,
-            widths: [mean(along_x), mean(along_y)],
-            is_cut,
-        }
+        Self { lines, widths: [mean(along_x), mean(along_y)], is_cut }
     }
 }
 
@@ -108,10 +100,7 @@ mod tests {
         let gap = Array2::zeros(pressure.dim());
         let found = outline(pressure, &gap);
         for (found, expected) in found.widths.iter().zip(expected) {
-            assert!(
-                (found - expected).abs() < 1e-12 * (1.0 + expected),
-                "{found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-12 * (1.0 + expected), "{found} {expected}");
         }
         assert!(!found.is_cut);
     }

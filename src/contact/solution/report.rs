@@ -80,10 +80,7 @@ impl Report {
 
     /// The error that says which conditions of convergence were not met; the message quotes `tolerance`.
     pub(crate) fn not_converged(&self, tolerance: f64) -> Error {
-        let Balance {
-            force,
-            moment: [x, y],
-        } = self.balance;
+        let Balance { force, moment: [x, y] } = self.balance;
         Error::NotConverged {
             iterations: self.iterations,
             residual: self.residual,
@@ -116,10 +113,7 @@ impl Report {
             counterbody: plan.setup.counterbody.clone(),
             method: plan.setup.method,
             motion: *motion,
-            rolling_direction: plan
-                .grid
-                .rolling_direction()
-                .or_else(|| shape.rolling_direction()),
+            rolling_direction: plan.grid.rolling_direction().or_else(|| shape.rolling_direction()),
             tolerance,
             seconds: 0.0,
         }
@@ -174,11 +168,7 @@ impl Carried {
             carried.peak = carried.peak.max(peak);
         }
         let area = grid.cell_area();
-        Self {
-            force: carried.force * area,
-            moment: carried.moment.map(|m| m * area),
-            ..carried
-        }
+        Self { force: carried.force * area, moment: carried.moment.map(|m| m * area), ..carried }
     }
 
     /// Errors of force and moments against those that `motion` asks for.
@@ -189,14 +179,9 @@ impl Carried {
         let moment = [0, 1].map(|k| {
             let eccentricity = || Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0));
             let asked = motion.moment[k].or_else(eccentricity);
-            asked.map_or(0.0, |m| {
-                relative((self.moment[k] - m).abs(), scale * half[k])
-            })
+            asked.map_or(0.0, |m| relative((self.moment[k] - m).abs(), scale * half[k]))
         });
         let force = motion.load;
-        Balance {
-            force: force.map_or(0.0, |w| relative((self.force - w).abs(), w)),
-            moment,
-        }
+        Balance { force: force.map_or(0.0, |w| relative((self.force - w).abs(), w)), moment }
     }
 }

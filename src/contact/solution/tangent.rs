@@ -58,11 +58,8 @@ impl Tangent {
             2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
         )?;
         let threads = Arc::new(Threads::new(None)?);
-        let setup = Setup {
-            counterbody: report.counterbody.clone(),
-            method: report.method,
-            threads: None,
-        };
+        let setup =
+            Setup { counterbody: report.counterbody.clone(), method: report.method, threads: None };
         let near = match report.method {
             Method::Exact => grid.of_offsets(shape),
             _ => *grid,
@@ -106,9 +103,7 @@ impl Tangent {
             k => (at[k - 1] - self.origin[k - 1]) / self.scale[k - 1],
         };
         let inside = cells.zip(&self.contact);
-        inside
-            .map(|(at, &inside)| if inside { value(at) } else { 0.0 })
-            .collect()
+        inside.map(|(at, &inside)| if inside { value(at) } else { 0.0 }).collect()
     }
 
     /// Counts the columns of B from the origin instead of the middle of the window, as it must be where the approach is

@@ -123,10 +123,7 @@ impl fmt::Display for Warning {
         let along = |axis: &usize| if *axis == 0 { "x" } else { "y" };
         match self {
             Self::GridEdge => {
-                write!(
-                    f,
-                    "the contact touches the edge of the grid; take a larger grid"
-                )
+                write!(f, "the contact touches the edge of the grid; take a larger grid")
             }
             Self::SharpEnd { axis: 0 } => write!(
                 f,

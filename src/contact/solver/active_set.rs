@@ -109,11 +109,7 @@ pub(crate) fn solve(
             (limited || quality.overflows()).then_some(Termination::IterationLimit)
         };
         if let Some(termination) = termination {
-            return Outcome {
-                solver: Solver::ActiveSet,
-                termination,
-                lambda,
-            };
+            return Outcome { solver: Solver::ActiveSet, termination, lambda };
         }
         // What is wrong with the cell where most is: it overlaps, or parts at the hardness.
         let wrong = |k: usize| problem.bounds.wrong(k, p[k], g[k]);
@@ -163,26 +159,12 @@ impl System<'_> {
         const HINDERED_MOTION: f64 = 1e-6;
         let change = [0, 1, 2].map(|k| lambda[k] - self.lambda[k]);
         let mut closing = vec![0.0; g.len()];
-        self.problem
-            .freedoms
-            .for_each(change, |k, b| closing[k] = b);
+        self.problem.freedoms.for_each(change, |k, b| closing[k] = b);
         let largest = closing.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        let free = self
-            .contact
-            .iter()
-            .all(|&k| closing[k].abs() <= HINDERED_MOTION * largest);
-        let touching = g
-            .iter()
-            .zip(&closing)
-            .filter(|(_, c)| **c > HINDERED_MOTION * largest);
-        let further = touching
-            .map(|(g, c)| (g / c).max(0.0))
-            .fold(f64::INFINITY, f64::min);
-        let further = if free && further.is_finite() {
-            further
-        } else {
-            0.0
-        };
+        let free = self.contact.iter().all(|&k| closing[k].abs() <= HINDERED_MOTION * largest);
+        let touching = g.iter().zip(&closing).filter(|(_, c)| **c > HINDERED_MOTION * largest);
+        let further = touching.map(|(g, c)| (g / c).max(0.0)).fold(f64::INFINITY, f64::min);
+        let further = if free && further.is_finite() { further } else { 0.0 };
         self.lambda = [0, 1, 2].map(|k| lambda[k] + further * change[k]);
     }
 
@@ -195,8 +177,7 @@ impl System<'_> {
         for &k in &self.contact {
             self.held[k] = 0.0;
         }
-        self.problem
-            .apply(&self.held, &mut self.displaced, &mut self.workspace);
+        self.problem.apply(&self.held, &mut self.displaced, &mut self.workspace);
         self.work += self.problem.convolution.work();
     }
 
@@ -250,25 +231,21 @@ impl System<'_> {
     fn solve(&self) -> Option<(Vec<f64>, [f64; 3])> {
         let freedoms = self.problem.freedoms;
         let columns = freedoms.columns[1].len();
-        let places: Vec<[usize; 2]> = (self.contact.iter())
-            .map(|k| [k / columns, k % columns])
-            .collect();
+        let places: Vec<[usize; 2]> =
+            (self.contact.iter()).map(|k| [k / columns, k % columns]).collect();
         let lower = cholesky(places.len(), 0.0, |a, b| {
             let offset = [0, 1].map(|k| places[a][k].abs_diff(places[b][k]));
             let [i, k] = [places[a][0], places[b][0]];
             self.coefficients[offset] + self.problem.convolution.added([i, k], offset[1])
         })?;
-        let b = places
-            .iter()
-            .map(|&[i, j]| [1.0, freedoms.columns[0][i], freedoms.columns[1][j]]);
+        let b = places.iter().map(|&[i, j]| [1.0, freedoms.columns[0][i], freedoms.columns[1][j]]);
         let b: Vec<[f64; 3]> = b.collect();
         let gap = self.contact.iter().zip(&b);
         let gap = gap.map(|(&k, b)| self.problem.gap[k] + self.displaced[k] - dot(b, &self.lambda));
         let gap = forward(&lower, gap.collect());
         let images = [0, 1, 2].map(|k| forward(&lower, b.iter().map(|b| b[k]).collect()));
-        let mut matrix = images
-            .each_ref()
-            .map(|row| images.each_ref().map(|column| dot(row, column)));
+        let mut matrix =
+            images.each_ref().map(|row| images.each_ref().map(|column| dot(row, column)));
         let held = freedoms.moments(&self.held);
         let mut right = [0, 1, 2].map(|k| freedoms.target[k] - held[k]);
         for k in 0..3 {

@@ -34,13 +34,7 @@ pub(crate) fn solve(
     tally: &mut Tally,
 ) -> Result<Outcome> {
     let freedoms = problem.freedoms;
-    let Fields {
-        pressure,
-        displacement,
-        window,
-        multipliers,
-        quality,
-    } = fields;
+    let Fields { pressure, displacement, window, multipliers, quality } = fields;
     // All of the grid may come into contact.
     *window = full_window(problem.convolution.shape());
     let window = window.clone();
@@ -74,11 +68,7 @@ pub(crate) fn solve(
         (*multipliers, *quality) = (found, Some(now));
         problem.gap_into(u, found, &mut g);
         let end = |termination| {
-            Ok(Outcome {
-                solver: Solver::PolonskyKeer,
-                termination,
-                lambda: found.lambda(),
-            })
+            Ok(Outcome { solver: Solver::PolonskyKeer, termination, lambda: found.lambda() })
         };
         if now.meets(criteria.tolerance) {
             return end(Termination::Converged);

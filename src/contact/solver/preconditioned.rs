@@ -148,17 +148,9 @@ impl<'a> Preconditioned<'a> {
         let mut course = Course::new();
         self.start(p);
         for iterations in 0.. {
-            let Assessment {
-                lambda,
-                quality,
-                contact_changed,
-            } = self.assess(p);
+            let Assessment { lambda, quality, contact_changed } = self.assess(p);
             tally.work = before + self.work;
-            let end = |termination| Outcome {
-                solver: Solver::Preconditioned,
-                termination,
-                lambda,
-            };
+            let end = |termination| Outcome { solver: Solver::Preconditioned, termination, lambda };
             if quality.meets(criteria.tolerance) {
                 return end(Termination::Converged);
             }

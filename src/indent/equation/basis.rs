@@ -37,22 +37,12 @@ impl Panel {
     /// Panels from `low` to `high` that end at the breaks; a break at `low` itself has its roots in the first panel.
     pub(in crate::indent) fn between(low: f64, breaks: &[Break], high: f64) -> Vec<Self> {
         let at_low = |b: &Break| b.has_root && (b.at - low).abs() <= 0.0;
-        let mut start = Break {
-            at: low,
-            has_root: breaks.iter().any(at_low),
-        };
+        let mut start = Break { at: low, has_root: breaks.iter().any(at_low) };
         let inside = breaks.iter().filter(|b| b.at > low && b.at < high);
-        let end = Break {
-            at: high,
-            has_root: false,
-        };
+        let end = Break { at: high, has_root: false };
         let mut panels = Vec::new();
         for stop in inside.chain(std::iter::once(&end)) {
-            panels.push(Self {
-                low: start.at,
-                high: stop.at,
-                has_root: start.has_root,
-            });
+            panels.push(Self { low: start.at, high: stop.at, has_root: start.has_root });
             start = *stop;
         }
         panels
@@ -62,9 +52,7 @@ impl Panel {
     pub(in crate::indent) fn nodes(self, rule: &Rule) -> Vec<(f64, f64)> {
         let length = self.high - self.low;
         match self.has_root {
-            false => rule
-                .nodes(0.5 * (self.low + self.high), 0.5 * length)
-                .collect(),
+            false => rule.nodes(0.5 * (self.low + self.high), 0.5 * length).collect(),
             true => {
                 let place = |(v, w): (f64, f64)| (self.low + length * v * v, 2.0 * length * v * w);
                 rule.nodes(0.5, 0.5).map(place).collect()
@@ -124,11 +112,7 @@ impl Basis {
                 .flat_map(|panel| panel.nodes(Rule::kept(count + MORE)))
                 .collect(),
         };
-        Self {
-            radius: a,
-            functions,
-            projection,
-        }
+        Self { radius: a, functions, projection }
     }
 
     /// Number of functions.

@@ -91,19 +91,13 @@ impl Stack {
                 "bodies must be at least one, elastic, and without a local compliance",
             ));
         }
-        let ends = |body: &Body| {
-            body.half_space()
-                .is_some_and(|body| body.ends() != [None; 2])
-        };
+        let ends = |body: &Body| body.half_space().is_some_and(|body| body.ends() != [None; 2]);
         if bodies.iter().any(ends) {
             return Err(Error::Inconsistent(
                 "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
             ));
         }
-        let tops = bodies
-            .iter()
-            .filter_map(|body| body.lengths())
-            .map(|[top, _]| top);
+        let tops = bodies.iter().filter_map(|body| body.lengths()).map(|[top, _]| top);
         let (mut parameters, mut short_rates) = (Vec::new(), Vec::new());
         for (number, body) in bodies.iter().enumerate() {
             let Some(body) = body.half_space() else {
@@ -194,12 +188,7 @@ impl Stack {
             let waves = Waves::plan(h, length, self.0.finer, excess);
             let pairs = waves.alpha.iter().zip(&waves.weight);
             let excess = pairs.map(|(alpha, w)| w * excess(*alpha)).collect();
-            Arc::new(StackLevel {
-                length,
-                waves,
-                excess,
-                rates: OnceLock::new(),
-            })
+            Arc::new(StackLevel { length, waves, excess, rates: OnceLock::new() })
         }))
     }
 
@@ -219,13 +208,7 @@ impl Stack {
                 .collect();
             let most = own.iter().map(Vec::len).max().unwrap_or(0);
             let mut slopes = vec![0.0; most];
-            for (q, (alpha, w)) in level
-                .waves
-                .alpha
-                .iter()
-                .zip(&level.waves.weight)
-                .enumerate()
-            {
+            for (q, (alpha, w)) in level.waves.alpha.iter().zip(&level.waves.weight).enumerate() {
                 // M = response/short − 1.
                 let ratio = level.excess[q] + w;
                 let mut first = 0;

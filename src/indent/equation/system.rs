@@ -55,15 +55,7 @@ impl ContactSystem {
         let factor = factor.ok_or(Error::Inconsistent(
             "the response of the bodies must be positive at every wavenumber",
         ))?;
-        Ok(Self {
-            radius: a,
-            basis,
-            level,
-            rows,
-            factor,
-            ones,
-            edge,
-        })
+        Ok(Self { radius: a, basis, level, rows, factor, ones, edge })
     }
 
     /// B⁻¹ `right`.
@@ -193,10 +185,7 @@ impl Parts {
         let places = system.basis.places();
         let profile: Vec<f64> = places.iter().map(|s| f * tip.transform(*s)[0]).collect();
         let punch = system.ones.iter().map(|one| f * one).collect();
-        let rights = [
-            (punch, f),
-            (system.basis.project(&profile), f * tip.transform(a)[0]),
-        ];
+        let rights = [(punch, f), (system.basis.project(&profile), f * tip.transform(a)[0])];
         let mut loads = [0.0; 2];
         let mut edge = [0.0; 2];
         let mut hats = [Vec::new(), Vec::new()];
@@ -214,15 +203,7 @@ impl Parts {
         let requirement = "one whose load and stiffness are numbers of the machine";
         let holds = are_finite && edge[0] > 0.0 && loads[0] > 0.0;
         require("radius", a, holds, requirement)?;
-        Ok(Self {
-            stack: stack.clone(),
-            tip: tip.clone(),
-            system,
-            values,
-            hats,
-            edge,
-            loads,
-        })
+        Ok(Self { stack: stack.clone(), tip: tip.clone(), system, values, hats, edge, loads })
     }
 
     /// f = E*/π.

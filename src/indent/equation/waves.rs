@@ -73,12 +73,7 @@ impl Waves {
         for k in 1..panels {
             add(k as f64 * width, (k + 1) as f64 * width);
         }
-        Self {
-            alpha,
-            weight,
-            graded: NODES * (halvings + 1),
-            width,
-        }
+        Self { alpha, weight, graded: NODES * (halvings + 1), width }
     }
 
     /// Number of wavenumbers.

@@ -144,9 +144,7 @@ impl Point {
         let (tip, a) = (&self.parts.tip, self.radius);
         let edge = tip.transform(a)[0];
         let layers = self.edge() / self.parts.f() - (self.approach - edge);
-        let more = (0.5 * self.approach.abs())
-            .max(0.5 * edge)
-            .max(2.0 * layers);
+        let more = (0.5 * self.approach.abs()).max(0.5 * edge).max(2.0 * layers);
         let due = self.approach + more + 2.0 * self.opening();
         let resolved = self.parts.stack.longest() - a;
         let most = (tip.range()[1] * (1.0 - 1e-9)).min(resolved);
@@ -202,10 +200,7 @@ impl Point {
         let (tip, f) = (&parts.tip, parts.f());
         let [stiffness, profile] = parts.loads;
         let mean = (stiffness * self.approach - profile).abs() / (PI * a * a);
-        let density = Density {
-            edge: self.step(),
-            ..self.density()
-        };
+        let density = Density { edge: self.step(), ..self.density() };
         if density.edge < -TENSION * mean * a {
             return Ok(false);
         }
@@ -230,10 +225,7 @@ impl Point {
         // Where it ends at the edge, the pressure does so as a root.
         let ends = density.edge.abs() <= 0.0 && self.zone.is_none();
         let most = least(&places, |r| {
-            let zone = self
-                .zone
-                .as_ref()
-                .map_or(0.0, |zone| zone.inside(r) + zone.strength());
+            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.inside(r) + zone.strength());
             let pressure = density.pressure_of(r, slopes) + zone;
             Ok(match ends {
                 true => pressure / (1.0 - (r / a).powi(2)).sqrt(),

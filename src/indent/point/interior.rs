@@ -71,17 +71,11 @@ impl Point {
         )?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
         let is_near = far <= FARTHEST * z.max(self.radius);
-        require(
-            "r",
-            far,
-            is_near,
-            "at most 1e4 of the depth or of the contact radius",
-        )?;
+        require("r", far, is_near, "at most 1e4 of the depth or of the contact radius")?;
         let bodies = self.parts.stack.bodies();
         let body = bodies.get(body).and_then(|body| body.half_space());
-        let body = body.ok_or(Error::Inconsistent(
-            "body must be one of the half-spaces that are indented",
-        ))?;
+        let body = body
+            .ok_or(Error::Inconsistent("body must be one of the half-spaces that are indented"))?;
         let mut place = Place::surface(body);
         let mut top = 0.0;
         for (number, depth) in body.interfaces().iter().enumerate() {
@@ -123,11 +117,7 @@ impl Point {
             for (sum, r) in sums.iter_mut().zip(r) {
                 let x = alpha * r;
                 let (zeroth, first) = (j0(x), j1(x));
-                let second = if x > 1e-4 {
-                    2.0 * first / x - zeroth
-                } else {
-                    x * x / 8.0
-                };
+                let second = if x > 1e-4 { 2.0 * first / x - zeroth } else { x * x / 8.0 };
                 sum[0] += load * (mean * zeroth - difference * second);
                 sum[1] += load * (mean * zeroth + difference * second);
                 sum[2] -= load * fields.p * zeroth;
@@ -141,24 +131,15 @@ impl Point {
     /// p̂ at waves that are shorter than the nodes of the contact resolve: of φ at panels of at most `PHASE` radians.
     fn fine_transform(&self, waves: &Waves) -> Vec<f64> {
         let (a, tip) = (self.radius, &self.parts.tip);
-        let shortest = waves
-            .alpha
-            .iter()
-            .fold(0.0_f64, |most, alpha| most.max(*alpha));
+        let shortest = waves.alpha.iter().fold(0.0_f64, |most, alpha| most.max(*alpha));
         let (mut places, mut weights) = (Vec::new(), Vec::new());
         let breaks = tip.breaks(a, FEW_KINKS).unwrap_or_default();
         for panel in Panel::between(0.0, &breaks, a) {
-            let count = (shortest * (panel.high - panel.low) / PHASE)
-                .ceil()
-                .max(1.0);
+            let count = (shortest * (panel.high - panel.low) / PHASE).ceil().max(1.0);
             let length = (panel.high - panel.low) / count;
             for k in 0..count as usize {
                 let low = panel.low + k as f64 * length;
-                let part = Panel {
-                    low,
-                    high: low + length,
-                    has_root: panel.has_root && k == 0,
-                };
+                let part = Panel { low, high: low + length, has_root: panel.has_root && k == 0 };
                 for (place, weight) in part.nodes(Rule::kept(FINE)) {
                     places.push(place);
                     weights.push(weight);

@@ -10,11 +10,7 @@ use crate::error::{Error, Result, require};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ProfileTerm {
     /// g = b rⁿ, with rate = b n (√π/2) Γ(n/2)/Γ((n+1)/2): F = rate sⁿ.
-    Power {
-        factor: f64,
-        exponent: f64,
-        rate: f64,
-    },
+    Power { factor: f64, exponent: f64, rate: f64 },
     /// g = R − √(R² − r²): F = s artanh(s/R).
     Sphere { radius: f64 },
     /// The slope g' jumps at r = b: F = slope s arccos(b/s) beyond.
@@ -35,20 +31,12 @@ impl ProfileTerm {
     /// g = b rⁿ.
     pub(super) fn power(factor: f64, exponent: f64) -> Self {
         let ratio = gamma(0.5 * exponent) / gamma(0.5 * exponent + 0.5);
-        Self::Power {
-            factor,
-            exponent,
-            rate: factor * exponent * 0.5 * PI.sqrt() * ratio,
-        }
+        Self::Power { factor, exponent, rate: factor * exponent * 0.5 * PI.sqrt() * ratio }
     }
 
     /// g = r²/2R, of curvature 1/R.
     pub(super) fn paraboloid(curvature: f64) -> Self {
-        Self::Power {
-            factor: 0.5 * curvature,
-            exponent: 2.0,
-            rate: curvature,
-        }
+        Self::Power { factor: 0.5 * curvature, exponent: 2.0, rate: curvature }
     }
 
     /// Place of a kink, where F has a root of the distance from it.
@@ -65,9 +53,7 @@ impl ProfileTerm {
     /// The profile g(r) \[m\] of a term that is no rate.
     pub(super) fn gap(&self, r: f64) -> f64 {
         match *self {
-            Self::Power {
-                factor, exponent, ..
-            } => factor * r.powf(exponent),
+            Self::Power { factor, exponent, .. } => factor * r.powf(exponent),
             Self::Sphere { radius } => r * r / (radius + ((radius - r) * (radius + r)).sqrt()),
             Self::Step { at, slope } => slope * (r - at).max(0.0),
             Self::Hinge { at, curvature } => 0.5 * curvature * (r - at).max(0.0).powi(2),
@@ -94,9 +80,7 @@ impl ProfileTerm {
     /// The slope g'(r) of a term that is no rate.
     pub(super) fn slope(&self, r: f64) -> f64 {
         match *self {
-            Self::Power {
-                factor, exponent, ..
-            } => factor * exponent * r.powf(exponent - 1.0),
+            Self::Power { factor, exponent, .. } => factor * exponent * r.powf(exponent - 1.0),
             Self::Sphere { radius } => r / ((radius - r) * (radius + r)).sqrt(),
             Self::Step { at, slope } if r > at => slope,
             Self::Hinge { at, curvature } => curvature * (r - at).max(0.0),
@@ -118,11 +102,7 @@ impl ProfileTerm {
             Self::Power { exponent, rate, .. } => power(rate, exponent, s),
             Self::Sphere { radius } => {
                 let (x, rest) = (s / radius, (radius - s) * (radius + s) / (radius * radius));
-                [
-                    s * x.atanh(),
-                    x.atanh() + x / rest,
-                    2.0 / (radius * rest * rest),
-                ]
+                [s * x.atanh(), x.atanh() + x / rest, 2.0 / (radius * rest * rest)]
             }
             Self::SphereRate { radius } => {
                 let rest = (radius - s) * (radius + s);
@@ -202,9 +182,7 @@ fn rest(root: f64, angle: f64, b: f64) -> f64 {
         return root - b * angle;
     }
     // tan θ − θ = x³/3 − x⁵/5 + … of x = tan θ < 0.1; the next term is 1e-16 of the first.
-    let series = (0..8)
-        .rev()
-        .fold(0.0, |sum, k| 1.0 / f64::from(2 * k + 3) - square * sum);
+    let series = (0..8).rev().fold(0.0, |sum, k| 1.0 / f64::from(2 * k + 3) - square * sum);
     root * square * series
 }
 
@@ -238,10 +216,7 @@ fn hinges(r: &[f64], slopes: &[f64]) -> Vec<ProfileTerm> {
         let curvature = (slopes[k + 1] - slopes[k]) / (r[k + 1] - r[k]);
         terms.push(match k {
             0 => ProfileTerm::paraboloid(curvature),
-            _ => ProfileTerm::Hinge {
-                at: r[k],
-                curvature: curvature - last,
-            },
+            _ => ProfileTerm::Hinge { at: r[k], curvature: curvature - last },
         });
         last = curvature;
     }
@@ -260,10 +235,7 @@ pub(super) fn profile(r: &[f64], g: &[f64]) -> Result<Vec<ProfileTerm>> {
     }
     for (name, values) in [("profile radii", r), ("profile heights", g)] {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            return Err(Error::NonFinite {
-                name,
-                index: [index, 0],
-            });
+            return Err(Error::NonFinite { name, index: [index, 0] });
         }
         let requirement = "0 at the first sample, which lies on the axis";
         require(name, values[0], values[0].abs() <= 0.0, requirement)?;
@@ -294,10 +266,7 @@ fn area(coefficients: &[f64], depth: f64) -> [f64; 2] {
 /// Terms of the tip whose section at the distance d from its end has the area A(d), up to the deepest `depth`.
 pub(super) fn area_function(coefficients: &[f64], depth: f64) -> Result<Vec<ProfileTerm>> {
     if let Some(index) = coefficients.iter().position(|c| !c.is_finite()) {
-        return Err(Error::NonFinite {
-            name: "area coefficients",
-            index: [index, 0],
-        });
+        return Err(Error::NonFinite { name: "area coefficients", index: [index, 0] });
     }
     let (mut r, mut slopes) = (vec![0.0], vec![0.0]);
     for k in 0..SAMPLES {

@@ -11,26 +11,11 @@ fn forms([x, y]: [f64; 2]) -> [Form; 9] {
         Form::Paraboloid { radius: 3.0 * x },
         Form::Sphere { radius: 2.0 * x },
         Form::Cone { slope: 0.3 * x },
-        Form::Power {
-            factor: 0.2 * x,
-            exponent: 4.0 * y,
-        },
-        Form::Power {
-            factor: 0.2 * x,
-            exponent: 2.5 * y,
-        },
-        Form::RoundedCone {
-            slope: 0.3 * x,
-            radius: 2.0 * y,
-        },
-        Form::RoundedPunch {
-            flat: 0.5 * x,
-            radius: 4.0 * y,
-        },
-        Form::FlatCone {
-            flat: 0.5 * x,
-            slope: 0.2 * y,
-        },
+        Form::Power { factor: 0.2 * x, exponent: 4.0 * y },
+        Form::Power { factor: 0.2 * x, exponent: 2.5 * y },
+        Form::RoundedCone { slope: 0.3 * x, radius: 2.0 * y },
+        Form::RoundedPunch { flat: 0.5 * x, radius: 4.0 * y },
+        Form::FlatCone { flat: 0.5 * x, slope: 0.2 * y },
         Form::FlatPunch { radius: x },
     ]
 }
@@ -43,10 +28,7 @@ fn transforms_are_those_of_the_profiles() -> Result<()> {
     for (k, form) in forms([1.0; 2]).into_iter().enumerate() {
         let tip = Tip::new(form)?;
         for s in [0.3, 0.8, 1.4] {
-            let angle = |b: &f64| Break {
-                at: (b / s).min(1.0).asin(),
-                has_root: true,
-            };
+            let angle = |b: &f64| Break { at: (b / s).min(1.0).asin(), has_root: true };
             let kinks: Vec<Break> = tip.kinks().iter().map(angle).collect();
             let mut due = 0.0;
             if k < 8 {
@@ -63,14 +45,8 @@ fn transforms_are_those_of_the_profiles() -> Result<()> {
             assert!((value - due).abs() <= 2e-6, "{tip:?} {s}: {value} {due}");
             let h = 1e-4;
             let [low, high] = [s - h, s + h].map(|s| tip.transform(s));
-            assert!(
-                (slope - (high[0] - low[0]) / (2.0 * h)).abs() < 1e-6,
-                "{tip:?} {s}"
-            );
-            assert!(
-                (bend - (high[1] - low[1]) / (2.0 * h)).abs() < 1e-5,
-                "{tip:?} {s}"
-            );
+            assert!((slope - (high[0] - low[0]) / (2.0 * h)).abs() < 1e-6, "{tip:?} {s}");
+            assert!((bend - (high[1] - low[1]) / (2.0 * h)).abs() < 1e-5, "{tip:?} {s}");
             for number in 0..tip.numbers().len() {
                 let step = |part: f64| {
                     let mut numbers = [1.0; 2];
@@ -82,10 +58,7 @@ fn transforms_are_those_of_the_profiles() -> Result<()> {
                 let [found, of_slope] =
                     tip.rate(TipParameter::Number(number), &[s])[0].map(|rate| rate * size);
                 let (low, high) = (low.transform(s), high.transform(s));
-                assert!(
-                    (found - (high[0] - low[0]) / 2e-5).abs() < 1e-7,
-                    "{tip:?} {s} {number}"
-                );
+                assert!((found - (high[0] - low[0]) / 2e-5).abs() < 1e-7, "{tip:?} {s} {number}");
                 assert!(
                     (of_slope - (high[1] - low[1]) / 2e-5).abs() < 1e-6,
                     "{tip:?} {s} {number}"
@@ -99,14 +72,8 @@ fn transforms_are_those_of_the_profiles() -> Result<()> {
                 [value, slope / root]
             };
             let (low, high) = (at(-1e-5), at(1e-5));
-            assert!(
-                (found - (high[0] - low[0]) / 2e-5).abs() < 1e-7,
-                "{tip:?} {s}"
-            );
-            assert!(
-                (of_slope - (high[1] - low[1]) / 2e-5).abs() < 1e-6,
-                "{tip:?} {s}"
-            );
+            assert!((found - (high[0] - low[0]) / 2e-5).abs() < 1e-7, "{tip:?} {s}");
+            assert!((of_slope - (high[1] - low[1]) / 2e-5).abs() < 1e-6, "{tip:?} {s}");
         }
     }
     Ok(())
@@ -124,10 +91,8 @@ fn sampled_tips() -> Result<()> {
         depth: 0.4,
     })?;
     // A cone: A = π (d/m)².
-    let cone = Tip::new(Form::Area {
-        coefficients: vec![std::f64::consts::PI / 0.09],
-        depth: 0.6,
-    })?;
+    let cone =
+        Tip::new(Form::Area { coefficients: vec![std::f64::consts::PI / 0.09], depth: 0.6 })?;
     for s in [0.3, 1.0, 1.7] {
         assert!((profile.transform(s)[0] / due.transform(s)[0] - 1.0).abs() < 1e-12);
         assert!((area.transform(s)[0] / due.transform(s)[0] - 1.0).abs() < 1e-4);
@@ -135,10 +100,7 @@ fn sampled_tips() -> Result<()> {
         assert!((cone.transform(s)[0] / due - 1.0).abs() < 1e-4);
     }
     assert!(area.range()[1] > 1.99 && area.range()[1] < 2.01);
-    let wrong = Form::Area {
-        coefficients: vec![1.0, -1.0],
-        depth: 1.0,
-    };
+    let wrong = Form::Area { coefficients: vec![1.0, -1.0], depth: 1.0 };
     assert!(Tip::new(wrong).is_err());
     Ok(())
 }

@@ -16,11 +16,7 @@ pub(crate) struct Lifted<'a> {
 
 impl<'a> Lifted<'a> {
     pub(crate) fn new(shape: &'a dyn Surface, grid: &Grid, lift: Array2<f64>) -> Self {
-        Self {
-            shape,
-            grid: *grid,
-            lift,
-        }
+        Self { shape, grid: *grid, lift }
     }
 
     fn at(&self, x: f64, y: f64) -> f64 {
@@ -80,11 +76,7 @@ impl Surface for Limited<'_> {
     }
 
     fn gap(&self, x: f64, y: f64) -> f64 {
-        if self.is_within(x) {
-            self.shape.gap(x, y)
-        } else {
-            f64::INFINITY
-        }
+        if self.is_within(x) { self.shape.gap(x, y) } else { f64::INFINITY }
     }
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {

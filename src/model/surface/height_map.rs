@@ -39,10 +39,7 @@ impl HeightMap {
     /// spacing is not finite and above 0.
     pub fn new(heights: Array2<f64>, spacing: [f64; 2]) -> Result<Self> {
         if let Some((index, _)) = heights.indexed_iter().find(|(_, h)| !h.is_finite()) {
-            return Err(Error::NonFinite {
-                name: "heights",
-                index: [index.0, index.1],
-            });
+            return Err(Error::NonFinite { name: "heights", index: [index.0, index.1] });
         }
         let shape = [heights.nrows(), heights.ncols()];
         for n in shape {
@@ -66,10 +63,7 @@ impl HeightMap {
     /// # Errors
     /// Unless `center` is finite.
     pub fn centered_at(self, center: [f64; 2]) -> Result<Self> {
-        Ok(Self {
-            grid: self.grid.centered_at(center)?,
-            ..self
-        })
+        Ok(Self { grid: self.grid.centered_at(center)?, ..self })
     }
 
     /// This surface, repeated along x, along y, or both: its period is its size.
@@ -77,10 +71,7 @@ impl HeightMap {
     /// # Errors
     /// None: every map has two samples or more along each direction.
     pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
-        Ok(Self {
-            grid: self.grid.periodic(periodic)?,
-            ..self
-        })
+        Ok(Self { grid: self.grid.periodic(periodic)?, ..self })
     }
 
     /// Directions in which it repeats.

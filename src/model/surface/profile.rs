@@ -82,15 +82,11 @@ impl Profile {
             ],
             Self::Logarithmic(profile) => {
                 let numbers = profile.parameters().into_iter();
-                numbers
-                    .map(|(name, value)| named(&format!("profile.{name}"), value))
-                    .collect()
+                numbers.map(|(name, value)| named(&format!("profile.{name}"), value)).collect()
             }
             Self::Sampled(profile) => {
                 let drops = profile.samples.iter().enumerate();
-                drops
-                    .map(|(k, [_, drop])| named(&format!("profile.drop[{k}]"), *drop))
-                    .collect()
+                drops.map(|(k, [_, drop])| named(&format!("profile.drop[{k}]"), *drop)).collect()
             }
         }
     }
@@ -202,11 +198,7 @@ impl CrownedProfile {
             "crown_radius" => Some(sagitta_slope(self.crown_radius, square)),
             "flat_length" => {
                 let under = self.crown_radius * self.crown_radius - square;
-                Some(if under > 0.0 {
-                    -0.5 * beyond / under.sqrt()
-                } else {
-                    0.0
-                })
+                Some(if under > 0.0 { -0.5 * beyond / under.sqrt() } else { 0.0 })
             }
             _ => None,
         }
@@ -236,19 +228,14 @@ impl SampledProfile {
         }
         for (index, (x, d)) in x.iter().zip(drop).enumerate() {
             if !(x.is_finite() && d.is_finite()) {
-                return Err(Error::NonFinite {
-                    name: "profile",
-                    index: [index, 0],
-                });
+                return Err(Error::NonFinite { name: "profile", index: [index, 0] });
             }
         }
         if let Some(pair) = x.windows(2).find(|pair| pair[1] <= pair[0]) {
             require("profile positions", pair[1], false, "increasing")?;
         }
         let samples = x.iter().zip(drop).map(|(x, drop)| [*x, *drop]);
-        Ok(Self {
-            samples: samples.collect(),
-        })
+        Ok(Self { samples: samples.collect() })
     }
 
     /// Position and drop of each sample \[m\].
@@ -260,9 +247,7 @@ impl SampledProfile {
     fn hat(&self, number: usize) -> Option<Self> {
         let mut samples: Vec<[f64; 2]> = self.samples.iter().map(|[x, _]| [*x, 0.0]).collect();
         samples.get_mut(number)?[1] = 1.0;
-        Some(Self {
-            samples: samples.into(),
-        })
+        Some(Self { samples: samples.into() })
     }
 
     /// Positions of the samples; of very many samples, the highest of each of [`MARKS`] groups.

@@ -46,10 +46,7 @@ impl Sphere {
     /// # Errors
     /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
-        Ok(Self {
-            radius: convex("radius", radius)?,
-            counterpart: Counterpart::default(),
-        })
+        Ok(Self { radius: convex("radius", radius)?, counterpart: Counterpart::default() })
     }
 
     /// This sphere on a counterpart with radii of curvature along x and y \[m\]: above 0 where it is
@@ -58,10 +55,7 @@ impl Sphere {
     /// # Errors
     /// Unless each radius is finite and above 0, or below minus the radius of the sphere.
     pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
-        Ok(Self {
-            counterpart: Counterpart::new(COUNTER_RADII, radii, [self.radius; 2])?,
-            ..self
-        })
+        Ok(Self { counterpart: Counterpart::new(COUNTER_RADII, radii, [self.radius; 2])?, ..self })
     }
 
     /// Radius of the sphere \[m\].
@@ -104,9 +98,7 @@ impl Surface for Sphere {
         if name == "radius" {
             let (x, y) = (grid.x(), grid.y());
             let square = |i: usize, j: usize| x[i] * x[i] + y[j] * y[j];
-            return Ok(sampled(grid, |i, j| {
-                sagitta_slope(self.radius, square(i, j))
-            }));
+            return Ok(sampled(grid, |i, j| sagitta_slope(self.radius, square(i, j))));
         }
         let (axis, radius) = counter_radius(name, self.counter_radii())?;
         by_difference(radius, |radius| {
@@ -170,10 +162,7 @@ impl Paraboloid {
     /// Unless each radius is finite and above 0, or below minus that of the paraboloid.
     pub fn with_counter_radii(self, radii: [Option<f64>; 2]) -> Result<Self> {
         let own = [self.radius_x, self.radius_y];
-        Ok(Self {
-            counterpart: Counterpart::new(COUNTER_RADII, radii, own)?,
-            ..self
-        })
+        Ok(Self { counterpart: Counterpart::new(COUNTER_RADII, radii, own)?, ..self })
     }
 
     /// Radius of curvature along x \[m\].
@@ -208,10 +197,7 @@ impl Surface for Paraboloid {
     }
 
     fn parameters(&self) -> Vec<(String, f64)> {
-        let own = [
-            ("radius_x", Some(self.radius_x)),
-            ("radius_y", Some(self.radius_y)),
-        ];
+        let own = [("radius_x", Some(self.radius_x)), ("radius_y", Some(self.radius_y))];
         let counter = COUNTER_RADII.into_iter().zip(self.counter_radii());
         present(own.into_iter().chain(counter))
     }
@@ -254,10 +240,7 @@ impl Cylinder {
     /// # Errors
     /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
-        Ok(Self {
-            radius: convex("radius", radius)?,
-            counterpart: Counterpart::default(),
-        })
+        Ok(Self { radius: convex("radius", radius)?, counterpart: Counterpart::default() })
     }
 
     /// This cylinder on a raceway of radius `counter_radius` \[m\] along y: above 0 where the raceway is
@@ -266,10 +249,7 @@ impl Cylinder {
     /// # Errors
     /// Unless `counter_radius` is finite and above 0, or below minus the radius of the cylinder.
     pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
-        Ok(Self {
-            counterpart: Counterpart::cylindrical(counter_radius, self.radius)?,
-            ..self
-        })
+        Ok(Self { counterpart: Counterpart::cylindrical(counter_radius, self.radius)?, ..self })
     }
 
     /// Radius of the cylinder \[m\].
@@ -303,10 +283,7 @@ impl Surface for Cylinder {
     }
 
     fn parameters(&self) -> Vec<(String, f64)> {
-        let numbers = [
-            ("radius", Some(self.radius)),
-            ("counter_radius", self.counter_radius()),
-        ];
+        let numbers = [("radius", Some(self.radius)), ("counter_radius", self.counter_radius())];
         present(numbers.into_iter())
     }
 
@@ -314,13 +291,11 @@ impl Surface for Cylinder {
         match (name, self.counter_radius()) {
             ("radius", _) => {
                 let y = grid.y();
-                Ok(sampled(grid, |_, j| {
-                    sagitta_slope(self.radius, y[j] * y[j])
-                }))
+                Ok(sampled(grid, |_, j| sagitta_slope(self.radius, y[j] * y[j])))
             }
-            ("counter_radius", Some(radius)) => by_difference(radius, |radius| {
-                self.with_counter_radius(radius)?.gaps(grid)
-            }),
+            ("counter_radius", Some(radius)) => {
+                by_difference(radius, |radius| self.with_counter_radius(radius)?.gaps(grid))
+            }
             _ => Err(absent(name)),
         }
     }
@@ -349,9 +324,7 @@ impl FlatPunch {
     /// # Errors
     /// Unless `radius` is finite and above 0.
     pub fn new(radius: f64) -> Result<Self> {
-        Ok(Self {
-            radius: positive("radius", radius)?,
-        })
+        Ok(Self { radius: positive("radius", radius)? })
     }
 
     /// Radius of the punch \[m\].
@@ -362,11 +335,7 @@ impl FlatPunch {
 
 impl Surface for FlatPunch {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        if x * x + y * y <= self.radius * self.radius {
-            0.0
-        } else {
-            f64::INFINITY
-        }
+        if x * x + y * y <= self.radius * self.radius { 0.0 } else { f64::INFINITY }
     }
 
     fn extent(&self) -> [Extent; 2] {
@@ -425,12 +394,10 @@ impl Counterpart {
 
     /// Equivalent radii \[m\] of a shape with the radii `shape` on this counterpart.
     pub(super) fn equivalent(&self, shape: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(
-            |axis| match equivalent_radius(Some(shape[axis]), self.radii[axis]) {
-                Ok(radius) => radius,
-                Err(_) => unreachable!("the constructor has checked it"),
-            },
-        )
+        [0, 1].map(|axis| match equivalent_radius(Some(shape[axis]), self.radii[axis]) {
+            Ok(radius) => radius,
+            Err(_) => unreachable!("the constructor has checked it"),
+        })
     }
 
     /// Smaller of the radii of shape and counterpart along x and y \[m\], without their signs.
@@ -469,19 +436,11 @@ impl Counterpart {
 /// ```
 pub(super) fn sagitta(radius: f64, s: f64) -> f64 {
     let under = radius * radius - s;
-    if under < 0.0 {
-        f64::INFINITY
-    } else {
-        s / (radius + under.sqrt())
-    }
+    if under < 0.0 { f64::INFINITY } else { s / (radius + under.sqrt()) }
 }
 
 /// R − √(R² − s) with the sign of R, and +∞ where s > R².
 fn arc(radius: f64, s: f64) -> f64 {
     let depth = sagitta(radius.abs(), s);
-    if depth.is_infinite() {
-        depth
-    } else {
-        depth.copysign(radius)
-    }
+    if depth.is_infinite() { depth } else { depth.copysign(radius) }
 }

@@ -76,10 +76,7 @@ impl Roller {
     /// # Errors
     /// Unless `counter_radius` is finite and above 0, or below minus the radius of the roller.
     pub fn with_counter_radius(self, counter_radius: f64) -> Result<Self> {
-        Ok(Self {
-            counterpart: Counterpart::cylindrical(counter_radius, self.radius)?,
-            ..self
-        })
+        Ok(Self { counterpart: Counterpart::cylindrical(counter_radius, self.radius)?, ..self })
     }
 
     /// This roller, cut off at |x| = `length` / 2 \[m\].
@@ -92,10 +89,7 @@ impl Roller {
             let holds = length >= crowned.flat_length();
             require("length", length, holds, "at least flat_length")?;
         }
-        Ok(Self {
-            length: Some(length),
-            ..self
-        })
+        Ok(Self { length: Some(length), ..self })
     }
 
     /// Radius of the roller \[m\].
@@ -152,11 +146,7 @@ impl Roller {
     fn drops(&self, grid: &Grid) -> Array1<f64> {
         let half = 0.5 * grid.spacing()[0];
         grid.x().mapv(|x| {
-            if self.reaches(x) {
-                self.profile.mean_drop(x - half, x + half)
-            } else {
-                f64::INFINITY
-            }
+            if self.reaches(x) { self.profile.mean_drop(x - half, x + half) } else { f64::INFINITY }
         })
     }
 
@@ -172,11 +162,7 @@ impl Roller {
 
 impl Surface for Roller {
     fn gap(&self, x: f64, y: f64) -> f64 {
-        if self.reaches(x) {
-            self.gap_at(self.profile.drop(x), y)
-        } else {
-            f64::INFINITY
-        }
+        if self.reaches(x) { self.gap_at(self.profile.drop(x), y) } else { f64::INFINITY }
     }
 
     fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
@@ -189,11 +175,7 @@ impl Surface for Roller {
             Profile::Crowned(crowned) => {
                 // The crown ends where the drop is R, or at a quarter of the crown's circle.
                 let (r, ra) = (self.radius, crowned.crown_radius());
-                let crown = if r < ra {
-                    (r * (2.0 * ra - r)).sqrt()
-                } else {
-                    ra
-                };
+                let crown = if r < ra { (r * (2.0 * ra - r)).sqrt() } else { ra };
                 let half = 0.5 * crowned.flat_length() + crown;
                 [-half, half]
             }
@@ -202,11 +184,7 @@ impl Surface for Roller {
         let half = 0.5 * self.length.unwrap_or(f64::INFINITY);
         let ends = [natural[0].max(-half), natural[1].min(half)];
         let cut = self.profile.has_sharp_ends() || half < natural[1] || -half > natural[0];
-        let x = if cut {
-            Extent::CutOff(ends)
-        } else {
-            Extent::Within(ends)
-        };
+        let x = if cut { Extent::CutOff(ends) } else { Extent::Within(ends) };
         let [_, half] = self.counterpart.reach([self.radius; 2]);
         [x, Extent::Within([-half, half])]
     }
@@ -228,10 +206,7 @@ impl Surface for Roller {
     /// `profile.flat_length` and `profile.end_factor`, or `profile.drop[k]`.
     fn parameters(&self) -> Vec<(String, f64)> {
         let mut parameters = vec![("radius".to_owned(), self.radius)];
-        parameters.extend(
-            self.counter_radius()
-                .map(|r| ("counter_radius".to_owned(), r)),
-        );
+        parameters.extend(self.counter_radius().map(|r| ("counter_radius".to_owned(), r)));
         parameters.extend(self.profile.parameters());
         parameters
     }
@@ -245,9 +220,9 @@ impl Surface for Roller {
         };
         match (name, self.counter_radius()) {
             ("radius", _) => Ok(sampled(grid, |i, j| per_radius(drops[i], y[j]))),
-            ("counter_radius", Some(radius)) => by_difference(radius, |radius| {
-                self.clone().with_counter_radius(radius)?.gaps(grid)
-            }),
+            ("counter_radius", Some(radius)) => {
+                by_difference(radius, |radius| self.clone().with_counter_radius(radius)?.gaps(grid))
+            }
             _ => {
                 let half = 0.5 * grid.spacing()[0];
                 let slopes: Option<Vec<f64>> = (grid.x().iter().zip(&drops))
@@ -257,9 +232,7 @@ impl Surface for Roller {
                     })
                     .collect();
                 let slopes = slopes.ok_or_else(|| absent(name))?;
-                Ok(sampled(grid, |i, j| {
-                    slopes[i] * (1.0 - per_radius(drops[i], y[j]))
-                }))
+                Ok(sampled(grid, |i, j| slopes[i] * (1.0 - per_radius(drops[i], y[j]))))
             }
         }
     }

@@ -63,9 +63,7 @@ impl KernelRows {
     /// Row i of a kernel in a block of columns; zero beyond the given offsets.
     fn line(&self, [block, kernel]: [usize; 2], i: usize) -> &[f64; BLOCK] {
         let part = (block * self.odd.len() + kernel) * self.rows_per_task;
-        self.starts
-            .get(i)
-            .map_or(&[0.0; BLOCK], |start| &self.values[start + part])
+        self.starts.get(i).map_or(&[0.0; BLOCK], |start| &self.values[start + part])
     }
 }
 
@@ -129,8 +127,7 @@ impl PaddedTransform {
                 for (value, line) in column[..nx].iter_mut().zip(lines) {
                     *value = line[number % BLOCK] * scale;
                 }
-                self.column_forward
-                    .process_with_scratch(column, &mut scratch.fft);
+                self.column_forward.process_with_scratch(column, &mut scratch.fft);
             }
         };
         self.over_items(threads, &mut spectrum, mx, scratches, along);
@@ -166,13 +163,7 @@ impl PaddedTransform {
         workspace: &mut Workspace,
         threads: &Threads,
     ) {
-        let KernelRows {
-            offsets: [nx, ny],
-            odd,
-            rows_per_task,
-            values,
-            ..
-        } = kernels;
+        let KernelRows { offsets: [nx, ny], odd, rows_per_task, values, .. } = kernels;
         let ([nx, ny], per_task) = ([*nx, *ny], *rows_per_task);
         let (columns, count) = (self.columns(), odd.len());
         let (plan, angles) = (&transform.row, &transform.angles[1]);
@@ -237,12 +228,7 @@ impl PaddedTransform {
         mesh.resize(mesh.len().max(self.blocks() * size), [ZERO; BLOCK]);
         let blocks = &mut mesh[..self.blocks() * size];
         let multiply = |first: usize, blocks: &mut [[Complex64; BLOCK]], scratch: &mut Scratch| {
-            let Scratch {
-                real,
-                columns: memory,
-                fft,
-                ..
-            } = scratch;
+            let Scratch { real, columns: memory, fft, .. } = scratch;
             let length = quarter_rows - 1;
             memory.resize(memory.len().max(BLOCK * mx + BLOCK / 2 * length), ZERO);
             real.resize(real.len().max(2 * quarter_rows), 0.0);

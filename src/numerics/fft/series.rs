@@ -37,20 +37,18 @@ fn even_lines(
 ) {
     let fft = FftPlanner::new().plan_fft_forward(period);
     let memory = || [period, fft.get_inplace_scratch_len()].map(|length| vec![ZERO; length]);
-    out.axis_iter_mut(Axis(0))
-        .into_par_iter()
-        .enumerate()
-        .for_each_init(memory, |[buffer, scratch], (i, mut row)| {
+    out.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each_init(
+        memory,
+        |[buffer, scratch], (i, mut row)| {
             for k in 0..=period / 2 {
                 let entry = Complex64::new(value(i, k), 0.0);
                 buffer[k] = entry;
                 buffer[(period - k) % period] = entry;
             }
             fft.process_with_scratch(buffer, scratch);
-            row.iter_mut()
-                .zip(&*buffer)
-                .for_each(|(to, from)| *to = from.re * scale);
-        });
+            row.iter_mut().zip(&*buffer).for_each(|(to, from)| *to = from.re * scale);
+        },
+    );
 }
 
 /// Fourier coefficients c_m = 1/N Σ f_n e^{−2πi mn/N} of the `samples` f_n, at 0 ≤ m ≤ N/2, as pairs
@@ -61,8 +59,5 @@ pub(crate) fn fourier_coefficients(mut samples: Vec<f64>) -> Vec<(f64, f64)> {
     let mut spectrum = fft.make_output_vec();
     let done = fft.process(&mut samples, &mut spectrum);
     debug_assert!(done.is_ok(), "the lengths are those of the plan");
-    spectrum
-        .iter()
-        .map(|c| (c.re * scale, c.im * scale))
-        .collect()
+    spectrum.iter().map(|c| (c.re * scale, c.im * scale)).collect()
 }

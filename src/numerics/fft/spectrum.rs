@@ -91,8 +91,7 @@ impl PaddedTransform {
                         made[b * mx + i] = Complex64::new(value, 0.0);
                     }
                 }
-                self.column_forward
-                    .process_with_scratch(made, &mut scratch.fft);
+                self.column_forward.process_with_scratch(made, &mut scratch.fft);
                 for k in 0..quarter_rows {
                     for b in 0..width {
                         values[k * next_row + b * next_column] =
@@ -115,10 +114,7 @@ impl PaddedTransform {
         let scale = 1.0 / self.points();
         let [mx, my] = self.padded;
         let count = self.columns() * self.quarter_rows();
-        let mut spectra = odd.map(|odd| ParitySpectrum {
-            values: Vec::with_capacity(count),
-            odd,
-        });
+        let mut spectra = odd.map(|odd| ParitySpectrum { values: Vec::with_capacity(count), odd });
         for l in 0..self.columns() {
             for k in 0..self.quarter_rows() {
                 let values = values(wave(k, mx), wave(l, my));

@@ -36,10 +36,7 @@ fn each_group(
     }
     let half = count.div_ceil(length) / 2 * length;
     let (near, far) = rows.split(half);
-    join(
-        || each_group(near, length, first, work),
-        || each_group(far, length, first + half, work),
-    );
+    join(|| each_group(near, length, first, work), || each_group(far, length, first + half, work));
 }
 
 impl PaddedTransform {
@@ -92,9 +89,7 @@ impl PaddedTransform {
         let work = |first: usize, rows: HalfSpectra| {
             self.some_rows_in(&input[first * ny..], rows, scratches)
         };
-        self.divided(threads, || {
-            each_group(rows, per_task, occupied.start, &work)
-        });
+        self.divided(threads, || each_group(rows, per_task, occupied.start, &work));
     }
 
     /// Memory for the half spectra of all rows, which [`Self::some_rows_in`] can fill row by row, and
@@ -124,9 +119,7 @@ impl PaddedTransform {
 
     /// Transforms the first rows of `input` along y into `halves`, as many as `halves` has.
     pub(crate) fn some_rows_in(&self, input: &[f64], halves: HalfSpectra, scratches: &Scratches) {
-        let Scratch {
-            real, spectra, fft, ..
-        } = &mut *self.scratch(scratches);
+        let Scratch { real, spectra, fft, .. } = &mut *self.scratch(scratches);
         let (ny, blocks, columns) = (self.shape[1], self.blocks(), self.columns());
         let HalfSpectra(mut rows) = halves;
         let input = &input[..rows.len_of(Axis(1)) * ny];
@@ -169,11 +162,9 @@ impl PaddedTransform {
                 let width = (columns - (first + block) * BLOCK).min(BLOCK);
                 let buffer = &mut scratch.columns[..width.next_multiple_of(COLUMN_GROUP) * mx];
                 gather(lines, occupied.clone(), mx, buffer);
-                self.column_forward
-                    .process_with_scratch(buffer, &mut scratch.fft);
+                self.column_forward.process_with_scratch(buffer, &mut scratch.fft);
                 multiply(buffer, mx, kernel);
-                self.column_inverse
-                    .process_with_scratch(buffer, &mut scratch.fft);
+                self.column_inverse.process_with_scratch(buffer, &mut scratch.fft);
                 scatter(buffer, mx, &mut lines[..nx]);
             }
         };
@@ -234,10 +225,7 @@ fn multiply(columns: &mut [Complex64], length: usize, kernel: &[[f64; BLOCK]]) {
         let low = a.iter_mut().zip(b).zip(c.iter_mut().zip(d)).zip(kernel);
         low.for_each(|(((a, b), (c, d)), values)| times([a, b, c, d], values));
         // The upper half mirrors the lower half without the first point.
-        let high = a_high
-            .iter_mut()
-            .zip(b_high)
-            .zip(c_high.iter_mut().zip(d_high));
+        let high = a_high.iter_mut().zip(b_high).zip(c_high.iter_mut().zip(d_high));
         let high = high.rev().zip(&kernel[1..]);
         high.for_each(|(((a, b), (c, d)), values)| times([a, b, c, d], values));
     }

@@ -74,8 +74,7 @@ impl PaddedTransform {
                     if !add {
                         made.fill(ZERO);
                     }
-                    self.column_inverse
-                        .process_with_scratch(made, &mut scratch.fft);
+                    self.column_inverse.process_with_scratch(made, &mut scratch.fft);
                     scatter(made, mx, &mut lines[..nx]);
                 }
             }
@@ -111,18 +110,9 @@ mod tests {
                 })
                 .collect();
             let inputs: Vec<Vec<f64>> = (0..2)
-                .map(|k| {
-                    (0..nx * ny)
-                        .map(|at| ((at * at + k) % 5) as f64 - 1.0)
-                        .collect()
-                })
+                .map(|k| (0..nx * ny).map(|at| ((at * at + k) % 5) as f64 - 1.0).collect())
                 .collect();
-            let terms = [
-                (0, 0, 0, 1.0),
-                (0, 1, 1, -2.0),
-                (1, 0, 2, 1.0),
-                (1, 1, 3, 0.5),
-            ];
+            let terms = [(0, 0, 0, 1.0), (0, 1, 1, -2.0), (1, 0, 2, 1.0), (1, 1, 3, 0.5)];
             let chosen: Vec<_> = terms
                 .iter()
                 .map(|&(output, input, kernel, sign)| Term {

@@ -57,9 +57,7 @@ pub(crate) fn update_with_largest<
 ) -> ([f64; L], [f64; S]) {
     let (mut largest, mut sums) = ([ZERO; L], [ZERO; S]);
     let from = inputs.map(|input| input.as_chunks::<LANES>().0);
-    let mut to = outputs
-        .each_mut()
-        .map(|output| output.as_chunks_mut::<LANES>().0);
+    let mut to = outputs.each_mut().map(|output| output.as_chunks_mut::<LANES>().0);
     let ends = from.iter().map(|chunks| chunks.len());
     let count = ends.chain(to.iter().map(|chunks| chunks.len())).min();
     for k in 0..count.unwrap_or(0) {
@@ -77,9 +75,7 @@ pub(crate) fn update_with_largest<
         }
     }
     let from = inputs.map(|input| input.as_chunks::<LANES>().1);
-    let mut to = outputs
-        .each_mut()
-        .map(|output| output.as_chunks_mut::<LANES>().1);
+    let mut to = outputs.each_mut().map(|output| output.as_chunks_mut::<LANES>().1);
     let ends = from.iter().map(|rest| rest.len());
     let rest = ends.chain(to.iter().map(|rest| rest.len())).min();
     let old = to.each_ref().map(|rest| padded(rest));
@@ -141,20 +137,11 @@ mod tests {
             let expected: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
             assert_eq!(dot(&a, &b).to_bits(), (expected + 0.0).to_bits());
             let [first, second] = sum([&a], |[a]| [a, a * a]);
-            assert_eq!(
-                first.to_bits(),
-                a.iter().fold(0.0, |s: f64, a| s + a).to_bits()
-            );
-            assert_eq!(
-                second.to_bits(),
-                a.iter().fold(0.0, |s: f64, a| s + a * a).to_bits()
-            );
+            assert_eq!(first.to_bits(), a.iter().fold(0.0, |s: f64, a| s + a).to_bits());
+            assert_eq!(second.to_bits(), a.iter().fold(0.0, |s: f64, a| s + a * a).to_bits());
             let ([top], [product]) =
                 update_with_largest([&a, &b], [], |[a, b], []| ([], [a + all(3.0) * b], [a * b]));
-            let expected = a
-                .iter()
-                .zip(&b)
-                .fold(0.0, |t: f64, (a, b)| t.max(a + 3.0 * b));
+            let expected = a.iter().zip(&b).fold(0.0, |t: f64, (a, b)| t.max(a + 3.0 * b));
             assert_eq!(top.to_bits(), expected.to_bits());
             assert_eq!(product.to_bits(), dot(&a, &b).to_bits());
         }

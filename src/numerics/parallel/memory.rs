@@ -13,15 +13,10 @@ pub(crate) fn check_memory(shape: [usize; 2], needed: u64) -> Result<()> {
     };
     system.refresh_memory();
     let machine = system.available_memory();
-    let available = system
-        .cgroup_limits()
-        .map_or(machine, |limits| machine.min(limits.free_memory));
+    let available =
+        system.cgroup_limits().map_or(machine, |limits| machine.min(limits.free_memory));
     if available > 0 && needed > available {
-        return Err(Error::Memory {
-            shape,
-            needed,
-            available,
-        });
+        return Err(Error::Memory { shape, needed, available });
     }
     Ok(())
 }

@@ -17,10 +17,7 @@ impl<T: Default> Pool<T> {
     /// Memory from the store, or new memory. It holds arbitrary values from earlier use.
     pub(crate) fn lease(&self) -> Lease<T> {
         let memory = self.lock().pop().unwrap_or_default();
-        Lease {
-            memory,
-            pool: self.clone(),
-        }
+        Lease { memory, pool: self.clone() }
     }
 }
 

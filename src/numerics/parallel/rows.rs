@@ -70,8 +70,7 @@ impl<'a> Row<'a> {
     ) -> Option<(Self, [&'a [f64]; N])> {
         let cells = |values: &'a [f64]| &values[columns.clone()];
         let y = cells(self.y);
-        rows.contains(&self.number)
-            .then(|| (Self { y, ..self }, fields.map(cells)))
+        rows.contains(&self.number).then(|| (Self { y, ..self }, fields.map(cells)))
     }
 }
 
@@ -114,11 +113,7 @@ impl RowBlock<'_> {
         let mut total = T::ZERO;
         for (k, &x) in self.x.iter().enumerate() {
             let cells = k * ny..(k + 1) * ny;
-            let here = Row {
-                number: self.first + k,
-                x,
-                y: self.y,
-            };
+            let here = Row { number: self.first + k, x, y: self.y };
             let from = inputs.map(|input| &input[cells.clone()]);
             let to = outputs.each_mut().map(|output| &mut output[cells.clone()]);
             total = total.joined(row(here, from, to));
@@ -182,11 +177,7 @@ impl<'a> Rows<'a> {
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        if self.divided {
-            self.threads.both(first, second)
-        } else {
-            (first(), second())
-        }
+        if self.divided { self.threads.both(first, second) } else { (first(), second()) }
     }
 
     /// Calls `row` with each row of all arrays, and joins what it returns.
@@ -196,9 +187,7 @@ impl<'a> Rows<'a> {
         outputs: [&mut [f64]; N],
         row: impl Fn(Row, [&[f64]; M], [&mut [f64]; N]) -> T + Sync,
     ) -> T {
-        self.blocks(inputs, outputs, |block, inputs, outputs| {
-            block.each(inputs, outputs, &row)
-        })
+        self.blocks(inputs, outputs, |block, inputs, outputs| block.each(inputs, outputs, &row))
     }
 
     /// Calls `block` with each block of rows of all arrays, and joins what it returns. Several operations
@@ -211,8 +200,7 @@ impl<'a> Rows<'a> {
     ) -> T {
         let rows = 0..self.coordinates[0].len();
         if self.divided {
-            self.threads
-                .run(|| self.divide(rows, inputs, outputs, &block))
+            self.threads.run(|| self.divide(rows, inputs, outputs, &block))
         } else {
             self.divide(rows, inputs, outputs, &block)
         }
@@ -227,11 +215,7 @@ impl<'a> Rows<'a> {
     ) -> T {
         let [x, y] = self.coordinates;
         if rows.len() <= self.leaf {
-            let here = RowBlock {
-                first: rows.start,
-                x: &x[rows],
-                y,
-            };
+            let here = RowBlock { first: rows.start, x: &x[rows], y };
             return block(here, inputs, outputs);
         }
         let first = rows.len().div_ceil(2).next_multiple_of(self.leaf);

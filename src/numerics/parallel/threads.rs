@@ -69,20 +69,13 @@ impl Threads {
     /// `count` threads, or as many as the machine offers this process where it is `None`.
     pub(crate) fn new(count: Option<usize>) -> Result<Self> {
         match count.unwrap_or_else(available) {
-            0 => Err(Error::Parameter {
-                name: "threads",
-                requirement: "at least 1",
-                value: 0.0,
-            }),
+            0 => Err(Error::Parameter { name: "threads", requirement: "at least 1", value: 0.0 }),
             count if count > THREAD_LIMIT => Err(Error::Parameter {
                 name: "threads",
                 requirement: "at most 256",
                 value: count as f64,
             }),
-            count => Ok(Self {
-                count,
-                pool: Mutex::new(None),
-            }),
+            count => Ok(Self { count, pool: Mutex::new(None) }),
         }
     }
 
@@ -134,10 +127,7 @@ impl Threads {
             Some((owner, pool)) if *owner == process => Some(Arc::clone(pool)),
             _ => {
                 let new = Arc::new(SharedPool {
-                    threads: ThreadPoolBuilder::new()
-                        .num_threads(self.count)
-                        .build()
-                        .ok()?,
+                    threads: ThreadPoolBuilder::new().num_threads(self.count).build().ok()?,
                     calls: AtomicUsize::new(0),
                 });
                 if let Some((_, forked)) = pool.replace((process, Arc::clone(&new))) {
@@ -164,9 +154,7 @@ impl SharedPool {
     /// for. It does not run inside while another call is under way, which might have to wait for it.
     fn run_inside<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let (none, one) = (0, 1);
-        let alone = self
-            .calls
-            .compare_exchange(none, one, Ordering::AcqRel, Ordering::Acquire);
+        let alone = self.calls.compare_exchange(none, one, Ordering::AcqRel, Ordering::Acquire);
         if alone.is_err() {
             return work();
         }
@@ -264,10 +252,7 @@ pub(crate) fn each_chunk<T: Send>(
     }
     let half = data.len().div_ceil(length) / 2;
     let (near, far) = data.split_at_mut(half * length);
-    join(
-        || each_chunk(near, length, first, work),
-        || each_chunk(far, length, first + half, work),
-    );
+    join(|| each_chunk(near, length, first, work), || each_chunk(far, length, first + half, work));
 }
 
 /// Calls `work` for each row of `data`, of `length` elements, with the index of the row; in parallel where
@@ -331,13 +316,7 @@ mod tests {
     #[test]
     fn each_row_is_seen_once() -> Result<()> {
         let threads = Threads::new(Some(3))?;
-        for (rows, length) in [
-            (0, 3),
-            (5, 0),
-            (1, 2 * LEAF),
-            (7, LEAF / 2 + 1),
-            (9 * LEAF, 1),
-        ] {
+        for (rows, length) in [(0, 3), (5, 0), (1, 2 * LEAF), (7, LEAF / 2 + 1), (9 * LEAF, 1)] {
             let seen = |data: &mut [usize]| {
                 each_row(data, length, |k, row| {
                     assert_eq!(row.len(), length);

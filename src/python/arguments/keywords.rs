@@ -294,10 +294,9 @@ impl<'py> Keywords<'py> {
     /// Function.
     pub(in crate::python) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
         match self.given(name)? {
-            Some(value) if !value.is_callable() => Err(PyTypeError::new_err(format!(
-                "{name} must be callable, got {}",
-                Repr(&value)
-            ))),
+            Some(value) if !value.is_callable() => {
+                Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(&value))))
+            }
             value => Ok(value.map(Bound::unbind)),
         }
     }

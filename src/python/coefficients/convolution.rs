@@ -230,10 +230,7 @@ impl PyConvolution {
 
     fn __repr__(&self) -> String {
         let [nx, ny] = self.convolution.shape();
-        format!(
-            "<nacre.Convolution on {nx} x {ny} cells, {} threads>",
-            self.convolution.threads()
-        )
+        format!("<nacre.Convolution on {nx} x {ny} cells, {} threads>", self.convolution.threads())
     }
 
     /// Callable and arguments that make the convolution again.

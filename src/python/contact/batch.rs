@@ -19,9 +19,7 @@ use crate::python::solution::PySolution;
 fn case(case: &Bound<'_, PyAny>) -> PyResult<(Py<PyShape>, Motion)> {
     let mapping = case.cast::<PyMapping>().map_err(|_| {
         let got = Repr(case);
-        PyTypeError::new_err(format!(
-            "a case must be a mapping of keywords of `solve`, got {got}"
-        ))
+        PyTypeError::new_err(format!("a case must be a mapping of keywords of `solve`, got {got}"))
     })?;
     let keywords = Keywords::of_mapping(mapping)?;
     let pressed = keywords.given("shape")?;
@@ -33,9 +31,7 @@ fn case(case: &Bound<'_, PyAny>) -> PyResult<(Py<PyShape>, Motion)> {
 
 /// `error` with a note that names its case.
 fn of_case(py: Python<'_>, error: PyErr, number: usize) -> PyErr {
-    let noted = error
-        .value(py)
-        .call_method1("add_note", (format!("in case {number}"),));
+    let noted = error.value(py).call_method1("add_note", (format!("in case {number}"),));
     noted.err().unwrap_or(error)
 }
 
@@ -65,20 +61,14 @@ pub(super) fn solve_many(
         parsed.push(case(&item?).map_err(|error| of_case(py, error, number))?);
     }
     let (total, tolerance) = (parsed.len(), options.tolerance);
-    let shapes: Vec<Shape> = parsed
-        .iter()
-        .map(|(shape, _)| shape.get().0.clone())
-        .collect();
+    let shapes: Vec<Shape> = parsed.iter().map(|(shape, _)| shape.get().0.clone()).collect();
     let finished = Finished::default();
     lock(&finished).resize_with(total, || None);
     let (contact, kept) = (Arc::clone(contact), Arc::clone(&finished));
     let ended = background::run(py, progress, move |caller: &mut Caller<(usize, usize)>| {
         let cases: Vec<Case> = parsed
             .iter()
-            .map(|(shape, motion)| Case {
-                shape: &shape.get().0,
-                motion: *motion,
-            })
+            .map(|(shape, motion)| Case { shape: &shape.get().0, motion: *motion })
             .collect();
         contact.check_memory_for(&cases)?;
         let done = AtomicUsize::new(0);
@@ -122,9 +112,7 @@ pub(super) fn solve_many(
         solutions.push(solution);
     }
     if let Some(error) = failure {
-        error
-            .value(py)
-            .setattr("solutions", PyList::new(py, solutions)?)?;
+        error.value(py).setattr("solutions", PyList::new(py, solutions)?)?;
         return Err(error);
     }
     Ok(solutions.into_iter().flatten().collect())

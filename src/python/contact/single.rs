@@ -24,11 +24,7 @@ pub(super) fn setup(
     keywords: &Keywords,
 ) -> PyResult<Setup> {
     let (method, threads) = keywords::plan(keywords)?;
-    Ok(Setup {
-        counterbody: counterbody.map(body).transpose()?.map(Body::from),
-        method,
-        threads,
-    })
+    Ok(Setup { counterbody: counterbody.map(body).transpose()?.map(Body::from), method, threads })
 }
 
 #[doc = concat!("solve(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
@@ -128,12 +124,7 @@ pub(super) struct Call {
 impl Call {
     pub(super) fn new(shape: &Bound<'_, PyAny>, keywords: &Keywords) -> PyResult<Self> {
         let motion = keywords::motion(keywords)?;
-        let Single {
-            mut options,
-            initial,
-            progress,
-            check,
-        } = keywords::single(keywords)?;
+        let Single { mut options, initial, progress, check } = keywords::single(keywords)?;
         let mut grid = None;
         if let Some(before) = initial {
             if let Ok(before) = before.cast::<PySolution>() {
@@ -162,14 +153,7 @@ impl Call {
         + Send
         + 'static,
     ) -> PyResult<PySolution> {
-        let Self {
-            shape,
-            motion,
-            options,
-            progress,
-            check,
-            ..
-        } = self;
+        let Self { shape, motion, options, progress, check, .. } = self;
         let tolerance = options.tolerance;
         let pressed = shape.clone();
         let solution = background::run(py, progress, move |caller| {

@@ -134,12 +134,7 @@ impl Combined {
         self.flat.get_or_init(|| {
             let mut found = Vec::new();
             // Parts that are left with the shift of the sum around them, the next one last.
-            let mut left: Vec<_> = self
-                .parts
-                .iter()
-                .rev()
-                .map(|part| (part, [0.0; 2]))
-                .collect();
+            let mut left: Vec<_> = self.parts.iter().rev().map(|part| (part, [0.0; 2])).collect();
             while let Some(((shape, [x, y]), [around_x, around_y])) = left.pop() {
                 let by = [x + around_x, y + around_y];
                 match shape {

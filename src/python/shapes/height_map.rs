@@ -46,10 +46,7 @@ impl Kind for HeightMap {
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let ([dx, dy], [x, y]) = (self.spacing(), self.center());
         let arguments = PyDict::new(py);
-        arguments.set_item(
-            "heights",
-            read_only(py, self.heights().to_owned().into_dyn())?,
-        )?;
+        arguments.set_item("heights", read_only(py, self.heights().to_owned().into_dyn())?)?;
         arguments.set_item("spacing", (dx, dy))?;
         arguments.set_item("center", (x, y))?;
         if self.is_periodic() != [false; 2] {
@@ -73,9 +70,8 @@ impl PyHeightMap {
         periodic: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let both = spacing.extract::<Real>().map(|spacing| [spacing.0; 2]);
-        let spacing = both
-            .or_else(|_| spacing.extract::<Pair>().map(|pair| pair.0))
-            .map_err(|_| {
+        let spacing =
+            both.or_else(|_| spacing.extract::<Pair>().map(|pair| pair.0)).map_err(|_| {
                 PyTypeError::new_err(format!(
                     "spacing must be a number or a pair of numbers, got {}",
                     Repr(spacing)

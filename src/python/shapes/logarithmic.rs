@@ -33,13 +33,7 @@ use crate::python::arguments::{Real, hash, mapped};
 /// >>> round(profile.amplitude * 1e6, 6)
 /// 3.5
 /// >>> roller = nacre.Roller(radius=5e-3, profile=profile)
-#[pyclass(
-    name = "LogarithmicProfile",
-    module = "nacre",
-    frozen,
-    eq,
-    from_py_object
-)]
+#[pyclass(name = "LogarithmicProfile", module = "nacre", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyLogarithmicProfile(pub(super) LogarithmicProfile);
 
@@ -51,12 +45,7 @@ impl PyLogarithmicProfile {
         text_signature = "(amplitude, length, flat_length=0.0, end_factor=1.0)"
     )]
     fn new(amplitude: Real, length: Real, flat_length: Real, end_factor: Real) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::new(
-            amplitude.0,
-            length.0,
-            flat_length.0,
-            end_factor.0,
-        )?))
+        Ok(Self(LogarithmicProfile::new(amplitude.0, length.0, flat_length.0, end_factor.0)?))
     }
 
     /// Lundberg's profile: the pressure of this load is the same all along the roller.
@@ -90,11 +79,7 @@ impl PyLogarithmicProfile {
     /// 2.7679
     #[staticmethod]
     fn lundberg(length: Real, load: Real, contact_modulus: Real) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::lundberg(
-            length.0,
-            load.0,
-            contact_modulus.0,
-        )?))
+        Ok(Self(LogarithmicProfile::lundberg(length.0, load.0, contact_modulus.0)?))
     }
 
     /// Johns and Gohar's profile: Lundberg's, with a finite drop at the ends.
@@ -136,12 +121,7 @@ impl PyLogarithmicProfile {
         contact_modulus: Real,
         radius: Real,
     ) -> PyResult<Self> {
-        Ok(Self(LogarithmicProfile::johns_gohar(
-            length.0,
-            load.0,
-            contact_modulus.0,
-            radius.0,
-        )?))
+        Ok(Self(LogarithmicProfile::johns_gohar(length.0, load.0, contact_modulus.0, radius.0)?))
     }
 
     /// Fujiwara and Kawase's profile: Lundberg's with three design parameters.
@@ -192,17 +172,8 @@ impl PyLogarithmicProfile {
         k2: Real,
         z_m: Real,
     ) -> PyResult<Self> {
-        let crown = FujiwaraKawase {
-            k1: k1.0,
-            k2: k2.0,
-            z_m: z_m.0,
-        };
-        Ok(Self(LogarithmicProfile::fujiwara_kawase(
-            length.0,
-            load.0,
-            contact_modulus.0,
-            crown,
-        )?))
+        let crown = FujiwaraKawase { k1: k1.0, k2: k2.0, z_m: z_m.0 };
+        Ok(Self(LogarithmicProfile::fujiwara_kawase(length.0, load.0, contact_modulus.0, crown)?))
     }
 
     /// The profile of ISO/TS 16281, which DIN 26281 has too.
@@ -305,12 +276,7 @@ impl PyLogarithmicProfile {
 
     /// Callable and arguments that make the profile again.
     fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (f64, f64, f64, f64)) {
-        let arguments = (
-            self.amplitude(),
-            self.length(),
-            self.flat_length(),
-            self.end_factor(),
-        );
+        let arguments = (self.amplitude(), self.length(), self.flat_length(), self.end_factor());
         (py.get_type::<Self>(), arguments)
     }
 }

@@ -49,10 +49,7 @@ impl PySampledProfile {
             }
             Ok(array.into_iter().collect())
         };
-        Ok(Self(SampledProfile::new(
-            &list("x", x)?,
-            &list("drop", drop)?,
-        )?))
+        Ok(Self(SampledProfile::new(&list("x", x)?, &list("drop", drop)?)?))
     }
 
     /// Drops at any positions along the axis, linear between the samples.

@@ -219,10 +219,7 @@ impl Kind for Cylinder {
     type Class = PyCylinder;
 
     fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let radii = [
-            ("radius", Some(self.radius())),
-            ("counter_radius", self.counter_radius()),
-        ];
+        let radii = [("radius", Some(self.radius())), ("counter_radius", self.counter_radius())];
         numbers(py, radii)
     }
 }

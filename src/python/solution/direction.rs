@@ -94,15 +94,10 @@ impl Linear {
         let arguments = (directions, gap).into_pyobject(py)?;
         let gap = gap.map(|gap| real_matrix("gap", gap)).transpose()?;
         let found = self.run(py, move |plan| {
-            let rates: Vec<(&str, f64)> = rates
-                .iter()
-                .map(|(path, rate)| (path.as_str(), *rate))
-                .collect();
+            let rates: Vec<(&str, f64)> =
+                rates.iter().map(|(path, rate)| (path.as_str(), *rate)).collect();
             plan.jvp(&rates, gap.as_deref())
         })?;
-        Ok(PyDirection {
-            direction: found,
-            made: self.made(py, "jvp", arguments)?,
-        })
+        Ok(PyDirection { direction: found, made: self.made(py, "jvp", arguments)? })
     }
 }

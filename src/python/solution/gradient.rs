@@ -43,9 +43,8 @@ impl Linear {
     ) -> PyResult<Vec<PyGradient>> {
         let asked = wrt.clone();
         let found = self.run(py, move |plan| {
-            let wrt: Option<Vec<&str>> = wrt
-                .as_ref()
-                .map(|paths| paths.iter().map(String::as_str).collect());
+            let wrt: Option<Vec<&str>> =
+                wrt.as_ref().map(|paths| paths.iter().map(String::as_str).collect());
             plan.gradients(&outputs, wrt.as_deref())
         })?;
         let made = |(gradient, object): (Gradient, Bound<'_, PyAny>)| {
@@ -94,11 +93,7 @@ impl Linear {
 
 impl PyGradient {
     fn paths(&self) -> Vec<String> {
-        self.gradient
-            .values
-            .iter()
-            .map(|(parameter, _)| parameter.to_string())
-            .collect()
+        self.gradient.values.iter().map(|(parameter, _)| parameter.to_string()).collect()
     }
 }
 
@@ -143,11 +138,8 @@ impl PyGradient {
     /// step takes a linear solve, at the time when it is asked for.
     #[getter]
     fn valid_step<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let paths: Vec<String> = self
-            .paths()
-            .into_iter()
-            .filter(|path| path != "friction")
-            .collect();
+        let paths: Vec<String> =
+            self.paths().into_iter().filter(|path| path != "friction").collect();
         let steps = self.linear.run(py, move |plan| {
             let step = |path: String| Ok((plan.valid_step(&path)?, path));
             paths.into_iter().map(step).collect::<Result<Vec<_>>>()
@@ -166,11 +158,7 @@ impl PyGradient {
 
     /// Derivatives, in the order of the paths.
     fn values(&self) -> Vec<f64> {
-        self.gradient
-            .values
-            .iter()
-            .map(|(_, value)| *value)
-            .collect()
+        self.gradient.values.iter().map(|(_, value)| *value).collect()
     }
 
     /// Paths and derivatives.
@@ -208,15 +196,8 @@ impl PyGradient {
     }
 
     fn __repr__(&self) -> String {
-        let items = self
-            .items()
-            .into_iter()
-            .map(|(path, value)| format!("{path}: {value:.6e}"));
+        let items = self.items().into_iter().map(|(path, value)| format!("{path}: {value:.6e}"));
         let items = items.collect::<Vec<_>>().join(", ");
-        format!(
-            "Gradient({} = {:.6e}, {{{items}}})",
-            self.output(),
-            self.gradient.value
-        )
+        format!("Gradient({} = {:.6e}, {{{items}}})", self.output(), self.gradient.value)
     }
 }

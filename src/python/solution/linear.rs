@@ -51,9 +51,7 @@ impl Linear {
         given: Option<&Bound<'_, PyAny>>,
         tolerance: f64,
     ) -> PyResult<Self> {
-        let given = given
-            .map(|given| Ok::<_, PyErr>(shape(given)?.get().0.clone()))
-            .transpose()?;
+        let given = given.map(|given| Ok::<_, PyErr>(shape(given)?.get().0.clone())).transpose()?;
         Ok(Self {
             solution: Arc::clone(solution),
             shape: given.or_else(|| known.cloned()),
@@ -68,18 +66,10 @@ impl Linear {
         py: Python<'_>,
         work: impl FnOnce(&Linearisation) -> Result<T> + Send + 'static,
     ) -> PyResult<T> {
-        let Self {
-            solution,
-            shape,
-            tolerance,
-            ..
-        } = self.clone();
+        let Self { solution, shape, tolerance, .. } = self.clone();
         let found = background::run(py, None, move |caller: &mut Caller<()>| {
             let shape = shape.as_ref().map(|shape| shape as &dyn Surface);
-            let options = LinearOptions {
-                tolerance,
-                watch: Some(&|| caller.go_on()),
-            };
+            let options = LinearOptions { tolerance, watch: Some(&|| caller.go_on()) };
             work(&Linearisation::plan(&solution, shape, &options)?)
         })?;
         Ok(found?)
@@ -93,10 +83,7 @@ impl Linear {
         arguments: Bound<'py, PyTuple>,
     ) -> PyResult<Made> {
         let keywords = PyDict::new(py);
-        let shape = self
-            .shape
-            .as_ref()
-            .map(|shape| Py::new(py, PyShape(shape.clone())));
+        let shape = self.shape.as_ref().map(|shape| Py::new(py, PyShape(shape.clone())));
         keywords.set_item("shape", shape.transpose()?)?;
         keywords.set_item("tolerance", self.tolerance)?;
         Ok(Made {

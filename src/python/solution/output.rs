@@ -115,10 +115,7 @@ fn stress(table: &Bound<'_, PyDict>) -> PyResult<StressOutput> {
         .extract()?;
     let measure = MEASURES.iter().find(|(one, _)| *one == word);
     let measure = measure.map(|(_, measure)| *measure).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "stress must be {}, got {word:?}",
-            listed(&MEASURES)
-        ))
+        PyValueError::new_err(format!("stress must be {}, got {word:?}", listed(&MEASURES)))
     })?;
     let side = match table.get_item("side")? {
         Some(word) => Side::from_word(&word.extract::<String>()?)?,
@@ -136,16 +133,12 @@ fn stress(table: &Bound<'_, PyDict>) -> PyResult<StressOutput> {
         }
         (None, Some(layer), None) => StressPlace::Layer {
             layer: layer.extract()?,
-            depths: table
-                .get_item("depths")?
-                .map_or(Ok(DEPTHS), |depths| depths.extract())?,
+            depths: table.get_item("depths")?.map_or(Ok(DEPTHS), |depths| depths.extract())?,
             sharpness,
         },
-        (None, None, Some(interface)) => StressPlace::Interface {
-            interface: interface.extract()?,
-            side,
-            sharpness,
-        },
+        (None, None, Some(interface)) => {
+            StressPlace::Interface { interface: interface.extract()?, side, sharpness }
+        }
         _ => {
             return Err(PyValueError::new_err(
                 "a stress must have exactly one of the keys \"at\", \"layer\" and \"interface\"",
@@ -157,9 +150,7 @@ fn stress(table: &Bound<'_, PyDict>) -> PyResult<StressOutput> {
             Some(word) => Member::from_word(&word.extract::<String>()?)?,
             None => Member::Body,
         },
-        friction: table
-            .get_item("friction")?
-            .map_or(Ok(0.0), |friction| friction.extract())?,
+        friction: table.get_item("friction")?.map_or(Ok(0.0), |friction| friction.extract())?,
         direction: table
             .get_item("direction")?
             .map(|direction| direction.extract::<(f64, f64)>())

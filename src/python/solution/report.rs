@@ -85,10 +85,7 @@ impl State for PyReport {
             residual: fields.get("residual")?,
             overlap: fields.get("overlap")?,
             balance: fields.get_fields("balance")?.read(|balance| {
-                Ok(Balance {
-                    force: balance.get("force")?,
-                    moment: balance.get("moment")?,
-                })
+                Ok(Balance { force: balance.get("force")?, moment: balance.get("moment")? })
             })?,
             discretisation: match fields.get_optional("discretisation")? {
                 None => None,
@@ -130,9 +127,7 @@ fn checked(report: Report) -> PyResult<Report> {
     let motion = &report.motion;
     let pairs = [motion.eccentricity, motion.moment, motion.tilt].concat();
     let asked = [motion.load, motion.approach].into_iter().chain(pairs);
-    let balance = [report.balance.force]
-        .into_iter()
-        .chain(report.balance.moment);
+    let balance = [report.balance.force].into_iter().chain(report.balance.moment);
     let estimates = report.discretisation.iter().flat_map(|errors| {
         let others = [errors.approach, errors.load];
         errors.peak_pressure.into_iter().chain(others)
@@ -214,10 +209,7 @@ impl PyReport {
     /// Mismatch of the force, as a part of W, and of the moments along x and y, of W times half a side.
     #[getter]
     fn balance(&self) -> (f64, f64, f64) {
-        let Balance {
-            force,
-            moment: [x, y],
-        } = self.0.balance;
+        let Balance { force, moment: [x, y] } = self.0.balance;
         (force, x, y)
     }
 

@@ -54,10 +54,7 @@ pub(in crate::python) struct PyStress {
 impl PyStress {
     /// Stress without an axis for a single depth, and for x and y where they were numbers.
     pub(in crate::python) fn new(stress: Stress, one_depth: bool, [x, y]: [bool; 2]) -> Self {
-        Self {
-            stress: Arc::new(stress),
-            dropped: [one_depth, x, y],
-        }
+        Self { stress: Arc::new(stress), dropped: [one_depth, x, y] }
     }
 
     fn shaped<'py>(
@@ -175,9 +172,7 @@ impl PyStress {
     #[getter]
     fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let errors = self.stress.uncertainty.as_ref();
-        errors
-            .map(|errors| read_only(py, errors.clone()))
-            .transpose()
+        errors.map(|errors| read_only(py, errors.clone())).transpose()
     }
 
     /// Warnings about depths that the cells do not resolve; each was also issued as a `nacre.NacreWarning`.
@@ -229,11 +224,7 @@ impl PyStress {
     #[getter]
     fn principal<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; 3]> {
         let [a, b, c] = py.detach(|| self.stress.principal());
-        Ok([
-            self.shaped(py, a)?,
-            self.shaped(py, b)?,
-            self.shaped(py, c)?,
-        ])
+        Ok([self.shaped(py, a)?, self.shaped(py, b)?, self.shaped(py, c)?])
     }
 
     /// Largest value of a field, and its point.
@@ -308,11 +299,7 @@ impl PyStress {
             range(&s.x),
             range(&s.y),
             self.side(),
-            match s
-                .uncertainty
-                .as_ref()
-                .map(|errors| errors.fold(0.0_f64, |m, e| m.max(*e)))
-            {
+            match s.uncertainty.as_ref().map(|errors| errors.fold(0.0_f64, |m, e| m.max(*e))) {
                 Some(largest) => format!(", uncertain by up to {largest:.1e} Pa"),
                 None => String::new(),
             }

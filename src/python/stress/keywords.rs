@@ -129,16 +129,14 @@ pub(in crate::python) fn section(
 
 /// Options with friction and residual stress.
 pub(in crate::python) fn options(keywords: &Keywords, body: &HalfSpace) -> PyResult<StressOptions> {
-    let direction = keywords
-        .given("direction")?
-        .map(|value| match value.extract::<Pair>() {
-            Ok(pair) => Ok(pair.0),
-            Err(_) => {
-                let got = Repr(&value);
-                let message = format!("direction must be a pair of numbers, got {got}");
-                Err(PyTypeError::new_err(message))
-            }
-        });
+    let direction = keywords.given("direction")?.map(|value| match value.extract::<Pair>() {
+        Ok(pair) => Ok(pair.0),
+        Err(_) => {
+            let got = Repr(&value);
+            let message = format!("direction must be a pair of numbers, got {got}");
+            Err(PyTypeError::new_err(message))
+        }
+    });
     let residual = by_layer(keywords, "residual", body)?;
     Ok(StressOptions {
         friction: keywords.real("friction", 0.0)?,
@@ -167,10 +165,9 @@ fn by_layer(keywords: &Keywords, name: &str, body: &HalfSpace) -> PyResult<Vec<O
     let count = layers + usize::from(body.substrate() != Substrate::Rigid);
     let number = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
         Ok(number) => Ok(number.0),
-        Err(_) => Err(PyTypeError::new_err(format!(
-            "{name} must hold real numbers, got {}",
-            Repr(value)
-        ))),
+        Err(_) => {
+            Err(PyTypeError::new_err(format!("{name} must hold real numbers, got {}", Repr(value))))
+        }
     };
     let Ok(mapping) = given.cast::<PyDict>() else {
         let values: Vec<Option<Real>> = given.extract().map_err(|_| {
@@ -240,9 +237,8 @@ pub(in crate::python) fn watched<R: Send + 'static>(
     callback: Option<Py<PyAny>>,
     work: impl FnOnce(&mut StressProgress) -> crate::Result<R> + Send + 'static,
 ) -> PyResult<R> {
-    let result = background::run(py, callback, move |caller| {
-        work(&mut |part: f64| caller.ask(|| (part,)))
-    })?;
+    let result =
+        background::run(py, callback, move |caller| work(&mut |part: f64| caller.ask(|| (part,))))?;
     Ok(result?)
 }
 

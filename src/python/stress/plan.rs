@@ -49,12 +49,7 @@ impl PyStressPlan {
         threads: Option<usize>,
         solution: Py<PyAny>,
     ) -> Self {
-        Self {
-            plan: Arc::new(plan),
-            member,
-            threads,
-            solution,
-        }
+        Self { plan: Arc::new(plan), member, threads, solution }
     }
 }
 
@@ -103,9 +98,8 @@ impl PyStressPlan {
         let progress = keywords.callable("progress")?;
         keywords.finish("keywords of StressPlan.stress")?;
         let plan = Arc::clone(&self.plan);
-        let evaluated = watched(py, progress, move |progress| {
-            plan.stress(&depths, options.watched(progress))
-        })?;
+        let evaluated =
+            watched(py, progress, move |progress| plan.stress(&depths, options.watched(progress)))?;
         issue_warnings(py, evaluated.warnings())?;
         Ok(PyStress::new(evaluated, one, lines))
     }

@@ -75,13 +75,8 @@ impl Face {
         progress: &mut StressProgress,
     ) -> Result<Option<Self>> {
         let (depths, rows) = depths_of_rows(near, grid, known);
-        let mut face = Self {
-            sign: near.sign,
-            depths,
-            rows,
-            shape: grid.shape(),
-            tables: Vec::new(),
-        };
+        let mut face =
+            Self { sign: near.sign, depths, rows, shape: grid.shape(), tables: Vec::new() };
         for mut table in face.tables_of(near, grid, threads)? {
             match table.fields(&face.depths, false, progress) {
                 ControlFlow::Continue(fields) => table.stresses = fields,
@@ -189,9 +184,7 @@ impl Part for Face {
             let RowWeights { first, weights } = &self.rows[*i];
             for (k, sum) in sums.iter_mut().enumerate().take(components(displacement)) {
                 let lines = weights.iter().zip(&lines[*first..]);
-                *sum += lines
-                    .map(|(weight, line)| weight * line[k][*j])
-                    .sum::<f64>();
+                *sum += lines.map(|(weight, line)| weight * line[k][*j]).sum::<f64>();
             }
         }
         ControlFlow::Continue(())
@@ -228,10 +221,7 @@ fn depths_of_rows(
     }
     // On faces, the stress is known for itself.
     for x in known {
-        rows.push(RowWeights {
-            first: depths.len(),
-            weights: x.iter().map(|_| 1.0).collect(),
-        });
+        rows.push(RowWeights { first: depths.len(), weights: x.iter().map(|_| 1.0).collect() });
         depths.extend(x.map(|x| near.sign * (x - near.end)));
     }
     (depths, rows)

@@ -126,20 +126,13 @@ const ROUNDED_SHARE: f64 = 1e-6;
 
 impl EndImages {
     pub(super) fn new(grid: &Grid) -> Self {
-        Self {
-            grid: *grid,
-            pieces: Vec::new(),
-        }
+        Self { grid: *grid, pieces: Vec::new() }
     }
 
     /// Number of the row with its centre at x.
     fn row(&self, x: f64) -> f64 {
         let at = (x - self.grid.x()[0]) / self.grid.spacing()[0];
-        if (at - at.round()).abs() < ROUNDED_SHARE {
-            at.round()
-        } else {
-            at
-        }
+        if (at - at.round()).abs() < ROUNDED_SHARE { at.round() } else { at }
     }
 
     /// Adds the mirror image of the grid's `pressure` about x = `end`.
@@ -265,16 +258,9 @@ impl Strip {
         }
         let mut coarse = Array2::zeros((REPLACED[1], fine.ncols()));
         for (i, row) in fine.rows().into_iter().enumerate() {
-            coarse
-                .row_mut(i / division)
-                .scaled_add(1.0 / division as f64, &row);
+            coarse.row_mut(i / division).scaled_add(1.0 / division as f64, &row);
         }
-        Self {
-            division,
-            coarse,
-            fine,
-            margin: near.margin,
-        }
+        Self { division, coarse, fine, margin: near.margin }
     }
 
     /// What the strip beside an edge at x = `end` changes in the `rows` of `grid`: it takes away the stress of its

@@ -45,10 +45,7 @@ pub(in crate::stress) fn plane_memory(grid: &Grid, slides: bool, displacement: b
     let loads = if slides { 3 } else { 1 };
     // Coefficients of each load and component, and of the components that are convolved together
     // a spectrum and a result each.
-    transforms_memory(
-        grid,
-        (loads * components(displacement) + 2 * TOGETHER) as u64,
-    )
+    transforms_memory(grid, (loads * components(displacement) + 2 * TOGETHER) as u64)
 }
 
 impl HalfSpacePlan {
@@ -104,8 +101,7 @@ impl HalfSpacePlan {
         }
         if let (Some(solved), Some(near)) = (&self.solved, near) {
             let stresses = &mut outputs[..STRESSES];
-            self.threads
-                .run(|| solved.subcell.add(&near, friction, stresses));
+            self.threads.run(|| solved.subcell.add(&near, friction, stresses));
         }
         ControlFlow::Continue(())
     }
@@ -120,9 +116,7 @@ impl HalfSpacePlan {
         memory: &mut PlaneMemory,
         outputs: &mut [&mut [f64]],
     ) {
-        let PlaneMemory {
-            rows, workspace, ..
-        } = memory;
+        let PlaneMemory { rows, workspace, .. } = memory;
         let sets: Vec<_> = loading.loads.iter().map(factor).zip(&*rows).collect();
         let kernels = (&self.quarter, &*sets);
         self.threads.run(|| {
@@ -145,20 +139,12 @@ impl HalfSpacePlan {
         between: bool,
         memory: &mut PlaneMemory,
     ) {
-        let coefficients = Coefficients {
-            plan: self,
-            place,
-            loading,
-            offsets: self.offsets,
-            between,
-        };
-        let PlaneMemory {
-            rows, workspace, ..
-        } = memory;
+        let coefficients =
+            Coefficients { plan: self, place, loading, offsets: self.offsets, between };
+        let PlaneMemory { rows, workspace, .. } = memory;
         coefficients.each(&mut |number, source| {
             let rows = &mut rows[number];
-            self.transform
-                .transform_rows(&self.quarter, rows, source, workspace, &self.threads);
+            self.transform.transform_rows(&self.quarter, rows, source, workspace, &self.threads);
         });
     }
 
@@ -170,8 +156,7 @@ impl HalfSpacePlan {
         weights: &[Vec<f64>; STRESSES],
     ) -> Array2<f64> {
         let mut memory = self.plane_memory(loading);
-        self.threads
-            .run(|| self.transform_coefficients(loading, place, false, &mut memory));
+        self.threads.run(|| self.transform_coefficients(loading, place, false, &mut memory));
         let mut sums = Array2::zeros(self.grid.shape());
         let mut part = vec![0.0; sums.len()];
         for (number, weights) in weights.iter().enumerate() {
@@ -184,14 +169,7 @@ impl HalfSpacePlan {
             };
             let input = self.transformed(weights, &mut memory);
             let numbers = number..number + 1;
-            self.convolve(
-                &input,
-                loading,
-                factor,
-                numbers,
-                &mut memory,
-                &mut [&mut part],
-            );
+            self.convolve(&input, loading, factor, numbers, &mut memory, &mut [&mut part]);
             add_scaled(sums.iter_mut(), 1.0, &part);
         }
         sums
@@ -199,8 +177,7 @@ impl HalfSpacePlan {
 
     fn transformed(&self, input: &[f64], memory: &mut PlaneMemory) -> Transformed {
         let workspace = &mut memory.workspace;
-        self.threads
-            .run(|| self.transform.transform(input, workspace, &self.threads))
+        self.threads.run(|| self.transform.transform(input, workspace, &self.threads))
     }
 
     /// The components at `place` below the line between the rows `row` − 1 and `row`, for each of them along y, under a
@@ -222,8 +199,7 @@ impl HalfSpacePlan {
             below.below_top = below.depth;
         }
         let mut memory = self.memory_with_parity(loading, |[_, y]| [false, y]);
-        self.threads
-            .run(|| self.transform_coefficients(loading, &below, true, &mut memory));
+        self.threads.run(|| self.transform_coefficients(loading, &below, true, &mut memory));
         let mut lines = vec![vec![0.0; ny]; loading.components()];
         let mut plane = vec![0.0; nx * ny];
         for (loaded, beside) in [(0..row, row.wrapping_sub(1)), (row..nx, row)] {
@@ -242,14 +218,7 @@ impl HalfSpacePlan {
                     false => load.factor,
                 };
                 let numbers = number..number + 1;
-                self.convolve(
-                    &input,
-                    loading,
-                    factor,
-                    numbers,
-                    &mut memory,
-                    &mut [&mut plane],
-                );
+                self.convolve(&input, loading, factor, numbers, &mut memory, &mut [&mut plane]);
                 add_scaled(line.iter_mut(), 1.0, &plane[beside * ny..]);
             }
         }
@@ -275,13 +244,7 @@ impl HalfSpacePlan {
                 |cell: &[usize; 2]| cell[axis].abs_diff(first).max(cell[axis].abs_diff(last));
             cells.iter().map(distance).max().unwrap_or(0) + 1
         });
-        let coefficients = Coefficients {
-            plan: self,
-            place,
-            loading,
-            offsets,
-            between: false,
-        };
+        let coefficients = Coefficients { plan: self, place, loading, offsets, between: false };
         let mut sums = vec![[0.0; COMPONENTS]; cells.len()];
         self.threads.run(|| {
             coefficients.each(&mut |number, source| {
@@ -303,9 +266,7 @@ impl HalfSpacePlan {
                 let near = solved.subcell.table(place, loading.friction);
                 for (cell, sums) in cells.iter().zip(&mut sums) {
                     let stresses = &mut sums[..STRESSES];
-                    solved
-                        .subcell
-                        .add_at(&near, loading.friction, *cell, stresses);
+                    solved.subcell.add_at(&near, loading.friction, *cell, stresses);
                 }
             }
         });
@@ -359,8 +320,7 @@ fn along_row(coefficients: &[f64], pressures: &[f64], j: usize, odd: bool) -> f6
 
 /// Adds `factor` times the `values` to `sums`.
 fn add_scaled<'a>(sums: impl Iterator<Item = &'a mut f64>, factor: f64, values: &[f64]) {
-    sums.zip(values)
-        .for_each(|(sum, value)| *sum += factor * value);
+    sums.zip(values).for_each(|(sum, value)| *sum += factor * value);
 }
 
 /// A part of the stress of a body, which is the sum of its parts.
@@ -418,16 +378,7 @@ impl HalfSpacePart {
     /// The stress of a plan in its own cells.
     pub(in crate::stress) fn new(plan: HalfSpacePlan, load: SurfaceLoad) -> Self {
         let [rows, columns] = plan.grid.shape();
-        Self {
-            plan,
-            load,
-            factor: 1.0,
-            rows: 0..rows,
-            columns,
-            first: 0,
-            stride: 1,
-            column: 0,
-        }
+        Self { plan, load, factor: 1.0, rows: 0..rows, columns, first: 0, stride: 1, column: 0 }
     }
 
     /// Adds the `plane` of a component to an `output`.
@@ -462,8 +413,7 @@ impl Part for HalfSpacePart {
         let mut fields = std::mem::take(&mut memory.fields);
         fields.resize_with(outputs.len(), || vec![0.0; self.plan.pressure.len()]);
         let mut planes: Vec<&mut [f64]> = fields.iter_mut().map(Vec::as_mut_slice).collect();
-        self.plan
-            .plane(&loading, place, memory, &mut planes, progress)?;
+        self.plan.plane(&loading, place, memory, &mut planes, progress)?;
         for (output, field) in outputs.iter_mut().zip(&fields) {
             self.add(field, output);
         }

@@ -82,12 +82,7 @@ impl Repeats {
         &self,
         place: &Place,
     ) -> Option<Kernel<'_, N>> {
-        let Kernels::Plane {
-            plan,
-            pressure,
-            traction,
-        } = &self.block
-        else {
+        let Kernels::Plane { plan, pressure, traction } = &self.block else {
             return None;
         };
         let multipliers = match L::IS_TRACTION {
@@ -191,10 +186,8 @@ impl Repeats {
         };
         // Strips are endless along x: where y repeats, x and y are exchanged.
         let exchanged = self.open == 0;
-        let values = strips.coefficients(
-            place,
-            axis.map(|axis| if exchanged { 1 - axis } else { axis }),
-        );
+        let values =
+            strips.coefficients(place, axis.map(|axis| if exchanged { 1 - axis } else { axis }));
         let turned = |values: [f64; COMPONENTS]| match exchanged {
             true => EXCHANGED.map(|k| values[k]),
             false => values,
@@ -215,12 +208,7 @@ fn mean_of_cell<M: ComponentsAt, P: ComponentsAt, const C: usize>(
     } else {
         let point = |x: f64, y: f64| (source.point)(x, y);
         let here = point(x, y);
-        let around = [
-            point(x - dx, y),
-            point(x + dx, y),
-            point(x, y - dy),
-            point(x, y + dy),
-        ];
+        let around = [point(x - dx, y), point(x + dx, y), point(x, y - dy), point(x, y + dy)];
         std::array::from_fn(|k| {
             let sum: f64 = around.iter().map(|values| values[k]).sum();
             dx * dy * (here[k] + (sum - 4.0 * here[k]) / 24.0)
@@ -243,9 +231,9 @@ fn everywhere(body: &HalfSpace, place: &Place, axis: Axis) -> [f64; COMPONENTS] 
         .sum();
     let above = above + place.below_top * compliance(place.material);
     let whole: f64 = match body.substrate() {
-        Substrate::Rigid => layers()
-            .map(|(_, layer)| layer.thickness() * compliance(layer.material()))
-            .sum(),
+        Substrate::Rigid => {
+            layers().map(|(_, layer)| layer.thickness() * compliance(layer.material())).sum()
+        }
         Substrate::Elastic(_) => 0.0,
     };
     let mut values = [0.0; COMPONENTS];

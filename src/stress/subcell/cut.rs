@@ -11,10 +11,7 @@ pub(super) struct Piece {
 
 impl Piece {
     /// The whole cell.
-    pub(super) const CELL: Self = Self {
-        centre: [0.0; 2],
-        half: [0.5; 2],
-    };
+    pub(super) const CELL: Self = Self { centre: [0.0; 2], half: [0.5; 2] };
 
     /// Area over the cell's.
     pub(super) fn area(&self) -> f64 {
@@ -45,11 +42,7 @@ impl Cut {
             let sum: f64 = pieces.iter().map(second).sum();
             if sum > 0.0 { 1.0 / (12.0 * sum) } else { 0.0 }
         });
-        Self {
-            pieces,
-            norms,
-            points,
-        }
+        Self { pieces, norms, points }
     }
 }
 
@@ -112,20 +105,10 @@ pub(super) fn pieces(whole: Piece, count: usize, line: bool) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(rows * count);
     for a in 0..rows {
         for b in 0..count {
-            let Piece {
-                centre: [u, v],
-                half: [hu, hv],
-            } = whole;
+            let Piece { centre: [u, v], half: [hu, hv] } = whole;
             let across = place(b) * hv;
-            let (along, hu) = if line {
-                (0.0, hu)
-            } else {
-                (place(a) * hu, hu / count as f64)
-            };
-            pieces.push(Piece {
-                centre: [u + along, v + across],
-                half: [hu, hv / count as f64],
-            });
+            let (along, hu) = if line { (0.0, hu) } else { (place(a) * hu, hu / count as f64) };
+            pieces.push(Piece { centre: [u + along, v + across], half: [hu, hv / count as f64] });
         }
     }
     pieces
@@ -143,10 +126,7 @@ fn grade(coarse: Vec<Piece>, side: f64, levels: usize, line: bool, graded: &mut 
     };
     let (middle, outer): (Vec<Piece>, Vec<Piece>) = coarse.into_iter().partition(inner);
     graded.extend(outer);
-    let finer = middle
-        .into_iter()
-        .flat_map(|piece| pieces(piece, 3, line))
-        .collect();
+    let finer = middle.into_iter().flat_map(|piece| pieces(piece, 3, line)).collect();
     grade(finer, side / 3.0, levels - 1, line, graded);
 }
 
@@ -168,11 +148,7 @@ mod tests {
                 }
             }
             // 5 × 5 less 9, four times 81 less 9, and the last 81; in one dimension 5, 9, 9, 9.
-            let count = if line {
-                2 + 6 + 6 + 9
-            } else {
-                16 + 72 + 72 + 81
-            };
+            let count = if line { 2 + 6 + 6 + 9 } else { 16 + 72 + 72 + 81 };
             assert_eq!(cuts.0[0].pieces.len(), count);
             let sides = cuts.0[0].pieces.iter().map(|piece| 2.0 * piece.half[1]);
             let smallest = sides.fold(1.0, f64::min);

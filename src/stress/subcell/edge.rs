@@ -73,10 +73,7 @@ pub(super) fn edge_cells(
     let (first, others): (Vec<usize>, Vec<usize>) =
         (0..band.len()).partition(|k| band[*k].iter().all(|at| at % NEIGHBOURS == 0));
     let mut fitted: Vec<Option<SquaredPressure>> = vec![None; band.len()];
-    for block in first
-        .chunks(FITS_BETWEEN_CALLS)
-        .chain(others.chunks(FITS_BETWEEN_CALLS))
-    {
+    for block in first.chunks(FITS_BETWEEN_CALLS).chain(others.chunks(FITS_BETWEEN_CALLS)) {
         progress(0.0)?;
         let is_needed = |k: &usize| open.any_around(band[*k], NEIGHBOURS);
         let needed: Vec<usize> = block.iter().copied().filter(is_needed).collect();
@@ -165,13 +162,9 @@ fn accepted_fit(
         return None;
     }
     let equations = NormalEquations::around(known, shape, cell);
-    let fits = DEGREES
-        .into_iter()
-        .filter_map(|degree| equations.fit(degree));
-    let Fit {
-        polynomial,
-        uncertainty,
-    } = fits.reduce(|a, b| if b.uncertainty < a.uncertainty { b } else { a })?;
+    let fits = DEGREES.into_iter().filter_map(|degree| equations.fit(degree));
+    let Fit { polynomial, uncertainty } =
+        fits.reduce(|a, b| if b.uncertainty < a.uncertainty { b } else { a })?;
     // Distance of the cell's centre from the edge, positive inside.
     let distance = polynomial.at(0.0, 0.0) / polynomial.slope();
     let agrees = if pressure[i * shape[1] + j] > 0.0 {
@@ -199,18 +192,8 @@ const PIVOT_LIMIT: f64 = 1e-9;
 const TERMS: usize = 10;
 
 /// Powers of u and of v in each term.
-const POWERS: [[u8; 2]; TERMS] = [
-    [0, 0],
-    [1, 0],
-    [0, 1],
-    [2, 0],
-    [1, 1],
-    [0, 2],
-    [3, 0],
-    [2, 1],
-    [1, 2],
-    [0, 3],
-];
+const POWERS: [[u8; 2]; TERMS] =
+    [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3]];
 
 /// The square of the pressure near a cell: a polynomial in the distances u, v from the cell's centre,
 /// in cells.
@@ -350,10 +333,7 @@ impl NormalEquations {
         }
         let deviation = (variance * spread * self.weights / count).sqrt();
         let uncertainty = deviation / polynomial.slope();
-        uncertainty.is_finite().then_some(Fit {
-            polynomial,
-            uncertainty,
-        })
+        uncertainty.is_finite().then_some(Fit { polynomial, uncertainty })
     }
 }
 
@@ -468,10 +448,7 @@ mod tests {
         let wave = field(|x, y| 1.0 + 0.05 * (1.7 * x).sin() * (1.9 * y).cos());
         let rough: Vec<f64> = hertz.iter().zip(&wave).map(|(p, w)| p * w).collect();
         assert!(found(&rough)?.is_empty());
-        let punch: Vec<f64> = hertz
-            .iter()
-            .map(|p| if *p > 0.0 { 1.0 / p } else { 0.0 })
-            .collect();
+        let punch: Vec<f64> = hertz.iter().map(|p| if *p > 0.0 { 1.0 / p } else { 0.0 }).collect();
         assert!(found(&punch)?.is_empty());
         Ok(())
     }
@@ -524,9 +501,7 @@ mod tests {
         let sums = RectangleSums::new(&values, shape);
         for cell in around(shape, [0, 0], 7) {
             for reach in [0, 1, 3] {
-                let direct: f64 = around(shape, cell, reach)
-                    .map(|[i, j]| values[i * ny + j])
-                    .sum();
+                let direct: f64 = around(shape, cell, reach).map(|[i, j]| values[i * ny + j]).sum();
                 // Small whole numbers are summed exactly.
                 assert!((sums.around(cell, reach) - direct).abs() < f64::EPSILON);
             }
@@ -537,9 +512,8 @@ mod tests {
     #[test]
     fn distances_are_counted_from_the_edge_and_the_border() {
         let (nx, ny) = (5, 8);
-        let pressure: Vec<f64> = (0..nx * ny)
-            .map(|k| f64::from(u8::from((1..7).contains(&(k % ny)))))
-            .collect();
+        let pressure: Vec<f64> =
+            (0..nx * ny).map(|k| f64::from(u8::from((1..7).contains(&(k % ny))))).collect();
         let distances = edge_distances(&pressure, [nx, ny], 4);
         assert_eq!(distances[..ny], [0, 1, 1, 1, 1, 1, 1, 0]);
         assert_eq!(distances[2 * ny..3 * ny], [0, 1, 2, 3, 3, 2, 1, 0]);

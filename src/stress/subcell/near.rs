@@ -121,11 +121,7 @@ impl NearPlan {
         progress: &mut StressProgress,
     ) -> ControlFlow<(), Self> {
         let (shape, line) = (grid.shape(), grid.is_line());
-        let sides = if line {
-            [grid.spacing()[1]; 2]
-        } else {
-            grid.spacing()
-        };
+        let sides = if line { [grid.spacing()[1]; 2] } else { grid.spacing() };
         let longer = sides[0].max(sides[1]);
         let reach = |side: f64| ((NEAR_REACH * longer / side).ceil() as usize).min(REACH_LIMIT);
         ControlFlow::Continue(Self {
@@ -164,13 +160,10 @@ impl NearPlan {
         // One more, for the shares on the neighbours.
         let ends = [if self.line { 0 } else { rx + 1 }, ry + 1];
         let range = |end: isize| -end..=end;
-        let all: Vec<[isize; 2]> = range(ends[0])
-            .flat_map(|i| range(ends[1]).map(move |j| [i, j]))
-            .collect();
-        let mut offsets: Vec<Offset> = all
-            .into_par_iter()
-            .map(|by| self.offset(by, depth, &stresses))
-            .collect();
+        let all: Vec<[isize; 2]> =
+            range(ends[0]).flat_map(|i| range(ends[1]).map(move |j| [i, j])).collect();
+        let mut offsets: Vec<Offset> =
+            all.into_par_iter().map(|by| self.offset(by, depth, &stresses)).collect();
         let width = 2 * ends[1] + 1;
         let place = |[i, j]: [isize; 2]| ((i + ends[0]) * width + j + ends[1]) as usize;
         let uniform: Vec<Components> = offsets.iter().map(|o| o.uniform).collect();
@@ -183,10 +176,8 @@ impl NearPlan {
                 }
                 let [ax, ay] = [[1, 0], [0, 1]][axis];
                 // From the cell on the right the target is one less off.
-                let (right, left) = (
-                    uniform[place([i - ax, j - ay])],
-                    uniform[place([i + ax, j + ay])],
-                );
+                let (right, left) =
+                    (uniform[place([i - ax, j - ay])], uniform[place([i + ax, j + ay])]);
                 for k in 0..STRESSES {
                     offset.shares[axis][k] = 0.5 * (right[k] - left[k]);
                     offset.slopes[axis][k] -= INERTIA * offset.shares[axis][k];
@@ -246,10 +237,8 @@ impl NearPlan {
             return;
         }
         for block in self.reconstruction.roots.chunks(CELLS_HELD) {
-            let stresses: Vec<_> = block
-                .par_iter()
-                .map(|cell| self.root_stresses(near, cell))
-                .collect();
+            let stresses: Vec<_> =
+                block.par_iter().map(|cell| self.root_stresses(near, cell)).collect();
             outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
                 for (cell, stresses) in block.iter().zip(&stresses) {
                     for (offset, stress) in near.offsets.iter().zip(stresses) {
@@ -291,11 +280,7 @@ impl NearPlan {
     /// Stresses of the load of one cell near the edge, at all offsets.
     fn root_stresses(&self, near: &NearTable, cell: &RootCell) -> Vec<Components> {
         let pressures: [Vec<f64>; CUTS] = std::array::from_fn(|cut| {
-            if cut < near.finest {
-                Vec::new()
-            } else {
-                self.piece_pressures(cell, cut)
-            }
+            if cut < near.finest { Vec::new() } else { self.piece_pressures(cell, cut) }
         });
         let stress = |offset: &Offset| offset.root_stress(cell, &pressures[offset.cut]);
         near.offsets.iter().map(stress).collect()
@@ -304,9 +289,7 @@ impl NearPlan {
     /// What [`NearPlan::add`] adds in one cell.
     pub(super) fn sum_at(&self, near: &NearTable, target: [usize; 2]) -> Components {
         let mut sum = [0.0; STRESSES];
-        let Reconstruction {
-            interior, roots, ..
-        } = &self.reconstruction;
+        let Reconstruction { interior, roots, .. } = &self.reconstruction;
         for offset in &near.offsets {
             let Some(cell) = self.cell_at(target, offset.by.map(|by| -by)) else {
                 continue;

@@ -107,11 +107,7 @@ impl Reconstruction {
         }
         // Cells beyond the edge hold nothing.
         roots.retain(|root| root.mean > 0.0);
-        ControlFlow::Continue(Self {
-            uniform,
-            interior,
-            roots,
-        })
+        ControlFlow::Continue(Self { uniform, interior, roots })
     }
 }
 
@@ -189,11 +185,7 @@ fn balancing_raises(
     let rates = RectangleSums::new(&rates, shape);
     let raise = |root: &RootCell| {
         let rate = rates.around(root.cell, BALANCE_REACH);
-        if rate > 0.0 {
-            missing.around(root.cell, BALANCE_REACH) / rate
-        } else {
-            0.0
-        }
+        if rate > 0.0 { missing.around(root.cell, BALANCE_REACH) / rate } else { 0.0 }
     };
     roots.iter().map(raise).collect()
 }
@@ -204,13 +196,7 @@ impl RootCell {
         let (mean, moments) = mean_and_moments(&squared, divisions, line);
         let step = RATE_STEP * squared.variation([1.0, 1.0]);
         let (higher, _) = mean_and_moments(&squared.raised(step), divisions, line);
-        Self {
-            cell,
-            squared,
-            mean,
-            moments,
-            rate: (higher - mean) / step,
-        }
+        Self { cell, squared, mean, moments, rate: (higher - mean) / step }
     }
 
     /// The cell with p² raised; none where that shifts the edge too far.
@@ -220,12 +206,7 @@ impl RootCell {
         }
         let squared = self.squared.raised(by);
         let (mean, moments) = mean_and_moments(&squared, divisions, line);
-        Some(Self {
-            squared,
-            mean,
-            moments,
-            ..self
-        })
+        Some(Self { squared, mean, moments, ..self })
     }
 }
 
@@ -317,12 +298,7 @@ mod tests {
             for i in (0..reach).chain(nx - reach..nx) {
                 for cell in i * ny..(i + 1) * ny {
                     assert_eq!(found.uniform[cell].to_bits(), pressure[cell].to_bits());
-                    assert!(
-                        slopes
-                            .iter()
-                            .chain(curvatures)
-                            .all(|part| part[cell] == 0.0)
-                    );
+                    assert!(slopes.iter().chain(curvatures).all(|part| part[cell] == 0.0));
                 }
             }
             let is_cut = |root: &RootCell| root.cell[0] < reach || root.cell[0] >= nx - reach;
@@ -351,10 +327,7 @@ mod tests {
         // The interior keeps the solver's pressure.
         for (cell, curvature) in reconstruction.interior.curvatures[0].iter().enumerate() {
             if *curvature != 0.0 {
-                assert_eq!(
-                    reconstruction.uniform[cell].to_bits(),
-                    pressure[cell].to_bits()
-                );
+                assert_eq!(reconstruction.uniform[cell].to_bits(), pressure[cell].to_bits());
             }
         }
         Ok(())

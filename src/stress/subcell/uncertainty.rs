@@ -115,11 +115,7 @@ impl Uncertainty {
             };
             (0..COUNT).map(wave).collect()
         };
-        Self {
-            shape,
-            known,
-            waves: grid.spacing().map(waves),
-        }
+        Self { shape, known, waves: grid.spacing().map(waves) }
     }
 
     /// Largest steps of `pressure` that are felt in the cells of `window`.

@@ -31,9 +31,7 @@ fn amplitudes(poisson: f64, end: f64, places: &[f64]) -> Result<Vec<f64>> {
     let contact = plan(unit(poisson, [Some(0.0), None])?, grid)?;
     let (x, y) = (grid.x(), grid.y());
     let load = |(i, j): (usize, usize)| if x[i] < end { y[j].cos() } else { 0.0 };
-    let u = contact
-        .convolution()
-        .apply(&Array2::from_shape_fn((x.len(), y.len()), load))?;
+    let u = contact.convolution().apply(&Array2::from_shape_fn((x.len(), y.len()), load))?;
     let amplitude = |row: usize| {
         let terms = u.row(row).into_iter().zip(&y).map(|(u, y)| u * y.cos());
         // G/(1−ν) = 1/2
@@ -67,9 +65,7 @@ fn waves_of_the_period_are_exact() -> Result<()> {
         let mut ratios: Vec<f64> = rows.iter().map(|row| number(row, "nu")).collect();
         ratios.dedup();
         for poisson in ratios {
-            let rows = rows
-                .iter()
-                .filter(|row| (number(row, "nu") - poisson).abs() < 1e-9);
+            let rows = rows.iter().filter(|row| (number(row, "nu") - poisson).abs() < 1e-9);
             let [places, due] = [place, value].map(|key| {
                 let values = rows.clone().map(|row| number(row, key));
                 values.collect::<Vec<f64>>()

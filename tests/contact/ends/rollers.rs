@@ -53,9 +53,7 @@ fn pressure_falls_towards_flush_ends() -> Result<()> {
         assert!(solution.report.warnings.is_empty());
         beside.push(solution.pressure[[0, 16]]);
     }
-    let [first, middle, last] = beside[..] else {
-        unreachable!()
-    };
+    let [first, middle, last] = beside[..] else { unreachable!() };
     let falls = first > 0.99 && middle < 0.7 && last < middle && last > 0.0;
     assert!(falls, "{beside:?}");
     Ok(())
@@ -185,12 +183,8 @@ fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
                 near!(length, 10e-3, 1e-12);
             }
             let whole = Grid::new([512, 128], [10e-3, 2.4 * half_width])?;
-            let expected = converged(
-                &Contact::plan(&race, whole, setup.clone())?,
-                shape,
-                &motion,
-                &options,
-            )?;
+            let expected =
+                converged(&Contact::plan(&race, whole, setup.clone())?, shape, &motion, &options)?;
             near!(found.approach, expected.approach, 1e-3);
             near!(found.central_pressure(), expected.central_pressure(), 5e-3);
         }

@@ -12,16 +12,9 @@ fn main() -> nacre::Result<()> {
     let bare = hertz::Point::new(5e-3, steel.plane_strain_modulus(), 100.0)?;
     let thick = hertz::Point::new(5e-3, coating.plane_strain_modulus(), 100.0)?;
     let peak = solution.peak_pressure();
-    assert!(
-        peak > bare.peak_pressure && peak < thick.peak_pressure,
-        "{peak:e}"
-    );
+    assert!(peak > bare.peak_pressure && peak < thick.peak_pressure, "{peak:e}");
     assert!(solution.approach < bare.approach && solution.approach > thick.approach);
     assert!((solution.load() / 100.0 - 1.0).abs() < 1e-12);
-    println!(
-        "peak pressure {:.1} MPa, approach {:.4} um",
-        peak / 1e6,
-        solution.approach * 1e6
-    );
+    println!("peak pressure {:.1} MPa, approach {:.4} um", peak / 1e6, solution.approach * 1e6);
     Ok(())
 }

@@ -43,9 +43,7 @@ fn dense(bodies: &[&Body], grid: &Grid) -> Result<Array2<f64>> {
 
 /// Cholesky's factor of a symmetric matrix less `shift` on its diagonal; `None` where an eigenvalue is not above the shift.
 fn shifted(matrix: &Array2<f64>, shift: f64) -> Option<Vec<Vec<f64>>> {
-    cholesky(matrix.nrows(), 0.0, |i, j| {
-        matrix[[i, j]] - if i == j { shift } else { 0.0 }
-    })
+    cholesky(matrix.nrows(), 0.0, |i, j| matrix[[i, j]] - if i == j { shift } else { 0.0 })
 }
 
 /// Relative error of [`smallest_eigenvalue`].
@@ -64,12 +62,8 @@ fn smallest_eigenvalue(matrix: &Array2<f64>) -> f64 {
     below
 }
 
-const ENDS: [[Option<f64>; 2]; 4] = [
-    [Some(-5.0), None],
-    [None, Some(3.0)],
-    [Some(-5.0), Some(5.0)],
-    [Some(-6.3), Some(5.2)],
-];
+const ENDS: [[Option<f64>; 2]; 4] =
+    [[Some(-5.0), None], [None, Some(3.0)], [Some(-5.0), Some(5.0)], [Some(-6.3), Some(5.2)]];
 
 /// The operator of one body with one end, or two, and of two bodies is symmetric to rounding, and no eigenvalue is below
 /// the smallest of the half-spaces: what an end adds is positive. What the plate adds to two quarter spaces need not be
@@ -95,9 +89,7 @@ fn operators_are_symmetric_and_positive() -> Result<()> {
         ];
         for ends in cases {
             let name = format!("{poisson} {ends:?}");
-            let bodies = ends
-                .iter()
-                .map(|ends| Ok(Body::from(&body(poisson, *ends)?)));
+            let bodies = ends.iter().map(|ends| Ok(Body::from(&body(poisson, *ends)?)));
             let bodies = bodies.collect::<Result<Vec<Body>>>()?;
             let matrix = dense(&bodies.iter().collect::<Vec<_>>(), &grid)?;
             let largest = matrix.diag().fold(0.0_f64, |most, entry| most.max(*entry));
@@ -126,26 +118,16 @@ fn cells_converge() -> Result<()> {
         let convolution = Convolution::plan(&coefficients, Some(1))?.plus(additions);
         let (x, y) = (grid.x(), grid.y());
         let loaded = |i: usize, j: usize| f64::from(u8::from(x[i] < 2.0 && y[j].abs() < 1.0));
-        let u = convolution.apply(&Array2::from_shape_fn((3 * n, 3 * n), |(i, j)| {
-            loaded(i, j)
-        }))?;
+        let u = convolution.apply(&Array2::from_shape_fn((3 * n, 3 * n), |(i, j)| loaded(i, j)))?;
         let mut worst = 0.0_f64;
-        for (i, j) in [
-            (0, 3 * n / 2),
-            (n, 3 * n / 2),
-            (n / 2, n),
-            (2 * n + n / 2, 3 * n / 2),
-        ] {
+        for (i, j) in [(0, 3 * n / 2), (n, 3 * n / 2), (n / 2, n), (2 * n + n / 2, 3 * n / 2)] {
             let expected = exact.displacement([x[i], y[j]])?;
             worst = worst.max((u[[i, j]] / expected - 1.0).abs());
         }
         errors.push(worst);
     }
     assert!(errors[0] < 5e-4 && errors[2] < 3e-5, "{errors:?}");
-    assert!(
-        errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1],
-        "{errors:?}"
-    );
+    assert!(errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1], "{errors:?}");
     Ok(())
 }
 
@@ -159,14 +141,7 @@ fn far_entries_are_those_of_points() -> Result<()> {
     let [dx, dy] = grid.spacing();
     let body = Body::from(&HalfSpace::from(material).with_ends([None, Some(15.0)])?);
     let convolution = convolution(&[&body], &grid)?;
-    for [a, b] in [
-        [3, 50],
-        [30, 599],
-        [47, 131],
-        [64, 65],
-        [127, 501],
-        [222, 333],
-    ] {
+    for [a, b] in [[3, 50], [30, 599], [47, 131], [64, 65], [127, 501], [222, 333]] {
         let [here, there] = [a, b].map(|row| (row as f64 + 0.5) * dx);
         let point = QuarterSpace::new(material, there - 0.5 * dx, [dx, 0.5 * dy])?;
         let half_space = CellInfluence::plan(material, [dx, dy], 50.0)?;
@@ -176,10 +151,7 @@ fn far_entries_are_those_of_points() -> Result<()> {
             // The end is at the last row.
             let found = convolution.added([599 - a, 599 - b], l);
             let tolerance = 2e-5 + (dx / here).powi(2) / 24.0;
-            assert!(
-                (found / expected - 1.0).abs() < tolerance,
-                "{a} {b} {l}: {found} {expected}"
-            );
+            assert!((found / expected - 1.0).abs() < tolerance, "{a} {b} {l}: {found} {expected}");
         }
     }
     Ok(())

@@ -23,26 +23,14 @@ pub(in crate::compliance::response) fn of_energy(
     let shapes = Shapes::new(x);
     let delta = shapes.delta(nu);
     let Shapes {
-        scale,
-        decay: [_, e2],
-        cosh,
-        sinh,
-        xs,
-        x2s,
-        sinh2_2x,
-        xcosh_sinh,
-        sinhsq_x2,
-        ..
+        scale, decay: [_, e2], cosh, sinh, xs, x2s, sinh2_2x, xcosh_sinh, sinhsq_x2, ..
     } = shapes;
     let (xsinh, xcosh) = (x * sinh, x * cosh);
     let d_delta = -4.0 * (1.0 + e2 * e2) - scale * (12.0 - 16.0 * nu);
     let inverse = 1.0 / delta;
     let of = |n: f64, dn: f64| (dn - n * inverse * d_delta) * inverse;
 
-    let (n11, n22) = (
-        k * sinh2_2x + 4.0 * epsilon * xs,
-        k * sinh2_2x + 8.0 * eta * xs,
-    );
+    let (n11, n22) = (k * sinh2_2x + 4.0 * epsilon * xs, k * sinh2_2x + 8.0 * eta * xs);
     let slope = 4.0 * sinh2_2x + 8.0 * xs;
     let top = Symmetric(
         of(eta * n11, -n11 - eta * slope),
@@ -54,10 +42,7 @@ pub(in crate::compliance::response) fn of_energy(
     );
     let bottom = Symmetric(
         of(eta * sinh2_2x, -sinh2_2x),
-        of(
-            epsilon * sinhsq_x2 + 2.0 * eta * x2s,
-            -2.0 * (sinhsq_x2 + x2s),
-        ),
+        of(epsilon * sinhsq_x2 + 2.0 * eta * x2s, -2.0 * (sinhsq_x2 + x2s)),
         of(eta * (sinh2_2x + 4.0 * xs), -(sinh2_2x + 4.0 * xs)),
     );
     let diagonal = |sign: f64| {
@@ -73,10 +58,7 @@ pub(in crate::compliance::response) fn of_energy(
             4.0 * of(eta * n, -n - 2.0 * eta * cosh)
         }
     };
-    let (n12, n21) = (
-        2.0 * nu * xcosh + epsilon * xcosh_sinh,
-        2.0 * eta * sinh + xcosh_sinh,
-    );
+    let (n12, n21) = (2.0 * nu * xcosh + epsilon * xcosh_sinh, 2.0 * eta * sinh + xcosh_sinh);
     let across = 4.0 * of(-eta * n12, n12 - 2.0 * eta * sinh);
     let along = 4.0 * of(eta * n21, -n21 - 2.0 * eta * sinh);
     let mixed = p * (diagonal(1.0) * w + across * v) + tau * (along * w + diagonal(-1.0) * v);

@@ -40,16 +40,7 @@ impl Memory {
     /// largest number that a solve may need, which the plan's memory was checked for; most systems hand
     /// memory out only as it is written.
     pub(crate) fn reserve(&mut self, rows: &Rows, most: usize, loaded: [bool; 3]) {
-        let Self {
-            u,
-            r,
-            r_before,
-            z,
-            direction,
-            response,
-            trial,
-            images,
-        } = self;
+        let Self { u, r, r_before, z, direction, response, trial, images } = self;
         let arrays = [u, r, r_before, z, direction, response, trial];
         let images = images.iter_mut().zip(loaded);
         let images = images.filter_map(|(image, loaded)| loaded.then_some(image));

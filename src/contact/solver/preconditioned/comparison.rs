@@ -57,10 +57,7 @@ fn cases() -> Result<[Case; 6]> {
             name: "crowned roller, both moments",
             body: bare.into(),
             grid: Grid::new([71, 50], [6.0, 1.6])?,
-            motion: Motion {
-                eccentricity: [Some(0.31), Some(-0.02)],
-                ..load
-            },
+            motion: Motion { eccentricity: [Some(0.31), Some(-0.02)], ..load },
             gap: |x, y| 1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2),
             start: f64::INFINITY,
         },
@@ -68,18 +65,11 @@ fn cases() -> Result<[Case; 6]> {
             name: "rough, of finite extent",
             body: bare.into(),
             grid: Grid::new([60, 55], [3.0, 2.5])?.centered_at([0.3, -0.2])?,
-            motion: Motion {
-                moment: [Some(3e-5), Some(-5e-6)],
-                ..light
-            },
+            motion: Motion { moment: [Some(3e-5), Some(-5e-6)], ..light },
             gap: |x, y| {
                 let height = ((127.1 * x + 311.7 * y).sin() * 43758.5).fract();
                 let smooth = 3e-4 * (x * x + y * y);
-                if x.hypot(y) > 1.3 {
-                    f64::INFINITY
-                } else {
-                    smooth + 1e-4 * height
-                }
+                if x.hypot(y) > 1.3 { f64::INFINITY } else { smooth + 1e-4 * height }
             },
             start: 0.4,
         },
@@ -87,10 +77,7 @@ fn cases() -> Result<[Case; 6]> {
             name: "approach and tilt",
             body: bare.into(),
             grid: Grid::new([48, 57], [4.0, 3.6])?,
-            motion: Motion {
-                tilt: [Some(2e-4), Some(-1e-4)],
-                ..Motion::approach(5e-4)
-            },
+            motion: Motion { tilt: [Some(2e-4), Some(-1e-4)], ..Motion::approach(5e-4) },
             gap: |x, y| 5e-4 * x * x + 6e-4 * y * y,
             start: f64::INFINITY,
         },
@@ -98,10 +85,7 @@ fn cases() -> Result<[Case; 6]> {
             name: "line",
             body: bare.into(),
             grid: Grid::line(71, 3.3)?,
-            motion: Motion {
-                eccentricity: [None, Some(0.3)],
-                ..light
-            },
+            motion: Motion { eccentricity: [None, Some(0.3)], ..light },
             gap: |_, y| 5e-4 * y * y + 2e-5 * (9.0 * y).cos(),
             start: f64::INFINITY,
         },
@@ -159,21 +143,14 @@ fn fused_iteration_is_the_textbook_one() -> Result<()> {
             for iteration in 0..=100 {
                 let at = format!("{}, iteration {iteration} after {before}", case.name);
                 assert!(iteration < 100, "{at}: not converged");
-                let Assessment {
-                    lambda,
-                    quality,
-                    contact_changed,
-                } = fused.assess(&p);
+                let Assessment { lambda, quality, contact_changed } = fused.assess(&p);
                 let (expected, [residual, overlap]) = textbook.assess(&q);
                 let u = largest(&convolved(textbook.problem.convolution, &q));
                 for k in 0..3 {
                     let change = (lambda[k] - expected[k]).abs();
                     assert!(change <= ROUNDING * u, "{at}: λ[{k}] {change:e}");
                 }
-                assert!(
-                    (quality.residual - residual).abs() <= ROUNDING,
-                    "{at}: residual"
-                );
+                assert!((quality.residual - residual).abs() <= ROUNDING, "{at}: residual");
                 assert!(
                     (quality.overlap - overlap).abs() <= ROUNDING * overlap.max(1.0),
                     "{at}: overlap"

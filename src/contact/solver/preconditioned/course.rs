@@ -22,11 +22,7 @@ pub(super) struct Course {
 impl Course {
     /// The course of an iteration that has not begun.
     pub(super) fn new() -> Self {
-        Self {
-            error: f64::INFINITY,
-            halved: 0,
-            pressure: None,
-        }
+        Self { error: f64::INFINITY, halved: 0, pressure: None }
     }
 
     /// Whether the error has not halved for [`HALVING`] iterations, the last of which led to `p`.
@@ -56,13 +52,7 @@ mod tests {
     use crate::contact::problem::Quality;
 
     fn quality(residual: f64, overlap: f64) -> Quality {
-        Quality {
-            residual,
-            overlap,
-            balanced: true,
-            allowed: true,
-            finite: true,
-        }
+        Quality { residual, overlap, balanced: true, allowed: true, finite: true }
     }
 
     /// An error that goes round in circles stagnates when it has not halved for as many iterations as are
@@ -74,11 +64,7 @@ mod tests {
         let mut stagnates = |k: usize| {
             let falling = 0.5_f64.powi(k.min(KEEPING + 3) as i32);
             let circle = [1.0, 1.7, 0.6][k % 3];
-            let error = if k > KEEPING + 3 {
-                circle * falling
-            } else {
-                falling
-            };
+            let error = if k > KEEPING + 3 { circle * falling } else { falling };
             course.stagnates(k, quality(0.1 * error, error), &[k as f64])
         };
         let end = (0..).find(|&k| stagnates(k));

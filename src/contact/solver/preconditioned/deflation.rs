@@ -62,11 +62,7 @@ impl Preconditioned<'_> {
     /// Makes the direction of the next step and hands its rows to `convolution`; returns its product with
     /// the residual.
     pub(super) fn search_direction(&mut self, p: &[f64], convolution: &Convolution) -> f64 {
-        let Deflated {
-            factors,
-            descent,
-            with_last,
-        } = self.deflate(p);
+        let Deflated { factors, descent, with_last } = self.deflate(p);
         let beta = self.conjugacy.beta(descent, with_last);
         let slope = self.turn(p, convolution, factors, beta);
         if slope > 0.0 {
@@ -84,13 +80,7 @@ impl Preconditioned<'_> {
     /// ```
     fn deflate(&mut self, p: &[f64]) -> Deflated {
         let (freedoms, bounds) = (self.problem.freedoms, self.problem.bounds);
-        let Arrays {
-            r,
-            r_before,
-            z,
-            images,
-            ..
-        } = self.memory.arrays(p.len());
+        let Arrays { r, r_before, z, images, .. } = self.memory.arrays(p.len());
         let inverse = &self.approximation.inverse;
         let rows = || 0..inverse.shape()[0];
         inverse.rows_in(r, rows(), &mut self.workspace);
@@ -118,10 +108,7 @@ impl Preconditioned<'_> {
         let matrix = [0, 1, 2].map(|row| of_images.map(|image| image.moments[row]));
         let factors = freedoms.solve(&matrix, of_z.moments);
         let remains = |product: fn(&Products) -> f64| {
-            let removed = factors
-                .iter()
-                .zip(&of_images)
-                .map(|(f, image)| f * product(image));
+            let removed = factors.iter().zip(&of_images).map(|(f, image)| f * product(image));
             product(&of_z) - removed.sum::<f64>()
         };
         let descent = remains(|products| products.with_residual);
@@ -130,50 +117,34 @@ impl Preconditioned<'_> {
             z.copy_from_slice(r);
             freedoms.project(z, p, r, bounds);
             self.conjugacy.restart();
-            return Deflated {
-                factors: [0.0; 3],
-                descent: dot(r, z),
-                with_last: 0.0,
-            };
+            return Deflated { factors: [0.0; 3], descent: dot(r, z), with_last: 0.0 };
         }
-        Deflated {
-            factors,
-            descent,
-            with_last: remains(|products| products.with_last),
-        }
+        Deflated { factors, descent, with_last: remains(|products| products.with_last) }
     }
 
     /// Direction d ← z − Σ `factors` images + `beta` d on the contact, 0 elsewhere; returns r · d.
     fn turn(&mut self, p: &[f64], convolution: &Convolution, factors: [f64; 3], beta: f64) -> f64 {
-        let Arrays {
-            r,
-            z,
-            direction,
-            images,
-            ..
-        } = self.memory.arrays(p.len());
+        let Arrays { r, z, direction, images, .. } = self.memory.arrays(p.len());
         let [i0, i1, i2] = loaded_images(self.problem.freedoms.loaded, images, r);
         let ([f0, f1, f2], beta) = (factors.map(all), all(beta));
         let bounds = self.problem.bounds;
         let (inwards, halves) = convolution.inwards(&mut self.workspace);
         let (inputs, outputs) = ([p, &*r, z, i0, i1, i2], ([direction], halves));
-        let [slope] = self
-            .rows
-            .blocks(inputs, outputs, |block, inputs, ([direction], halves)| {
-                let slope = block.each(inputs, [&mut *direction], |row, inputs, [direction]| {
-                    let [p, r, z, i0, i1, i2] = inputs;
-                    let inputs = [p, bounds.row(row.number), r, z, i0, i1, i2];
-                    update(inputs, [direction], |[p, limit, r, z, a, b, c], [d]| {
-                        let z = z - f0 * a - f1 * b - f2 * c;
-                        // At a β of 0 the last direction may hold anything.
-                        let last = where_positive(beta, beta * d);
-                        let d = in_contact(p, limit, r) & (z + last);
-                        ([d], [r * d])
-                    })
-                });
-                inwards.rows(direction, halves);
-                slope
+        let [slope] = self.rows.blocks(inputs, outputs, |block, inputs, ([direction], halves)| {
+            let slope = block.each(inputs, [&mut *direction], |row, inputs, [direction]| {
+                let [p, r, z, i0, i1, i2] = inputs;
+                let inputs = [p, bounds.row(row.number), r, z, i0, i1, i2];
+                update(inputs, [direction], |[p, limit, r, z, a, b, c], [d]| {
+                    let z = z - f0 * a - f1 * b - f2 * c;
+                    // At a β of 0 the last direction may hold anything.
+                    let last = where_positive(beta, beta * d);
+                    let d = in_contact(p, limit, r) & (z + last);
+                    ([d], [r * d])
+                })
             });
+            inwards.rows(direction, halves);
+            slope
+        });
         slope
     }
 }

@@ -36,22 +36,17 @@ impl Preconditioned<'_> {
     /// Finishes the application of `convolution` to the direction, whose rows it has; returns the product of
     /// response and direction.
     fn respond(&mut self, convolution: &Convolution) -> f64 {
-        let Arrays {
-            direction,
-            response,
-            ..
-        } = self.memory.arrays(self.problem.gap.len());
+        let Arrays { direction, response, .. } = self.memory.arrays(self.problem.gap.len());
         self.work += convolution.work();
         let rows = 0..convolution.shape()[0];
         let outwards = convolution.outwards(direction, rows, &mut self.workspace);
         let [curvature] =
-            self.rows
-                .blocks([direction], [response], |block, [direction], [response]| {
-                    outwards.rows(block.first, response);
-                    block.each([direction, response], [], |_, fields, []| {
-                        sum(fields, |[direction, response]| [direction * response])
-                    })
-                });
+            self.rows.blocks([direction], [response], |block, [direction], [response]| {
+                outwards.rows(block.first, response);
+                block.each([direction, response], [], |_, fields, []| {
+                    sum(fields, |[direction, response]| [direction * response])
+                })
+            });
         curvature
     }
 
@@ -63,27 +58,16 @@ impl Preconditioned<'_> {
         let Some(length) = best_length(slope, curvature).map(all) else {
             return Step::Stalled;
         };
-        let Arrays {
-            u,
-            direction,
-            response,
-            ..
-        } = self.memory.arrays(p.len());
+        let Arrays { u, direction, response, .. } = self.memory.arrays(p.len());
         let (inputs, outputs) = ([&*direction, response, problem.gap], [&mut *p, u]);
         let fit = self.rows.each(inputs, outputs, |row, inputs, fields| {
             let limit = bounds.row(row.number);
-            freedoms.fit_row(
-                row,
-                limit,
-                inputs,
-                fields,
-                |[d, response, h, limit, _], [p, u]| {
-                    let trial = p + length * d;
-                    let (p, lost) = (clip(trial, limit), not_allowed(trial, limit));
-                    let u = u + length * response;
-                    ([p, u], [p, u + h, lost])
-                },
-            )
+            freedoms.fit_row(row, limit, inputs, fields, |[d, response, h, limit, _], [p, u]| {
+                let trial = p + length * d;
+                let (p, lost) = (clip(trial, limit), not_allowed(trial, limit));
+                let u = u + length * response;
+                ([p, u], [p, u + h, lost])
+            })
         });
         let near = (&*u, self.lambda);
         let (done, factor) = balance(problem, p, near, fit.counted, fit.moments);
@@ -91,9 +75,8 @@ impl Preconditioned<'_> {
             self.displacement = Displacement::Fitted(fit);
             return done;
         }
-        self.rows.each([], [&mut *p], |_, [], [p]| {
-            update([], [p], |[], [p]| ([all(factor) * p], []))
-        });
+        self.rows
+            .each([], [&mut *p], |_, [], [p]| update([], [p], |[], [p]| ([all(factor) * p], [])));
         self.displace(p);
         done
     }
@@ -112,66 +95,46 @@ impl Preconditioned<'_> {
         let Some(length) = best_length(slope, curvature).map(all) else {
             return Step::Stalled;
         };
-        let Arrays {
-            u,
-            direction,
-            trial,
-            r,
-            response,
-            ..
-        } = self.memory.arrays(p.len());
+        let Arrays { u, direction, trial, r, response, .. } = self.memory.arrays(p.len());
         let (lost, moments) =
-            self.rows
-                .each([&*direction, p], [&mut *trial], |row, [d, p], [trial]| {
-                    let inputs = [d, p, problem.bounds.row(row.number)];
-                    let [lost] = update(inputs, [&mut *trial], |[d, p, limit], _| {
-                        let trial = p + length * d;
-                        ([clip(trial, limit)], [not_allowed(trial, limit)])
-                    });
-                    (lost, freedoms.moments_of(row, trial))
+            self.rows.each([&*direction, p], [&mut *trial], |row, [d, p], [trial]| {
+                let inputs = [d, p, problem.bounds.row(row.number)];
+                let [lost] = update(inputs, [&mut *trial], |[d, p, limit], _| {
+                    let trial = p + length * d;
+                    ([clip(trial, limit)], [not_allowed(trial, limit)])
                 });
+                (lost, freedoms.moments_of(row, trial))
+            });
         let (done, factor) = balance(problem, trial, (u, self.lambda), lost, moments);
         let (inwards, halves) = problem.convolution.inwards(&mut self.workspace);
         let outputs = ([&mut *p, &mut *trial], halves);
-        self.rows
-            .blocks([], outputs, |block, [], ([p, change], halves)| {
-                block.each([], [p, &mut *change], |_, [], fields| {
-                    update([], fields, |[], [p, trial]| {
-                        let trial = all(factor) * trial;
-                        ([trial, trial - p], [])
-                    })
-                });
-                inwards.rows(change, halves);
+        self.rows.blocks([], outputs, |block, [], ([p, change], halves)| {
+            block.each([], [p, &mut *change], |_, [], fields| {
+                update([], fields, |[], [p, trial]| {
+                    let trial = all(factor) * trial;
+                    ([trial, trial - p], [])
+                })
             });
+            inwards.rows(change, halves);
+        });
         let change = trial;
         self.work += problem.convolution.work();
         let rows = 0..problem.convolution.shape()[0];
         let convolution = problem.convolution;
         let outwards = convolution.outwards(change, rows, &mut self.workspace);
-        let [slope, curvature] = self.rows.blocks(
-            [&*change, r],
-            [response],
-            |block, [change, r], [response]| {
+        let [slope, curvature] =
+            self.rows.blocks([&*change, r], [response], |block, [change, r], [response]| {
                 outwards.rows(block.first, response);
                 block.each([change, r, response], [], |_, fields, []| {
-                    sum(fields, |[change, r, response]| {
-                        [change * r, change * response]
-                    })
+                    sum(fields, |[change, r, response]| [change * r, change * response])
                 })
-            },
-        );
+            });
         // The best length along the change, and the part of the change that is taken back to reach it.
         let best = best_length(slope, curvature).unwrap_or(0.0);
-        let back = if best < AS_PLANNED.start {
-            1.0 - best
-        } else {
-            0.0
-        };
+        let back = if best < AS_PLANNED.start { 1.0 - best } else { 0.0 };
         if back > 0.0 {
             self.rows.each([&*change], [p], |_, [change], [p]| {
-                update([change], [p], |[change], [p]| {
-                    ([p - all(back) * change], [])
-                })
+                update([change], [p], |[change], [p]| ([p - all(back) * change], []))
             });
         }
         if back >= 1.0 {

@@ -156,9 +156,7 @@ impl<'a> Textbook<'a> {
         let pressed: Vec<bool> = p.iter().map(|&p| p > 0.0).collect();
         let (motion, lambda) = self.nearest(&shape, &pressed);
         let overlap = sum(&motion, -1.0, &shape);
-        let contact: Vec<bool> = zip(&pressed, &overlap)
-            .map(|(&p, &o)| p || o > 0.0)
-            .collect();
+        let contact: Vec<bool> = zip(&pressed, &overlap).map(|(&p, &o)| p || o > 0.0).collect();
         if 10.0 * (count(&contact) - count(&pressed)) > count(&pressed) {
             self.conjugate = false;
             self.seen.insert(Branch::ManyJoined);
@@ -180,10 +178,7 @@ impl<'a> Textbook<'a> {
 
     /// z = Mr − (MB)_C [B_Cᵀ (MB)_C]⁻¹ B_Cᵀ Mr on C; where that does not descend, r less its nearest Bλ.
     fn deflated(&mut self) -> Field {
-        let z = on(
-            &self.contact,
-            &convolved(&self.approximation.inverse, &self.r),
-        );
+        let z = on(&self.contact, &convolved(&self.approximation.inverse, &self.r));
         let images = self.images.each_ref().map(|i| on(&self.contact, i));
         let matrix = array::from_fn(|a| array::from_fn(|c| dot(&self.b[a], &images[c])));
         let factors = self.problem.freedoms.solve(&matrix, self.moments(&z));
@@ -234,10 +229,7 @@ impl<'a> Textbook<'a> {
             }
             self.seen.insert(Branch::Repeated);
         }
-        let curvature = dot(
-            &self.direction,
-            &convolved(self.problem.convolution, &self.direction),
-        );
+        let curvature = dot(&self.direction, &convolved(self.problem.convolution, &self.direction));
         best_length(slope, curvature).map_or(Step::Stalled, |length| self.advance(p, length))
     }
 

@@ -55,12 +55,7 @@ impl LogarithmicProfile {
             end_factor > 0.0 && end_factor <= 1.0,
             "above 0 and at most 1",
         )?;
-        Ok(Self {
-            amplitude,
-            length,
-            flat_length: flat_length + 0.0,
-            end_factor,
-        })
+        Ok(Self { amplitude, length, flat_length: flat_length + 0.0, end_factor })
     }
 
     /// Lundberg's profile for a `load` W \[N\] and a `contact_modulus` E* \[Pa\].
@@ -82,12 +77,7 @@ impl LogarithmicProfile {
     pub fn johns_gohar(length: f64, load: f64, contact_modulus: f64, radius: f64) -> Result<Self> {
         let lundberg = Self::lundberg(length, load, contact_modulus)?;
         let b = Line::new(radius, contact_modulus, load / length)?.half_width;
-        Self::new(
-            lundberg.amplitude,
-            length,
-            0.0,
-            1.0 - 0.3033 * b / (0.5 * length),
-        )
+        Self::new(lundberg.amplitude, length, 0.0, 1.0 - 0.3033 * b / (0.5 * length))
     }
 
     /// Fujiwara & Kawase's profile for a `load` W \[N\], a `contact_modulus` E* \[Pa\] and a choice of
@@ -121,12 +111,7 @@ impl LogarithmicProfile {
         let amplitude =
             positive("k1", crown.k1)? * Self::lundberg(length, load, contact_modulus)?.amplitude;
         positive("z_m", crown.z_m)?;
-        require(
-            "k2",
-            crown.k2,
-            crown.k2 > 0.0 && crown.k2 <= 1.0,
-            "above 0 and at most 1",
-        )?;
+        require("k2", crown.k2, crown.k2 > 0.0 && crown.k2 <= 1.0, "above 0 and at most 1")?;
         let end_factor = -(-crown.z_m / amplitude).exp_m1();
         Self::new(amplitude, length, length * (1.0 - crown.k2), end_factor)
     }
@@ -187,10 +172,7 @@ impl LogarithmicProfile {
     /// Numbers on which the drop depends smoothly. The end factor 1 is none: the drop is infinite at the ends there, and
     /// nowhere else.
     pub(super) fn parameters(&self) -> Vec<(&'static str, f64)> {
-        let mut parameters = vec![
-            ("amplitude", self.amplitude),
-            ("flat_length", self.flat_length),
-        ];
+        let mut parameters = vec![("amplitude", self.amplitude), ("flat_length", self.flat_length)];
         if self.end_factor < 1.0 {
             parameters.push(("end_factor", self.end_factor));
         }
@@ -347,26 +329,14 @@ mod tests {
     #[test]
     fn the_integral_is_that_of_the_logarithm_up_to_the_pole() -> Result<()> {
         let profile = LogarithmicProfile::new(1.0, 2.0, 0.0, 1.0)?;
-        for (a, b) in [
-            (0.0, 0.3),
-            (0.0, 0.8),
-            (0.5, 0.8),
-            (0.6, 0.601),
-            (0.1, 0.1003),
-        ] {
+        for (a, b) in [(0.0, 0.3), (0.0, 0.8), (0.5, 0.8), (0.6, 0.601), (0.1, 0.1003)] {
             let found = profile.integral(a, b) / (b - a);
             let exact = series(a, b);
-            assert!(
-                (found / exact - 1.0).abs() < 1e-9,
-                "{a} {b}: {found} {exact}"
-            );
+            assert!((found / exact - 1.0).abs() < 1e-9, "{a} {b}: {found} {exact}");
         }
         // ∫_0^1 −ln(1 − v²) dv = 2 − 2 ln 2, and its parts add up.
         let whole = profile.integral(0.0, 1.0);
-        assert!(
-            (whole / (2.0 - 2.0 * 2.0_f64.ln()) - 1.0).abs() < ROUNDING,
-            "{whole}"
-        );
+        assert!((whole / (2.0 - 2.0 * 2.0_f64.ln()) - 1.0).abs() < ROUNDING, "{whole}");
         let parts = profile.integral(0.0, 0.9)
             + profile.integral(0.9, 0.9999)
             + profile.integral(0.9999, 1.0);

@@ -95,14 +95,7 @@ impl PyCreepCoefficients {
     }
 
     fn __repr__(&self) -> String {
-        let CreepCoefficients {
-            c11,
-            c22,
-            c23,
-            c33,
-            errors,
-            ..
-        } = self.0;
+        let CreepCoefficients { c11, c22, c23, c33, errors, .. } = self.0;
         format!(
             "<CreepCoefficients: C11 {c11:.4} ± {:.4}, C22 {c22:.4} ± {:.4}, C23 {c23:.4} ± {:.4}, C33 {c33:.4} ± {:.4}>",
             errors[0], errors[1], errors[2], errors[3]
@@ -178,10 +171,7 @@ pub(in crate::python) fn creep_coefficients(
     semi_axes: Pair,
     #[pyo3(from_py_with = cells)] cells: usize,
 ) -> PyResult<PyCreepCoefficients> {
-    let counterbody = counterbody
-        .map(crate::python::bodies::body)
-        .transpose()?
-        .map(Body::from);
+    let counterbody = counterbody.map(crate::python::bodies::body).transpose()?.map(Body::from);
     let Pair(axes) = semi_axes;
     let found = background::run(py, None, move |caller: &mut Caller<()>| {
         let mut watch = || caller.ask(|| ());

@@ -82,13 +82,7 @@ impl Rolled {
         py: Python<'py>,
         contact: &Arc<Contact>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let Self {
-            shape,
-            rolling,
-            cells,
-            initial,
-            found,
-        } = self;
+        let Self { shape, rolling, cells, initial, found } = self;
         let (options, transient) = (found.options, cells.is_some());
         let (shape, rolling) = (Arc::new(shape), Arc::new(rolling));
         let last = initial.map(|solution| Arc::clone(solution.get().inner()));

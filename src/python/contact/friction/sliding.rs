@@ -63,19 +63,10 @@ impl Sliding {
         let found = found(keywords)?;
         let shape = shape(given)?.get().0.clone();
         let Some(given) = steps else {
-            return Ok(Self {
-                shape,
-                steps: vec![first],
-                history: false,
-                initial,
-                found,
-            });
+            return Ok(Self { shape, steps: vec![first], history: false, initial, found });
         };
-        let plain = Step {
-            motion: first.motion,
-            friction: first.friction.clone(),
-            ..Step::default()
-        };
+        let plain =
+            Step { motion: first.motion, friction: first.friction.clone(), ..Step::default() };
         if plain != first {
             return Err(PyValueError::new_err(
                 "shift, force, twist and torque must be given in the steps, where there are steps",
@@ -112,13 +103,7 @@ impl Sliding {
         if steps.is_empty() {
             return Err(PyValueError::new_err("steps must hold a step at least"));
         }
-        Ok(Self {
-            shape,
-            steps,
-            history: true,
-            initial,
-            found,
-        })
+        Ok(Self { shape, steps, history: true, initial, found })
     }
 
     /// The motion of the step with the largest load, or the deepest one, for the choice of a grid.
@@ -133,13 +118,7 @@ impl Sliding {
         py: Python<'py>,
         contact: &Arc<Contact>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let Self {
-            shape,
-            steps,
-            history,
-            initial,
-            found,
-        } = self;
+        let Self { shape, steps, history, initial, found } = self;
         let options = found.options;
         let shape = Arc::new(shape);
         let last = initial.map(|solution| Arc::clone(solution.get().inner()));
@@ -170,19 +149,14 @@ where
     let solutions = PyList::empty(py);
     let result = (|| {
         for (number, step) in steps.enumerate() {
-            let progress = found
-                .progress
-                .as_ref()
-                .map(|progress| progress.clone_ref(py));
+            let progress = found.progress.as_ref().map(|progress| progress.clone_ref(py));
             let before = last.take();
             let solved = background::run(py, progress, move |caller: &mut Caller<Told>| {
                 let mut tell = |report: &FrictionReport| {
                     caller.ask(|| (number, PyFrictionReport(report.clone())))
                 };
-                let before = before.as_deref().map(|solution| Last {
-                    solution,
-                    is_own: number > 0,
-                });
+                let before =
+                    before.as_deref().map(|solution| Last { solution, is_own: number > 0 });
                 step(before, &mut tell)
             })?;
             let solved = solved.map_err(|error| {
@@ -278,14 +252,9 @@ pub(super) fn planned(
     let contact = background::run(py, None, move |caller: &mut Caller<()>| {
         let grid = match grid {
             Some(PyGrid(grid)) => grid,
-            None => choose_grid(
-                &shape,
-                &body,
-                &setup,
-                &motion,
-                &Options::default(),
-                &mut |_| caller.ask(|| ()),
-            )?,
+            None => choose_grid(&shape, &body, &setup, &motion, &Options::default(), &mut |_| {
+                caller.ask(|| ())
+            })?,
         };
         Contact::plan(&body, grid, setup)
     })??;

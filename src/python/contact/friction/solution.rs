@@ -52,10 +52,7 @@ impl PartialEq for PyFrictionSolution {
 
 impl From<FrictionSolution> for PyFrictionSolution {
     fn from(solution: FrictionSolution) -> Self {
-        Self {
-            solution: Arc::new(solution),
-            normal: PyOnceLock::new(),
-        }
+        Self { solution: Arc::new(solution), normal: PyOnceLock::new() }
     }
 }
 
@@ -136,19 +133,14 @@ impl State for PyFrictionSolution {
                 motion.set("shift", shift)?;
                 motion.set("twist", twist)
             }
-            TangentialMotion::Roll {
-                creepage,
-                spin,
-                direction,
-            } => {
+            TangentialMotion::Roll { creepage, spin, direction } => {
                 motion.set("creepage", creepage)?;
                 motion.set("spin", spin)?;
                 motion.set("direction", direction.word())
             }
         })?;
-        fields.set_fields("report", |report| {
-            PyFrictionReport(solution.report.clone()).write(report)
-        })
+        fields
+            .set_fields("report", |report| PyFrictionReport(solution.report.clone()).write(report))
     }
 
     fn read(fields: &Fields) -> PyResult<Self> {
@@ -178,15 +170,8 @@ impl State for PyFrictionSolution {
             })
         })?;
         let report = fields.get_fields("report")?.read(PyFrictionReport::read)?.0;
-        let solution = FrictionSolution {
-            normal,
-            friction,
-            traction,
-            displacement,
-            slip,
-            motion,
-            report,
-        };
+        let solution =
+            FrictionSolution { normal, friction, traction, displacement, slip, motion, report };
         Ok(solution.checked()?.into())
     }
 }
@@ -632,8 +617,5 @@ where
     let first = PyTuple::new(solution.py(), [solution])?;
     let arguments = first.add(arguments.into_pyobject(solution.py())?)?;
     let arguments = arguments.cast_into::<PyTuple>()?;
-    solution
-        .py()
-        .import(module)?
-        .call_method1(function, arguments)
+    solution.py().import(module)?.call_method1(function, arguments)
 }

@@ -67,9 +67,7 @@ impl PyAdhesion {
     }
 
     pub(super) fn __repr__(&self) -> String {
-        let strength = self
-            .strength()
-            .map_or(String::new(), |s| format!(", strength={s:?}"));
+        let strength = self.strength().map_or(String::new(), |s| format!(", strength={s:?}"));
         format!("Adhesion.{}(work={:?}{strength})", self.kind(), self.work())
     }
 

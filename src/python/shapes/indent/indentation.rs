@@ -65,9 +65,7 @@ fn one<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    Ok(background::run(py, None, move |_: &mut Caller<()>| {
-        work()
-    })??)
+    Ok(background::run(py, None, move |_: &mut Caller<()>| work())??)
 }
 
 /// Names of all parameters, with what they are.
@@ -81,11 +79,7 @@ fn named(indent: &Indent) -> Vec<(String, Parameter)> {
             all.push((format!("{owner}.{path}"), *parameter));
         }
     }
-    let is_sampled = indent
-        .tip()
-        .numbers()
-        .iter()
-        .any(|(name, _)| *name == "depth");
+    let is_sampled = indent.tip().numbers().iter().any(|(name, _)| *name == "depth");
     if !is_sampled {
         for (k, (name, _)) in indent.tip().numbers().into_iter().enumerate() {
             let parameter = Parameter::Tip(TipParameter::Number(k));
@@ -113,20 +107,13 @@ impl PyIndentation {
         adhesion: Option<PyAdhesion>,
     ) -> PyResult<Self> {
         let counterbody = counterbody.map(self::body).transpose()?;
-        let bodies: Vec<Body> = std::iter::once(&body)
-            .chain(&counterbody)
-            .map(Body::from)
-            .collect();
+        let bodies: Vec<Body> =
+            std::iter::once(&body).chain(&counterbody).map(Body::from).collect();
         let stack = Stack::plan(&bodies)?;
         let adhesion = adhesion.map_or(crate::indent::Adhesion::None, |a| a.0);
         let indent = Indent::new(&stack, &tip.0).with_adhesion(adhesion)?;
         let parameters = named(&indent);
-        Ok(Self {
-            indent,
-            body,
-            counterbody,
-            parameters,
-        })
+        Ok(Self { indent, body, counterbody, parameters })
     }
 
     /// Body that is indented.
@@ -163,10 +150,7 @@ impl PyIndentation {
     /// Paths of the parameters with respect to which there are derivatives.
     #[getter]
     fn parameters(&self) -> Vec<String> {
-        self.parameters
-            .iter()
-            .map(|(path, _)| path.clone())
-            .collect()
+        self.parameters.iter().map(|(path, _)| path.clone()).collect()
     }
 
     /// Contacts by load, approach or contact radius.
@@ -228,12 +212,7 @@ impl PyIndentation {
                 "no load, approach or radius was given: the array is empty",
             ));
         }
-        let state = PyIndentState {
-            points,
-            shape,
-            held,
-            parameters: self.parameters.clone(),
-        };
+        let state = PyIndentState { points, shape, held, parameters: self.parameters.clone() };
         state.warned(py)
     }
 
@@ -358,11 +337,7 @@ impl PyIndentation {
     }
 
     fn __repr__(&self) -> String {
-        let mut text = format!(
-            "Indentation({}, {}",
-            self.body().__repr__(),
-            self.tip().__repr__()
-        );
+        let mut text = format!("Indentation({}, {}", self.body().__repr__(), self.tip().__repr__());
         if let Some(counterbody) = self.counterbody() {
             text += &format!(", {}", counterbody.__repr__());
         }

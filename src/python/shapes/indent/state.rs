@@ -80,9 +80,7 @@ pub(super) fn worst(warnings: impl IntoIterator<Item = Warning>) -> Vec<String> 
     let slope = |warning: &Warning| match warning {
         Warning::Steep { slope } => *slope,
     };
-    let worst = warnings
-        .into_iter()
-        .max_by(|a, b| slope(a).total_cmp(&slope(b)));
+    let worst = warnings.into_iter().max_by(|a, b| slope(a).total_cmp(&slope(b)));
     worst.iter().map(ToString::to_string).collect()
 }
 
@@ -202,9 +200,7 @@ impl PyIndentState {
         let r = real_array("r", r)?;
         let shape = [&self.shape, r.shape()].concat();
         let r: Vec<f64> = r.into_iter().collect();
-        let all = worked(py, self.points.clone(), move |point| {
-            point.stress(0, z.0, &r)
-        })?;
+        let all = worked(py, self.points.clone(), move |point| point.stress(0, z.0, &r))?;
         for (name, of) in of {
             let values = all.iter().flatten().map(of).collect();
             found.set_item(name, shaped(py, values, &shape)?)?;

@@ -112,9 +112,7 @@ impl PyTip {
         half_angle: Option<Real>,
     ) -> PyResult<Self> {
         let slope = sloped(slope, half_angle)?;
-        let radius = radius
-            .ok_or_else(|| PyTypeError::new_err("radius must be given"))?
-            .0;
+        let radius = radius.ok_or_else(|| PyTypeError::new_err("radius must be given"))?.0;
         Ok(Self(Tip::new(Form::RoundedCone { slope, radius })?))
     }
 
@@ -145,14 +143,9 @@ impl PyTip {
     /// (Oliver & Pharr, J. Mater. Res. 7 (1992) 1564, eq. (21), doi:10.1557/JMR.1992.1564).
     #[staticmethod]
     fn area_function(coefficients: &Bound<'_, PyAny>, depth: Real) -> PyResult<Self> {
-        let coefficients = real_array("coefficients", coefficients)?
-            .into_iter()
-            .collect();
+        let coefficients = real_array("coefficients", coefficients)?.into_iter().collect();
         let depth = depth.0;
-        Ok(Self(Tip::new(Form::Area {
-            coefficients,
-            depth,
-        })?))
+        Ok(Self(Tip::new(Form::Area { coefficients, depth })?))
     }
 
     /// Cone with the area of Berkovich's pyramid at each depth, 24.5 d**2, of half angle 70.30 degrees; with an end of this radius [m]
@@ -216,10 +209,9 @@ impl PyTip {
             Form::Profile { radii, heights } => {
                 format!("radii={}, heights={}", list(radii), list(heights))
             }
-            Form::Area {
-                coefficients,
-                depth,
-            } => format!("coefficients={}, depth={depth:?}", list(coefficients)),
+            Form::Area { coefficients, depth } => {
+                format!("coefficients={}, depth={depth:?}", list(coefficients))
+            }
             _ => {
                 let numbers = self.0.numbers().into_iter();
                 let words: Vec<String> = numbers.map(|(name, v)| format!("{name}={v:?}")).collect();
@@ -243,10 +235,9 @@ impl PyTip {
             Form::Profile { radii, heights } => {
                 (radii.clone(), heights.clone()).into_pyobject(py)?
             }
-            Form::Area {
-                coefficients,
-                depth,
-            } => (coefficients.clone(), *depth).into_pyobject(py)?,
+            Form::Area { coefficients, depth } => {
+                (coefficients.clone(), *depth).into_pyobject(py)?
+            }
             _ => PyTuple::new(py, self.0.numbers().into_iter().map(|(_, value)| value))?,
         };
         Ok((make, arguments))

@@ -22,10 +22,7 @@ impl State for PyStress {
         fields.set_array("z", &stress.z)?;
         fields.set_array("x", &stress.x)?;
         fields.set_array("y", &stress.y)?;
-        let kept: Vec<_> = kept
-            .filter(|(_, dropped)| !dropped)
-            .map(|(axis, _)| *axis)
-            .collect();
+        let kept: Vec<_> = kept.filter(|(_, dropped)| !dropped).map(|(axis, _)| *axis).collect();
         fields.set("axes", kept)?;
         fields.set_part("body", self.body())?;
         fields.set("side", stress.side.word())?;
@@ -54,17 +51,11 @@ impl State for PyStress {
             Some(fields) => Some(fields.read(|fields| read_arrays(fields, DISPLACEMENTS))?),
         };
         let stress = Stress::from_fields(
-            [
-                fields.get_array("z")?,
-                fields.get_array("x")?,
-                fields.get_array("y")?,
-            ],
+            [fields.get_array("z")?, fields.get_array("x")?, fields.get_array("y")?],
             body.0,
             Word::from_word(&side)?,
             fields.get("friction")?,
-            fields
-                .get_fields("components")?
-                .read(|fields| read_arrays(fields, COMPONENTS))?,
+            fields.get_fields("components")?.read(|fields| read_arrays(fields, COMPONENTS))?,
             displacement,
             fields.get_newer_array("uncertainty")?,
         )?;
@@ -75,19 +66,12 @@ impl State for PyStress {
         }
         let dropped = AXES.map(|axis| !axes.iter().any(|kept| kept == axis));
         let lengths = [stress.z.len(), stress.x.len(), stress.y.len()];
-        if dropped
-            .iter()
-            .zip(lengths)
-            .any(|(&dropped, n)| dropped && n != 1)
-        {
+        if dropped.iter().zip(lengths).any(|(&dropped, n)| dropped && n != 1) {
             return Err(PyValueError::new_err(format!(
                 "axes must name each axis with more or less than one coordinate, got {axes:?}"
             )));
         }
-        Ok(Self {
-            stress: Arc::new(stress),
-            dropped,
-        })
+        Ok(Self { stress: Arc::new(stress), dropped })
     }
 }
 

@@ -36,9 +36,8 @@ impl State for PyStressSummary {
     fn read(fields: &Fields) -> PyResult<Self> {
         Ok(Self(StressSummary {
             layers: fields.get_list("layers", |fields| Ok(PyLayerStress::read(fields)?.0))?,
-            interfaces: fields.get_list("interfaces", |fields| {
-                Ok(PyInterfaceStress::read(fields)?.0)
-            })?,
+            interfaces: fields
+                .get_list("interfaces", |fields| Ok(PyInterfaceStress::read(fields)?.0))?,
             finished: fields.get("finished")?,
         }))
     }

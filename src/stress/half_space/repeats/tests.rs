@@ -35,10 +35,7 @@ fn waves(body: &HalfSpace, depth: f64, waves: [usize; 2]) -> Result<(Stress, Gri
         |k: usize, i: usize| 2.0 * PI * (waves[k] * (2 * i + 1)) as f64 / (2 * CELLS[k]) as f64;
     let pressure =
         Array2::from_shape_fn(CELLS, |(i, j)| 1.0 + phase(0, i).cos() * phase(1, j).cos());
-    let options = StressOptions {
-        displacement: true,
-        ..StressOptions::default()
-    };
+    let options = StressOptions { displacement: true, ..StressOptions::default() };
     Ok((stress(body, &grid, &pressure, &[depth], &options)?, grid))
 }
 
@@ -103,11 +100,7 @@ fn waves_along_one_direction_are_those_of_the_body() -> Result<()> {
             let uz = found.uz().expect("it was asked for");
             let waves = uz[[0, i, 0]] - uz[[0, i + 4, 0]];
             // Half a wave further the sign has changed; the mean drops out.
-            assert!(
-                (waves - 2.0 * due[4]).abs() < 2e-6,
-                "{number} {waves:e} {:e}",
-                due[4]
-            );
+            assert!((waves - 2.0 * due[4]).abs() < 2e-6, "{number} {waves:e} {:e}", due[4]);
         }
     }
     Ok(())
@@ -122,14 +115,8 @@ fn crossed_waves_are_those_of_the_body() -> Result<()> {
         let place = place_at(body, depth);
         let (i, j) = (5, 6);
         let mut due = -1.0;
-        for (a, qx) in aliases(2, CELLS[0])
-            .into_iter()
-            .filter(|(_, q)| q.abs() < 25.0)
-        {
-            for (b, qy) in aliases(4, CELLS[1])
-                .into_iter()
-                .filter(|(_, q)| q.abs() < 25.0)
-            {
+        for (a, qx) in aliases(2, CELLS[0]).into_iter().filter(|(_, q)| q.abs() < 25.0) {
+            for (b, qy) in aliases(4, CELLS[1]).into_iter().filter(|(_, q)| q.abs() < 25.0) {
                 let state = state(body, &place, qx.hypot(qy));
                 let [x, y] = [qx * (i as f64 + 0.5), qy * (j as f64 + 0.5)];
                 due -= a * b * state.p * x.cos() * y.cos();
@@ -157,10 +144,5 @@ fn place_at(body: &HalfSpace, depth: f64) -> Place {
     let Substrate::Elastic(material) = body.substrate() else {
         panic!("{depth} lies below the rigid base");
     };
-    Place {
-        layer: body.layers().len(),
-        below_top: depth - top,
-        depth,
-        material,
-    }
+    Place { layer: body.layers().len(), below_top: depth - top, depth, material }
 }
