@@ -1,6 +1,6 @@
 //! Sums of kernels over the images of a cell, on grids that repeat: a method of nacre's own.
 //!
-//! Images nearer than the longer period are summed one by one. The others together are smooth, and interpolated from
+//! CellImages nearer than the longer period are summed one by one. The others together are smooth, and interpolated from
 //! Chebyshev nodes. There, M rings of them are summed; all beyond have the means of the kernel over whole periods, which
 //! are everything less the response U under one rectangle of (2M + 1)² periods. With central differences δ over a
 //! period L, and cells of length rL,
@@ -20,13 +20,13 @@ use rayon::prelude::*;
 use crate::model::grid::Grid;
 use crate::numerics::special::{barycentric, chebyshev_nodes};
 
-/// Chebyshev nodes along each direction. Images that are summed lie as far away as the interval is long, so that the
+/// Chebyshev nodes along each direction. CellImages that are summed lie as far away as the interval is long, so that the
 /// interpolation errs by 10⁻¹⁴ of them.
 const NODES: usize = 14;
 
 /// The images of the cells of one grid, and where their sums are needed.
 #[derive(Debug, Clone)]
-pub(crate) struct Images {
+pub(crate) struct CellImages {
     spacing: [f64; 2],
     size: [f64; 2],
     shape: [usize; 2],
@@ -39,7 +39,7 @@ pub(crate) struct Images {
     interpolations: [Array2<f64>; 2],
 }
 
-impl Images {
+impl CellImages {
     /// The images on `grid`, summed one by one up to so many `rings` of the longest length of what is summed.
     pub(crate) fn plan(grid: &Grid, rings: f64) -> Self {
         let (spacing, size, periodic) = (grid.spacing(), grid.size(), grid.is_periodic());
@@ -101,7 +101,7 @@ impl Images {
         3.0 * (self.size[0] + self.size[1])
     }
 
-    /// Images that are summed one by one along a direction: from −(near − 1) to near, the middle of which is that of
+    /// CellImages that are summed one by one along a direction: from −(near − 1) to near, the middle of which is that of
     /// the offsets.
     pub(crate) fn near(&self, k: usize) -> RangeInclusive<i64> {
         match self.periodic[k] {

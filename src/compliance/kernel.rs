@@ -23,9 +23,7 @@
 //! The displacement of the surface under pressure, for any response, is made of the same series, tables
 //! and rules in `influence`.
 
-pub(crate) mod cells;
 pub(crate) mod loads;
-pub(crate) mod mesh;
 pub(crate) mod plane;
 pub(crate) mod quadrature;
 pub(crate) mod rectangle;

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use ndarray::{Array1, ArrayRef2};
 
-use crate::compliance::kernel::cells::CellSource;
 use crate::compliance::kernel::loads::{
     COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
 };
+use crate::compliance::kernel::plane::CellSource;
 use crate::compliance::kernel::plane::{CellPlan, Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
-use crate::error::{Error, Result};
+use crate::error::{Result, all_finite, require, same_shape};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::{Grid, Window};
 use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
@@ -332,13 +332,9 @@ pub(super) const MAGNITUDES: [f64; 2] = [1e-60, 1e60];
 
 /// Refuses lengths and moduli outside of [`MAGNITUDES`].
 fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
-    let check = |name, value: f64| match (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value) {
-        true => Ok(()),
-        false => Err(Error::Parameter {
-            name,
-            requirement: "between 1e-60 and 1e60 for stresses (take other units)",
-            value,
-        }),
+    let check = |name, value: f64| {
+        let requirement = "between 1e-60 and 1e60 for stresses (take other units)";
+        require(name, value, (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value), requirement)
     };
     for axis in 0..2 {
         check("size of the grid", grid.size()[axis])?;
@@ -349,7 +345,7 @@ fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
         check("young", layer.material().young())?;
     }
     match body.substrate() {
-        Substrate::Elastic(material) => check("young", material.young()),
+        Substrate::Elastic(material) => check("young", material.young()).map(|_| ()),
         Substrate::Rigid => Ok(()),
     }
 }
@@ -364,13 +360,8 @@ pub(super) fn checked_pressure(
     pressure: &ArrayRef2<f64>,
 ) -> Result<Vec<f64>> {
     check_magnitudes(body, grid)?;
-    let found = [pressure.nrows(), pressure.ncols()];
-    if found != grid.shape() {
-        return Err(Error::Shape { name: "pressure", expected: grid.shape(), found });
-    }
-    if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-        return Err(Error::NonFinite { name: "pressure", index: [index.0, index.1] });
-    }
+    same_shape("pressure", pressure, grid.shape())?;
+    all_finite("pressure", pressure)?;
     Ok(pressure.iter().copied().collect())
 }
 

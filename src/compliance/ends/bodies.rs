@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use ndarray::Array2;
 
-use super::cells::{Nodes, coefficients};
+use super::quarter_space::{Nodes, coefficients};
 use super::waves::Along;
-use super::{layers, plate};
+use super::{contrast, plate};
 use crate::compliance::convolution::{Addition, RowWeights};
 use crate::compliance::response::Body;
 use crate::error::{Error, Result};
@@ -106,7 +106,7 @@ impl Ends {
     pub(crate) fn form(&self, width: f64) -> Option<FreeEnds> {
         let plates = !self.plates.is_empty();
         let is_short = |plate: &Plate| plate.ends[1] - plate.ends[0] < 0.25 * width;
-        let contrasts = self.ends.iter().map(|end| layers::contrast(&end.ending.body));
+        let contrasts = self.ends.iter().map(|end| contrast(&end.ending.body));
         let error = match contrasts.reduce(f64::max)? {
             equal if equal <= 1.0 => Some(match plates {
                 true if self.plates.iter().any(is_short) => 3e-3,

@@ -26,7 +26,7 @@ use std::sync::LazyLock;
 use ndarray::Array2;
 
 use super::waves::Along;
-use super::{cells, layers};
+use super::{layers_factor, quarter_space};
 use crate::compliance::convolution::{RowWeights, pair};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
@@ -86,7 +86,8 @@ impl Entry {
     fn growing(&self, kl: f64, poisson: f64) -> f64 {
         match self.pair {
             [0, 0] => {
-                PI / ((1.0 - poisson * poisson) * kl) + (3.0 + 2.0 * cells::logarithm()) * kl.ln()
+                PI / ((1.0 - poisson * poisson) * kl)
+                    + (3.0 + 2.0 * quarter_space::logarithm()) * kl.ln()
             }
             [1, 1] => PI / ((1.0 - poisson) * (3.0 + poisson) * kl),
             _ => 0.0,
@@ -157,7 +158,7 @@ pub(super) fn coefficients(
     let depth = length.max(size[1]);
     let uniform = UNIFORM / length;
     let waves = along.waves(depth, RANGE[1] / length, &[(uniform, 1.0)]);
-    // Waves whose shift and tilt are bounded, and the wave whose they have: where the grid repeats, that of the datum.
+    // WaveRule whose shift and tilt are bounded, and the wave whose they have: where the grid repeats, that of the datum.
     let (long, bound) = if along.repeats {
         (2.0 * uniform, 2.0 * (-EULER_GAMMA).exp() / size[0])
     } else {
@@ -170,7 +171,7 @@ pub(super) fn coefficients(
     for entry in TABLE.iter() {
         let [a, b] = entry.pair;
         let amplitude =
-            |k: f64| factor * layers::factor(body, k) * entry.at(k * length, material.poisson());
+            |k: f64| factor * layers_factor(body, k) * entry.at(k * length, material.poisson());
         let mut row = coefficients.row_mut(pair(a, b));
         for (&k, weights) in waves.wavenumbers.iter().zip(&waves.weights) {
             let here = amplitude(k);

@@ -10,9 +10,9 @@
 use std::f64::consts::PI;
 
 use super::COMPONENTS;
-use super::mesh::{Kind, Order, Spectrum, homogeneous};
 use super::series::Series;
-use crate::compliance::response::interior::{Fields, Place};
+use super::series::{Order, Spectrum, TransformKind, homogeneous};
+use crate::compliance::response::interior::{Place, UnitFields};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
@@ -35,7 +35,7 @@ pub(crate) trait StripLoad<const N: usize> {
     const OUTPUTS: [StripOutput; N];
 
     /// D of each output; displacements times α.
-    fn functions(fields: &Fields, material: Elastic) -> [f64; N];
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; N];
 }
 
 /// Unit pressure.
@@ -51,7 +51,7 @@ impl StripLoad<6> for StripPressure {
         output(8, 1.0, false),
     ];
 
-    fn functions(fields: &Fields, material: Elastic) -> [f64; 6] {
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; 6] {
         let state = &fields.pressure;
         let (along, across) = state.lateral_stress(material);
         [across, along, state.p, state.tau, state.v, state.w]
@@ -71,7 +71,7 @@ impl StripLoad<6> for StripAcross {
         output(8, 1.0, true),
     ];
 
-    fn functions(fields: &Fields, material: Elastic) -> [f64; 6] {
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; 6] {
         let state = &fields.shear;
         let (along, across) = state.lateral_stress(material);
         [across, along, state.p, state.tau, state.v, state.w]
@@ -85,7 +85,7 @@ impl StripLoad<3> for StripAlong {
     const OUTPUTS: [StripOutput; 3] =
         [output(3, -1.0, true), output(5, -1.0, false), output(6, 1.0, false)];
 
-    fn functions(fields: &Fields, material: Elastic) -> [f64; 3] {
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; 3] {
         let (q, u) = fields.twist;
         [material.shear() * u, q, u]
     }
@@ -187,8 +187,10 @@ impl LinePlan {
                 samples[k].push(value * alpha.sqrt());
             }
         }
-        let orders = L::OUTPUTS
-            .map(|output| Order { nu: if output.sine { 0.5 } else { -0.5 }, kind: Kind::Line });
+        let orders = L::OUTPUTS.map(|output| Order {
+            nu: if output.sine { 0.5 } else { -0.5 },
+            kind: TransformKind::Line,
+        });
         let multipliers = orders.map(|order| mesh.multipliers(order));
         Some((Series::new(mesh, &orders, &multipliers, samples, 0.0), images))
     }

@@ -18,8 +18,7 @@
 //!
 //! which is 0 for a layer like what it lies on.
 
-use super::layer::Compliance;
-use super::layer::{Slab, of_energy};
+use super::layer::{Compliance, Slab, of_energy};
 use super::{Asymptotes, Response};
 use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
 use crate::model::material::Elastic;
@@ -59,8 +58,8 @@ impl Response for ResponseSlope {
     }
 }
 
-/// State of one layer under a unit pressure on the surface.
-struct State {
+/// LayerState of one layer under a unit pressure on the surface.
+struct LayerState {
     slab: Slab,
     /// Compliance of what lies below, times α.
     below: Compliance,
@@ -98,16 +97,19 @@ pub fn normal_derivatives(
 ) -> f64 {
     assert_eq!(parameters.len(), out.len(), "a place for each parameter");
     let layers = body.layers();
-    let mut compliance = match body.substrate() {
-        Substrate::Elastic(material) => Compliance::homogeneous(material),
-        Substrate::Rigid => Compliance::RIGID,
-    };
-    let mut states: Vec<State> = Vec::with_capacity(layers.len());
+    let mut compliance = Compliance::of_substrate(body.substrate());
+    let mut states: Vec<LayerState> = Vec::with_capacity(layers.len());
     for layer in layers.iter().rev() {
         let slab = Slab::new(layer.material(), alpha * layer.thickness());
         let below = compliance;
         compliance = slab.onto(below, layer.interface());
-        states.push(State { slab, below, top: [0.0; 2], bottom: [0.0; 2], displacement: [0.0; 2] });
+        states.push(LayerState {
+            slab,
+            below,
+            top: [0.0; 2],
+            bottom: [0.0; 2],
+            displacement: [0.0; 2],
+        });
     }
     states.reverse();
     let mut traction = [1.0, 0.0];
@@ -133,7 +135,7 @@ pub fn normal_derivatives(
 }
 
 /// Derivative with respect to a number of `layer`.
-fn of_layer(parameter: BodyParameter, layer: &Layer, state: &State, alpha: f64) -> f64 {
+fn of_layer(parameter: BodyParameter, layer: &Layer, state: &LayerState, alpha: f64) -> f64 {
     let material = layer.material();
     let stretch = || -state.slab.energy(state.top, state.displacement);
     match parameter {
@@ -154,7 +156,7 @@ fn of_layer(parameter: BodyParameter, layer: &Layer, state: &State, alpha: f64) 
 /// ```text
 /// P² ε/2Gη − 2 (ν/η) P V − (2G/η) V²      ε = 1 − 2ν
 /// ```
-fn thickening(material: Elastic, interface: Interface, state: &State) -> f64 {
+fn thickening(material: Elastic, interface: Interface, state: &LayerState) -> f64 {
     let (g, nu) = (material.shear(), material.poisson());
     let eta = 1.0 - nu;
     let [p, tau] = state.bottom;

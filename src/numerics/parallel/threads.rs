@@ -146,7 +146,7 @@ impl SharedPool {
             return work();
         }
         self.calls.fetch_add(1, Ordering::AcqRel);
-        let _call = Call(&self.calls);
+        let _call = RunningCall(&self.calls);
         self.threads.install(work)
     }
 
@@ -158,15 +158,15 @@ impl SharedPool {
         if alone.is_err() {
             return work();
         }
-        let _call = Call(&self.calls);
+        let _call = RunningCall(&self.calls);
         self.threads.install(work)
     }
 }
 
 /// A call that is under way.
-struct Call<'a>(&'a AtomicUsize);
+struct RunningCall<'a>(&'a AtomicUsize);
 
-impl Drop for Call<'_> {
+impl Drop for RunningCall<'_> {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::AcqRel);
     }

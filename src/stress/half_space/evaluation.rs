@@ -12,7 +12,7 @@ use super::{Coefficients, HalfSpacePlan, Loading, SurfaceLoad, components, trans
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::model::grid::Grid;
-use crate::numerics::fft::{KernelRows, Transformed, Workspace};
+use crate::numerics::fft::{KernelRows, TransformMemory, Transformed};
 use crate::stress::options::StressProgress;
 use crate::stress::subcell::STRESSES;
 
@@ -35,7 +35,7 @@ const POINT_ROWS: usize = 8;
 pub(in crate::stress) struct PlaneMemory {
     /// Transformed coefficients of each load at one depth.
     rows: Vec<KernelRows>,
-    workspace: Workspace,
+    workspace: TransformMemory,
     /// Components of a part, on its own cells.
     fields: Vec<Vec<f64>>,
 }

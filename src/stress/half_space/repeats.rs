@@ -12,9 +12,9 @@ use std::ops::Range;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use crate::compliance::images::Images;
-use crate::compliance::kernel::cells::{CellSource, ComponentsAt, FAR};
+use crate::compliance::images::CellImages;
 use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Pressure, Radial, Traction};
+use crate::compliance::kernel::plane::{CellSource, ComponentsAt, FAR};
 use crate::compliance::kernel::plane::{Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
@@ -33,7 +33,7 @@ const ROWS_TOGETHER: usize = 8;
 /// What a plan on a grid that repeats has besides the kernels of its cells.
 #[derive(Debug)]
 pub(in crate::stress) struct Repeats {
-    images: Images,
+    images: CellImages,
     /// Kernels of the rectangle of all images that are summed.
     block: Kernels,
     block_half: [f64; 2],
@@ -58,7 +58,7 @@ impl Repeats {
         if periodic == [false; 2] {
             return None;
         }
-        let images = Images::plan(grid, STRESS_RINGS);
+        let images = CellImages::plan(grid, STRESS_RINGS);
         let sides = images.block_sides();
         // From one end of the rectangle to places beyond the other.
         let reach = images.block_reach() + sides[0].hypot(sides[1]);
