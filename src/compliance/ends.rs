@@ -30,8 +30,8 @@
 //! | `bodies` | the ends of the bodies of a contact, on a grid |
 //! | `spread` | the pressures by which stresses near an end are those of half-spaces |
 
-use crate::compliance::response::{Compliance, alpha_compliance};
-use crate::model::body::{HalfSpace, Substrate};
+use crate::compliance::response::{Compliance, alpha_compliance, substrate_material};
+use crate::model::body::HalfSpace;
 
 mod bodies;
 mod plate;
@@ -53,7 +53,7 @@ const VANISHED: f64 = 45.0;
 
 /// Factor of what keeps the face free, at wavenumber `k`.
 fn layers_factor(body: &HalfSpace, k: f64) -> f64 {
-    let (Substrate::Elastic(material), false) = (body.substrate(), body.layers().is_empty()) else {
+    let (Some(material), false) = (substrate_material(body), body.layers().is_empty()) else {
         return 1.0;
     };
     let (here, below) = (alpha_compliance(body, k), Compliance::homogeneous(material));
@@ -63,11 +63,7 @@ fn layers_factor(body: &HalfSpace, k: f64) -> f64 {
 /// Largest ratio of the moduli of a body, at least 1; 1 for a body without layers.
 fn contrast(body: &HalfSpace) -> f64 {
     let layers = body.layers().iter().map(|layer| layer.material());
-    let substrate = match body.substrate() {
-        Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
-    };
-    let young = layers.chain(substrate).map(|material| material.young());
+    let young = layers.chain(substrate_material(body)).map(|material| material.young());
     let [low, high] =
         young.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], e| [low.min(e), high.max(e)]);
     if body.layers().is_empty() { 1.0 } else { (high / low).max(1.0 + f64::EPSILON) }

@@ -80,6 +80,14 @@ pub(crate) fn alpha_compliance(body: &HalfSpace, alpha: f64) -> Compliance {
     })
 }
 
+/// The material of what the lowest layer lies on; none where it is rigid.
+pub(crate) fn substrate_material(body: &HalfSpace) -> Option<Elastic> {
+    match body.substrate() {
+        Substrate::Elastic(material) => Some(material),
+        Substrate::Rigid => None,
+    }
+}
+
 /// Limits of the normal response û_z/p̂ at both ends of the spectrum, without the local compliance.
 ///
 /// ```text
@@ -113,10 +121,7 @@ pub struct Asymptotes {
 /// ```
 pub(crate) fn asymptotes(body: &HalfSpace) -> Asymptotes {
     let layers = body.layers();
-    let substrate = match body.substrate() {
-        Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
-    };
+    let substrate = substrate_material(body);
     let mut constant = 0.0;
     for group in layers.split_inclusive(|layer| layer.interface() == Interface::Frictionless) {
         let terms = group.iter().map(|layer| {

@@ -14,9 +14,10 @@
 
 use std::f64::consts::PI;
 
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, Array3, ArrayView1, Axis};
 use rayon::prelude::*;
 
+use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::kernel::loads::{EXCHANGED, ODD, TractionDisplacement};
 use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel};
 use crate::compliance::kernel::strip::LinePlan;
@@ -144,43 +145,47 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
     let multipliers = plan.multipliers::<3, TractionDisplacement>();
     let kernel = threads.run(|| Kernel::new::<TractionDisplacement>(&plan, &multipliers, &place));
     let half @ [a, b] = spacing.map(|d| 0.5 * d);
-    let displacement = |axis: usize, k: usize| [0, 1].map(|along| ODD[k][along] != (axis == along));
-    let component = |axis: usize, component: usize| -> Array2<f64> {
-        let k = 6 + component;
+    let displacements = |axis: usize| -> [Array2<f64>; 3] {
         // Traction along y is traction along x with both exchanged.
-        let turned = |values: [f64; 9]| EXCHANGED.map(|k| values[k]);
-        let along = |x: f64, y: f64| match axis {
-            0 => kernel.at::<TractionDisplacement>([x, y], half),
-            _ => turned(kernel.at::<TractionDisplacement>([y, x], [b, a])),
+        let turned = |values: [f64; COMPONENTS]| match axis {
+            0 => values,
+            _ => EXCHANGED.map(|k| values[k]),
         };
-        let far = |x: f64, y: f64| match axis {
-            0 => kernel.far::<TractionDisplacement>(x, y),
-            _ => turned(kernel.far::<TractionDisplacement>(y, x)),
+        // The displacements come first, and the stresses are not computed.
+        let first = |values: [f64; COMPONENTS]| {
+            let mut values = turned(values);
+            values.rotate_right(DISPLACEMENTS);
+            values
         };
+        let odd = |k: usize| [0, 1].map(|along| ODD[k][along] != (axis == along));
         let source = CellSource {
             between: false,
             offsets: [nx, ny],
             spacing,
             depth: 0.0,
-            odd: [displacement(axis, k)],
-            mean: |x: f64, y: f64| [along(x, y)[k]; 9],
-            point: |x: f64, y: f64| [far(x, y)[k]; 9],
-        };
-        let mut rows = Array2::zeros((nx, ny));
-        rows.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate().for_each(
-            |(chunk, mut part)| {
-                let first = chunk * ROWS;
-                source.rows(first..first + part.nrows(), &mut |i, _, row| {
-                    let mut target = part.row_mut(i - first);
-                    target.iter_mut().zip(row).for_each(|(to, c)| *to = *c);
-                });
+            odd: [6, 7, 8].map(odd),
+            mean: |x: f64, y: f64| match axis {
+                0 => first(kernel.at::<TractionDisplacement>([x, y], half)),
+                _ => first(kernel.at::<TractionDisplacement>([y, x], [b, a])),
             },
-        );
-        rows
+            point: |x: f64, y: f64| match axis {
+                0 => first(kernel.far::<TractionDisplacement>(x, y)),
+                _ => first(kernel.far::<TractionDisplacement>(y, x)),
+            },
+        };
+        let mut rows = Array3::zeros((nx, DISPLACEMENTS, ny));
+        let chunks = rows.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate();
+        chunks.for_each(|(chunk, mut part)| {
+            let first = chunk * ROWS;
+            source.rows(first..first + part.len_of(Axis(0)), &mut |i, k, row| {
+                let mut made = part.index_axis_mut(Axis(0), i - first);
+                made.row_mut(k).assign(&ArrayView1::from(row));
+            });
+        });
+        [0, 1, 2].map(|k| rows.index_axis(Axis(1), k).to_owned())
     };
-    let component = |axis: usize, k: usize| threads.run(|| component(axis, k));
-    let five = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2)];
-    Ok(with_parities(five.map(|(axis, k)| component(axis, k))))
+    let ([xx, xy, zx], [_, yy, zy]) = threads.run(|| (displacements(0), displacements(1)));
+    Ok(with_parities([xx, xy, yy, zx, zy]))
 }
 
 /// What is odd vanishes on its axis, where rounding leaves a rest.
@@ -195,6 +200,9 @@ fn with_parities([xx, mut xy, yy, mut zx, mut zy]: [Array2<f64>; 5]) -> Traction
 
 /// Rows of coefficients that are computed together.
 const ROWS: usize = 8;
+
+/// Number of displacements, the last of the components.
+const DISPLACEMENTS: usize = 3;
 
 fn of_strips(body: &HalfSpace, grid: &Grid, place: &Place) -> TractionCoefficients {
     let plan = LinePlan::new(body, grid, 1.0);

@@ -11,8 +11,9 @@ use crate::compliance::kernel::plane::CellSource;
 use crate::compliance::kernel::plane::{CellPlan, Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
+use crate::compliance::response::substrate_material;
 use crate::error::{Result, all_finite, require, same_shape};
-use crate::model::body::{HalfSpace, Substrate};
+use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
 use crate::numerics::parallel::{Threads, check_memory};
@@ -344,10 +345,10 @@ fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
         check("thickness", layer.thickness())?;
         check("young", layer.material().young())?;
     }
-    match body.substrate() {
-        Substrate::Elastic(material) => check("young", material.young()).map(|_| ()),
-        Substrate::Rigid => Ok(()),
+    if let Some(material) = substrate_material(body) {
+        check("young", material.young())?;
     }
+    Ok(())
 }
 
 /// `pressure` in C order.

@@ -7,8 +7,9 @@ use super::half_space::plane_memory;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use crate::compliance::response::interior::Place;
+use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive};
-use crate::model::body::{HalfSpace, Layer, Substrate};
+use crate::model::body::{HalfSpace, Layer};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::check_memory;
 
@@ -303,10 +304,7 @@ fn interface(
 ) -> ControlFlow<(), InterfaceSummary> {
     let depth = body.layers()[..=number].iter().map(Layer::thickness).sum();
     let next = body.layers().get(number + 1).map(Layer::material);
-    let below = next.or(match body.substrate() {
-        Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
-    });
+    let below = next.or(substrate_material(body));
     let [tension, compression, shear] = planes.tractions(&Place {
         layer: number,
         below_top: layer.thickness(),
@@ -505,7 +503,7 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
         regions.push(depths.iter().map(place).collect());
         top += h;
     }
-    if let Substrate::Elastic(material) = body.substrate() {
+    if let Some(material) = substrate_material(body) {
         let depths = [0.0].into_iter().chain(DEPTHS_SEARCHED.map(|d| d * half_width));
         let place = |z: f64| at(body.layers().len(), top, z, material);
         regions.push(depths.map(place).collect());

@@ -120,9 +120,8 @@ pub(super) fn sampled(body: &dyn Response, grid: &Grid, threads: &Threads) -> Re
 fn uniform(body: &dyn Response) -> f64 {
     let limits = body.asymptotes();
     // A derivative of the response of layers has limits of either sign.
-    let elastic = body
-        .half_space()
-        .map_or(limits.long > 0.0, |body| matches!(body.substrate(), Substrate::Elastic(_)));
+    let elastic =
+        body.half_space().map_or(limits.long > 0.0, |body| body.substrate() != Substrate::Rigid);
     match elastic {
         true => 0.0,
         false => limits.constant,

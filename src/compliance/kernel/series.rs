@@ -265,7 +265,7 @@ pub(crate) struct Order {
     pub(crate) kind: TransformKind,
 }
 
-/// Exponents w and b of the transforms in [`super::series`].
+/// Exponents w and b of a transform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TransformKind {
     /// w = b = 1.
@@ -335,7 +335,7 @@ pub(crate) struct LogMesh {
 const DECAY: f64 = 64.0;
 
 /// Largest αh that is sampled below the surface: e^{−80}, times the highest power of α whose moment
-/// [`super::series`] takes, is below rounding.
+/// [`Series`] takes, is below rounding.
 const HIGHEST: f64 = 80.0;
 
 /// Spacing in ln α below the surface. A response that is analytic in a sector of half-angle θ leaves

@@ -19,8 +19,8 @@
 //! which is 0 for a layer like what it lies on.
 
 use super::layer::{Compliance, Slab, of_energy};
-use super::{Asymptotes, Response};
-use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
+use super::{Asymptotes, Response, substrate_material};
+use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer};
 use crate::model::material::Elastic;
 
 /// Derivative of a half-space's response with respect to one of its numbers, as a response that influence coefficients
@@ -123,9 +123,9 @@ pub fn normal_derivatives(
         let (BodyParameter::Young(place)
         | BodyParameter::Poisson(place)
         | BodyParameter::Thickness(place)) = *parameter;
-        *out = match (layers.get(place), body.substrate()) {
+        *out = match (layers.get(place), substrate_material(body)) {
             (Some(layer), _) => of_layer(*parameter, layer, &states[place], alpha),
-            (None, Substrate::Elastic(material)) if place == layers.len() => {
+            (None, Some(material)) if place == layers.len() => {
                 of_substrate(*parameter, material, traction)
             }
             _ => 0.0,
@@ -220,10 +220,8 @@ pub fn asymptote_derivatives(body: &HalfSpace, parameters: &[BodyParameter]) -> 
         }
     };
     let of = |&parameter: &BodyParameter| Asymptotes {
-        long: match body.substrate() {
-            Substrate::Elastic(material) => homogeneous(parameter, layers, material),
-            Substrate::Rigid => 0.0,
-        },
+        long: substrate_material(body)
+            .map_or(0.0, |material| homogeneous(parameter, layers, material)),
         constant: compression(body, parameter),
         short: homogeneous(parameter, 0, body.surface_material()),
     };
@@ -236,10 +234,7 @@ fn compression(body: &HalfSpace, parameter: BodyParameter) -> f64 {
     let (BodyParameter::Young(place)
     | BodyParameter::Poisson(place)
     | BodyParameter::Thickness(place)) = parameter;
-    let substrate = match body.substrate() {
-        Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
-    };
+    let substrate = substrate_material(body);
     let loose = layers.iter().rposition(|layer| layer.interface() == Interface::Frictionless);
     let first_held = loose.map_or(0, |last| last + 1);
     if place >= layers.len() {
