@@ -14,7 +14,7 @@ use crate::error::{Error, Result, all_finite, same_shape};
 use crate::numerics::fft::{
     EvenSpectrum, HalfSpectra, PaddedTransform, Scratches, TransformMemory,
 };
-use crate::numerics::parallel::{Lease, Pool, Threads, Written};
+use crate::numerics::parallel::{Lease, Pool, Threads, Written, memory_of};
 
 mod addition;
 mod periodic;
@@ -203,7 +203,8 @@ impl Convolution {
 
     /// Bytes of a plan for data of `shape`, with one workspace.
     pub(crate) fn memory(shape: [usize; 2]) -> u64 {
-        PaddedTransform::memory(shape)
+        // Half spectra of the rows, of complex numbers, and a quarter of the kernel's.
+        memory_of(shape, 3)
     }
 
     /// Shape (nx, ny) of pressure and displacement.

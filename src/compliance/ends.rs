@@ -44,8 +44,8 @@ mod waves;
 
 pub use bodies::FreeEnds;
 pub(crate) use bodies::{Ends, check_carried};
+pub(crate) use quarter_space::Nodes;
 pub use quarter_space::QuarterSpace;
-pub(crate) use quarter_space::node_rows;
 pub(crate) use spread::{EndPressure, Where};
 
 /// kx above which the excess of P over p is less than 1e-19 of it.

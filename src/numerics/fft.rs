@@ -164,13 +164,6 @@ impl PaddedTransform {
         self.points() * self.points().ln()
     }
 
-    /// Bytes of the workspace and one spectrum of a padded transform of `shape`.
-    pub(crate) fn memory(shape: [usize; 2]) -> u64 {
-        let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
-        let half = padded[1] / 2 + 1;
-        block_rows(shape[0]) as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
-    }
-
     /// Periods of the mesh, in cells.
     pub(crate) fn periods(&self) -> [usize; 2] {
         self.padded

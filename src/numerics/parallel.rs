@@ -19,6 +19,13 @@ pub(crate) use lanes::{
 pub(crate) use rows::{Row, Rows, Total, Written};
 pub(crate) use threads::{LEAF, SetOnDrop, Threads, each_chunk, each_row, join, number};
 
+/// Bytes of `arrays` arrays of the cells of a grid as transforms keep them: whole blocks of columns, at lengths that are
+/// products of small primes. Together they are a fifth more than the cells.
+pub(crate) fn memory_of(shape: [usize; 2], arrays: usize) -> u64 {
+    let [nx, ny] = shape.map(|n| n as u64);
+    (nx + 1) * (ny + 8) * 8 * arrays as u64 * 6 / 5
+}
+
 /// Returns an error where the machine has less than `needed` bytes for a grid of `shape`.
 pub(crate) fn check_memory(shape: [usize; 2], needed: u64) -> Result<()> {
     // Small allocations are not checked, since the check itself takes time.

@@ -16,13 +16,13 @@ use crate::error::{Result, all_finite, require, same_shape};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
-use crate::numerics::parallel::{Threads, check_memory};
+use crate::numerics::parallel::{Threads, check_memory, memory_of};
 use crate::stress::subcell::{STRESSES, SubcellStress};
 
 mod evaluation;
 mod repeats;
 
-pub(super) use evaluation::{HalfSpacePart, Part, PlaneMemory, plane_memory};
+pub(super) use evaluation::{HalfSpacePart, Part, PlaneMemory, plane_arrays};
 use repeats::{Repeats, RowSource, rows_of};
 
 /// A half-space under a pressure, planned once and evaluated any number of times.
@@ -172,10 +172,10 @@ impl HalfSpacePlan {
     pub(super) fn memory(grid: &Grid, is_solved: bool) -> u64 {
         // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
         // and the transform of the solver's pressure, as 24.
-        let arrays = 8 + if is_solved { 24 } else { 0 };
-        // The coefficients of a component, at all offsets.
-        let repeats = grid.is_periodic() != [false; 2];
-        transforms_memory(grid, arrays + if repeats { 2 * COMPONENTS as u64 } else { 0 })
+        let pressure = if is_solved { 8 + 24 } else { 8 };
+        // Where the grid repeats, the coefficients of a component, at all offsets.
+        let images = if grid.is_periodic() == [false; 2] { 0 } else { 2 * COMPONENTS };
+        memory_of(grid.shape(), pressure + images)
     }
 
     /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
@@ -364,13 +364,6 @@ pub(super) fn checked_pressure(
     same_shape("pressure", pressure, grid.shape())?;
     all_finite("pressure", pressure)?;
     Ok(pressure.iter().copied().collect())
-}
-
-/// Bytes of `arrays` arrays of cells as transforms keep them. Transforms store whole blocks of
-/// columns, at lengths that are products of small primes: together a fifth more than the cells.
-fn transforms_memory(grid: &Grid, arrays: u64) -> u64 {
-    let [nx, ny] = grid.shape().map(|n| n as u64);
-    (nx + 1) * (ny + 8) * 8 * arrays * 6 / 5
 }
 
 /// First and last row, then first and last column, of the cells that any of `pressures` loads; none

@@ -250,13 +250,9 @@ mod tests {
     /// uGk/(1−ν) at x under the pressure 1, or 2x − 1, for L = 1: 1 on a half-space under 1 everywhere.
     fn displacement(k: f64, poisson: f64, x: f64, linear: bool) -> f64 {
         let reduction = Reduction::of(poisson);
-        let none = || Array1::<f64>::zeros(reduction.displacement.count());
-        let ends = [x, 1.0 - x].map(|distance| {
-            let mut modes = none();
-            reduction.displacement.add(k * distance, 1.0, &mut modes);
-            modes
-        });
-        let mut loads = [none(), none()];
+        let modes = &reduction.displacement;
+        let ends = [x, 1.0 - x].map(|distance| modes.at(k * distance));
+        let mut loads = [0, 1].map(|_| Array1::<f64>::zeros(modes.count()));
         let mut sum = 0.0;
         for (source, weight) in sources(x) {
             let load = weight * if linear { 2.0 * source - 1.0 } else { 1.0 };
@@ -264,7 +260,7 @@ mod tests {
                 sum += load * k0(k * distance);
             }
             for (loads, distance) in loads.iter_mut().zip([source, 1.0 - source]) {
-                reduction.displacement.add(k * distance, load, loads);
+                modes.add(k * distance, load, loads);
             }
         }
         sum += ends.iter().zip(&loads).map(|(a, b)| a.dot(b)).sum::<f64>();

@@ -35,17 +35,17 @@ const INTEGRATED: f64 = 4.0;
 
 /// Rows of cells at increasing distances from an end, interpolated from nodes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Nodes {
+pub(crate) struct Nodes {
     /// Distance of each node from the end.
-    pub(super) distances: Vec<f64>,
-    pub(super) rows: Vec<RowWeights>,
+    pub(crate) distances: Vec<f64>,
+    pub(crate) rows: Vec<RowWeights>,
     /// Length of a cell.
     pub(super) spacing: f64,
 }
 
 impl Nodes {
     /// Nodes for `count` rows of cells, of which the first has its centre at the distance `nearest`.
-    pub(super) fn new(nearest: f64, spacing: f64, count: usize) -> Self {
+    pub(crate) fn new(nearest: f64, spacing: f64, count: usize) -> Self {
         let (mut distances, mut rows) = (Vec::new(), Vec::new());
         let at = |row: usize| nearest + spacing * row as f64;
         while rows.len() < count {
@@ -72,14 +72,12 @@ impl Nodes {
 
     /// Means of functions of kx over a cell around x = `distance`.
     pub(super) fn mean(&self, modes: &Modes, k: f64, distance: f64) -> Array1<f64> {
-        let (dx, mut sums) = (self.spacing, Array1::zeros(modes.count()));
+        let dx = self.spacing;
         if distance < INTEGRATED * dx {
-            let factor = 1.0 / (k * dx);
-            let low = (distance - 0.5 * dx).max(0.0);
-            modes.add_integrals(k * (distance + 0.5 * dx), factor, &mut sums);
-            modes.add_integrals(k * low, -factor, &mut sums);
-            return sums;
+            let ends = [(distance - 0.5 * dx).max(0.0), distance + 0.5 * dx];
+            return modes.integrals(ends.map(|x| k * x), 1.0 / (k * dx));
         }
+        let mut sums = Array1::zeros(modes.count());
         for (part, w) in Rule::gauss_legendre(3).nodes(0.0, 0.5) {
             modes.add(k * (distance + part * dx), w, &mut sums);
         }
@@ -91,13 +89,6 @@ impl Nodes {
         let near = |d: &&f64| **d - 0.5 * self.spacing < most;
         self.distances.iter().take_while(near).count()
     }
-}
-
-/// Distances of nodes from an end, and weights of the nodes for `count` rows of cells of length `spacing`, of which the
-/// first has its centre at the distance `nearest`.
-pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, Vec<RowWeights>) {
-    let Nodes { distances, rows, .. } = Nodes::new(nearest, spacing, count);
-    (distances, rows)
 }
 
 /// Coefficient of the logarithm in what keeps the face free, −c ln k as k → 0. The whole body is displaced as much more than
@@ -250,14 +241,9 @@ impl QuarterSpace {
         let waves = WaveRule::new(&[y.abs()], Width::Load(self.half_width), reach, highest);
         let mut sum = 0.0;
         for (k, weights) in waves.wavenumbers.iter().zip(&waves.weights) {
-            let [mut at, mut load] = [
-                Array1::zeros(reduction.displacement.count()),
-                Array1::zeros(reduction.displacement.count()),
-            ];
-            reduction.displacement.add(k * x, 1.0, &mut at);
-            reduction.displacement.add_integrals(k * end, 1.0 / k, &mut load);
-            reduction.displacement.add_integrals(k * self.distance, -1.0 / k, &mut load);
-            sum += layers_factor(&self.body, *k) * weights[0] * at.dot(&load);
+            let modes = &reduction.displacement;
+            let load = modes.integrals([k * self.distance, k * end], 1.0 / k);
+            sum += layers_factor(&self.body, *k) * weights[0] * modes.at(k * x).dot(&load);
         }
         let short = 2.0 / self.material.plane_strain_modulus();
         sum * short * 2.0 * self.half_width / (PI * PI)

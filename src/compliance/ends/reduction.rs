@@ -353,13 +353,28 @@ impl Modes {
         self.values.ncols()
     }
 
+    /// The functions at ξ.
+    pub(super) fn at(&self, xi: f64) -> Array1<f64> {
+        let mut values = Array1::zeros(self.count());
+        self.add(xi, 1.0, &mut values);
+        values
+    }
+
+    /// `factor` times the integrals of the functions between two ξ.
+    pub(super) fn integrals(&self, [low, high]: [f64; 2], factor: f64) -> Array1<f64> {
+        let mut integrals = Array1::zeros(self.count());
+        self.add_integrals(high, factor, &mut integrals);
+        self.add_integrals(low, -factor, &mut integrals);
+        integrals
+    }
+
     /// Adds `factor` times the functions at ξ to `sums`.
     pub(super) fn add(&self, xi: f64, factor: f64, sums: &mut Array1<f64>) {
         interpolate(&self.values, xi, factor, sums);
     }
 
     /// Adds `factor` times the integrals of the functions from 0 to ξ to `sums`.
-    pub(super) fn add_integrals(&self, xi: f64, factor: f64, sums: &mut Array1<f64>) {
+    fn add_integrals(&self, xi: f64, factor: f64, sums: &mut Array1<f64>) {
         let xi = xi.min(VANISHED);
         interpolate(&self.means, xi, factor * xi, sums);
     }

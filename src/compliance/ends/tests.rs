@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use ndarray::{Array1, Array2};
+use ndarray::Array2;
 use spec_math::cephes64::k0;
 
 use super::VANISHED;
@@ -24,10 +24,7 @@ use crate::numerics::quadrature::Rule;
 /// What the face adds at ξ under pressure from 0 to `end`, with the mirror image.
 fn added(reduction: &Reduction, xi: f64, end: f64) -> f64 {
     let modes = &reduction.displacement;
-    let [mut at, mut load] = [Array1::zeros(modes.count()), Array1::zeros(modes.count())];
-    modes.add(xi, 1.0, &mut at);
-    modes.add_integrals(end, 1.0, &mut load);
-    at.dot(&load)
+    modes.at(xi).dot(&modes.integrals([0.0, end], 1.0))
 }
 
 /// ∫ K0(|ξ−η|) dη from a to b, on intervals that halve towards ξ.
@@ -111,13 +108,8 @@ fn the_exponent_of_a_sharp_end() {
         let mut means = Array2::zeros((n, modes.count()));
         let mut values = Array2::zeros((n, modes.count()));
         for i in 0..n {
-            let (mut mean, mut value) =
-                (Array1::zeros(modes.count()), Array1::zeros(modes.count()));
-            modes.add_integrals(edges[i + 1], 1.0, &mut mean);
-            modes.add_integrals(edges[i], -1.0, &mut mean);
-            modes.add(middle(i), 1.0, &mut value);
-            means.row_mut(i).assign(&mean);
-            values.row_mut(i).assign(&value);
+            means.row_mut(i).assign(&modes.integrals([edges[i], edges[i + 1]], 1.0));
+            values.row_mut(i).assign(&modes.at(middle(i)));
         }
         let mut matrix = values.dot(&means.t());
         for i in 0..n {

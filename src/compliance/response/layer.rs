@@ -122,7 +122,6 @@ fn small_differences(x: f64) -> (f64, f64, f64) {
 
 /// The functions of x that the elements consist of, each times 2e^{−2x}.
 struct Shapes {
-    x: f64,
     /// 2e^{−2x}
     scale: f64,
     /// e^{−x} and e^{−2x}, as they are.
@@ -155,7 +154,7 @@ impl Shapes {
             let half = (-2.0 * x).exp_m1();
             (-(-4.0 * x).exp_m1() - 2.0 * xs, x * cosh - sinh, 0.5 * half * half - x2s)
         };
-        Self { x, scale, decay: [e1, e2], cosh, sinh, xs, x2s, sinh2_2x, xcosh_sinh, sinhsq_x2 }
+        Self { scale, decay: [e1, e2], cosh, sinh, xs, x2s, sinh2_2x, xcosh_sinh, sinhsq_x2 }
     }
 
     /// Δ times 2e^{−2x}.
@@ -167,24 +166,12 @@ impl Shapes {
 
 impl Slab {
     pub(super) fn new(material: Elastic, x: f64) -> Self {
-        Self::of(material, &Shapes::new(x))
-    }
-
-    fn of(material: Elastic, shapes: &Shapes) -> Self {
+        let shapes = Shapes::new(x);
         let (g, nu) = (material.shear(), material.poisson());
         let (eta, epsilon, k) = (1.0 - nu, 1.0 - 2.0 * nu, 3.0 - 4.0 * nu);
         let delta = shapes.delta(nu);
-        let &Shapes {
-            x,
-            decay: [e1, e2],
-            cosh,
-            sinh,
-            xs,
-            x2s,
-            sinh2_2x,
-            xcosh_sinh,
-            sinhsq_x2,
-            ..
+        let Shapes {
+            decay: [e1, e2], cosh, sinh, xs, x2s, sinh2_2x, xcosh_sinh, sinhsq_x2, ..
         } = shapes;
         let (xsinh, xcosh) = (x * sinh, x * cosh);
         let h11 = 1.0 / (g * delta);
