@@ -14,8 +14,7 @@ use crate::compliance::response::{Body, Response, check};
 use crate::error::{Error, Result, require};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
-use crate::numerics::parallel::Threads;
-use crate::numerics::parallel::check_memory;
+use crate::numerics::parallel::{Threads, check_memory};
 
 mod conversion;
 mod exact;

@@ -142,8 +142,7 @@ fn of_body(body: &HalfSpace, grid: &Grid, threads: &Threads) -> Result<TractionC
     let [lx, ly] = grid.size();
     // One per cent more than the diagonal, for rounding.
     let plan = threads.run(|| CellPlan::new(body, spacing, 1.0, 1.01 * lx.hypot(ly)));
-    let multipliers = plan.multipliers::<3, TractionDisplacement>();
-    let kernel = threads.run(|| Kernel::new::<TractionDisplacement>(&plan, &multipliers, &place));
+    let kernel = threads.run(|| Kernel::new::<TractionDisplacement>(&plan, &place));
     let half @ [a, b] = spacing.map(|d| 0.5 * d);
     let displacements = |axis: usize| -> [Array2<f64>; 3] {
         // Traction along y is traction along x with both exchanged.

@@ -7,8 +7,7 @@ use ndarray::{Array1, ArrayRef2};
 use crate::compliance::kernel::loads::{
     COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
 };
-use crate::compliance::kernel::plane::CellSource;
-use crate::compliance::kernel::plane::{CellPlan, Kernel, Kernels};
+use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
 use crate::compliance::response::substrate_material;
@@ -125,7 +124,7 @@ impl HalfSpacePlan {
         let repeats = threads.run(|| Repeats::plan(body, grid));
         // One per cent more than the diagonal, for rounding.
         let reach = (repeats.as_ref()).map_or(1.01 * lx.hypot(ly), Repeats::reach);
-        let kernels = threads.run(|| Kernels::new::<6, Pressure>(body, grid, 1.0, reach));
+        let kernels = threads.run(|| Kernels::new(body, grid, 1.0, reach));
         let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
         let shape = grid.shape();
         let loaded = loaded_cells(shape, &[&pressure, uniform]);
@@ -243,21 +242,17 @@ impl Coefficients<'_> {
         let slides = self.loading.loads.iter().any(|load| load.axis.is_some());
         match &self.plan.kernels {
             Kernels::Line(plan) => self.strips(plan, take),
-            Kernels::Plane { plan, pressure, traction } => {
-                // Made without rayon, so that a thread that waits for it cannot be asked to make it.
-                let traction =
-                    slides.then(|| traction.get_or_init(|| plan.multipliers::<9, Traction>()));
-                // Stresses alone need fewer radial functions.
-                if self.loading.displacement {
-                    self.cells::<6, COMPONENTS, Pressure>(plan, pressure, take);
-                    if let Some(traction) = traction {
-                        self.cells::<9, COMPONENTS, Traction>(plan, traction, take);
-                    }
-                } else {
-                    self.cells::<4, STRESSES, PressureStress>(plan, pressure, take);
-                    if let Some(traction) = traction {
-                        self.cells::<6, STRESSES, TractionStress>(plan, traction, take);
-                    }
+            // Stresses alone need fewer radial functions.
+            Kernels::Plane(plan) if self.loading.displacement => {
+                self.cells::<6, COMPONENTS, Pressure>(plan, take);
+                if slides {
+                    self.cells::<9, COMPONENTS, Traction>(plan, take);
+                }
+            }
+            Kernels::Plane(plan) => {
+                self.cells::<4, STRESSES, PressureStress>(plan, take);
+                if slides {
+                    self.cells::<6, STRESSES, TractionStress>(plan, take);
                 }
             }
         }
@@ -283,12 +278,11 @@ impl Coefficients<'_> {
     fn cells<const N: usize, const C: usize, L: Radial<N>>(
         &self,
         plan: &CellPlan,
-        multipliers: &[Vec<(f64, f64)>],
         take: &mut dyn FnMut(usize, &RowSource),
     ) {
-        let kernel = Kernel::new::<L>(plan, multipliers, self.place);
+        let kernel = Kernel::new::<L>(plan, self.place);
         let repeats = self.plan.repeats.as_ref();
-        let block = repeats.and_then(|repeats| repeats.block_kernel::<N, L>(self.place));
+        let block = repeats.map(|repeats| repeats.block_kernel::<N, L>(self.place));
         let of_kind = |load: &SurfaceLoad| load.axis.is_some() == L::IS_TRACTION;
         let loads = self.loading.loads.iter().enumerate();
         for (number, load) in loads.filter(|(_, load)| of_kind(load)) {

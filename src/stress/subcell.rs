@@ -106,8 +106,7 @@ impl SubcellStress {
         let pressure = &*margin.around(pressure);
         let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
         let reach = near.farthest();
-        let kernels =
-            threads.run(|| Kernels::new::<4, PressureStress>(body, grid, Cuts::SMALLEST, reach));
+        let kernels = threads.run(|| Kernels::new(body, grid, Cuts::SMALLEST, reach));
         let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
         ControlFlow::Continue(Self {
             uniform: margin.middle(&near.reconstruction.uniform),
@@ -163,13 +162,10 @@ impl SubcellStress {
                     sum(normal.at(y, half), along, across)
                 })
             }
-            Kernels::Plane { plan, pressure, traction } => {
+            Kernels::Plane(plan) => {
                 let slides = fx != 0.0 || fy != 0.0;
-                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
-                let lateral = slides.then(|| {
-                    let traction = traction.get_or_init(|| plan.multipliers::<6, TractionStress>());
-                    Kernel::new::<TractionStress>(plan, traction, place)
-                });
+                let normal = Kernel::new::<PressureStress>(plan, place);
+                let lateral = slides.then(|| Kernel::new::<TractionStress>(plan, place));
                 self.near.table(place.depth, |[x, y], [a, b]| -> Components {
                     let pressed = normal.at::<PressureStress>([x, y], [a, b]);
                     let Some(lateral) = &lateral else {

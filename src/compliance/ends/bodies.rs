@@ -20,17 +20,11 @@ use crate::numerics::parallel::Threads;
 /// rounding.
 const ROUNDED_PLACE: f64 = 1e-6;
 
-/// EndSide of a body on which it ends: the lower or the higher x.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum EndSide {
-    Low,
-    High,
-}
-
 /// A free end of one body.
 #[derive(Debug, Clone)]
 struct End {
-    side: EndSide,
+    /// 0 where the body ends at its lowest x, 1 at its highest.
+    side: usize,
     x: f64,
     ending: Ending,
 }
@@ -87,7 +81,7 @@ impl Ends {
                 continue;
             };
             let ending = Ending { body, material };
-            for (side, x) in [EndSide::Low, EndSide::High].into_iter().zip(half_space.ends()) {
+            for (side, x) in half_space.ends().into_iter().enumerate() {
                 if let Some(x) = x {
                     let ending = ending.clone();
                     ends.push(End { side, x, ending });
@@ -127,21 +121,20 @@ impl Ends {
 
     /// Range of x in which all bodies go on.
     pub(crate) fn range(&self) -> [f64; 2] {
-        let on = |side: EndSide| self.ends.iter().filter(move |end| end.side == side);
+        let on = |side: usize| self.ends.iter().filter(move |end| end.side == side);
         [
-            on(EndSide::Low).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
-            on(EndSide::High).fold(f64::INFINITY, |x, end| x.min(end.x)),
+            on(0).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
+            on(1).fold(f64::INFINITY, |x, end| x.min(end.x)),
         ]
     }
 
     /// Number of bodies that end on side `k` at x, or before, and whether these are all.
     pub(crate) fn at(&self, k: usize, x: f64, tolerance: f64) -> (usize, bool) {
-        let before = |end: &&End| match (k, end.side) {
-            (0, EndSide::Low) => end.x >= x - tolerance,
-            (1, EndSide::High) => end.x <= x + tolerance,
-            _ => false,
+        let before = |end: &&End| match end.side {
+            0 => end.x >= x - tolerance,
+            _ => end.x <= x + tolerance,
         };
-        let count = self.ends.iter().filter(before).count();
+        let count = self.ends.iter().filter(|end| end.side == k).filter(before).count();
         (count, count >= self.bodies)
     }
 
@@ -199,7 +192,7 @@ impl Ends {
         let dx = grid.spacing()[0];
         let length = Along::of(grid).length;
         let [low, high] = [0.0, finest.size()[0]].map(|part| start(finest) + part);
-        let mut groups: BTreeMap<(EndSide, u64), Vec<&End>> = BTreeMap::new();
+        let mut groups: BTreeMap<(usize, u64), Vec<&End>> = BTreeMap::new();
         for end in &self.ends {
             groups.entry((end.side, end.x.to_bits())).or_default().push(end);
         }
@@ -210,12 +203,10 @@ impl Ends {
             let &End { side, x, .. } = ends[0];
             let from_end = |row: usize| {
                 let center = start(grid) + (row as f64 + 0.5) * dx;
-                if side == EndSide::Low { center - x } else { x - center }
+                if side == 0 { center - x } else { x - center }
             };
-            let rows: Vec<usize> = match side {
-                EndSide::Low => (0..nx).collect(),
-                EndSide::High => (0..nx).rev().collect(),
-            };
+            let rows: Vec<usize> =
+                if side == 0 { (0..nx).collect() } else { (0..nx).rev().collect() };
             let beyond = rows.iter().take_while(|row| from_end(**row) < 0.0).count();
             let Some(&first) = rows.get(beyond) else {
                 continue;

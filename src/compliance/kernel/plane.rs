@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 use super::COMPONENTS;
 use super::loads::{Load, PointLoad, Radial};
 use super::quadrature::{CellRules, Rules};
-use super::series::{Series, Spectrum, TermTransforms};
+use super::series::{Order, Series, Spectrum, TermTransforms};
 use super::strip::LinePlan;
 use super::table::{FewPieces, FewTerms};
 use crate::compliance::response::interior::Place;
@@ -41,6 +41,8 @@ pub(crate) struct CellPlan {
     cells: CellRules,
     /// None where the body is homogeneous.
     spectrum: Option<Spectrum>,
+    /// Transforms of powers of the wavenumber for the functions of a pressure, and of a traction.
+    transforms: [OnceLock<Vec<TermTransforms>>; 2],
 }
 
 impl CellPlan {
@@ -54,13 +56,17 @@ impl CellPlan {
             reach,
             cells: CellRules::new(Rules::stress()),
             spectrum: Spectrum::new(body, [nearest, reach]),
+            transforms: Default::default(),
         }
     }
 
-    /// Transforms of powers of the wavenumber, for the functions of a load.
-    pub(crate) fn multipliers<const N: usize, L: Radial<N>>(&self) -> Vec<TermTransforms> {
-        let of = |spectrum: &Spectrum| L::orders().map(|order| spectrum.mesh.multipliers(order));
-        self.spectrum.as_ref().map(of).into_iter().flatten().collect()
+    /// Transforms for the functions of a load, made at the first place: without rayon, so that a thread that waits for
+    /// them cannot be asked to make them.
+    fn transforms<const N: usize, L: Radial<N>>(&self, spectrum: &Spectrum) -> &[TermTransforms] {
+        let of = |order: &Order| spectrum.mesh.transforms(*order);
+        let all = || L::Load::ORDERS.iter().map(of).collect();
+        let known = &self.transforms[usize::from(L::IS_TRACTION)];
+        &known.get_or_init(all)[L::FIRST..][..N]
     }
 }
 
@@ -85,11 +91,7 @@ pub(crate) struct Kernel<'a, const N: usize> {
 
 impl<'a, const N: usize> Kernel<'a, N> {
     /// The kernel of load L at `place`. On the threads of the caller.
-    pub(crate) fn new<L: Radial<N>>(
-        plan: &'a CellPlan,
-        multipliers: &[TermTransforms],
-        place: &Place,
-    ) -> Self {
+    pub(crate) fn new<L: Radial<N>>(plan: &'a CellPlan, place: &Place) -> Self {
         let (material, depth, orders) = (place.material, place.depth, L::orders());
         let point = PointLoad::new::<L>(material, depth);
         let series = plan.spectrum.as_ref().map(|spectrum| {
@@ -99,7 +101,8 @@ impl<'a, const N: usize> Kernel<'a, N> {
                 let values = differences.iter();
                 values.map(|(alpha, d)| alpha.powf(bias) * d[k]).collect()
             });
-            Series::new(&spectrum.mesh, &orders, multipliers, samples, depth)
+            let transforms = plan.transforms::<N, L>(spectrum);
+            Series::new(&spectrum.mesh, &orders, transforms, samples, depth)
         });
         let half = plan.spacing.map(|d| 0.5 * d);
         let (least, most) = (half[0].min(half[1]), half[0].max(half[1]));
@@ -155,42 +158,16 @@ impl<'a, const N: usize> Kernel<'a, N> {
 /// Plans of cells, or of strips of line contact.
 #[derive(Debug)]
 pub(crate) enum Kernels {
-    Plane {
-        plan: Box<CellPlan>,
-        pressure: Vec<TermTransforms>,
-        /// TermTransforms of the traction, made at the first place with friction.
-        traction: OnceLock<Vec<TermTransforms>>,
-    },
+    Plane(Box<CellPlan>),
     Line(LinePlan),
 }
 
 impl Kernels {
-    /// Plans the load L on pieces down to `finest` of a cell, at offsets up to `reach`. It runs on the threads
-    /// of the caller.
-    pub(crate) fn new<const N: usize, L: Radial<N>>(
-        body: &HalfSpace,
-        grid: &Grid,
-        finest: f64,
-        reach: f64,
-    ) -> Self {
-        if grid.is_line() {
-            return Self::Line(LinePlan::new(body, grid, finest));
-        }
-        Self::of_cells::<N, L>(body, grid.spacing(), finest, reach)
-    }
-
-    /// [`Kernels::new`] for cells of sides `spacing`.
-    pub(crate) fn of_cells<const N: usize, L: Radial<N>>(
-        body: &HalfSpace,
-        spacing: [f64; 2],
-        finest: f64,
-        reach: f64,
-    ) -> Self {
-        let plan = CellPlan::new(body, spacing, finest, reach);
-        Self::Plane {
-            pressure: plan.multipliers::<N, L>(),
-            traction: OnceLock::new(),
-            plan: Box::new(plan),
+    /// Plans kernels on `grid`, of pieces down to `finest` of a cell, at offsets up to `reach`.
+    pub(crate) fn new(body: &HalfSpace, grid: &Grid, finest: f64, reach: f64) -> Self {
+        match grid.is_line() {
+            true => Self::Line(LinePlan::new(body, grid, finest)),
+            false => Self::Plane(Box::new(CellPlan::new(body, grid.spacing(), finest, reach))),
         }
     }
 }

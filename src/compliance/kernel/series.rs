@@ -61,7 +61,7 @@ impl<const N: usize> Series<N> {
     pub(crate) fn new(
         mesh: &LogMesh,
         orders: &[Order; N],
-        multipliers: &[TermTransforms],
+        transforms: &[TermTransforms],
         samples: [Vec<f64>; N],
         depth: f64,
     ) -> Self {
@@ -83,7 +83,7 @@ impl<const N: usize> Series<N> {
         Self {
             depth,
             powers: std::array::from_fn(|k| powers[k]),
-            ..Self::at_surface(mesh, orders, multipliers, &spectra)
+            ..Self::at_surface(mesh, orders, transforms, &spectra)
         }
     }
 
@@ -91,7 +91,7 @@ impl<const N: usize> Series<N> {
     fn at_surface(
         mesh: &LogMesh,
         orders: &[Order; N],
-        multipliers: &[TermTransforms],
+        transforms: &[TermTransforms],
         spectra: &[FourierTerms],
     ) -> Self {
         let step = mesh.step();
@@ -106,7 +106,7 @@ impl<const N: usize> Series<N> {
         for (k, spectrum) in spectra.iter().enumerate() {
             let power = orders[k].kind.power();
             let kept = spectrum.values[..kept].iter();
-            for (m, ((re, im), (cos, sin))) in kept.zip(&multipliers[k]).enumerate() {
+            for (m, ((re, im), (cos, sin))) in kept.zip(&transforms[k]).enumerate() {
                 let t = m as f64 * step;
                 // The series is real: each term but the first stands for its conjugate, too.
                 let twice = if m == 0 { 1.0 } else { 2.0 };
@@ -212,7 +212,7 @@ impl Series<1> {
         }
         let (mesh, coefficients, tail) = found;
         let spectrum = FourierTerms { values: coefficients, negligible: 1e-3 * ROUNDING * size };
-        let series = Self::at_surface(&mesh, &[order], &[mesh.multipliers(order)], &[spectrum]);
+        let series = Self::at_surface(&mesh, &[order], &[mesh.transforms(order)], &[spectrum]);
         (series, tail + ROUNDING * size)
     }
 }
@@ -374,7 +374,7 @@ impl LogMesh {
     }
 
     /// Transforms of all terms for one Bessel order and kind.
-    pub(crate) fn multipliers(&self, order: Order) -> TermTransforms {
+    pub(crate) fn transforms(&self, order: Order) -> TermTransforms {
         let shift = order.kind.shift();
         let (above, below) = (0.5 * (1.0 + order.nu + shift), 0.5 * (1.0 + order.nu - shift));
         (0..=self.points / 2)
@@ -477,11 +477,11 @@ mod tests {
         for nu in [0.0, 1.0, 2.0, 3.0] {
             let orders =
                 [TransformKind::Stress, TransformKind::Displacement].map(|kind| Order { nu, kind });
-            let multipliers = orders.map(|order| mesh.multipliers(order));
+            let transforms = orders.map(|order| mesh.transforms(order));
             let samples = orders.map(|order| {
                 mesh.wavenumbers().map(|a| a.powf(order.kind.bias()) * (-a * z).exp()).collect()
             });
-            let series = Series::new(&mesh, &orders, &multipliers, samples, z);
+            let series = Series::new(&mesh, &orders, &transforms, samples, z);
             for r in [1e-3_f64, 0.1, 0.7, 5.0, 300.0, 1e4] {
                 let root = r.hypot(z);
                 let t = (r / (root + z)).powf(nu);

@@ -10,8 +10,7 @@
 use std::f64::consts::PI;
 
 use super::COMPONENTS;
-use super::series::Series;
-use super::series::{Order, Spectrum, TransformKind, homogeneous};
+use super::series::{Order, Series, Spectrum, TransformKind, homogeneous};
 use crate::compliance::response::interior::{Place, UnitFields};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
@@ -191,8 +190,8 @@ impl LinePlan {
             nu: if output.sine { 0.5 } else { -0.5 },
             kind: TransformKind::Line,
         });
-        let multipliers = orders.map(|order| mesh.multipliers(order));
-        Some((Series::new(mesh, &orders, &multipliers, samples, 0.0), images))
+        let transforms = orders.map(|order| mesh.transforms(order));
+        Some((Series::new(mesh, &orders, &transforms, samples, 0.0), images))
     }
 }
 

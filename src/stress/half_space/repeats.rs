@@ -10,9 +10,8 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use crate::compliance::images::CellImages;
-use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Pressure, Radial, Traction};
-use crate::compliance::kernel::plane::{CellSource, ComponentsAt, FAR};
-use crate::compliance::kernel::plane::{Kernel, Kernels};
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Radial};
+use crate::compliance::kernel::plane::{CellPlan, CellSource, ComponentsAt, FAR, Kernel};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
 use crate::model::body::{HalfSpace, Substrate};
@@ -32,7 +31,7 @@ const ROWS_TOGETHER: usize = 8;
 pub(in crate::stress) struct Repeats {
     images: CellImages,
     /// Kernels of the rectangle of all images that are summed.
-    block: Kernels,
+    block: CellPlan,
     block_half: [f64; 2],
     /// Strips along the direction that is open, where there is one.
     strips: Option<LinePlan>,
@@ -64,7 +63,7 @@ impl Repeats {
         let line = Grid::line(grid.shape()[open], grid.size()[open]);
         let strips = line.ok().filter(|_| periodic != [true; 2]);
         Some(Self {
-            block: Kernels::of_cells::<6, Pressure>(body, sides, 1.0, reach),
+            block: CellPlan::new(body, sides, 1.0, reach),
             block_half: sides.map(|side| 0.5 * side),
             strips: strips.map(|line| LinePlan::new(body, &line, 1.0)),
             open,
@@ -78,16 +77,8 @@ impl Repeats {
     pub(super) fn block_kernel<const N: usize, L: Radial<N>>(
         &self,
         place: &Place,
-    ) -> Option<Kernel<'_, N>> {
-        let Kernels::Plane { plan, pressure, traction } = &self.block else {
-            return None;
-        };
-        let multipliers = match L::IS_TRACTION {
-            false => pressure,
-            // Made without rayon, so that a thread that waits for it cannot be asked to make it.
-            true => traction.get_or_init(|| plan.multipliers::<9, Traction>()),
-        };
-        Some(Kernel::new::<L>(plan, multipliers, place))
+    ) -> Kernel<'_, N> {
+        Kernel::new::<L>(&self.block, place)
     }
 
     /// Largest distance at which the cells' kernels are evaluated.
