@@ -1,10 +1,11 @@
 //! Threads that belong to a plan, and the division of work among them.
 
+use std::fmt;
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 use std::time::Duration;
-use std::{fmt, thread};
 
 use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
@@ -275,6 +276,7 @@ mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::Arc;
     use std::sync::mpsc::channel;
+    use std::thread;
     use std::time::Duration;
 
     use super::{DIVIDED_CELLS, LEAF, Threads, each_chunk, each_row, join, number};
