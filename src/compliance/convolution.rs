@@ -43,9 +43,8 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
-    /// Operators that are added to the convolution.
     additions: Vec<Addition>,
-    /// ConvolutionMemory that is not in use, shared with companions of this convolution.
+    /// Memory that is not in use, shared with companions of this convolution.
     idle: Pool<ConvolutionMemory>,
     /// Time spent by this convolution and its companions.
     clock: Arc<Clock>,
@@ -76,12 +75,12 @@ impl Clock {
     }
 }
 
-/// ConvolutionMemory for one application of a convolution at a time. When it is dropped, the convolution keeps the
+/// Memory for one application of a convolution at a time. When it is dropped, the convolution keeps the
 /// memory for the next workspace.
 #[derive(Debug)]
 pub struct Workspace(Lease<ConvolutionMemory>);
 
-/// ConvolutionMemory of the transforms, and of each operator that is added.
+/// Memory of the transforms, and of each operator that is added.
 #[derive(Debug, Default)]
 struct ConvolutionMemory {
     fft: TransformMemory,
@@ -217,7 +216,6 @@ impl Convolution {
         self.self_influence
     }
 
-    /// Threads that apply this convolution.
     pub(crate) fn own_threads(&self) -> &Threads {
         &self.threads
     }
@@ -233,7 +231,7 @@ impl Convolution {
         1e-9 * self.clock.0.load(Ordering::Relaxed) as f64
     }
 
-    /// ConvolutionMemory for [`Convolution::apply_into`].
+    /// Memory for [`Convolution::apply_into`].
     pub fn workspace(&self) -> Workspace {
         lease(&self.idle, &self.transform)
     }

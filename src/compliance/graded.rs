@@ -173,15 +173,12 @@ const MOST: usize = 200_000;
 /// A part of the coating without jumps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CoatingPart {
-    /// Depth at which it begins \[m\].
     pub(super) from: f64,
-    /// Depth at which it ends \[m\].
     pub(super) to: f64,
     /// Whether all samples in it have the same material.
     pub(super) uniform: bool,
 }
 
-/// The material at a depth.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
     z: f64,
@@ -270,7 +267,6 @@ impl Samples {
         Ok(Self { samples, sections, jumps })
     }
 
-    /// Sections from the surface down.
     pub(super) fn sections(&self) -> &[CoatingPart] {
         &self.sections
     }

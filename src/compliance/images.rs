@@ -1,6 +1,6 @@
 //! Sums of kernels over the images of a cell, on grids that repeat: a method of nacre's own.
 //!
-//! CellImages nearer than the longer period are summed one by one. The others together are smooth, and interpolated from
+//! Images nearer than the longer period are summed one by one. The others together are smooth, and interpolated from
 //! Chebyshev nodes. There, M rings of them are summed; all beyond have the means of the kernel over whole periods, which
 //! are everything less the response U under one rectangle of (2M + 1)² periods. With central differences δ over a
 //! period L, and cells of length rL,
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::model::grid::Grid;
 use crate::numerics::special::{barycentric, chebyshev_nodes};
 
-/// Chebyshev nodes along each direction. CellImages that are summed lie as far away as the interval is long, so that the
+/// Chebyshev nodes along each direction. Images that are summed lie as far away as the interval is long, so that the
 /// interpolation errs by 10⁻¹⁴ of them.
 const NODES: usize = 14;
 
@@ -101,7 +101,7 @@ impl CellImages {
         3.0 * (self.size[0] + self.size[1])
     }
 
-    /// CellImages that are summed one by one along a direction: from −(near − 1) to near, the middle of which is that of
+    /// Images that are summed one by one along a direction: from −(near − 1) to near, the middle of which is that of
     /// the offsets.
     pub(crate) fn near(&self, k: usize) -> RangeInclusive<i64> {
         match self.periodic[k] {

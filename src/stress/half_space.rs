@@ -30,7 +30,6 @@ pub(super) struct HalfSpacePlan {
     pub(super) body: HalfSpace,
     pub(super) grid: Grid,
     kernels: Kernels,
-    /// Present where the grid repeats.
     repeats: Option<Repeats>,
     /// First and last row, then first and last column, of the loaded cells; none where no cell is loaded.
     loaded: Option<[[usize; 2]; 2]>,
@@ -65,7 +64,6 @@ pub(super) struct SurfaceLoad {
 }
 
 impl SurfaceLoad {
-    /// The pressure itself.
     pub(super) const PRESSURE: Self = Self { factor: 1.0, axis: None };
 
     /// Whether each component is odd in x and in y.
@@ -258,7 +256,6 @@ impl Coefficients<'_> {
         }
     }
 
-    /// Coefficients of line contact.
     fn strips(&self, plan: &LinePlan, take: &mut dyn FnMut(usize, &RowSource)) {
         for (number, load) in self.loading.loads.iter().enumerate() {
             let values = plan.coefficients(self.place, load.axis);

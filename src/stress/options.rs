@@ -108,7 +108,6 @@ pub struct WatchedStress<'a> {
 }
 
 impl<'a> WatchedStress<'a> {
-    /// The options.
     pub(crate) fn options(&self) -> &'a StressOptions {
         self.options
     }

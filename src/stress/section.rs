@@ -135,7 +135,6 @@ impl Points {
         }
     }
 
-    /// How many points there are.
     pub(super) fn count(&self) -> usize {
         self.shape[0] * self.shape[1]
     }
@@ -248,7 +247,6 @@ pub(super) struct Span {
     pub(super) faces: [Option<usize>; 2],
     /// Where the body is, in rows: 0 is the centre of the first.
     reach: [f64; 2],
-    /// Number of the grid's columns.
     columns: usize,
 }
 

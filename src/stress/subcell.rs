@@ -45,8 +45,7 @@
 //! | file | what it makes |
 //! |---|---|
 //! | `edge` | the cells near the edge where a polynomial, fitted by least squares, is certain enough |
-//! | `cut` | cells cut into rectangles |
-//! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots |
+//! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots; cells cut into rectangles |
 //! | `near` | the sum of the third part over the cells around |
 //! | `uncertainty` | whether cells resolve the law at an edge; the error that their size leaves, at a depth |
 
@@ -62,15 +61,14 @@ use crate::model::grid::{Grid, Window};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
-mod cut;
 mod edge;
 mod near;
 mod reconstruction;
 mod uncertainty;
 
-use cut::Cuts;
 use near::{Components, NearPlan};
 pub(super) use near::{NearTable, STRESSES};
+use reconstruction::Cuts;
 pub(super) use uncertainty::BodyPair;
 use uncertainty::{LocalSteps, Uncertainty};
 
@@ -240,7 +238,6 @@ impl Margin {
         }
     }
 
-    /// Whether there is any.
     fn is_empty(self) -> bool {
         self.width == [0; 2]
     }

@@ -346,7 +346,6 @@ struct Largest {
 }
 
 impl Largest {
-    /// Before any value.
     const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
 
     fn offer(&mut self, value: f64, cell: usize) {

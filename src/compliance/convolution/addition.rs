@@ -63,7 +63,7 @@ impl fmt::Debug for Addition {
     }
 }
 
-/// AdditionMemory for one application.
+/// Memory for one application.
 #[derive(Debug, Default)]
 pub(super) struct AdditionMemory {
     /// Values at the nodes, padded with zeros.

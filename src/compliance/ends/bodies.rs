@@ -20,7 +20,6 @@ use crate::numerics::parallel::Threads;
 /// rounding.
 const ROUNDED_PLACE: f64 = 1e-6;
 
-/// A free end of one body.
 #[derive(Debug, Clone)]
 struct End {
     /// 0 where the body ends at its lowest x, 1 at its highest.
@@ -48,7 +47,6 @@ pub struct FreeEnds {
     pub error: Option<f64>,
 }
 
-/// A body with two free ends.
 #[derive(Debug, Clone)]
 struct Plate {
     ends: [f64; 2],
@@ -67,7 +65,6 @@ pub(crate) struct Ends {
 }
 
 impl Ends {
-    /// The ends of `bodies`.
     pub(crate) fn of(bodies: &[&Body]) -> Self {
         let (mut ends, mut plates) = (Vec::new(), Vec::new());
         let mut layered = false;
@@ -114,7 +111,6 @@ impl Ends {
         Some(FreeEnds { plates, error })
     }
 
-    /// Whether any body has a free end.
     pub(crate) fn any(&self) -> bool {
         !self.ends.is_empty()
     }

@@ -158,7 +158,7 @@ pub(super) fn coefficients(
     let depth = length.max(size[1]);
     let uniform = UNIFORM / length;
     let waves = along.waves(depth, RANGE[1] / length, &[(uniform, 1.0)]);
-    // WaveRule whose shift and tilt are bounded, and the wave whose they have: where the grid repeats, that of the datum.
+    // Waves whose shift and tilt are bounded, and the wave whose they have: where the grid repeats, that of the datum.
     let (long, bound) = if along.repeats {
         (2.0 * uniform, 2.0 * (-EULER_GAMMA).exp() / size[0])
     } else {

@@ -348,7 +348,6 @@ impl Modes {
         Self { means: means(&values), values }
     }
 
-    /// Number of functions.
     pub(super) fn count(&self) -> usize {
         self.values.ncols()
     }

@@ -34,7 +34,7 @@ const LOW_RATIO: f64 = 30.0;
 /// Half-width times wavenumber below which a load's transform is smooth on a panel.
 const NARROW: f64 = 1.0;
 
-/// WaveRule of a period that are taken one by one, before the panels.
+/// Waves of a period that are taken one by one, before the panels.
 const SINGLE: usize = 16;
 
 /// Distances along y at which coefficients of a grid are needed.
@@ -65,7 +65,7 @@ impl Along {
         (self.length / 2 + 1) as f64 * self.spacing
     }
 
-    /// WaveRule for means over cells of loads on cells, and amplitudes that vanish above `highest`: up to distances of
+    /// Waves for means over cells of loads on cells, and amplitudes that vanish above `highest`: up to distances of
     /// `reach`, or where the grid repeats those of the period, of which the shares of `zeroth` wavenumbers stand for
     /// the first.
     pub(super) fn waves(&self, reach: f64, highest: f64, zeroth: &[(f64, f64)]) -> WaveRule {
@@ -123,7 +123,7 @@ impl WaveRule {
         waves
     }
 
-    /// WaveRule of a period of so many `cells` of width `spacing`, for distances of whole cells up to half of it.
+    /// Waves of a period of so many `cells` of width `spacing`, for distances of whole cells up to half of it.
     fn repeated(
         cells: usize,
         spacing: f64,

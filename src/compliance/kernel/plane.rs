@@ -175,7 +175,7 @@ impl Kernels {
 /// Distance, in longer sides of a cell, from which differences are used.
 pub(crate) const FAR: f64 = 60.0;
 
-/// CellSource of the coefficients of C components.
+/// Where the coefficients of C components come from.
 pub(crate) struct CellSource<M, P, const C: usize> {
     /// Numbers of offsets along x and y.
     pub(crate) offsets: [usize; 2],
@@ -191,7 +191,6 @@ pub(crate) struct CellSource<M, P, const C: usize> {
     pub(crate) point: P,
 }
 
-/// Components at (x, y).
 pub(crate) trait ComponentsAt: Fn(f64, f64) -> [f64; COMPONENTS] + Sync {}
 
 impl<F: Fn(f64, f64) -> [f64; COMPONENTS] + Sync> ComponentsAt for F {}
@@ -228,7 +227,6 @@ impl<M: ComponentsAt, P: ComponentsAt, const C: usize> CellSource<M, P, C> {
         }
     }
 
-    /// Offset of row i along x.
     fn along_x(&self, i: usize) -> f64 {
         let half = if self.between { 0.5 } else { 0.0 };
         (i as f64 + half) * self.spacing[0]

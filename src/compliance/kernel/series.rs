@@ -45,7 +45,7 @@ pub(crate) struct Series<const N: usize> {
     means: Vec<[[f64; N]; 2]>,
     orders: [Order; N],
     depth: f64,
-    /// FourierTerms of H/r^ν by powers of (r/depth)².
+    /// Coefficients of H/r^ν by powers of (r/depth)².
     powers: [[f64; MOMENTS]; N],
 }
 
@@ -223,7 +223,7 @@ fn coefficients(mesh: &LogMesh, mut samples: Vec<f64>) -> Vec<(f64, f64)> {
     fourier_coefficients(samples)
 }
 
-/// FourierTerms of (r/z)^{2k} in H/r^ν, z the `depth`; none at the surface.
+/// Coefficients of (r/z)^{2k} in H/r^ν, z the `depth`; none at the surface.
 ///
 /// ```text
 /// (−1)^k / (2^{ν+2k} k! (ν+k)!) · z^{−2k} / 2π ∫ D α^{w+ν+2k} dα

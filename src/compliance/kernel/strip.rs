@@ -11,12 +11,12 @@ use std::f64::consts::PI;
 
 use super::COMPONENTS;
 use super::series::{Order, Series, Spectrum, TransformKind, homogeneous};
-use crate::compliance::response::interior::{Place, UnitFields};
+use crate::compliance::response::interior::{InPlane, Place, UnitFields};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 
-/// StripOutput of one function of the wavenumber: the component that it makes, with its sign.
+/// The component that one function of the wavenumber makes, with its sign.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StripOutput {
     component: usize,
@@ -51,9 +51,7 @@ impl StripLoad<6> for StripPressure {
     ];
 
     fn functions(fields: &UnitFields, material: Elastic) -> [f64; 6] {
-        let state = &fields.pressure;
-        let (along, across) = state.lateral_stress(material);
-        [across, along, state.p, state.tau, state.v, state.w]
+        in_plane(&fields.pressure, material)
     }
 }
 
@@ -71,10 +69,13 @@ impl StripLoad<6> for StripAcross {
     ];
 
     fn functions(fields: &UnitFields, material: Elastic) -> [f64; 6] {
-        let state = &fields.shear;
-        let (along, across) = state.lateral_stress(material);
-        [across, along, state.p, state.tau, state.v, state.w]
+        in_plane(&fields.shear, material)
     }
+}
+
+fn in_plane(state: &InPlane, material: Elastic) -> [f64; 6] {
+    let (along, across) = state.lateral_stress(material);
+    [across, along, state.p, state.tau, state.v, state.w]
 }
 
 /// Unit traction along x.

@@ -58,7 +58,7 @@ impl Response for ResponseSlope {
     }
 }
 
-/// LayerState of one layer under a unit pressure on the surface.
+/// State of one layer under a unit pressure on the surface.
 struct LayerState {
     slab: Slab,
     /// Compliance of what lies below, times α.

@@ -51,7 +51,7 @@ impl InPlane {
     }
 }
 
-/// UnitFields at a depth, under unit loads.
+/// Fields at a depth, under unit loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct UnitFields {
     pub(crate) pressure: InPlane,
@@ -61,7 +61,7 @@ pub(crate) struct UnitFields {
 }
 
 impl UnitFields {
-    /// UnitFields in a homogeneous half-space, at depth z, y = αz.
+    /// Fields in a homogeneous half-space, at depth z, y = αz.
     ///
     /// ```text
     /// P = (P0 + s y) e^{−y}   τ = (T0 − s y) e^{−y}   Q = Q0 e^{−y}   U = Q/(Gα)      s = P0 + T0
@@ -89,7 +89,7 @@ impl UnitFields {
         }
     }
 
-    /// UnitFields in a homogeneous body below the tractions of each load.
+    /// Fields in a homogeneous body below the tractions of each load.
     fn below(loads: &Loads, material: Elastic, y: f64) -> Self {
         let unit = Self::homogeneous(material, y);
         let combine = |[p, t]: [f64; 2]| {
@@ -148,7 +148,7 @@ impl Column {
         Self { alpha, tops }
     }
 
-    /// UnitFields at `place`.
+    /// Fields at `place`.
     pub(crate) fn at(&self, body: &HalfSpace, place: &Place) -> UnitFields {
         let (compliance, loads) = &self.tops[place.layer];
         let Some(layer) = body.layers().get(place.layer) else {
@@ -178,7 +178,7 @@ impl Column {
     }
 }
 
-/// UnitFields at the top of a body of `compliance` under `loads`.
+/// Fields at the top of a body of `compliance` under `loads`.
 fn on_top(compliance: &Compliance, loads: &Loads) -> UnitFields {
     let Compliance { c11, c12, c22, ct } = *compliance;
     let state =

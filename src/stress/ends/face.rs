@@ -52,7 +52,7 @@ pub(super) struct Face {
     tables: Vec<FaceTable>,
 }
 
-/// FaceFields of one part of the pressure on a face.
+/// Fields below one part of the pressure on a face.
 #[derive(Debug)]
 struct FaceTable {
     part: HalfSpacePart,
