@@ -119,10 +119,15 @@ impl PaddedTransform {
         Self::with_periods(shape, shape.map(|n| 2 * n - 1), periodic, threads)
     }
 
-    /// Transforms that are not padded. Convolutions are periodic, with n as the period along directions
-    /// that are `periodic`, and the fast length ≥ n along others.
-    pub(crate) fn plan_unpadded(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
-        Self::with_periods(shape, shape, periodic, threads)
+    /// Transforms that are not padded. Convolutions are periodic, with the fast length ≥ n as period.
+    pub(crate) fn plan_unpadded(shape: [usize; 2], threads: &Threads) -> Self {
+        Self::with_periods(shape, shape, [false; 2], threads)
+    }
+
+    /// Transforms that are padded by an eighth. Convolutions are periodic, with n as the period along directions that
+    /// are `periodic`, and the fast length ≥ 9/8 n along others.
+    pub(crate) fn plan_margin(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
+        Self::with_periods(shape, shape.map(|n| n + n.div_ceil(8)), periodic, threads)
     }
 
     /// Transforms of fast lengths of at `least` so many points, but along directions that are `periodic`.

@@ -78,7 +78,7 @@ impl Tangential {
         let TractionCoefficients { xx, xy, yy, zx, zy } = &self.coefficients;
         let coupling =
             self.is_coupled().then(|| [spectrum(zx, [true, false]), spectrum(zy, [false, true])]);
-        let periodic = PaddedTransform::plan_unpadded(shape, [false; 2], threads);
+        let periodic = PaddedTransform::plan_unpadded(shape, threads);
         TangentialWindow {
             shape,
             xx: spectrum(xx, [false, false]),
