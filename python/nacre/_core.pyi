@@ -17,7 +17,6 @@ __all__ = [
     "Contact",
     "ConvergenceError",
     "Convolution",
-    "CreepCoefficients",
     "Cylinder",
     "Direction",
     "Elastic",
@@ -44,6 +43,7 @@ __all__ = [
     "StressPlan",
     "StressSummary",
     "__version__",
+    "checked",
     "creep_coefficients",
     "frequency_response",
     "graded_layers",
@@ -578,28 +578,6 @@ class FrictionSolution:
     def to_dict(self) -> dict[str, Any]: ...
     @staticmethod
     def from_dict(data: Mapping[str, Any]) -> FrictionSolution: ...
-    def __eq__(self, other: object, /) -> bool: ...
-
-@final
-class CreepCoefficients:
-    __hash__: ClassVar[None]  # type: ignore[assignment]
-    @property
-    def c11(self) -> float: ...
-    @property
-    def c22(self) -> float: ...
-    @property
-    def c23(self) -> float: ...
-    @property
-    def c33(self) -> float: ...
-    @property
-    def errors(self) -> tuple[float, float, float, float]: ...
-    @property
-    def shear(self) -> float: ...
-    @property
-    def semi_axes(self) -> _Pair: ...
-    def to_dict(self) -> dict[str, Any]: ...
-    @staticmethod
-    def from_dict(data: Mapping[str, Any]) -> CreepCoefficients: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
@@ -1160,13 +1138,13 @@ def roll(
     counterbody: HalfSpace | Elastic | None = None,
     **keywords: Unpack[_WholeRoll],
 ) -> Any: ...
+def checked(kind: str, given: str) -> str: ...
 def creep_coefficients(
     body: HalfSpace | Elastic,
     counterbody: HalfSpace | Elastic | None,
     semi_axes: _Pair,
-    *,
-    cells: int = 64,
-) -> CreepCoefficients: ...
+    cells: int,
+) -> str: ...
 def stress(
     body: HalfSpace | Elastic,
     grid: Grid,

@@ -22,9 +22,7 @@ mod batch;
 mod friction;
 mod single;
 
-pub(super) use friction::{
-    PyCreepCoefficients, PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide,
-};
+pub(super) use friction::{PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide};
 use friction::{
     found_docs, found_signature, roll_docs, roll_signature, rolled_docs, slid_docs, slide_docs,
     slide_signature,

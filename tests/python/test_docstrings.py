@@ -1,7 +1,10 @@
 """Every public name has a NumPy-style docstring, whose examples are true."""
 
+import ast
+import dataclasses
 import doctest
 import inspect
+import itertools
 import re
 from types import ModuleType
 from typing import Any
@@ -13,6 +16,7 @@ import nacre
 import nacre.design
 import nacre.plot.sections
 import nacre.units
+from nacre._result import Result
 
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -32,7 +36,9 @@ def public_objects() -> dict[str, Any]:
 
 
 def parameters(thing: Any) -> list[inspect.Parameter]:
-    """Return what a caller gives; nothing where nothing can be called."""
+    """Return what a caller gives: nothing for results, which nacre makes."""
+    if isinstance(thing, type) and issubclass(thing, Result):
+        return []
     try:
         signature = inspect.signature(thing)
     except (TypeError, ValueError):
@@ -68,6 +74,22 @@ def test_it_says_what_it_is_in_one_line(name: str) -> None:
     first, _, rest = inspect.cleandoc(docstring).partition("\n")
     assert first.endswith((".", ":"))
     assert rest == "" or rest.startswith("\n")
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, thing in CLASSES.items() if issubclass(thing, Result)]
+)
+def test_every_field_of_a_result_is_documented(name: str) -> None:
+    kind: Any = CLASSES[name]
+    module: Any = ast.parse(inspect.getsource(kind))
+    body: list[Any] = module.body[0].body
+    told = {
+        field.target.id: text.value.value
+        for field, text in itertools.pairwise(body)
+        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr)
+    }
+    for field in dataclasses.fields(kind):
+        assert told[field.name].split("\n")[0].endswith((".", ":"))
 
 
 @pytest.mark.parametrize("name", CALLED)
