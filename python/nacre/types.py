@@ -29,7 +29,3 @@ __all__ = [
     "StressPlan",
     "StressSummary",
 ]
-
-# Pickles and the documentation find them here.
-for _name in __all__:
-    globals()[_name].__module__ = __name__

@@ -5,7 +5,7 @@ use std::fmt;
 use ndarray::Array2;
 
 use super::state::Linearised;
-use crate::compliance::influence::unchecked_coefficients;
+use crate::compliance::influence::{Method, unchecked_coefficients};
 use crate::compliance::response::{Body, ResponseSlope};
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
@@ -210,13 +210,12 @@ impl Slope {
     ) -> Result<Self> {
         let (grid, window) = (solution.grid(), state.tangent.window());
         let convolution = state.tangent.convolution();
-        let method = solution.report.method;
-        let coefficients = unchecked_coefficients(
-            slope,
-            &grid.of_offsets(reach),
-            method,
-            convolution.own_threads(),
-        )?;
+        if solution.coefficients.is_some() {
+            return Err(Error::no_derivative("the body", "the contact was given its coefficients"));
+        }
+        let threads = convolution.own_threads();
+        let coefficients =
+            unchecked_coefficients(slope, &grid.of_offsets(reach), Method::Exact, threads)?;
         let shape = [window[0].len(), window[1].len()];
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let companion = convolution.companion(&corner, repeating(grid, window));

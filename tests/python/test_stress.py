@@ -307,7 +307,7 @@ def test_fields_are_values(solution: nacre.Solution) -> None:
         [0.0, 30e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
     )
     assert field != solution.stress([0.0, 30e-6], y=0.0)
-    assert repr(field).startswith("<nacre.Stress: depths 2 from 0")
+    assert repr(field).startswith("<Stress: depths 2 from 0")
     assert not field.xx.flags.writeable
 
 

@@ -44,7 +44,7 @@ const AXES: [&str; 3] = ["z", "x", "y"];
 /// >>> value, (x, y, z) = field.peak("max_shear")
 /// >>> round(value / solution.peak_pressure, 2), round(z / radius, 1)
 /// (0.31, 0.5)
-#[pyclass(name = "Stress", module = "nacre", frozen)]
+#[pyclass(name = "Stress", module = "nacre.types", frozen)]
 pub(in crate::python) struct PyStress {
     stress: Arc<Stress>,
     /// Whether depth, x and y were given as numbers; fields have no axis for those.
@@ -294,7 +294,7 @@ impl PyStress {
             _ => "none".into(),
         };
         format!(
-            "<nacre.Stress: depths {}, x {}, y {}, side '{}'{}>",
+            "<Stress: depths {}, x {}, y {}, side '{}'{}>",
             range(&s.z),
             range(&s.x),
             range(&s.y),

@@ -31,7 +31,7 @@ use crate::stress::{Member, StressPlan};
 /// ... ]
 /// >>> peaks[0] < peaks[1]
 /// True
-#[pyclass(name = "StressPlan", module = "nacre", frozen)]
+#[pyclass(name = "StressPlan", module = "nacre.types", frozen)]
 pub(in crate::python) struct PyStressPlan {
     plan: Arc<StressPlan>,
     member: Member,
@@ -164,7 +164,7 @@ impl PyStressPlan {
     }
 
     fn __repr__(&self) -> String {
-        format!("<nacre.StressPlan of the {}>", self.member.word())
+        format!("<StressPlan of the {}>", self.member.word())
     }
 
     /// Method and arguments that make the plan again.

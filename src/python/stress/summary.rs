@@ -36,7 +36,7 @@ fn displayed<'py>(result: &Bound<'py, impl PyClass>, form: &str) -> PyResult<Bou
 /// >>> coating, substrate = summary.layers
 /// >>> bool(coating.tension[0] > 0.0 and substrate.yield_safety_factor > 1.0)
 /// True
-#[pyclass(name = "StressSummary", module = "nacre", frozen, eq)]
+#[pyclass(name = "StressSummary", module = "nacre.types", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyStressSummary(pub(in crate::python) StressSummary);
 
@@ -104,7 +104,7 @@ impl PyStressSummary {
 
     fn __repr__(&self) -> String {
         format!(
-            "<nacre.StressSummary of {} layers and {} interfaces>",
+            "<StressSummary of {} layers and {} interfaces>",
             self.0.layers.len(),
             self.0.interfaces.len()
         )
@@ -122,7 +122,7 @@ impl PyStressSummary {
 /// >>> value, (x, y, z) = substrate.von_mises
 /// >>> round(value / solution.peak_pressure, 1), substrate.yield_safety_factor
 /// (0.6, None)
-#[pyclass(name = "LayerStress", module = "nacre", frozen, eq)]
+#[pyclass(name = "LayerStress", module = "nacre.types", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyLayerStress(LayerSummary);
 
@@ -233,7 +233,7 @@ impl PyLayerStress {
 /// >>> (interface,) = solution.stress_summary().interfaces
 /// >>> interface.depth, bool(interface.shear[0] > 0.0)
 /// (2e-05, True)
-#[pyclass(name = "InterfaceStress", module = "nacre", frozen, eq)]
+#[pyclass(name = "InterfaceStress", module = "nacre.types", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyInterfaceStress(InterfaceSummary);
 

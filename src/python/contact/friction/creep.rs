@@ -19,7 +19,7 @@ use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict
 /// >>> creep = nacre.creep_coefficients(steel, steel, (1e-3, 1e-3))
 /// >>> round(creep.c11, 1), round(creep.c22, 1), round(creep.c23, 1)
 /// (4.1, 3.7, 1.5)
-#[pyclass(name = "CreepCoefficients", module = "nacre", frozen, eq)]
+#[pyclass(name = "CreepCoefficients", module = "nacre.types", frozen, eq)]
 #[derive(PartialEq)]
 pub(in crate::python) struct PyCreepCoefficients(CreepCoefficients);
 
