@@ -321,6 +321,12 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
     require(name, value, holds, "finite and above 0")
 }
 
+/// Returns `value`, or an error unless it is finite and at least 0.
+pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<f64> {
+    let holds = value >= 0.0 && value.is_finite();
+    require(name, value, holds, "finite and at least 0")
+}
+
 /// Returns `value`, or an error unless it is finite.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
     require(name, value, value.is_finite(), "finite")
@@ -335,6 +341,14 @@ pub(crate) fn same_shape<T>(
     match array.dim().into() {
         found if found == expected => Ok(()),
         found => Err(Error::Shape { name, expected, found }),
+    }
+}
+
+/// An error unless all elements of an array are finite.
+pub(crate) fn all_finite(name: &'static str, array: &ndarray::ArrayRef2<f64>) -> Result<()> {
+    match array.indexed_iter().find(|(_, value)| !value.is_finite()) {
+        Some((index, _)) => Err(Error::NonFinite { name, index: index.into() }),
+        None => Ok(()),
     }
 }
 

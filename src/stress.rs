@@ -21,7 +21,7 @@
 //! pressure alone. A [`StressPlan`] makes them once; it is then evaluated for any depths, sections,
 //! friction and residual stress. The functions here and those of `Solution` make a plan for one call.
 //!
-//! SlidingSense adds the traction q = μ p along a direction; its effect on the pressure is neglected. That
+//! Friction adds the traction q = μ p along a direction; its effect on the pressure is neglected. That
 //! is exact where both bodies have the same elastic constants or ν = ½, and a good approximation for
 //! small μ: the neglected coupling changes the pressure by the order of μ (1 − 2ν)/(2 − 2ν). See
 //! Johnson, Contact Mechanics (1985), chapter 7, doi:10.1017/CBO9781139171731.

@@ -10,15 +10,16 @@ use std::time::Instant;
 
 use ndarray::{Array2, ArrayRef2};
 
-use crate::error::{Error, Result};
-use crate::numerics::fft::{EvenSpectrum, PaddedTransform, Workspace as FftWorkspace};
-use crate::numerics::parallel::Threads;
-use crate::numerics::parallel::{Lease, Pool};
+use crate::error::{Error, Result, all_finite, same_shape};
+use crate::numerics::fft::{
+    EvenSpectrum, HalfSpectra, PaddedTransform, Scratches, TransformMemory,
+};
+use crate::numerics::parallel::{Lease, Pool, Threads, Written, memory_of};
 
 mod addition;
 mod periodic;
-mod stages;
 
+use addition::AdditionMemory;
 pub(crate) use addition::{Addition, RowWeights, length, pair};
 
 /// The convolution of a pressure with influence coefficients, planned once and applied many times.
@@ -42,10 +43,9 @@ pub struct Convolution {
     transform: PaddedTransform,
     spectrum: Arc<EvenSpectrum>,
     threads: Arc<Threads>,
-    /// Operators that are added to the convolution.
     additions: Vec<Addition>,
     /// Memory that is not in use, shared with companions of this convolution.
-    idle: Pool<Memory>,
+    idle: Pool<ConvolutionMemory>,
     /// Time spent by this convolution and its companions.
     clock: Arc<Clock>,
 }
@@ -78,13 +78,13 @@ impl Clock {
 /// Memory for one application of a convolution at a time. When it is dropped, the convolution keeps the
 /// memory for the next workspace.
 #[derive(Debug)]
-pub struct Workspace(Lease<Memory>);
+pub struct Workspace(Lease<ConvolutionMemory>);
 
 /// Memory of the transforms, and of each operator that is added.
 #[derive(Debug, Default)]
-struct Memory {
-    fft: FftWorkspace,
-    added: Vec<addition::Memory>,
+struct ConvolutionMemory {
+    fft: TransformMemory,
+    added: Vec<AdditionMemory>,
 }
 
 impl Convolution {
@@ -112,9 +112,7 @@ impl Convolution {
         if coefficients.is_empty() {
             return Err(Error::Shape { name: "coefficients", expected: [1, 1], found: shape });
         }
-        if let Some((index, _)) = coefficients.indexed_iter().find(|(_, c)| !c.is_finite()) {
-            return Err(Error::NonFinite { name: "coefficients", index: [index.0, index.1] });
-        }
+        all_finite("coefficients", coefficients)?;
         let transform = PaddedTransform::plan_repeated(shape, periodic, &threads);
         Ok(Self::with(coefficients, transform, &threads, Pool::default(), Arc::default()))
     }
@@ -123,7 +121,7 @@ impl Convolution {
         coefficients: &ArrayRef2<f64>,
         transform: PaddedTransform,
         threads: &Arc<Threads>,
-        idle: Pool<Memory>,
+        idle: Pool<ConvolutionMemory>,
         clock: Arc<Clock>,
     ) -> Self {
         let mut workspace = lease(&idle, &transform);
@@ -204,7 +202,8 @@ impl Convolution {
 
     /// Bytes of a plan for data of `shape`, with one workspace.
     pub(crate) fn memory(shape: [usize; 2]) -> u64 {
-        PaddedTransform::memory(shape)
+        // Half spectra of the rows, of complex numbers, and a quarter of the kernel's.
+        memory_of(shape, 3)
     }
 
     /// Shape (nx, ny) of pressure and displacement.
@@ -217,7 +216,6 @@ impl Convolution {
         self.self_influence
     }
 
-    /// Threads that apply this convolution.
     pub(crate) fn own_threads(&self) -> &Threads {
         &self.threads
     }
@@ -259,15 +257,9 @@ impl Convolution {
         displacement: &mut ArrayRef2<f64>,
         workspace: &mut Workspace,
     ) -> Result<()> {
-        for (name, found) in [("pressure", pressure.dim()), ("displacement", displacement.dim())] {
-            if [found.0, found.1] != self.shape {
-                let found = [found.0, found.1];
-                return Err(Error::Shape { name, expected: self.shape, found });
-            }
-        }
-        if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-            return Err(Error::NonFinite { name: "pressure", index: index.into() });
-        }
+        same_shape("pressure", pressure, self.shape)?;
+        same_shape("displacement", displacement, self.shape)?;
+        all_finite("pressure", pressure)?;
         let standard = pressure.as_standard_layout();
         let input = standard.as_slice().unwrap_or(&[]);
         if let Some(output) = displacement.as_slice_mut() {
@@ -303,7 +295,7 @@ impl Convolution {
     }
 
     /// Computes what the additions respond to an `input` that is zero outside the rows `occupied`.
-    fn respond(&self, input: &[f64], occupied: Range<usize>, memory: &mut Vec<addition::Memory>) {
+    fn respond(&self, input: &[f64], occupied: Range<usize>, memory: &mut Vec<AdditionMemory>) {
         memory.resize_with(self.additions.len().max(memory.len()), Default::default);
         for (addition, memory) in self.additions.iter().zip(memory) {
             addition.respond(input, occupied.clone(), memory, &self.threads);
@@ -311,7 +303,7 @@ impl Convolution {
     }
 
     /// Adds what the additions responded to rows of the output, from row `first` on.
-    fn add_rows(&self, first: usize, output: &mut [f64], memory: &[addition::Memory]) {
+    fn add_rows(&self, first: usize, output: &mut [f64], memory: &[AdditionMemory]) {
         for (addition, memory) in self.additions.iter().zip(memory) {
             addition.add_rows(first, self.shape[1], output, memory);
         }
@@ -319,8 +311,145 @@ impl Convolution {
 }
 
 /// A workspace from idle memory, large enough for `transform`.
-fn lease(idle: &Pool<Memory>, transform: &PaddedTransform) -> Workspace {
+fn lease(idle: &Pool<ConvolutionMemory>, transform: &PaddedTransform) -> Workspace {
     let mut memory = idle.lease();
     transform.reserve(&mut memory.fft);
     Workspace(memory)
+}
+
+impl Convolution {
+    /// First stage, row by row: a receiver of input rows, and the memory for their half spectra.
+    pub(crate) fn inwards<'a>(
+        &'a self,
+        workspace: &'a mut Workspace,
+    ) -> (Inwards<'a>, HalfSpectra<'a>) {
+        let memory = &mut workspace.0.fft;
+        self.transform.reserve(memory);
+        let (rows, scratches) = self.transform.half_spectra(memory);
+        let inwards = Inwards { convolution: self, scratches };
+        (inwards, rows)
+    }
+
+    /// First stage, for all rows of an input that is zero outside the rows `occupied`; only these are
+    /// read.
+    pub(crate) fn rows_in(&self, input: &[f64], occupied: Range<usize>, workspace: &mut Workspace) {
+        let memory = &mut workspace.0.fft;
+        self.transform.reserve(memory);
+        let input = (input, occupied);
+        let work = || self.transform.rows_in(input, memory, &self.threads);
+        self.clock.during(work);
+    }
+
+    /// Second stage, after the first stage of an `input` that is zero outside the rows `occupied`. Returns the
+    /// third stage, which can compute any rows of the output.
+    pub(crate) fn outwards<'a>(
+        &'a self,
+        input: &[f64],
+        occupied: Range<usize>,
+        workspace: &'a mut Workspace,
+    ) -> Outwards<'a> {
+        let memory = &mut *workspace.0;
+        self.clock.during(|| {
+            self.respond(input, occupied.clone(), &mut memory.added);
+            let (spectrum, threads) = (&self.spectrum, &self.threads);
+            self.transform.columns_through(spectrum, occupied, &mut memory.fft, threads);
+        });
+        Outwards { convolution: self, memory }
+    }
+}
+
+/// Rows of fields, together with the half spectra of the same rows.
+impl<const N: usize> Written for ([&mut [f64]; N], HalfSpectra<'_>) {
+    fn split(self, rows: usize, ny: usize) -> (Self, Self) {
+        let (fields, halves) = (self.0.split(rows, ny), self.1.split(rows));
+        ((fields.0, halves.0), (fields.1, halves.1))
+    }
+}
+
+/// Receiver of the rows of the input of a convolution.
+pub(crate) struct Inwards<'a> {
+    convolution: &'a Convolution,
+    scratches: &'a Scratches,
+}
+
+impl Inwards<'_> {
+    /// Transforms consecutive rows of the input into their half spectra `halves`.
+    pub(crate) fn rows(&self, values: &[f64], halves: HalfSpectra) {
+        let Convolution { transform, clock, .. } = self.convolution;
+        clock.during_part(transform.scratches(), || {
+            transform.some_rows_in(values, halves, self.scratches);
+        });
+    }
+}
+
+/// Source of the rows of the output of a convolution.
+pub(crate) struct Outwards<'a> {
+    convolution: &'a Convolution,
+    memory: &'a ConvolutionMemory,
+}
+
+impl Outwards<'_> {
+    /// Computes rows of the output into `values`, from row `first` on and as many as fit.
+    pub(crate) fn rows(&self, first: usize, values: &mut [f64]) {
+        let Convolution { transform, clock, .. } = self.convolution;
+        clock.during_part(transform.scratches(), || {
+            transform.rows_out(first, values, &self.memory.fft);
+            self.convolution.add_rows(first, values, &self.memory.added);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compliance::convolution::Convolution;
+    use crate::error::Result;
+    use ndarray::Array2;
+
+    fn field([nx, ny]: [usize; 2]) -> Array2<f64> {
+        Array2::from_shape_fn((nx, ny), |(i, j)| ((7 * i + 3 * j + i * j) % 11) as f64 - 4.0)
+    }
+
+    /// Stages give the bits of `apply`, with groups of rows of any size, on two threads, and where only
+    /// some rows are occupied.
+    #[test]
+    fn stages_give_the_bits_of_a_whole_application() -> Result<()> {
+        for shape in [[1, 9], [7, 1], [23, 18], [150, 130], [230, 150]] {
+            let convolution = Convolution::plan(&field(shape), Some(2))?;
+            let mut workspace = convolution.workspace();
+            let [nx, ny] = shape;
+            let occupied = nx / 3..nx - nx / 4;
+            let mut input = field(shape);
+            for (i, mut row) in input.rows_mut().into_iter().enumerate() {
+                if !occupied.contains(&i) {
+                    row.fill(0.0);
+                }
+            }
+            let alone = Convolution::plan(&field(shape), Some(1))?;
+            let at_once = alone.apply(&input)?.into_raw_vec_and_offset().0;
+            let input = input.into_raw_vec_and_offset().0;
+            let mut of_occupied = vec![f64::NAN; nx * ny];
+            convolution.rows_in(&input, occupied.clone(), &mut workspace);
+            let outwards = convolution.outwards(&input, occupied, &mut workspace);
+            outwards.rows(0, &mut of_occupied);
+            let mut in_parts = vec![f64::NAN; nx * ny];
+            for length in [1, 3, 8, 11] {
+                let (inwards, mut halves) = convolution.inwards(&mut workspace);
+                for part in input.chunks(length * ny) {
+                    let (here, rest) = halves.split(part.len() / ny);
+                    inwards.rows(part, here);
+                    halves = rest;
+                }
+                let outwards = convolution.outwards(&input, 0..nx, &mut workspace);
+                for (k, part) in in_parts.chunks_mut(length * ny).enumerate() {
+                    outwards.rows(k * length, part);
+                }
+                for values in [&of_occupied, &in_parts] {
+                    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+                    assert!(values.iter().zip(&at_once).all(same), "{shape:?} {length}");
+                }
+                in_parts.fill(f64::NAN);
+            }
+        }
+        Ok(())
+    }
 }

@@ -26,7 +26,7 @@ const NODES: usize = 14;
 
 /// The images of the cells of one grid, and where their sums are needed.
 #[derive(Debug, Clone)]
-pub(crate) struct Images {
+pub(crate) struct CellImages {
     spacing: [f64; 2],
     size: [f64; 2],
     shape: [usize; 2],
@@ -39,7 +39,7 @@ pub(crate) struct Images {
     interpolations: [Array2<f64>; 2],
 }
 
-impl Images {
+impl CellImages {
     /// The images on `grid`, summed one by one up to so many `rings` of the longest length of what is summed.
     pub(crate) fn plan(grid: &Grid, rings: f64) -> Self {
         let (spacing, size, periodic) = (grid.spacing(), grid.size(), grid.is_periodic());

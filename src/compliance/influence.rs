@@ -11,21 +11,18 @@
 use ndarray::{Array2, Zip};
 
 use crate::compliance::response::{Body, Response, check};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
-use crate::numerics::parallel::Threads;
-use crate::numerics::parallel::check_memory;
+use crate::numerics::parallel::{Threads, check_memory};
 
 mod conversion;
 mod exact;
-mod line;
-mod method;
 mod periodic;
 
+pub use conversion::Method;
+pub(crate) use conversion::memory;
 pub use exact::CellInfluence;
-pub use method::Method;
-pub(crate) use method::memory;
 
 /// Coefficients `C[i, j]` \[m/Pa\] of offsets (i dx, j dy) ≥ 0, in the shape (nx, ny) of `grid`.
 ///
@@ -83,7 +80,7 @@ pub(crate) fn unchecked_coefficients(
     threads: &Threads,
 ) -> Result<Array2<f64>> {
     let mut coefficients = match method {
-        Method::Exact if grid.is_line() => line::coefficients(body, grid, threads)?,
+        Method::Exact if grid.is_line() => exact::strip_coefficients(body, grid, threads)?,
         Method::Exact if grid.is_periodic() != [false; 2] => {
             periodic::coefficients(body, grid, threads)?
         }
@@ -114,13 +111,7 @@ pub(crate) fn unchecked_coefficients(
         Method::Plain { refinement }
         | Method::Difference { refinement }
         | Method::Image { refinement } => {
-            if refinement == 0 {
-                return Err(Error::Parameter {
-                    name: "refinement",
-                    requirement: "at least 1",
-                    value: 0.0,
-                });
-            }
+            require("refinement", refinement as f64, refinement > 0, "at least 1")?;
             conversion::coefficients(body, grid, method, refinement, threads)?
         }
     };

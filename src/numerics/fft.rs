@@ -7,6 +7,8 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use ndarray::{Array2, Axis};
+use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
@@ -15,16 +17,12 @@ use crate::numerics::parallel::{Threads, each_chunk, number};
 
 mod cosine;
 mod parity;
-mod series;
 mod spectrum;
 mod stages;
-mod tensor;
 
-pub(crate) use parity::{Keep, KernelRows, QuarterTransform, Transformed};
-pub(crate) use series::{fourier_coefficients, inverse_even};
+pub(crate) use parity::{Keep, KernelRows, QuarterTransform, Term, Transformed};
 pub(crate) use spectrum::{EvenSpectrum, ParitySpectrum};
 pub(crate) use stages::HalfSpectra;
-pub(crate) use tensor::Term;
 
 /// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
 /// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value
@@ -72,7 +70,7 @@ impl fmt::Debug for PaddedTransform {
 
 /// Memory for one convolution at a time; it may be larger than a transform needs.
 #[derive(Debug, Default)]
-pub(crate) struct Workspace {
+pub(crate) struct TransformMemory {
     /// Half spectra of rows, stored by rows or by blocks of columns.
     mesh: Vec<[Complex64; BLOCK]>,
     scratches: Scratches,
@@ -121,10 +119,15 @@ impl PaddedTransform {
         Self::with_periods(shape, shape.map(|n| 2 * n - 1), periodic, threads)
     }
 
-    /// Transforms that are not padded. Convolutions are periodic, with n as the period along directions
-    /// that are `periodic`, and the fast length ≥ n along others.
-    pub(crate) fn plan_unpadded(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
-        Self::with_periods(shape, shape, periodic, threads)
+    /// Transforms that are not padded. Convolutions are periodic, with the fast length ≥ n as period.
+    pub(crate) fn plan_unpadded(shape: [usize; 2], threads: &Threads) -> Self {
+        Self::with_periods(shape, shape, [false; 2], threads)
+    }
+
+    /// Transforms that are padded by an eighth. Convolutions are periodic, with n as the period along directions that
+    /// are `periodic`, and the fast length ≥ 9/8 n along others.
+    pub(crate) fn plan_margin(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
+        Self::with_periods(shape, shape.map(|n| n + n.div_ceil(8)), periodic, threads)
     }
 
     /// Transforms of fast lengths of at `least` so many points, but along directions that are `periodic`.
@@ -166,13 +169,6 @@ impl PaddedTransform {
         self.points() * self.points().ln()
     }
 
-    /// Bytes of the workspace and one spectrum of a padded transform of `shape`.
-    pub(crate) fn memory(shape: [usize; 2]) -> u64 {
-        let padded = shape.map(|n| fast_length(2 * n - 1) as u64);
-        let half = padded[1] / 2 + 1;
-        block_rows(shape[0]) as u64 * half * 16 + (padded[0] / 2 + 1) * half * 8
-    }
-
     /// Periods of the mesh, in cells.
     pub(crate) fn periods(&self) -> [usize; 2] {
         self.padded
@@ -207,14 +203,14 @@ impl PaddedTransform {
         self.threads.min(self.tasks)
     }
 
-    pub(crate) fn workspace(&self) -> Workspace {
-        let mut workspace = Workspace::default();
+    pub(crate) fn workspace(&self) -> TransformMemory {
+        let mut workspace = TransformMemory::default();
         self.reserve(&mut workspace);
         workspace
     }
 
     /// Enlarges `workspace` where it is too small for this transform.
-    pub(crate) fn reserve(&self, workspace: &mut Workspace) {
+    pub(crate) fn reserve(&self, workspace: &mut TransformMemory) {
         fn at_least<T: Clone>(memory: &mut Vec<T>, length: usize, zero: T) {
             if memory.len() < length {
                 memory.resize(length, zero);
@@ -226,7 +222,7 @@ impl PaddedTransform {
             .max(self.column_inverse.get_inplace_scratch_len())
             .max(self.row_forward.get_scratch_len())
             .max(self.row_inverse.get_scratch_len());
-        let Workspace { mesh, scratches: Scratches(scratches) } = workspace;
+        let TransformMemory { mesh, scratches: Scratches(scratches) } = workspace;
         at_least(mesh, self.blocks() * self.block_rows(), [ZERO; BLOCK]);
         if scratches.len() < self.scratches() {
             scratches.resize_with(self.scratches(), Mutex::default);
@@ -377,8 +373,62 @@ impl PaddedTransform {
     }
 }
 
+/// The corner (nx, ny) of the inverse transform of a real and even spectrum of (mx, my) points, both
+/// even. `value(k, l)` returns the entries at 0 ≤ k ≤ mx/2 and 0 ≤ l ≤ my/2.
+pub(crate) fn inverse_even(
+    [nx, ny]: [usize; 2],
+    [mx, my]: [usize; 2],
+    value: impl Fn(usize, usize) -> f64 + Sync,
+    threads: &Threads,
+) -> Array2<f64> {
+    let mut columns = Array2::zeros((my / 2 + 1, nx));
+    let mut out = Array2::zeros((nx, ny));
+    let scale = 1.0 / (mx as f64 * my as f64);
+    threads.run(|| {
+        even_lines(&mut columns, mx, 1.0, |l, k| value(k, l));
+        even_lines(&mut out, my, scale, |i, l| columns[[l, i]]);
+    });
+    out
+}
+
+/// Transforms real and even sequences of `period` points, for which the forward transform equals the unscaled inverse
+/// transform. `value(i, k)` returns the entries of row i at 0 ≤ k ≤ period/2.
+fn even_lines(
+    out: &mut Array2<f64>,
+    period: usize,
+    scale: f64,
+    value: impl Fn(usize, usize) -> f64 + Sync,
+) {
+    let fft = FftPlanner::new().plan_fft_forward(period);
+    let memory = || [period, fft.get_inplace_scratch_len()].map(|length| vec![ZERO; length]);
+    out.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each_init(
+        memory,
+        |[buffer, scratch], (i, mut row)| {
+            for k in 0..=period / 2 {
+                let entry = Complex64::new(value(i, k), 0.0);
+                buffer[k] = entry;
+                buffer[(period - k) % period] = entry;
+            }
+            fft.process_with_scratch(buffer, scratch);
+            row.iter_mut().zip(&*buffer).for_each(|(to, from)| *to = from.re * scale);
+        },
+    );
+}
+
+/// Fourier coefficients c_m = 1/N Σ f_n e^{−2πi mn/N} of the `samples` f_n, at 0 ≤ m ≤ N/2, as pairs
+/// of real and imaginary parts.
+pub(crate) fn fourier_coefficients(mut samples: Vec<f64>) -> Vec<(f64, f64)> {
+    let scale = 1.0 / samples.len() as f64;
+    let fft = RealFftPlanner::new().plan_fft_forward(samples.len());
+    let mut spectrum = fft.make_output_vec();
+    let done = fft.process(&mut samples, &mut spectrum);
+    debug_assert!(done.is_ok(), "the lengths are those of the plan");
+    spectrum.iter().map(|c| (c.re * scale, c.im * scale)).collect()
+}
+
 #[cfg(test)]
 mod tests {
+
     /// Adds to `sums`, rows of `ny` cells, `weight` times the double sum of kernel and input. The kernel has these values at
     /// offsets ≥ 0.
     pub(super) fn add_double_sum(

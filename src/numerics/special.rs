@@ -148,50 +148,38 @@ mod tests {
 
     use super::*;
 
-    /// Recurrence and the sum Σ (2k+1) j_k² = 1 (Abramowitz & Stegun, 10.1.50), below, at and above the orders.
-    #[test]
-    fn spherical_bessel_functions() {
-        let mut j = vec![0.0; 120];
-        for y in [1e-9, 1e-3, 0.7, 20.0, 60.0] {
-            spherical_bessel(y, &mut j);
-            let sum: f64 = j.iter().enumerate().map(|(k, j)| (2 * k + 1) as f64 * j * j).sum();
-            assert!((sum - 1.0).abs() < 1e-13, "{y}: {sum}");
-            assert!((j[0] - if y > 0.0 { y.sin() / y } else { 1.0 }).abs() < 1e-15);
-        }
-        // j_2 = (3/y² − 1) sin y/y − 3 cos y/y².
-        for y in [3.0, 130.0, 500.0_f64] {
-            spherical_bessel(y, &mut j);
-            let due = (3.0 / (y * y) - 1.0) * y.sin() / y - 3.0 * y.cos() / (y * y);
-            assert!((j[2] - due).abs() < 1e-15, "{y}: {} {due}", j[2]);
-        }
-    }
-
-    fn first_ten(x: f64) -> [f64; 10] {
-        let mut j = [0.0; 10];
-        spherical_bessel(x, &mut j);
+    fn bessel<const N: usize>(y: f64) -> [f64; N] {
+        let mut j = [0.0; N];
+        spherical_bessel(y, &mut j);
         j
     }
 
-    /// j_2 and j_9 in closed form or by their series; upward and downward recurrences agree where they meet.
+    /// The sum Σ (2k+1) j_k² = 1 (Abramowitz & Stegun, 10.1.50), below, at and above the orders; j_0, j_2 and j_9 in closed
+    /// form or by their series; upward and downward recurrences agree where they meet.
     #[test]
-    fn bessel_functions_are_those_of_the_books() {
+    fn spherical_bessel_functions() {
+        for y in [1e-9, 1e-3, 0.7, 20.0, 60.0] {
+            let j = bessel::<120>(y);
+            let sum: f64 = j.iter().enumerate().map(|(k, j)| (2 * k + 1) as f64 * j * j).sum();
+            assert!((sum - 1.0).abs() < 1e-13, "{y}: {sum}");
+            assert!((j[0] - y.sin() / y).abs() < 1e-15);
+        }
+        // j_2 = (3/y² − 1) sin y/y − 3 cos y/y².
+        let second = |y: f64| (3.0 / (y * y) - 1.0) * y.sin() / y - 3.0 * y.cos() / (y * y);
+        for y in [3.0, 130.0, 500.0_f64] {
+            let j = bessel::<120>(y);
+            assert!((j[2] - second(y)).abs() < 1e-15, "{y}: {} {}", j[2], second(y));
+        }
         for x in [1e-9, 1e-3, 0.3, 3.0, PI, 9.99, 10.01, 50.0] {
-            let j = first_ten(x);
-            let j2 = if x < 0.1 {
-                x * x / 15.0 * (1.0 - x * x / 14.0)
-            } else {
-                (3.0 / (x * x) - 1.0) * x.sin() / x - 3.0 * x.cos() / (x * x)
-            };
-            assert!(
-                (j[2] - j2).abs() < 1e-13 * (1.0 + 1.0 / x.powi(2)).min(10.0),
-                "{x} {} {j2}",
-                j[2]
-            );
+            let j = bessel::<10>(x);
+            let due = if x < 0.1 { x * x / 15.0 * (1.0 - x * x / 14.0) } else { second(x) };
+            let rounding = 1e-13 * (1.0 + 1.0 / x.powi(2)).min(10.0);
+            assert!((j[2] - due).abs() < rounding, "{x} {} {due}", j[2]);
         }
         // x⁹/19!! (1 − x²/42 + x⁴/3864 − …) at x = 1.
         let expected = 1.0 / 654_729_075.0 * (1.0 - 1.0 / 42.0 + 1.0 / 3864.0 - 1.0 / 579_600.0);
-        assert!((first_ten(1.0)[9] / expected - 1.0).abs() < 1e-6);
-        let [below, above] = [10.0 - 1e-9, 10.0 + 1e-9].map(first_ten);
+        assert!((bessel::<10>(1.0)[9] / expected - 1.0).abs() < 1e-6);
+        let [below, above] = [10.0 - 1e-9, 10.0 + 1e-9].map(bessel::<10>);
         for (below, above) in below.iter().zip(above) {
             assert!((below - above).abs() < 1e-9, "{below} {above}");
         }

@@ -226,7 +226,6 @@ impl Tensor {
         (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
     }
 
-    /// Mean of the normal stresses.
     pub(super) fn mean(&self) -> f64 {
         (self.xx + self.yy + self.zz) / 3.0
     }

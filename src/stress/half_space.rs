@@ -4,24 +4,24 @@ use std::ops::Range;
 
 use ndarray::{Array1, ArrayRef2};
 
-use crate::compliance::kernel::cells::CellSource;
 use crate::compliance::kernel::loads::{
     COMPONENTS, EXCHANGED, ODD, Pressure, PressureStress, Radial, Traction, TractionStress,
 };
-use crate::compliance::kernel::plane::{CellPlan, Kernel, Kernels};
+use crate::compliance::kernel::plane::{CellPlan, CellSource, Kernel, Kernels};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
-use crate::error::{Error, Result};
-use crate::model::body::{HalfSpace, Substrate};
+use crate::compliance::response::substrate_material;
+use crate::error::{Result, all_finite, require, same_shape};
+use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::fft::{Keep, PaddedTransform, QuarterTransform, Transformed};
-use crate::numerics::parallel::{Threads, check_memory};
+use crate::numerics::parallel::{Threads, check_memory, memory_of};
 use crate::stress::subcell::{STRESSES, SubcellStress};
 
 mod evaluation;
 mod repeats;
 
-pub(super) use evaluation::{HalfSpacePart, Part, PlaneMemory, plane_memory};
+pub(super) use evaluation::{HalfSpacePart, Part, PlaneMemory, plane_arrays};
 use repeats::{Repeats, RowSource, rows_of};
 
 /// A half-space under a pressure, planned once and evaluated any number of times.
@@ -30,7 +30,6 @@ pub(super) struct HalfSpacePlan {
     pub(super) body: HalfSpace,
     pub(super) grid: Grid,
     kernels: Kernels,
-    /// Present where the grid repeats.
     repeats: Option<Repeats>,
     /// First and last row, then first and last column, of the loaded cells; none where no cell is loaded.
     loaded: Option<[[usize; 2]; 2]>,
@@ -65,7 +64,6 @@ pub(super) struct SurfaceLoad {
 }
 
 impl SurfaceLoad {
-    /// The pressure itself.
     pub(super) const PRESSURE: Self = Self { factor: 1.0, axis: None };
 
     /// Whether each component is odd in x and in y.
@@ -124,7 +122,7 @@ impl HalfSpacePlan {
         let repeats = threads.run(|| Repeats::plan(body, grid));
         // One per cent more than the diagonal, for rounding.
         let reach = (repeats.as_ref()).map_or(1.01 * lx.hypot(ly), Repeats::reach);
-        let kernels = threads.run(|| Kernels::new::<6, Pressure>(body, grid, 1.0, reach));
+        let kernels = threads.run(|| Kernels::new(body, grid, 1.0, reach));
         let uniform = subcell.as_ref().map_or(&*pressure, SubcellStress::uniform);
         let shape = grid.shape();
         let loaded = loaded_cells(shape, &[&pressure, uniform]);
@@ -171,10 +169,10 @@ impl HalfSpacePlan {
     pub(super) fn memory(grid: &Grid, is_solved: bool) -> u64 {
         // The transform of the pressure and its rows, counted as 8 arrays of cells; the reconstruction
         // and the transform of the solver's pressure, as 24.
-        let arrays = 8 + if is_solved { 24 } else { 0 };
-        // The coefficients of a component, at all offsets.
-        let repeats = grid.is_periodic() != [false; 2];
-        transforms_memory(grid, arrays + if repeats { 2 * COMPONENTS as u64 } else { 0 })
+        let pressure = if is_solved { 8 + 24 } else { 8 };
+        // Where the grid repeats, the coefficients of a component, at all offsets.
+        let images = if grid.is_periodic() == [false; 2] { 0 } else { 2 * COMPONENTS };
+        memory_of(grid.shape(), pressure + images)
     }
 
     /// Estimated errors \[Pa\] of the stress at `places` in the cells of `window`, from the size of the cells;
@@ -242,27 +240,22 @@ impl Coefficients<'_> {
         let slides = self.loading.loads.iter().any(|load| load.axis.is_some());
         match &self.plan.kernels {
             Kernels::Line(plan) => self.strips(plan, take),
-            Kernels::Plane { plan, pressure, traction } => {
-                // Made without rayon, so that a thread that waits for it cannot be asked to make it.
-                let traction =
-                    slides.then(|| traction.get_or_init(|| plan.multipliers::<9, Traction>()));
-                // Stresses alone need fewer radial functions.
-                if self.loading.displacement {
-                    self.cells::<6, COMPONENTS, Pressure>(plan, pressure, take);
-                    if let Some(traction) = traction {
-                        self.cells::<9, COMPONENTS, Traction>(plan, traction, take);
-                    }
-                } else {
-                    self.cells::<4, STRESSES, PressureStress>(plan, pressure, take);
-                    if let Some(traction) = traction {
-                        self.cells::<6, STRESSES, TractionStress>(plan, traction, take);
-                    }
+            // Stresses alone need fewer radial functions.
+            Kernels::Plane(plan) if self.loading.displacement => {
+                self.cells::<6, COMPONENTS, Pressure>(plan, take);
+                if slides {
+                    self.cells::<9, COMPONENTS, Traction>(plan, take);
+                }
+            }
+            Kernels::Plane(plan) => {
+                self.cells::<4, STRESSES, PressureStress>(plan, take);
+                if slides {
+                    self.cells::<6, STRESSES, TractionStress>(plan, take);
                 }
             }
         }
     }
 
-    /// Coefficients of line contact.
     fn strips(&self, plan: &LinePlan, take: &mut dyn FnMut(usize, &RowSource)) {
         for (number, load) in self.loading.loads.iter().enumerate() {
             let values = plan.coefficients(self.place, load.axis);
@@ -282,12 +275,11 @@ impl Coefficients<'_> {
     fn cells<const N: usize, const C: usize, L: Radial<N>>(
         &self,
         plan: &CellPlan,
-        multipliers: &[Vec<(f64, f64)>],
         take: &mut dyn FnMut(usize, &RowSource),
     ) {
-        let kernel = Kernel::new::<L>(plan, multipliers, self.place);
+        let kernel = Kernel::new::<L>(plan, self.place);
         let repeats = self.plan.repeats.as_ref();
-        let block = repeats.and_then(|repeats| repeats.block_kernel::<N, L>(self.place));
+        let block = repeats.map(|repeats| repeats.block_kernel::<N, L>(self.place));
         let of_kind = |load: &SurfaceLoad| load.axis.is_some() == L::IS_TRACTION;
         let loads = self.loading.loads.iter().enumerate();
         for (number, load) in loads.filter(|(_, load)| of_kind(load)) {
@@ -332,13 +324,9 @@ pub(super) const MAGNITUDES: [f64; 2] = [1e-60, 1e60];
 
 /// Refuses lengths and moduli outside of [`MAGNITUDES`].
 fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
-    let check = |name, value: f64| match (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value) {
-        true => Ok(()),
-        false => Err(Error::Parameter {
-            name,
-            requirement: "between 1e-60 and 1e60 for stresses (take other units)",
-            value,
-        }),
+    let check = |name, value: f64| {
+        let requirement = "between 1e-60 and 1e60 for stresses (take other units)";
+        require(name, value, (MAGNITUDES[0]..=MAGNITUDES[1]).contains(&value), requirement)
     };
     for axis in 0..2 {
         check("size of the grid", grid.size()[axis])?;
@@ -348,10 +336,10 @@ fn check_magnitudes(body: &HalfSpace, grid: &Grid) -> Result<()> {
         check("thickness", layer.thickness())?;
         check("young", layer.material().young())?;
     }
-    match body.substrate() {
-        Substrate::Elastic(material) => check("young", material.young()),
-        Substrate::Rigid => Ok(()),
+    if let Some(material) = substrate_material(body) {
+        check("young", material.young())?;
     }
+    Ok(())
 }
 
 /// `pressure` in C order.
@@ -364,21 +352,9 @@ pub(super) fn checked_pressure(
     pressure: &ArrayRef2<f64>,
 ) -> Result<Vec<f64>> {
     check_magnitudes(body, grid)?;
-    let found = [pressure.nrows(), pressure.ncols()];
-    if found != grid.shape() {
-        return Err(Error::Shape { name: "pressure", expected: grid.shape(), found });
-    }
-    if let Some((index, _)) = pressure.indexed_iter().find(|(_, p)| !p.is_finite()) {
-        return Err(Error::NonFinite { name: "pressure", index: [index.0, index.1] });
-    }
+    same_shape("pressure", pressure, grid.shape())?;
+    all_finite("pressure", pressure)?;
     Ok(pressure.iter().copied().collect())
-}
-
-/// Bytes of `arrays` arrays of cells as transforms keep them. Transforms store whole blocks of
-/// columns, at lengths that are products of small primes: together a fifth more than the cells.
-fn transforms_memory(grid: &Grid, arrays: u64) -> u64 {
-    let [nx, ny] = grid.shape().map(|n| n as u64);
-    (nx + 1) * (ny + 8) * 8 * arrays * 6 / 5
 }
 
 /// First and last row, then first and last column, of the cells that any of `pressures` loads; none

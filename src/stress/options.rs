@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, require};
 use crate::model::body::{HalfSpace, Interface, Layer};
 
 /// Side of an interface, for a depth that lies on one.
@@ -87,13 +87,9 @@ impl StressOptions {
     /// Residual stress of every layer and of the substrate.
     pub(super) fn residual_by_layer(&self, body: &HalfSpace) -> Result<Vec<f64>> {
         let count = body.layers().len() + 1;
-        if self.residual.len() > count {
-            return Err(Error::Parameter {
-                name: "number of values in residual",
-                requirement: "at most one for each layer and one for the substrate",
-                value: self.residual.len() as f64,
-            });
-        }
+        let given = self.residual.len();
+        let requirement = "at most one for each layer and one for the substrate";
+        require("number of values in residual", given as f64, given <= count, requirement)?;
         let mut values = vec![0.0; count];
         for (value, given) in values.iter_mut().zip(&self.residual) {
             *value = finite("residual", *given)?;
@@ -112,7 +108,6 @@ pub struct WatchedStress<'a> {
 }
 
 impl<'a> WatchedStress<'a> {
-    /// The options.
     pub(crate) fn options(&self) -> &'a StressOptions {
         self.options
     }
@@ -157,20 +152,8 @@ impl SlidingSense {
     /// a body with a frictionless interface.
     pub(super) fn traction(&self, body: &HalfSpace, options: &StressOptions) -> Result<[f64; 2]> {
         let friction = finite("friction", options.friction)?;
-        if friction < 0.0 {
-            return Err(Error::Parameter {
-                name: "friction",
-                requirement: "at least 0 (turn the direction)",
-                value: friction,
-            });
-        }
-        if friction > 1e100 {
-            return Err(Error::Parameter {
-                name: "friction",
-                requirement: "at most 1e100",
-                value: friction,
-            });
-        }
+        require("friction", friction, friction >= 0.0, "at least 0 (turn the direction)")?;
+        require("friction", friction, friction <= 1e100, "at most 1e100")?;
         let given = options.direction.map(check_direction).transpose()?;
         if friction <= 0.0 {
             return Ok([0.0; 2]);
@@ -199,12 +182,7 @@ impl SlidingSense {
 /// `direction`, if it has a finite length above 0.
 fn check_direction(direction @ [x, y]: [f64; 2]) -> Result<[f64; 2]> {
     let length = x.hypot(y);
-    if length > 0.0 && length.is_finite() {
-        return Ok(direction);
-    }
-    Err(Error::Parameter {
-        name: "direction",
-        requirement: "a vector of finite length above 0",
-        value: length,
-    })
+    let holds = length > 0.0 && length.is_finite();
+    require("direction", length, holds, "a vector of finite length above 0")?;
+    Ok(direction)
 }

@@ -8,7 +8,7 @@ use super::ends::{EndErrors, EndStress};
 use super::field::Stress;
 use super::half_space::{
     HalfSpacePart, HalfSpacePlan, Loading, Part, PlaneMemory, SurfaceLoad, checked_pressure,
-    components, plane_memory,
+    components, plane_arrays,
 };
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::section::{Points, Span, place};
@@ -18,7 +18,7 @@ use crate::compliance::response::interior::Place;
 use crate::error::{Error, Result};
 use crate::model::body::HalfSpace;
 use crate::model::grid::{Grid, Window};
-use crate::numerics::parallel::{Threads, check_memory};
+use crate::numerics::parallel::{Threads, check_memory, memory_of};
 
 /// Weights of the components σ_xx … σ_xz in each cell, in C order.
 pub(crate) type Weights = [Vec<f64>; STRESSES];
@@ -91,13 +91,13 @@ impl<'a> PressureSource<'a> {
     }
 
     /// Bytes that planning takes.
-    pub(super) fn memory(&self) -> u64 {
+    fn memory(&self) -> u64 {
         HalfSpacePlan::memory(self.grid, self.solved.is_some())
     }
 
     /// The plan; none where `progress` stops it. `progress` is asked, with 0, while the pressure is
     /// reconstructed within cells, and while ends are planned; the rest is quick.
-    pub(super) fn plan(
+    fn plan(
         &self,
         threads: Option<usize>,
         progress: &mut StressProgress,
@@ -136,6 +136,20 @@ impl<'a> PressureSource<'a> {
         let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
         let plan = self.plan(threads, &mut |part| asked.tell(part))?;
         plan.ok_or(stopped)
+    }
+
+    /// What `evaluate`, which takes so many bytes, makes of a plan for this call; none where planning is stopped.
+    pub(super) fn once<T>(
+        &self,
+        mut asked: WatchedStress,
+        memory: u64,
+        evaluate: impl FnOnce(&StressPlan, &mut StressProgress) -> T,
+    ) -> Result<Option<T>> {
+        check_memory(self.grid.shape(), memory + self.memory())?;
+        let threads = asked.options().threads;
+        let mut progress = |part| asked.tell(part);
+        let plan = self.plan(threads, &mut progress)?;
+        Ok(plan.map(|plan| evaluate(&plan, &mut progress)))
     }
 
     /// Refuses what stresses near free ends are not known for, and a pressure beyond an end.
@@ -323,17 +337,15 @@ impl<'a> Evaluation<'a> {
 pub(super) fn stress_once(
     source: &PressureSource,
     depths: &[f64],
-    mut asked: WatchedStress,
+    asked: WatchedStress,
 ) -> Result<Stress> {
-    let (body, grid, options) = (source.body, source.grid, asked.options());
-    let request = Request::checked(body, grid, &source.sliding, depths, options)?;
-    check_memory(grid.shape(), request.memory() + source.memory())?;
-    let mut progress = |part| asked.tell(part);
-    Ok(match source.plan(options.threads, &mut progress)? {
-        Some(plan) => request.evaluate(&plan, &mut progress),
-        // Stopped while planning: no depth is done.
-        None => request.result(zeros(request.components(), 0), 0, None),
-    })
+    let (body, grid, sliding) = (source.body, source.grid, &source.sliding);
+    let request = Request::checked(body, grid, sliding, depths, asked.options())?;
+    let evaluate =
+        |plan: &StressPlan, progress: &mut StressProgress| request.evaluate(plan, progress);
+    // Stopped while planning, no depth is done.
+    let none = || request.result(zeros(request.components(), 0), 0, None);
+    Ok(source.once(asked, request.memory(), evaluate)?.unwrap_or_else(none))
 }
 
 /// Arguments of one evaluation, checked.
@@ -382,8 +394,8 @@ impl<'a> Request<'a> {
             // Sums of one row of coefficients for each cell.
             return result + (8 * 4 * COMPONENTS * self.grid.shape()[0]) as u64;
         }
-        let slides = self.options.friction != 0.0;
-        result + plane_memory(self.grid, slides, self.options.displacement)
+        let arrays = plane_arrays(self.options.friction != 0.0, self.options.displacement);
+        result + memory_of(self.grid.shape(), arrays)
     }
 
     /// Whether a plane has a single point, which is interpolated from cells.

@@ -7,7 +7,7 @@ use ndarray::Array1;
 use super::half_space::MAGNITUDES;
 use super::options::{Section, Side};
 use crate::compliance::response::interior::Place;
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, not_negative, require};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::{Grid, Window};
 
@@ -21,16 +21,8 @@ const CENTRE_TOLERANCE: f64 = 1e-9;
 
 /// Place of the depth `z` in `body`.
 pub(super) fn place(body: &HalfSpace, z: f64, side: Side) -> Result<Place> {
-    if !(z >= 0.0 && z.is_finite()) {
-        return Err(Error::Parameter { name: "z", requirement: "finite and at least 0", value: z });
-    }
-    if z > MAGNITUDES[1] {
-        return Err(Error::Parameter {
-            name: "z",
-            requirement: "at most 1e60 (take other units)",
-            value: z,
-        });
-    }
+    not_negative("z", z)?;
+    require("z", z, z <= MAGNITUDES[1], "at most 1e60 (take other units)")?;
     let mut top = 0.0;
     for ((layer, count), interface) in body.layers().iter().zip(0..).zip(body.interfaces()) {
         let on = (z - interface).abs() <= INTERFACE_TOLERANCE * interface;
@@ -143,7 +135,6 @@ impl Points {
         }
     }
 
-    /// How many points there are.
     pub(super) fn count(&self) -> usize {
         self.shape[0] * self.shape[1]
     }
@@ -224,9 +215,8 @@ fn position(grid: &Grid, axis: usize, at: f64) -> Result<f64> {
     let name = ["x", "y"][axis];
     finite(name, at)?;
     let position = (at - grid.center()[axis]) / grid.spacing()[axis] + 0.5 * (n - 1) as f64;
-    if !(-0.5 - CENTRE_TOLERANCE..=n as f64 - 0.5 + CENTRE_TOLERANCE).contains(&position) {
-        return Err(Error::Parameter { name, requirement: "on the grid", value: at });
-    }
+    let on_grid = -0.5 - CENTRE_TOLERANCE..=n as f64 - 0.5 + CENTRE_TOLERANCE;
+    require(name, at, on_grid.contains(&position), "on the grid")?;
     // Rounding must not mix a neighbour into a line through cell centres.
     let nearest = position.round();
     Ok(if (position - nearest).abs() < CENTRE_TOLERANCE { nearest } else { position })
@@ -257,7 +247,6 @@ pub(super) struct Span {
     pub(super) faces: [Option<usize>; 2],
     /// Where the body is, in rows: 0 is the centre of the first.
     reach: [f64; 2],
-    /// Number of the grid's columns.
     columns: usize,
 }
 

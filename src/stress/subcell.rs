@@ -45,8 +45,7 @@
 //! | file | what it makes |
 //! |---|---|
 //! | `edge` | the cells near the edge where a polynomial, fitted by least squares, is certain enough |
-//! | `cut` | cells cut into rectangles |
-//! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots |
+//! | `reconstruction` | the pressure of all cells: uniform part, slopes and curvatures, roots; cells cut into rectangles |
 //! | `near` | the sum of the third part over the cells around |
 //! | `uncertainty` | whether cells resolve the law at an edge; the error that their size leaves, at a depth |
 
@@ -62,15 +61,14 @@ use crate::model::grid::{Grid, Window};
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
 
-mod cut;
 mod edge;
 mod near;
 mod reconstruction;
 mod uncertainty;
 
-use cut::Cuts;
 use near::{Components, NearPlan};
 pub(super) use near::{NearTable, STRESSES};
+use reconstruction::Cuts;
 pub(super) use uncertainty::BodyPair;
 use uncertainty::{LocalSteps, Uncertainty};
 
@@ -106,8 +104,7 @@ impl SubcellStress {
         let pressure = &*margin.around(pressure);
         let near = NearPlan::new(pressure, &wide, edges, threads, progress)?;
         let reach = near.farthest();
-        let kernels =
-            threads.run(|| Kernels::new::<4, PressureStress>(body, grid, Cuts::SMALLEST, reach));
+        let kernels = threads.run(|| Kernels::new(body, grid, Cuts::SMALLEST, reach));
         let uncertainty = Uncertainty::new((body, pair), &wide, pressure, &near.reconstruction);
         ControlFlow::Continue(Self {
             uniform: margin.middle(&near.reconstruction.uniform),
@@ -163,13 +160,10 @@ impl SubcellStress {
                     sum(normal.at(y, half), along, across)
                 })
             }
-            Kernels::Plane { plan, pressure, traction } => {
+            Kernels::Plane(plan) => {
                 let slides = fx != 0.0 || fy != 0.0;
-                let normal = Kernel::new::<PressureStress>(plan, pressure, place);
-                let lateral = slides.then(|| {
-                    let traction = traction.get_or_init(|| plan.multipliers::<6, TractionStress>());
-                    Kernel::new::<TractionStress>(plan, traction, place)
-                });
+                let normal = Kernel::new::<PressureStress>(plan, place);
+                let lateral = slides.then(|| Kernel::new::<TractionStress>(plan, place));
                 self.near.table(place.depth, |[x, y], [a, b]| -> Components {
                     let pressed = normal.at::<PressureStress>([x, y], [a, b]);
                     let Some(lateral) = &lateral else {
@@ -244,7 +238,6 @@ impl Margin {
         }
     }
 
-    /// Whether there is any.
     fn is_empty(self) -> bool {
         self.width == [0; 2]
     }

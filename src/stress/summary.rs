@@ -3,14 +3,15 @@
 use std::ops::ControlFlow;
 
 use super::field::{Peak, Percent, Tensor};
-use super::half_space::plane_memory;
+use super::half_space::plane_arrays;
 use super::options::{SlidingSense, StressOptions, StressProgress, WatchedStress};
 use super::plan::{Evaluation, PressureSource, StressPlan};
 use crate::compliance::response::interior::Place;
+use crate::compliance::response::substrate_material;
 use crate::error::{Result, positive};
-use crate::model::body::{HalfSpace, Layer, Substrate};
+use crate::model::body::{HalfSpace, Layer};
 use crate::model::grid::Grid;
-use crate::numerics::parallel::check_memory;
+use crate::numerics::parallel::{check_memory, memory_of};
 
 /// Strengths of the layers from the surface down, then of the substrate. None, or a shorter list:
 /// not known.
@@ -148,16 +149,13 @@ impl StressPlan {
 pub(super) fn summary_once(
     source: &PressureSource,
     strengths: &Strengths,
-    mut asked: WatchedStress,
+    asked: WatchedStress,
 ) -> Result<StressSummary> {
-    let (body, grid, options) = (source.body, source.grid, asked.options());
-    let request = SummaryRequest::checked(body, grid, &source.sliding, strengths, options)?;
-    check_memory(grid.shape(), request.memory + source.memory())?;
-    let mut progress = |part| asked.tell(part);
-    Ok(match source.plan(options.threads, &mut progress)? {
-        Some(plan) => request.evaluate(&plan, &mut progress),
-        None => StressSummary::default(),
-    })
+    let (body, grid, sliding) = (source.body, source.grid, &source.sliding);
+    let request = SummaryRequest::checked(body, grid, sliding, strengths, asked.options())?;
+    let evaluate =
+        |plan: &StressPlan, progress: &mut StressProgress| request.evaluate(plan, progress);
+    Ok(source.once(asked, request.memory, evaluate)?.unwrap_or_default())
 }
 
 /// Arguments of one summary, checked.
@@ -197,14 +195,13 @@ impl<'a> SummaryRequest<'a> {
         options: &StressOptions,
     ) -> Result<Self> {
         strengths.check()?;
-        let [nx, ny] = grid.shape();
         // Six components, and the in-plane stress above an interface.
-        let planes = 8 * 9 * (nx * ny) as u64;
+        let arrays = 9 + plane_arrays(options.friction != 0.0, false);
         Ok(Self {
             strengths,
             residual: options.residual_by_layer(body)?,
             friction: sliding.traction(body, options)?,
-            memory: planes + plane_memory(grid, options.friction != 0.0, false),
+            memory: memory_of(grid.shape(), arrays),
         })
     }
 
@@ -303,10 +300,7 @@ fn interface(
 ) -> ControlFlow<(), InterfaceSummary> {
     let depth = body.layers()[..=number].iter().map(Layer::thickness).sum();
     let next = body.layers().get(number + 1).map(Layer::material);
-    let below = next.or(match body.substrate() {
-        Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
-    });
+    let below = next.or(substrate_material(body));
     let [tension, compression, shear] = planes.tractions(&Place {
         layer: number,
         below_top: layer.thickness(),
@@ -352,7 +346,6 @@ struct Largest {
 }
 
 impl Largest {
-    /// Before any value.
     const NONE: Self = Self { value: f64::NEG_INFINITY, cell: 0 };
 
     fn offer(&mut self, value: f64, cell: usize) {
@@ -505,7 +498,7 @@ fn regions(body: &HalfSpace, half_width: f64) -> Vec<Vec<Place>> {
         regions.push(depths.iter().map(place).collect());
         top += h;
     }
-    if let Substrate::Elastic(material) = body.substrate() {
+    if let Some(material) = substrate_material(body) {
         let depths = [0.0].into_iter().chain(DEPTHS_SEARCHED.map(|d| d * half_width));
         let place = |z: f64| at(body.layers().len(), top, z, material);
         regions.push(depths.map(place).collect());

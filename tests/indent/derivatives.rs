@@ -41,12 +41,11 @@ fn coated_spheres() -> Result<()> {
             let change = point.derivative(variable, Held::Load)?;
             let pressure = change.pressure(&[0.0])?[0] / central;
             for (name, found, of_claim) in [
-                ("ln_a", change.radius / point.radius, "derivatives"),
-                ("ln_delta", change.approach / point.approach, "derivatives"),
-                ("ln_p0", pressure, "derivative-of-pressure"),
+                ("ln_a", change.radius / point.radius, "indentation-derivatives"),
+                ("ln_delta", change.approach / point.approach, "indentation-derivatives"),
+                ("ln_p0", pressure, "indentation-derivative-of-pressure"),
             ] {
-                let error = found * scale - number(due, name);
-                claim(&format!("indentation-{of_claim}"), error);
+                claim(of_claim, found * scale - number(due, name));
             }
         }
     }

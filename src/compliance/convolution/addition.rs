@@ -65,7 +65,7 @@ impl fmt::Debug for Addition {
 
 /// Memory for one application.
 #[derive(Debug, Default)]
-pub(super) struct Memory {
+pub(super) struct AdditionMemory {
     /// Values at the nodes, padded with zeros.
     values: Vec<f64>,
     spectra: Vec<Complex64>,
@@ -148,7 +148,7 @@ impl Addition {
         &self,
         input: &[f64],
         occupied: Range<usize>,
-        memory: &mut Memory,
+        memory: &mut AdditionMemory,
         threads: &Threads,
     ) {
         let (length, waves) = (self.length, self.length / 2 + 1);
@@ -156,7 +156,7 @@ impl Addition {
         memory.values.resize(self.nodes * length, 0.0);
         memory.spectra.resize(self.nodes * waves, ZERO);
         memory.products.resize(self.nodes * waves, ZERO);
-        let Memory { values, spectra, products } = memory;
+        let AdditionMemory { values, spectra, products } = memory;
         values.fill(0.0);
         for i in occupied {
             let RowWeights { first, weights } = self.row(i);
@@ -216,7 +216,13 @@ impl Addition {
     }
 
     /// Adds the interpolated response to rows of the output, from row `first` on.
-    pub(super) fn add_rows(&self, first: usize, ny: usize, output: &mut [f64], memory: &Memory) {
+    pub(super) fn add_rows(
+        &self,
+        first: usize,
+        ny: usize,
+        output: &mut [f64],
+        memory: &AdditionMemory,
+    ) {
         for (i, output) in output.chunks_exact_mut(ny).enumerate() {
             let row = self.row(first + i);
             let nodes = memory.values[row.first * self.length..].chunks_exact(self.length);

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use ndarray::Array2;
 
-use super::cells::{Nodes, coefficients};
+use super::quarter_space::{Nodes, coefficients};
 use super::waves::Along;
-use super::{layers, plate};
+use super::{contrast, plate};
 use crate::compliance::convolution::{Addition, RowWeights};
 use crate::compliance::response::Body;
 use crate::error::{Error, Result};
@@ -20,17 +20,10 @@ use crate::numerics::parallel::Threads;
 /// rounding.
 const ROUNDED_PLACE: f64 = 1e-6;
 
-/// EndSide of a body on which it ends: the lower or the higher x.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum EndSide {
-    Low,
-    High,
-}
-
-/// A free end of one body.
 #[derive(Debug, Clone)]
 struct End {
-    side: EndSide,
+    /// 0 where the body ends at its lowest x, 1 at its highest.
+    side: usize,
     x: f64,
     ending: Ending,
 }
@@ -54,7 +47,6 @@ pub struct FreeEnds {
     pub error: Option<f64>,
 }
 
-/// A body with two free ends.
 #[derive(Debug, Clone)]
 struct Plate {
     ends: [f64; 2],
@@ -73,7 +65,6 @@ pub(crate) struct Ends {
 }
 
 impl Ends {
-    /// The ends of `bodies`.
     pub(crate) fn of(bodies: &[&Body]) -> Self {
         let (mut ends, mut plates) = (Vec::new(), Vec::new());
         let mut layered = false;
@@ -87,7 +78,7 @@ impl Ends {
                 continue;
             };
             let ending = Ending { body, material };
-            for (side, x) in [EndSide::Low, EndSide::High].into_iter().zip(half_space.ends()) {
+            for (side, x) in half_space.ends().into_iter().enumerate() {
                 if let Some(x) = x {
                     let ending = ending.clone();
                     ends.push(End { side, x, ending });
@@ -106,7 +97,7 @@ impl Ends {
     pub(crate) fn form(&self, width: f64) -> Option<FreeEnds> {
         let plates = !self.plates.is_empty();
         let is_short = |plate: &Plate| plate.ends[1] - plate.ends[0] < 0.25 * width;
-        let contrasts = self.ends.iter().map(|end| layers::contrast(&end.ending.body));
+        let contrasts = self.ends.iter().map(|end| contrast(&end.ending.body));
         let error = match contrasts.reduce(f64::max)? {
             equal if equal <= 1.0 => Some(match plates {
                 true if self.plates.iter().any(is_short) => 3e-3,
@@ -120,28 +111,26 @@ impl Ends {
         Some(FreeEnds { plates, error })
     }
 
-    /// Whether any body has a free end.
     pub(crate) fn any(&self) -> bool {
         !self.ends.is_empty()
     }
 
     /// Range of x in which all bodies go on.
     pub(crate) fn range(&self) -> [f64; 2] {
-        let on = |side: EndSide| self.ends.iter().filter(move |end| end.side == side);
+        let on = |side: usize| self.ends.iter().filter(move |end| end.side == side);
         [
-            on(EndSide::Low).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
-            on(EndSide::High).fold(f64::INFINITY, |x, end| x.min(end.x)),
+            on(0).fold(f64::NEG_INFINITY, |x, end| x.max(end.x)),
+            on(1).fold(f64::INFINITY, |x, end| x.min(end.x)),
         ]
     }
 
     /// Number of bodies that end on side `k` at x, or before, and whether these are all.
     pub(crate) fn at(&self, k: usize, x: f64, tolerance: f64) -> (usize, bool) {
-        let before = |end: &&End| match (k, end.side) {
-            (0, EndSide::Low) => end.x >= x - tolerance,
-            (1, EndSide::High) => end.x <= x + tolerance,
-            _ => false,
+        let before = |end: &&End| match end.side {
+            0 => end.x >= x - tolerance,
+            _ => end.x <= x + tolerance,
         };
-        let count = self.ends.iter().filter(before).count();
+        let count = self.ends.iter().filter(|end| end.side == k).filter(before).count();
         (count, count >= self.bodies)
     }
 
@@ -199,7 +188,7 @@ impl Ends {
         let dx = grid.spacing()[0];
         let length = Along::of(grid).length;
         let [low, high] = [0.0, finest.size()[0]].map(|part| start(finest) + part);
-        let mut groups: BTreeMap<(EndSide, u64), Vec<&End>> = BTreeMap::new();
+        let mut groups: BTreeMap<(usize, u64), Vec<&End>> = BTreeMap::new();
         for end in &self.ends {
             groups.entry((end.side, end.x.to_bits())).or_default().push(end);
         }
@@ -210,12 +199,10 @@ impl Ends {
             let &End { side, x, .. } = ends[0];
             let from_end = |row: usize| {
                 let center = start(grid) + (row as f64 + 0.5) * dx;
-                if side == EndSide::Low { center - x } else { x - center }
+                if side == 0 { center - x } else { x - center }
             };
-            let rows: Vec<usize> = match side {
-                EndSide::Low => (0..nx).collect(),
-                EndSide::High => (0..nx).rev().collect(),
-            };
+            let rows: Vec<usize> =
+                if side == 0 { (0..nx).collect() } else { (0..nx).rev().collect() };
             let beyond = rows.iter().take_while(|row| from_end(**row) < 0.0).count();
             let Some(&first) = rows.get(beyond) else {
                 continue;

@@ -26,7 +26,7 @@ use std::sync::LazyLock;
 use ndarray::Array2;
 
 use super::waves::Along;
-use super::{cells, layers};
+use super::{layers_factor, quarter_space};
 use crate::compliance::convolution::{RowWeights, pair};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
@@ -86,7 +86,8 @@ impl Entry {
     fn growing(&self, kl: f64, poisson: f64) -> f64 {
         match self.pair {
             [0, 0] => {
-                PI / ((1.0 - poisson * poisson) * kl) + (3.0 + 2.0 * cells::logarithm()) * kl.ln()
+                PI / ((1.0 - poisson * poisson) * kl)
+                    + (3.0 + 2.0 * quarter_space::logarithm()) * kl.ln()
             }
             [1, 1] => PI / ((1.0 - poisson) * (3.0 + poisson) * kl),
             _ => 0.0,
@@ -170,7 +171,7 @@ pub(super) fn coefficients(
     for entry in TABLE.iter() {
         let [a, b] = entry.pair;
         let amplitude =
-            |k: f64| factor * layers::factor(body, k) * entry.at(k * length, material.poisson());
+            |k: f64| factor * layers_factor(body, k) * entry.at(k * length, material.poisson());
         let mut row = coefficients.row_mut(pair(a, b));
         for (&k, weights) in waves.wavenumbers.iter().zip(&waves.weights) {
             let here = amplitude(k);
@@ -249,13 +250,9 @@ mod tests {
     /// uGk/(1−ν) at x under the pressure 1, or 2x − 1, for L = 1: 1 on a half-space under 1 everywhere.
     fn displacement(k: f64, poisson: f64, x: f64, linear: bool) -> f64 {
         let reduction = Reduction::of(poisson);
-        let none = || Array1::<f64>::zeros(reduction.displacement.count());
-        let ends = [x, 1.0 - x].map(|distance| {
-            let mut modes = none();
-            reduction.displacement.add(k * distance, 1.0, &mut modes);
-            modes
-        });
-        let mut loads = [none(), none()];
+        let modes = &reduction.displacement;
+        let ends = [x, 1.0 - x].map(|distance| modes.at(k * distance));
+        let mut loads = [0, 1].map(|_| Array1::<f64>::zeros(modes.count()));
         let mut sum = 0.0;
         for (source, weight) in sources(x) {
             let load = weight * if linear { 2.0 * source - 1.0 } else { 1.0 };
@@ -263,7 +260,7 @@ mod tests {
                 sum += load * k0(k * distance);
             }
             for (loads, distance) in loads.iter_mut().zip([source, 1.0 - source]) {
-                reduction.displacement.add(k * distance, load, loads);
+                modes.add(k * distance, load, loads);
             }
         }
         sum += ends.iter().zip(&loads).map(|(a, b)| a.dot(b)).sum::<f64>();

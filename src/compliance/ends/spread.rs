@@ -9,10 +9,9 @@ use realfft::RealFftPlanner;
 use rustfft::num_complex::Complex64;
 
 use super::VANISHED;
-use super::cells::Nodes;
-use super::mesh::Modes;
-use super::reduction::{KernelProducts, Reduction};
-use super::waves::{Waves, Width};
+use super::quarter_space::Nodes;
+use super::reduction::{KernelProducts, Modes, Reduction};
+use super::waves::{WaveRule, Width};
 use crate::compliance::convolution::RowWeights;
 use crate::numerics::fft::fast_length;
 
@@ -89,7 +88,7 @@ impl EndPressure {
         let fallen = 3000.0 / (dx * targets.spacing * dy).cbrt();
         let first = self.nodes.distances[0] - 0.5 * dx;
         let highest = if first > 1e-9 * dx { fallen.min(VANISHED / first) } else { fallen };
-        let waves = Waves::new(&along_y, Width::LoadAndMean(0.5 * dy), reach, highest);
+        let waves = WaveRule::new(&along_y, Width::LoadAndMean(0.5 * dy), reach, highest);
         let (rows, columns) = (targets.distances.len(), self.nodes.distances.len());
         let mut amplitudes = Array2::zeros((waves.wavenumbers.len(), rows * columns));
         (amplitudes.axis_iter_mut(Axis(0)).into_par_iter()).zip(&waves.wavenumbers).for_each(

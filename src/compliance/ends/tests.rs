@@ -1,24 +1,30 @@
-//! The quarter space at one wavenumber, and its cells.
-
-mod operator;
+//! The quarter space at one wavenumber, the operator of its cells, and the displacement at points.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use ndarray::{Array1, Array2};
+use ndarray::Array2;
 use spec_math::cephes64::k0;
 
 use super::VANISHED;
+use super::bodies::Ends;
+use super::quarter_space::QuarterSpace;
 use super::reduction::Reduction;
-use crate::numerics::dense::Factors;
+use crate::compliance::convolution::Convolution;
+use crate::compliance::influence::{CellInfluence, Method, influence_coefficients};
+use crate::compliance::response::Body;
+use crate::error::Result;
+use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
+use crate::model::material::Elastic;
+use crate::numerics::dense::{Factors, cholesky};
+use crate::numerics::parallel::Threads;
 use crate::numerics::quadrature::Rule;
 
 /// What the face adds at ξ under pressure from 0 to `end`, with the mirror image.
 fn added(reduction: &Reduction, xi: f64, end: f64) -> f64 {
     let modes = &reduction.displacement;
-    let [mut at, mut load] = [Array1::zeros(modes.count()), Array1::zeros(modes.count())];
-    modes.add(xi, 1.0, &mut at);
-    modes.add_integrals(end, 1.0, &mut load);
-    at.dot(&load)
+    modes.at(xi).dot(&modes.integrals([0.0, end], 1.0))
 }
 
 /// ∫ K0(|ξ−η|) dη from a to b, on intervals that halve towards ξ.
@@ -102,13 +108,8 @@ fn the_exponent_of_a_sharp_end() {
         let mut means = Array2::zeros((n, modes.count()));
         let mut values = Array2::zeros((n, modes.count()));
         for i in 0..n {
-            let (mut mean, mut value) =
-                (Array1::zeros(modes.count()), Array1::zeros(modes.count()));
-            modes.add_integrals(edges[i + 1], 1.0, &mut mean);
-            modes.add_integrals(edges[i], -1.0, &mut mean);
-            modes.add(middle(i), 1.0, &mut value);
-            means.row_mut(i).assign(&mean);
-            values.row_mut(i).assign(&value);
+            means.row_mut(i).assign(&modes.integrals([edges[i], edges[i + 1]], 1.0));
+            values.row_mut(i).assign(&modes.at(middle(i)));
         }
         let mut matrix = values.dot(&means.t());
         for i in 0..n {
@@ -125,4 +126,145 @@ fn the_exponent_of_a_sharp_end() {
             (pressure[[far, 0]] / pressure[[near, 0]]).ln() / (middle(far) / middle(near)).ln();
         assert!((slope + 0.225_987).abs() < 1e-3, "{poisson}: {slope}");
     }
+}
+
+/// The operator of all cells.
+fn convolution(bodies: &[&Body], grid: &Grid) -> Result<Convolution> {
+    let threads = Arc::new(Threads::new(Some(1))?);
+    let mut coefficients = Array2::zeros(grid.shape());
+    for body in bodies {
+        coefficients += &influence_coefficients(*body, grid, Method::Exact)?;
+    }
+    let additions = Ends::of(bodies).additions(grid, grid, &threads)?;
+    Ok(Convolution::plan(&coefficients, Some(1))?.plus(additions))
+}
+
+/// The operator of all cells, as a matrix.
+fn dense(bodies: &[&Body], grid: &Grid) -> Result<Array2<f64>> {
+    let convolution = convolution(bodies, grid)?;
+    let [nx, ny] = grid.shape();
+    let mut matrix = Array2::zeros((nx * ny, nx * ny));
+    for cell in 0..nx * ny {
+        let mut unit = Array2::zeros((nx, ny));
+        unit[[cell / ny, cell % ny]] = 1.0;
+        let column = convolution.apply(&unit)?;
+        matrix.column_mut(cell).assign(&column.flatten());
+    }
+    Ok(matrix)
+}
+
+/// Cholesky's factor of a symmetric matrix less `shift` on its diagonal; `None` where an eigenvalue is not above the shift.
+fn shifted(matrix: &Array2<f64>, shift: f64) -> Option<Vec<Vec<f64>>> {
+    cholesky(matrix.nrows(), 0.0, |i, j| matrix[[i, j]] - if i == j { shift } else { 0.0 })
+}
+
+/// Relative error of [`smallest_eigenvalue`].
+const OF_EIGENVALUE: f64 = 1e-6;
+
+/// The smallest eigenvalue, from below: the largest shift that leaves a matrix positive definite.
+fn smallest_eigenvalue(matrix: &Array2<f64>) -> f64 {
+    let (mut below, mut above) = (0.0, matrix[[0, 0]]);
+    while above - below > OF_EIGENVALUE * above {
+        let middle = 0.5 * (below + above);
+        match shifted(matrix, middle) {
+            Some(_) => below = middle,
+            None => above = middle,
+        }
+    }
+    below
+}
+
+const ENDS: [[Option<f64>; 2]; 4] =
+    [[Some(-5.0), None], [None, Some(3.0)], [Some(-5.0), Some(5.0)], [Some(-6.3), Some(5.2)]];
+
+/// The operator of one body with one end, or two, and of two bodies is symmetric to rounding, and no eigenvalue is below
+/// the smallest of the half-spaces: what an end adds is positive. What the plate adds to two quarter spaces need not be
+/// positive, but is as smooth as a polynomial, and pressures of the smallest eigenvalues change sign from cell to cell.
+#[test]
+fn operators_are_symmetric_and_positive() -> Result<()> {
+    let grid = Grid::new([40, 14], [10.0, 3.5])?;
+    let body = |poisson: f64, ends: [Option<f64>; 2]| {
+        HalfSpace::from(Elastic::new(1.0 - poisson * poisson, poisson)?).with_ends(ends)
+    };
+    let half_space = Body::from(&body(0.0, [None; 2])?);
+    let least = smallest_eigenvalue(&dense(&[&half_space], &grid)?);
+    for poisson in [0.0, 0.25, 0.3, 0.4, 0.5] {
+        let [low, high, flush, beyond] = ENDS;
+        let cases = [
+            vec![low],
+            vec![high],
+            vec![flush],
+            vec![beyond],
+            vec![low, low],
+            vec![low, flush],
+            vec![flush, [None; 2]],
+        ];
+        for ends in cases {
+            let name = format!("{poisson} {ends:?}");
+            let bodies = ends.iter().map(|ends| Ok(Body::from(&body(poisson, *ends)?)));
+            let bodies = bodies.collect::<Result<Vec<Body>>>()?;
+            let matrix = dense(&bodies.iter().collect::<Vec<_>>(), &grid)?;
+            let largest = matrix.diag().fold(0.0_f64, |most, entry| most.max(*entry));
+            let asymmetry = (&matrix - &matrix.t()).fold(0.0_f64, |most, d| most.max(d.abs()));
+            assert!(asymmetry < 1e-12 * largest, "{name}: {asymmetry:e}");
+            let bound = least * bodies.len() as f64 * (1.0 - OF_EIGENVALUE);
+            assert!(shifted(&matrix, bound).is_some(), "{name}");
+        }
+    }
+    Ok(())
+}
+
+/// Cells converge to the displacement at their centres under a rectangle of cells at the end: away from its rim, the
+/// error falls as the cells to the power 2.1, from 3.4e-4 of the displacement to 1.7e-5.
+#[test]
+fn cells_converge() -> Result<()> {
+    let material = Elastic::new(1.0, 0.3)?;
+    let exact = QuarterSpace::new(material, 0.0, [2.0, 1.0])?;
+    let body = Body::from(&HalfSpace::from(material).with_ends([Some(0.0), None])?);
+    let mut errors = Vec::new();
+    for n in [4, 8, 16] {
+        let grid = Grid::new([3 * n, 3 * n], [3.0, 3.0])?.centered_at([1.5, 0.0])?;
+        let threads = std::sync::Arc::new(Threads::new(Some(1))?);
+        let coefficients = influence_coefficients(&body, &grid, Method::Exact)?;
+        let additions = Ends::of(&[&body]).additions(&grid, &grid, &threads)?;
+        let convolution = Convolution::plan(&coefficients, Some(1))?.plus(additions);
+        let (x, y) = (grid.x(), grid.y());
+        let loaded = |i: usize, j: usize| f64::from(u8::from(x[i] < 2.0 && y[j].abs() < 1.0));
+        let u = convolution.apply(&Array2::from_shape_fn((3 * n, 3 * n), |(i, j)| loaded(i, j)))?;
+        let mut worst = 0.0_f64;
+        for (i, j) in [(0, 3 * n / 2), (n, 3 * n / 2), (n / 2, n), (2 * n + n / 2, 3 * n / 2)] {
+            let expected = exact.displacement([x[i], y[j]])?;
+            worst = worst.max((u[[i, j]] / expected - 1.0).abs());
+        }
+        errors.push(worst);
+    }
+    assert!(errors[0] < 5e-4 && errors[2] < 3e-5, "{errors:?}");
+    assert!(errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1], "{errors:?}");
+    Ok(())
+}
+
+/// Entries for cells far apart along a long end, where rows are interpolated from nodes, are displacements at a point
+/// under pressure on a cell. The mean over the cell differs from its middle by (cell/distance)²/24; integrals over
+/// waves that are much longer than the grid is wide err by 1.4e-5 of an entry.
+#[test]
+fn far_entries_are_those_of_points() -> Result<()> {
+    let material = Elastic::new(1.0, 0.3)?;
+    let grid = Grid::new([600, 6], [30.0, 0.6])?;
+    let [dx, dy] = grid.spacing();
+    let body = Body::from(&HalfSpace::from(material).with_ends([None, Some(15.0)])?);
+    let convolution = convolution(&[&body], &grid)?;
+    for [a, b] in [[3, 50], [30, 599], [47, 131], [64, 65], [127, 501], [222, 333]] {
+        let [here, there] = [a, b].map(|row| (row as f64 + 0.5) * dx);
+        let point = QuarterSpace::new(material, there - 0.5 * dx, [dx, 0.5 * dy])?;
+        let half_space = CellInfluence::plan(material, [dx, dy], 50.0)?;
+        for l in [0, 1, 5] {
+            let y = l as f64 * dy;
+            let expected = point.displacement([here, y])? - half_space.at([here - there, y]);
+            // The end is at the last row.
+            let found = convolution.added([599 - a, 599 - b], l);
+            let tolerance = 2e-5 + (dx / here).powi(2) / 24.0;
+            assert!((found / expected - 1.0).abs() < tolerance, "{a} {b} {l}: {found} {expected}");
+        }
+    }
+    Ok(())
 }

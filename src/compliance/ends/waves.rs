@@ -68,12 +68,12 @@ impl Along {
     /// Waves for means over cells of loads on cells, and amplitudes that vanish above `highest`: up to distances of
     /// `reach`, or where the grid repeats those of the period, of which the shares of `zeroth` wavenumbers stand for
     /// the first.
-    pub(super) fn waves(&self, reach: f64, highest: f64, zeroth: &[(f64, f64)]) -> Waves {
+    pub(super) fn waves(&self, reach: f64, highest: f64, zeroth: &[(f64, f64)]) -> WaveRule {
         let width = Width::LoadAndMean(0.5 * self.spacing);
         if self.repeats {
-            Waves::repeated(self.length, self.spacing, width, highest, zeroth)
+            WaveRule::repeated(self.length, self.spacing, width, highest, zeroth)
         } else {
-            Waves::new(&self.distances, width, reach, highest)
+            WaveRule::new(&self.distances, width, reach, highest)
         }
     }
 }
@@ -92,13 +92,13 @@ pub(super) enum Width {
 
 /// Wavenumbers at which f is needed, with their weights for each distance.
 #[derive(Debug)]
-pub(super) struct Waves {
+pub(super) struct WaveRule {
     pub(super) wavenumbers: Vec<f64>,
     /// Weights: for each wavenumber those of all distances.
     pub(super) weights: Vec<Vec<f64>>,
 }
 
-impl Waves {
+impl WaveRule {
     /// Wavenumbers for distances |y| up to `reach`, and amplitudes f that vanish above `highest`.
     pub(super) fn new(distances: &[f64], width: Width, reach: f64, highest: f64) -> Self {
         let rule = Rule::gauss_legendre(POINTS);
@@ -273,7 +273,7 @@ fn weighted_legendre(t: f64, w: f64) -> [f64; POINTS] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Waves, Width};
+    use super::{WaveRule, Width};
 
     /// ∫ e^{−ck} cos ky dk = c/(c²+y²), and its means over the width of a load.
     #[test]
@@ -283,7 +283,7 @@ mod tests {
         let log = |y: f64| y * (y / c).atan() - 0.5 * c * (1.0 + (y / c).powi(2)).ln();
         let distances = [0.0, 0.3, 0.8, 5.6, 40.0];
         for width in [Width::None, Width::Load(a), Width::LoadAndMean(a)] {
-            let waves = Waves::new(&distances, width, 41.0, 40.0 / c);
+            let waves = WaveRule::new(&distances, width, 41.0, 40.0 / c);
             for (i, y) in distances.into_iter().enumerate() {
                 let terms = waves.wavenumbers.iter().zip(&waves.weights);
                 let found: f64 = terms.map(|(k, w)| (-c * k).exp() * w[i]).sum();

@@ -7,9 +7,8 @@ use std::f64::consts::PI;
 
 use ndarray::{Array2, Axis, Zip};
 
-use super::exact::{CellInfluence, WHOLE_CELLS};
-use super::line;
-use crate::compliance::images::Images;
+use super::exact::{CellInfluence, WHOLE_CELLS, strip_coefficients, strips_apart};
+use crate::compliance::images::CellImages;
 use crate::compliance::response::Response;
 use crate::error::{Error, Result};
 use crate::model::body::Substrate;
@@ -28,7 +27,7 @@ const NEAREST: f64 = 1e-3;
 /// constants.
 fn sums(
     body: &dyn Response,
-    images: &Images,
+    images: &CellImages,
     spacing: [f64; 2],
     offsets: &[f64],
     threads: &Threads,
@@ -64,9 +63,9 @@ pub(super) fn apart(
     let farthest = offsets.iter().fold(0.0_f64, |most, x| most.max(*x));
     let rows = (farthest / spacing[0]).ceil() as usize + 1;
     let longer = Grid::new([rows, ny], [rows as f64 * spacing[0], grid.size()[1]])?;
-    let images = Images::plan(&longer.periodic(grid.is_periodic())?, RINGS).at_offsets(offsets);
+    let images = CellImages::plan(&longer.periodic(grid.is_periodic())?, RINGS).at_offsets(offsets);
     let mut sums = sums(body, &images, spacing, offsets, threads)?;
-    let uniform = line::apart(body, (spacing[0], datum), offsets, threads)?;
+    let uniform = strips_apart(body, (spacing[0], datum), offsets, threads)?;
     for (mut line, uniform) in sums.axis_iter_mut(Axis(0)).zip(uniform) {
         let total: f64 = (0..ny).map(|l| line[l.min(ny - l)]).sum();
         line += (uniform - total) / ny as f64;
@@ -81,7 +80,7 @@ pub(super) fn coefficients(
     threads: &Threads,
 ) -> Result<Array2<f64>> {
     let (spacing, size) = (grid.spacing(), grid.size());
-    let images = Images::plan(grid, RINGS);
+    let images = CellImages::plan(grid, RINGS);
     let rows = (0..images.kept()[0]).map(|i| i as f64 * spacing[0]);
     let sums = sums(body, &images, spacing, &rows.collect::<Vec<_>>(), threads)?;
     let mut whole = images.whole(&sums, [false; 2]);
@@ -90,7 +89,7 @@ pub(super) fn coefficients(
     } else {
         let open = usize::from(grid.is_periodic()[0]);
         let strips = Grid::line(grid.shape()[open], size[open])?;
-        line::coefficients(body, &strips, threads)?.iter().copied().collect()
+        strip_coefficients(body, &strips, threads)?.iter().copied().collect()
     };
     images.with_mean(&mut whole, &mean);
     Ok(whole)
@@ -121,9 +120,8 @@ pub(super) fn sampled(body: &dyn Response, grid: &Grid, threads: &Threads) -> Re
 fn uniform(body: &dyn Response) -> f64 {
     let limits = body.asymptotes();
     // A derivative of the response of layers has limits of either sign.
-    let elastic = body
-        .half_space()
-        .map_or(limits.long > 0.0, |body| matches!(body.substrate(), Substrate::Elastic(_)));
+    let elastic =
+        body.half_space().map_or(limits.long > 0.0, |body| body.substrate() != Substrate::Rigid);
     match elastic {
         true => 0.0,
         false => limits.constant,

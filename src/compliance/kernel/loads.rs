@@ -1,6 +1,6 @@
 //! Loads: which radial functions make which components, and with what angular part.
 //!
-//! A load at the origin gives, with the transforms H_ν of what [`Fields`] holds, and φ the polar
+//! A load at the origin gives, with the transforms H_ν of what [`UnitFields`] holds, and φ the polar
 //! angle of (x, y); under pressure, with S, D = (σ_LL ± σ_TT)/2,
 //!
 //! ```text
@@ -20,9 +20,9 @@
 use std::marker::PhantomData;
 
 pub(crate) use super::COMPONENTS;
-use super::mesh::{Kind, Order, homogeneous};
 use super::rectangle::{under_pressure, under_traction};
-use crate::compliance::response::interior::Fields;
+use super::series::{Order, TransformKind, homogeneous};
+use crate::compliance::response::interior::UnitFields;
 use crate::model::material::Elastic;
 
 /// Whether each component is odd in x and in y, under pressure.
@@ -51,7 +51,7 @@ pub(crate) trait Load: Sync {
     const IS_TRACTION: bool;
 
     /// D of each radial function of [`super::series`]; displacements times α.
-    fn radial(fields: &Fields, material: Elastic) -> [f64; RADIAL];
+    fn radial(fields: &UnitFields, material: Elastic) -> [f64; RADIAL];
 
     /// Components at (x, y), made of h_ν = H_ν/r^ν.
     fn components(h: &[f64; RADIAL], x: f64, y: f64) -> [f64; COMPONENTS];
@@ -65,11 +65,11 @@ pub(crate) trait Load: Sync {
 const RADIAL: usize = 9;
 
 const fn stress(nu: f64) -> Order {
-    Order { nu, kind: Kind::Stress }
+    Order { nu, kind: TransformKind::Stress }
 }
 
 const fn displacement(nu: f64) -> Order {
-    Order { nu, kind: Kind::Displacement }
+    Order { nu, kind: TransformKind::Displacement }
 }
 
 /// Unit pressure.
@@ -82,7 +82,7 @@ impl Load for UnitPressure {
 
     const IS_TRACTION: bool = false;
 
-    fn radial(fields: &Fields, material: Elastic) -> [f64; RADIAL] {
+    fn radial(fields: &UnitFields, material: Elastic) -> [f64; RADIAL] {
         let state = &fields.pressure;
         let (along, across) = state.lateral_stress(material);
         let (s, d) = (0.5 * (along + across), 0.5 * (along - across));
@@ -119,7 +119,7 @@ impl Load for UnitTraction {
 
     const IS_TRACTION: bool = true;
 
-    fn radial(fields: &Fields, material: Elastic) -> [f64; RADIAL] {
+    fn radial(fields: &UnitFields, material: Elastic) -> [f64; RADIAL] {
         let state = &fields.shear;
         let (q, u) = fields.twist;
         let (along, across) = state.lateral_stress(material);
@@ -178,7 +178,7 @@ pub(crate) trait Radial<const N: usize>: Sync {
     }
 
     /// D of the functions.
-    fn radial(fields: &Fields, material: Elastic) -> [f64; N] {
+    fn radial(fields: &UnitFields, material: Elastic) -> [f64; N] {
         let all = Self::Load::radial(fields, material);
         std::array::from_fn(|k| all[Self::FIRST + k])
     }
@@ -251,8 +251,10 @@ impl<const N: usize> PointLoad<N> {
             let power = lean.powi(nu as i32) * inverse / (2.0 * std::f64::consts::PI);
             let first = (z + nu * root) * inverse * inverse;
             match kind {
-                Kind::Displacement | Kind::Vanishing => power * (c0 + c1 * z * first),
-                Kind::Stress | Kind::Line => {
+                TransformKind::Displacement | TransformKind::Vanishing => {
+                    power * (c0 + c1 * z * first)
+                }
+                TransformKind::Stress | TransformKind::Line => {
                     let second =
                         (3.0 * z * z + 3.0 * nu * z * root + (nu * nu - 1.0) * root * root)
                             * inverse.powi(4);

@@ -10,14 +10,13 @@
 use std::f64::consts::PI;
 
 use super::COMPONENTS;
-use super::mesh::{Kind, Order, Spectrum, homogeneous};
-use super::series::Series;
-use crate::compliance::response::interior::{Fields, Place};
+use super::series::{Order, Series, Spectrum, TransformKind, homogeneous};
+use crate::compliance::response::interior::{InPlane, Place, UnitFields};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 
-/// StripOutput of one function of the wavenumber: the component that it makes, with its sign.
+/// The component that one function of the wavenumber makes, with its sign.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StripOutput {
     component: usize,
@@ -35,7 +34,7 @@ pub(crate) trait StripLoad<const N: usize> {
     const OUTPUTS: [StripOutput; N];
 
     /// D of each output; displacements times α.
-    fn functions(fields: &Fields, material: Elastic) -> [f64; N];
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; N];
 }
 
 /// Unit pressure.
@@ -51,10 +50,8 @@ impl StripLoad<6> for StripPressure {
         output(8, 1.0, false),
     ];
 
-    fn functions(fields: &Fields, material: Elastic) -> [f64; 6] {
-        let state = &fields.pressure;
-        let (along, across) = state.lateral_stress(material);
-        [across, along, state.p, state.tau, state.v, state.w]
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; 6] {
+        in_plane(&fields.pressure, material)
     }
 }
 
@@ -71,11 +68,14 @@ impl StripLoad<6> for StripAcross {
         output(8, 1.0, true),
     ];
 
-    fn functions(fields: &Fields, material: Elastic) -> [f64; 6] {
-        let state = &fields.shear;
-        let (along, across) = state.lateral_stress(material);
-        [across, along, state.p, state.tau, state.v, state.w]
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; 6] {
+        in_plane(&fields.shear, material)
     }
+}
+
+fn in_plane(state: &InPlane, material: Elastic) -> [f64; 6] {
+    let (along, across) = state.lateral_stress(material);
+    [across, along, state.p, state.tau, state.v, state.w]
 }
 
 /// Unit traction along x.
@@ -85,7 +85,7 @@ impl StripLoad<3> for StripAlong {
     const OUTPUTS: [StripOutput; 3] =
         [output(3, -1.0, true), output(5, -1.0, false), output(6, 1.0, false)];
 
-    fn functions(fields: &Fields, material: Elastic) -> [f64; 3] {
+    fn functions(fields: &UnitFields, material: Elastic) -> [f64; 3] {
         let (q, u) = fields.twist;
         [material.shear() * u, q, u]
     }
@@ -187,10 +187,12 @@ impl LinePlan {
                 samples[k].push(value * alpha.sqrt());
             }
         }
-        let orders = L::OUTPUTS
-            .map(|output| Order { nu: if output.sine { 0.5 } else { -0.5 }, kind: Kind::Line });
-        let multipliers = orders.map(|order| mesh.multipliers(order));
-        Some((Series::new(mesh, &orders, &multipliers, samples, 0.0), images))
+        let orders = L::OUTPUTS.map(|output| Order {
+            nu: if output.sine { 0.5 } else { -0.5 },
+            kind: TransformKind::Line,
+        });
+        let transforms = orders.map(|order| mesh.transforms(order));
+        Some((Series::new(mesh, &orders, &transforms, samples, 0.0), images))
     }
 }
 

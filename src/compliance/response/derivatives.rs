@@ -18,10 +18,9 @@
 //!
 //! which is 0 for a layer like what it lies on.
 
-use super::layer::Compliance;
-use super::layer::{Slab, of_energy};
-use super::{Asymptotes, Response};
-use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer, Substrate};
+use super::layer::{Compliance, Slab, of_energy};
+use super::{Asymptotes, Response, substrate_material};
+use crate::model::body::{BodyParameter, HalfSpace, Interface, Layer};
 use crate::model::material::Elastic;
 
 /// Derivative of a half-space's response with respect to one of its numbers, as a response that influence coefficients
@@ -60,7 +59,7 @@ impl Response for ResponseSlope {
 }
 
 /// State of one layer under a unit pressure on the surface.
-struct State {
+struct LayerState {
     slab: Slab,
     /// Compliance of what lies below, times α.
     below: Compliance,
@@ -98,16 +97,19 @@ pub fn normal_derivatives(
 ) -> f64 {
     assert_eq!(parameters.len(), out.len(), "a place for each parameter");
     let layers = body.layers();
-    let mut compliance = match body.substrate() {
-        Substrate::Elastic(material) => Compliance::homogeneous(material),
-        Substrate::Rigid => Compliance::RIGID,
-    };
-    let mut states: Vec<State> = Vec::with_capacity(layers.len());
+    let mut compliance = Compliance::of_substrate(body.substrate());
+    let mut states: Vec<LayerState> = Vec::with_capacity(layers.len());
     for layer in layers.iter().rev() {
         let slab = Slab::new(layer.material(), alpha * layer.thickness());
         let below = compliance;
         compliance = slab.onto(below, layer.interface());
-        states.push(State { slab, below, top: [0.0; 2], bottom: [0.0; 2], displacement: [0.0; 2] });
+        states.push(LayerState {
+            slab,
+            below,
+            top: [0.0; 2],
+            bottom: [0.0; 2],
+            displacement: [0.0; 2],
+        });
     }
     states.reverse();
     let mut traction = [1.0, 0.0];
@@ -121,9 +123,9 @@ pub fn normal_derivatives(
         let (BodyParameter::Young(place)
         | BodyParameter::Poisson(place)
         | BodyParameter::Thickness(place)) = *parameter;
-        *out = match (layers.get(place), body.substrate()) {
+        *out = match (layers.get(place), substrate_material(body)) {
             (Some(layer), _) => of_layer(*parameter, layer, &states[place], alpha),
-            (None, Substrate::Elastic(material)) if place == layers.len() => {
+            (None, Some(material)) if place == layers.len() => {
                 of_substrate(*parameter, material, traction)
             }
             _ => 0.0,
@@ -133,7 +135,7 @@ pub fn normal_derivatives(
 }
 
 /// Derivative with respect to a number of `layer`.
-fn of_layer(parameter: BodyParameter, layer: &Layer, state: &State, alpha: f64) -> f64 {
+fn of_layer(parameter: BodyParameter, layer: &Layer, state: &LayerState, alpha: f64) -> f64 {
     let material = layer.material();
     let stretch = || -state.slab.energy(state.top, state.displacement);
     match parameter {
@@ -154,7 +156,7 @@ fn of_layer(parameter: BodyParameter, layer: &Layer, state: &State, alpha: f64) 
 /// ```text
 /// P² ε/2Gη − 2 (ν/η) P V − (2G/η) V²      ε = 1 − 2ν
 /// ```
-fn thickening(material: Elastic, interface: Interface, state: &State) -> f64 {
+fn thickening(material: Elastic, interface: Interface, state: &LayerState) -> f64 {
     let (g, nu) = (material.shear(), material.poisson());
     let eta = 1.0 - nu;
     let [p, tau] = state.bottom;
@@ -218,10 +220,8 @@ pub fn asymptote_derivatives(body: &HalfSpace, parameters: &[BodyParameter]) -> 
         }
     };
     let of = |&parameter: &BodyParameter| Asymptotes {
-        long: match body.substrate() {
-            Substrate::Elastic(material) => homogeneous(parameter, layers, material),
-            Substrate::Rigid => 0.0,
-        },
+        long: substrate_material(body)
+            .map_or(0.0, |material| homogeneous(parameter, layers, material)),
         constant: compression(body, parameter),
         short: homogeneous(parameter, 0, body.surface_material()),
     };
@@ -234,10 +234,7 @@ fn compression(body: &HalfSpace, parameter: BodyParameter) -> f64 {
     let (BodyParameter::Young(place)
     | BodyParameter::Poisson(place)
     | BodyParameter::Thickness(place)) = parameter;
-    let substrate = match body.substrate() {
-        Substrate::Elastic(material) => Some(material),
-        Substrate::Rigid => None,
-    };
+    let substrate = substrate_material(body);
     let loose = layers.iter().rposition(|layer| layer.interface() == Interface::Frictionless);
     let first_held = loose.map_or(0, |last| last + 1);
     if place >= layers.len() {

@@ -9,9 +9,8 @@
 //! σ_LL = −[ν P + 2G αV]/(1−ν)      σ_TT = −ν [P + 2G αV]/(1−ν)      σ_LT = i G αU
 //! ```
 
-use super::layer::Compliance;
-use super::layer::Slab;
-use crate::model::body::{HalfSpace, Interface, Substrate};
+use super::layer::{Compliance, Slab};
+use crate::model::body::{HalfSpace, Interface};
 use crate::model::material::Elastic;
 
 /// Place of a plane: its depth, and the layer that it lies in.
@@ -54,14 +53,14 @@ impl InPlane {
 
 /// Fields at a depth, under unit loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fields {
+pub(crate) struct UnitFields {
     pub(crate) pressure: InPlane,
     pub(crate) shear: InPlane,
     /// Q and αU.
     pub(crate) twist: (f64, f64),
 }
 
-impl Fields {
+impl UnitFields {
     /// Fields in a homogeneous half-space, at depth z, y = αz.
     ///
     /// ```text
@@ -125,10 +124,7 @@ impl Column {
     /// The column of `body` at wavenumber `alpha`.
     pub(crate) fn new(body: &HalfSpace, alpha: f64) -> Self {
         let layers = body.layers();
-        let mut compliances = vec![match body.substrate() {
-            Substrate::Elastic(material) => Compliance::homogeneous(material),
-            Substrate::Rigid => Compliance::RIGID,
-        }];
+        let mut compliances = vec![Compliance::of_substrate(body.substrate())];
         let slabs: Vec<Slab> = layers
             .iter()
             .map(|layer| Slab::new(layer.material(), alpha * layer.thickness()))
@@ -153,10 +149,10 @@ impl Column {
     }
 
     /// Fields at `place`.
-    pub(crate) fn at(&self, body: &HalfSpace, place: &Place) -> Fields {
+    pub(crate) fn at(&self, body: &HalfSpace, place: &Place) -> UnitFields {
         let (compliance, loads) = &self.tops[place.layer];
         let Some(layer) = body.layers().get(place.layer) else {
-            return Fields::below(loads, place.material, self.alpha * place.below_top);
+            return UnitFields::below(loads, place.material, self.alpha * place.below_top);
         };
         if place.below_top <= 0.0 {
             return on_top(compliance, loads);
@@ -174,7 +170,7 @@ impl Column {
             let ([p, tau], [w, v]) = upper.through(below, interface, traction);
             InPlane { p, tau, w, v }
         };
-        Fields {
+        UnitFields {
             pressure: state(loads.pressure),
             shear: state(loads.shear),
             twist: upper.twist_through(below, interface, loads.twist),
@@ -183,11 +179,11 @@ impl Column {
 }
 
 /// Fields at the top of a body of `compliance` under `loads`.
-fn on_top(compliance: &Compliance, loads: &Loads) -> Fields {
+fn on_top(compliance: &Compliance, loads: &Loads) -> UnitFields {
     let Compliance { c11, c12, c22, ct } = *compliance;
     let state =
         |[p, tau]: [f64; 2]| InPlane { p, tau, w: c11 * p + c12 * tau, v: c12 * p + c22 * tau };
-    Fields {
+    UnitFields {
         pressure: state(loads.pressure),
         shear: state(loads.shear),
         twist: (loads.twist, ct * loads.twist),

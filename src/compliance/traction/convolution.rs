@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ndarray::{Array2, Axis, Slice};
 
-use super::coefficients::{TractionCoefficients, of_pair};
+use super::{TractionCoefficients, of_pair};
 use crate::compliance::response::{Body, alpha_compliance};
 use crate::error::Result;
 use crate::model::grid::Grid;
-use crate::numerics::fft::{PaddedTransform, ParitySpectrum, Term, Workspace};
+use crate::numerics::fft::{PaddedTransform, ParitySpectrum, Term, TransformMemory};
 use crate::numerics::parallel::Threads;
 
 /// Tangential behaviour of two bodies on a grid, planned once.
@@ -78,7 +78,7 @@ impl Tangential {
         let TractionCoefficients { xx, xy, yy, zx, zy } = &self.coefficients;
         let coupling =
             self.is_coupled().then(|| [spectrum(zx, [true, false]), spectrum(zy, [false, true])]);
-        let periodic = PaddedTransform::plan_unpadded(shape, [false; 2], threads);
+        let periodic = PaddedTransform::plan_unpadded(shape, threads);
         TangentialWindow {
             shape,
             xx: spectrum(xx, [false, false]),
@@ -151,7 +151,7 @@ pub(crate) struct TangentialWindow {
     coupling: Option<[ParitySpectrum; 2]>,
     periodic: PaddedTransform,
     inverse: [ParitySpectrum; 3],
-    workspace: Mutex<Workspace>,
+    workspace: Mutex<TransformMemory>,
     threads: Arc<Threads>,
 }
 
@@ -162,7 +162,7 @@ impl std::fmt::Debug for TangentialWindow {
 }
 
 impl TangentialWindow {
-    fn memory(&self) -> MutexGuard<'_, Workspace> {
+    fn memory(&self) -> MutexGuard<'_, TransformMemory> {
         self.workspace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -3,6 +3,7 @@
 use super::outside::{Overlap, overlap};
 use super::relief::{Low, Relief, limited};
 use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
+use crate::compliance::response::Body;
 use crate::contact::options::{Algorithm, Options};
 use crate::contact::solution::Solution;
 use crate::contact::solution::report::Progress;
@@ -265,22 +266,6 @@ fn survey<'a>(task: &Task<'a>, tilt: [f64; 2]) -> (Relief<'a>, Frame, Vec<Low>) 
 /// overlap.
 fn first_frame(task: &Task) -> Result<Frame> {
     let (extent, radii) = (task.shape.extent(), task.shape.radii());
-    // α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the
-    // response itself, and the local compliance.
-    let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
-    let compliance = |alpha: f64| -> f64 {
-        let bodies = bodies.iter().flatten();
-        bodies
-            .map(|body| {
-                let limits = body.asymptotes();
-                let larger = match limits.short.max(limits.long) {
-                    0.0 => body.normal(alpha),
-                    larger => larger,
-                };
-                larger + alpha * body.local()
-            })
-            .sum()
-    };
     let center = middle(task);
     let relief = Relief::new(task.shape, task.tilt());
     let base = relief.gap(center);
@@ -312,21 +297,7 @@ fn first_frame(task: &Task) -> Result<Frame> {
         })
     };
     let approach = match (task.motion.load, task.motion.approach) {
-        (Some(load), _) => {
-            let carries = |approach: f64| {
-                let [a, b] = widths(approach);
-                let half = (a * b).sqrt();
-                4.0 * approach * half / compliance(1.0 / half)
-            };
-            let mut approach = 1.0;
-            while approach > 1e-30 && carries(approach) > load {
-                approach *= 0.5;
-            }
-            while approach < 1e12 && carries(approach) < load {
-                approach *= 2.0;
-            }
-            approach
-        }
+        (Some(load), _) => approach_under(load, task, &widths),
         (None, Some(approach)) => (approach - base).max(0.0),
         (None, None) => 0.0,
     };
@@ -348,4 +319,36 @@ fn first_frame(task: &Task) -> Result<Frame> {
         }
     }
     Ok(frame)
+}
+
+/// The approach that carries the load, by the estimate of [`first_frame`], for half-widths at each approach.
+fn approach_under(load: f64, task: &Task, widths: &impl Fn(f64) -> [f64; 2]) -> f64 {
+    let carries = |approach: f64| {
+        let [a, b] = widths(approach);
+        let half = (a * b).sqrt();
+        4.0 * approach * half / compliance(task, 1.0 / half)
+    };
+    let mut approach = 1.0;
+    while approach > 1e-30 && carries(approach) > load {
+        approach *= 0.5;
+    }
+    while approach < 1e12 && carries(approach) < load {
+        approach *= 2.0;
+    }
+    approach
+}
+
+/// α û/p̂ of both bodies, for waves of a contact of half-width 1/α: where the limits say nothing, the response itself,
+/// and the local compliance.
+fn compliance(task: &Task, alpha: f64) -> f64 {
+    let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
+    let of = |body: &Body| {
+        let limits = body.asymptotes();
+        let larger = match limits.short.max(limits.long) {
+            0.0 => body.normal(alpha),
+            larger => larger,
+        };
+        larger + alpha * body.local()
+    };
+    bodies.into_iter().flatten().map(of).sum()
 }

@@ -12,8 +12,9 @@
 
 use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
+use crate::compliance::convolution::Workspace;
 use crate::contact::problem::fields::{Fields, slice_mut};
-use crate::contact::problem::{INDEFINITE, Problem};
+use crate::contact::problem::{INDEFINITE, Multipliers, Problem, Quality};
 use crate::error::Result;
 use crate::model::grid::full_window;
 use crate::numerics::parallel::dot;
@@ -33,39 +34,16 @@ pub(crate) fn solve(
     criteria: StopCriteria,
     tally: &mut Tally,
 ) -> Result<Outcome> {
-    let freedoms = problem.freedoms;
-    let Fields { pressure, displacement, window, multipliers, quality } = fields;
     // All of the grid may come into contact.
-    *window = full_window(problem.convolution.shape());
-    let window = window.clone();
+    fields.window = full_window(problem.convolution.shape());
     let workspace = &mut problem.convolution.workspace();
-    let (p, u) = (slice_mut(pressure), slice_mut(displacement));
-    let cells = p.len();
+    let cells = fields.pressure.len();
     let mut g = vec![0.0; cells];
-    let mut direction = vec![0.0; cells];
-    let mut response = vec![0.0; cells];
-    let no_gap = vec![0.0; cells];
-    let mut conjugacy = Conjugacy::default();
-
+    let mut search = Search { direction: vec![0.0; cells], conjugacy: Conjugacy::default() };
     loop {
-        let mut near = multipliers.lambda();
-        let (mut found, mut now) = problem.judge(p, &window, u, near, workspace);
-        tally.work += problem.convolution.work();
-        // A tilt that the contact does not determine is 0, and not what it was before.
-        let stale = [1, 2].map(|k| near[k].abs() > 0.0 && found.change[k].abs() <= 0.0);
-        if stale[0] || stale[1] {
-            for k in [1, 2] {
-                near[k] *= f64::from(!stale[k - 1]);
-            }
-            (found, now) = problem.judge(p, &window, u, near, workspace);
-            tally.work += problem.convolution.work();
-        }
-        if now.meets(criteria.tolerance) {
-            // Gaps are exact only near the multipliers that they are counted from.
-            (found, now) = problem.judge(p, &window, u, found.lambda(), workspace);
-            tally.work += problem.convolution.work();
-        }
-        (*multipliers, *quality) = (found, Some(now));
+        let (found, now) = assess(problem, fields, criteria.tolerance, workspace, tally);
+        let Fields { pressure, displacement, .. } = fields;
+        let (p, u) = (slice_mut(pressure), slice_mut(displacement));
         problem.gap_into(u, found, &mut g);
         let end = |termination| {
             Ok(Outcome { solver: Solver::PolonskyKeer, termination, lambda: found.lambda() })
@@ -79,42 +57,100 @@ pub(crate) fn solve(
         if now.overflows() || tally.iterations >= criteria.max_iterations {
             return end(Termination::IterationLimit);
         }
-
-        // Where nothing touches yet, the cells that overlap are the contact.
-        let bounds = problem.bounds;
-        let empty = !p.iter().enumerate().any(|(k, &p)| bounds.is_free(k, p));
-        let in_contact = |k: usize, p: f64, g: f64| {
-            bounds.is_free(k, p) || (empty && bounds.wrong(k, p, g) > 0.0)
-        };
-        let mut steepness = 0.0;
-        for (k, (&p, &g)) in p.iter().zip(&g).enumerate() {
-            if in_contact(k, p, g) {
-                steepness += g * g;
-            }
+        let inside = contact(problem, p, &g);
+        let step = search.turn(problem, &inside, &g, p, workspace, tally)?;
+        if advance(problem, &inside, &g, &search.direction, step, p) {
+            search.conjugacy.restart();
         }
+        if problem.bounds.is_limited() {
+            problem.rebalance_within(p, u, found.lambda());
+        } else {
+            problem.rebalance(p);
+        }
+        tally.iterations += 1;
+    }
+}
+
+/// Displacement, multipliers and quality of the pressure.
+fn assess(
+    problem: &Problem,
+    fields: &mut Fields,
+    tolerance: f64,
+    workspace: &mut Workspace,
+    tally: &mut Tally,
+) -> (Multipliers, Quality) {
+    let Fields { pressure, displacement, window, multipliers, quality } = fields;
+    let (p, u) = (slice_mut(pressure), slice_mut(displacement));
+    let mut judge = |near| {
+        tally.work += problem.convolution.work();
+        problem.judge(p, window, u, near, workspace)
+    };
+    let mut near = multipliers.lambda();
+    let (mut found, mut now) = judge(near);
+    // A tilt that the contact does not determine is 0, and not what it was before.
+    let stale = [1, 2].map(|k| near[k].abs() > 0.0 && found.change[k].abs() <= 0.0);
+    if stale[0] || stale[1] {
+        for k in [1, 2] {
+            near[k] *= f64::from(!stale[k - 1]);
+        }
+        (found, now) = judge(near);
+    }
+    if now.meets(tolerance) {
+        // Gaps are exact only near the multipliers that they are counted from.
+        (found, now) = judge(found.lambda());
+    }
+    (*multipliers, *quality) = (found, Some(now));
+    (found, now)
+}
+
+/// Whether each cell is in the contact. Where nothing touches yet, the cells that overlap are the contact.
+fn contact(problem: &Problem, p: &[f64], g: &[f64]) -> Vec<bool> {
+    let bounds = problem.bounds;
+    let free: Vec<bool> = p.iter().enumerate().map(|(k, &p)| bounds.is_free(k, p)).collect();
+    if free.contains(&true) {
+        return free;
+    }
+    (0..p.len()).map(|k| bounds.wrong(k, p[k], g[k]) > 0.0).collect()
+}
+
+/// Direction of the search, and its recurrence.
+struct Search {
+    direction: Vec<f64>,
+    conjugacy: Conjugacy,
+}
+
+impl Search {
+    /// Turns the direction to g + βt on the contact; returns the step to the least energy along it.
+    fn turn(
+        &mut self,
+        problem: &Problem,
+        inside: &[bool],
+        g: &[f64],
+        p: &[f64],
+        workspace: &mut Workspace,
+        tally: &mut Tally,
+    ) -> Result<f64> {
+        let Self { direction, conjugacy } = self;
+        let (mut response, no_gap) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+        let steepness: f64 =
+            g.iter().zip(inside).map(|(g, inside)| if *inside { g * g } else { 0.0 }).sum();
         let mut beta = conjugacy.beta(steepness, 0.0);
-        // The direction g + βt on the contact, and the step to the least energy along it.
-        let step = loop {
+        loop {
             let (mut slope, mut size, mut energy) = (0.0, 0.0_f64, 0.0);
-            for (k, ((t, &p), &g)) in direction.iter_mut().zip(&*p).zip(&g).enumerate() {
-                *t = if in_contact(k, p, g) {
-                    let next = g + beta * *t;
-                    slope += g * next;
-                    size += next.abs();
-                    next
-                } else {
-                    0.0
-                };
+            for ((t, &inside), &g) in direction.iter_mut().zip(inside).zip(g) {
+                *t = if inside { g + beta * *t } else { 0.0 };
+                slope += g * *t;
+                size += t.abs();
             }
             if slope > 0.0 || beta <= 0.0 {
-                problem.apply(&direction, &mut response, workspace);
+                problem.apply(direction, &mut response, workspace);
                 tally.work += problem.convolution.work();
-                energy = dot(&direction, &response);
+                energy = dot(direction, &response);
                 let mean = problem.fit(p, &response, &no_gap);
-                freedoms.for_each(mean, |k, b| response[k] -= b);
-                let curvature = dot(&direction, &response);
+                problem.freedoms.for_each(mean, |k, b| response[k] -= b);
+                let curvature = dot(direction, &response);
                 if curvature > 0.0 {
-                    break slope / curvature;
+                    return Ok(slope / curvature);
                 }
             }
             if beta <= 0.0 {
@@ -124,32 +160,35 @@ pub(crate) fn solve(
                 }
                 // A contact whose gap is exactly zero everywhere has only cells that join; their step is
                 // that of a single cell.
-                break 1.0 / one_cell;
+                return Ok(1.0 / one_cell);
             }
             conjugacy.restart();
             conjugacy.beta(steepness, 0.0);
             beta = 0.0;
-        };
-
-        let mut joined = false;
-        for (k, p) in p.iter_mut().enumerate() {
-            let inside = in_contact(k, *p, g[k]);
-            if inside {
-                *p = bounds.nearest(k, *p - step * direction[k]);
-            }
-            if bounds.wrong(k, *p, g[k]) > 0.0 && problem.gap[k].is_finite() {
-                joined |= !inside;
-                *p = bounds.nearest(k, *p - step * g[k]);
-            }
         }
-        if joined {
-            conjugacy.restart();
-        }
-        if bounds.is_limited() {
-            problem.rebalance_within(p, u, found.lambda());
-        } else {
-            problem.rebalance(p);
-        }
-        tally.iterations += 1;
     }
+}
+
+/// Moves the pressure by a step along the direction, within its bounds; cells outside the contact whose gap has the
+/// wrong sign join it. Returns whether any did.
+fn advance(
+    problem: &Problem,
+    inside: &[bool],
+    g: &[f64],
+    direction: &[f64],
+    step: f64,
+    p: &mut [f64],
+) -> bool {
+    let bounds = problem.bounds;
+    let mut joined = false;
+    for (k, p) in p.iter_mut().enumerate() {
+        if inside[k] {
+            *p = bounds.nearest(k, *p - step * direction[k]);
+        }
+        if bounds.wrong(k, *p, g[k]) > 0.0 && problem.gap[k].is_finite() {
+            joined |= !inside[k];
+            *p = bounds.nearest(k, *p - step * g[k]);
+        }
+    }
+    joined
 }

@@ -43,7 +43,7 @@ use course::Course;
 pub(crate) struct Approximation {
     /// M, an approximation of the inverse.
     pub(crate) inverse: Convolution,
-    /// An approximation of the convolution itself, at a fifth of its cost.
+    /// An approximation of the convolution itself, at a quarter of its cost.
     pub(crate) periodic: Convolution,
 }
 

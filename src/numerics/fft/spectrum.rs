@@ -3,7 +3,7 @@
 use ndarray::ArrayRef2;
 use rustfft::num_complex::Complex64;
 
-use super::{BLOCK, PaddedTransform, Scratch, Workspace, ZERO};
+use super::{BLOCK, PaddedTransform, Scratch, TransformMemory, ZERO};
 use crate::numerics::parallel::Threads;
 
 /// The transform of a kernel that is even along x and along y, scaled by 1/(mx my). It is real and
@@ -25,7 +25,7 @@ impl PaddedTransform {
     pub(crate) fn even_spectrum(
         &self,
         quarter: &ArrayRef2<f64>,
-        workspace: &mut Workspace,
+        workspace: &mut TransformMemory,
         threads: &Threads,
     ) -> EvenSpectrum {
         let strides = [1, BLOCK];
@@ -38,7 +38,7 @@ impl PaddedTransform {
         &self,
         quarter: &ArrayRef2<f64>,
         odd: [bool; 2],
-        workspace: &mut Workspace,
+        workspace: &mut TransformMemory,
         threads: &Threads,
     ) -> ParitySpectrum {
         let strides = [self.quarter_rows(), 1];
@@ -53,12 +53,12 @@ impl PaddedTransform {
         quarter: &ArrayRef2<f64>,
         odd: [bool; 2],
         [next_column, next_row]: [usize; 2],
-        workspace: &mut Workspace,
+        workspace: &mut TransformMemory,
         threads: &Threads,
     ) -> Vec<f64> {
         let ([nx, _], [mx, my]) = (self.shape, self.padded);
         let (columns, quarter_rows) = (self.columns(), self.quarter_rows());
-        let Workspace { mesh, scratches } = workspace;
+        let TransformMemory { mesh, scratches } = workspace;
         let rows = &mut mesh.as_flattened_mut()[..nx * columns];
         let [sign_x, sign_y] = odd.map(|odd| if odd { -1.0 } else { 1.0 });
         let part = |value: Complex64, odd: bool| if odd { value.im } else { value.re };

@@ -7,7 +7,9 @@ use std::ops::Range;
 use ndarray::{ArrayViewMut2, Axis};
 use rustfft::num_complex::Complex64;
 
-use super::{BLOCK, EvenSpectrum, PaddedTransform, ROW_GROUP, Scratch, Scratches, Workspace, ZERO};
+use super::{
+    BLOCK, EvenSpectrum, PaddedTransform, ROW_GROUP, Scratch, Scratches, TransformMemory, ZERO,
+};
 use crate::numerics::parallel::{Threads, each_chunk, join};
 
 /// Half spectra of consecutive rows, stored by blocks of columns.
@@ -46,7 +48,7 @@ impl PaddedTransform {
         spectrum: &EvenSpectrum,
         input: &[f64],
         output: &mut [f64],
-        workspace: &mut Workspace,
+        workspace: &mut TransformMemory,
         threads: &Threads,
     ) {
         let rows = || 0..self.shape[0];
@@ -67,7 +69,7 @@ impl PaddedTransform {
     pub(crate) fn rows_in(
         &self,
         (input, occupied): (&[f64], Range<usize>),
-        workspace: &mut Workspace,
+        workspace: &mut TransformMemory,
         threads: &Threads,
     ) {
         let (rows, scratches) = self.half_spectra(workspace);
@@ -96,9 +98,9 @@ impl PaddedTransform {
     /// the working memory of the threads.
     pub(crate) fn half_spectra<'a>(
         &self,
-        workspace: &'a mut Workspace,
+        workspace: &'a mut TransformMemory,
     ) -> (HalfSpectra<'a>, &'a Scratches) {
-        let Workspace { mesh, scratches } = workspace;
+        let TransformMemory { mesh, scratches } = workspace;
         let size = self.block_rows();
         let (rows, _) = self.blocks_of(mesh, size).split(self.shape[0]);
         (rows, scratches)
@@ -147,13 +149,13 @@ impl PaddedTransform {
         &self,
         spectrum: &EvenSpectrum,
         occupied: Range<usize>,
-        workspace: &mut Workspace,
+        workspace: &mut TransformMemory,
         threads: &Threads,
     ) {
         let (nx, mx) = (self.shape[0], self.padded[0]);
         let (columns, size) = (self.columns(), self.block_rows());
         let kernel = spectrum.0.as_chunks().0;
-        let Workspace { mesh, scratches } = workspace;
+        let TransformMemory { mesh, scratches } = workspace;
         let blocks = &mut mesh[..self.blocks() * size];
         let convolve = |first: usize, blocks: &mut [_], scratch: &mut Scratch| {
             let kernels = kernel.chunks_exact(self.quarter_rows()).skip(first);
@@ -172,8 +174,8 @@ impl PaddedTransform {
     }
 
     /// Third stage: transforms rows back along y into `values`, from row `first` on and as many as fit.
-    pub(crate) fn rows_out(&self, first: usize, values: &mut [f64], workspace: &Workspace) {
-        let Workspace { mesh, scratches } = workspace;
+    pub(crate) fn rows_out(&self, first: usize, values: &mut [f64], workspace: &TransformMemory) {
+        let TransformMemory { mesh, scratches } = workspace;
         let size = self.block_rows();
         let blocks = mesh[..self.blocks() * size].chunks_exact(size);
         self.rows_from_blocks(blocks, first, values, &mut self.scratch(scratches));

@@ -90,8 +90,11 @@ impl Threads {
 
     /// Calls `work` on one of the threads, where rayon's parallel iterators use all of them.
     pub(crate) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        match self.pool() {
-            Some(pool) => pool.run(work),
+        match self.pool().filter(|pool| pool.threads.current_thread_index().is_none()) {
+            Some(pool) => {
+                pool.calls.fetch_add(1, Ordering::AcqRel);
+                pool.install(work)
+            }
             None => work(),
         }
     }
@@ -99,9 +102,16 @@ impl Threads {
     /// Calls `work`, which processes `cells` cells many times, on one of the threads where the cells are
     /// many and no other call uses the threads; otherwise on the calling thread. Inside, work is divided
     /// at once, whereas each division from outside the pool takes a tenth of a millisecond.
+    ///
+    /// At most one call runs inside, so that `work` leaves a thread of the pool to calls that it waits for. It does not
+    /// run inside while another call is under way, which might have to wait for it.
     pub(crate) fn run_inside<R: Send>(&self, cells: usize, work: impl FnOnce() -> R + Send) -> R {
-        match self.divide(cells).then(|| self.pool()).flatten() {
-            Some(pool) => pool.run_inside(work),
+        let alone = |pool: &Arc<SharedPool>| {
+            let (none, one) = (0, 1);
+            pool.calls.compare_exchange(none, one, Ordering::AcqRel, Ordering::Acquire).is_ok()
+        };
+        match self.divide(cells).then(|| self.pool()).flatten().filter(alone) {
+            Some(pool) => pool.install(work),
             None => work(),
         }
     }
@@ -141,32 +151,17 @@ impl Threads {
 }
 
 impl SharedPool {
-    fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        if self.threads.current_thread_index().is_some() {
-            return work();
-        }
-        self.calls.fetch_add(1, Ordering::AcqRel);
-        let _call = Call(&self.calls);
-        self.threads.install(work)
-    }
-
-    /// At most one call runs inside, so that `work` leaves a thread of the pool to calls that it waits
-    /// for. It does not run inside while another call is under way, which might have to wait for it.
-    fn run_inside<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        let (none, one) = (0, 1);
-        let alone = self.calls.compare_exchange(none, one, Ordering::AcqRel, Ordering::Acquire);
-        if alone.is_err() {
-            return work();
-        }
-        let _call = Call(&self.calls);
+    /// Calls `work`, which was counted as a call, on one of the threads.
+    fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        let _call = RunningCall(&self.calls);
         self.threads.install(work)
     }
 }
 
 /// A call that is under way.
-struct Call<'a>(&'a AtomicUsize);
+struct RunningCall<'a>(&'a AtomicUsize);
 
-impl Drop for Call<'_> {
+impl Drop for RunningCall<'_> {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::AcqRel);
     }

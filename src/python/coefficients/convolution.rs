@@ -129,7 +129,8 @@ impl PyConvolution {
                 Convolution::memory(grid.shape()),
             )?;
             let shared = Arc::new(Threads::new(threads)?);
-            let mut coefficients = coefficients_on(&*Body::from(body), &grid, Method::Exact, &shared)?;
+            let mut coefficients =
+                coefficients_on(&*Body::from(body), &grid, Method::Exact, &shared)?;
             if let Some(counterbody) = counterbody {
                 let body = Body::from(counterbody);
                 coefficients += &coefficients_on(&*body, &grid, Method::Exact, &shared)?;

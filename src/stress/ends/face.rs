@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use super::pressures::{EndImages, NearEnd, STRIP, Strip};
 use crate::compliance::convolution::RowWeights;
-use crate::compliance::ends::{Where, node_rows};
+use crate::compliance::ends::{Nodes, Where};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
 use crate::error::Result;
@@ -52,7 +52,7 @@ pub(super) struct Face {
     tables: Vec<FaceTable>,
 }
 
-/// FaceFields of one part of the pressure on a face.
+/// Fields below one part of the pressure on a face.
 #[derive(Debug)]
 struct FaceTable {
     part: HalfSpacePart,
@@ -214,7 +214,8 @@ fn depths_of_rows(
     known: [Option<f64>; 2],
 ) -> (Vec<f64>, Vec<RowWeights>) {
     let (nx, dx) = (grid.shape()[0], grid.spacing()[0]);
-    let (mut depths, near_rows) = node_rows(near.first, dx, nx - near.beyond);
+    let Nodes { distances: mut depths, rows: near_rows, .. } =
+        Nodes::new(near.first, dx, nx - near.beyond);
     let mut rows = vec![RowWeights::default(); nx];
     for (row, weights) in (near.beyond..).zip(near_rows) {
         rows[if near.sign > 0.0 { row } else { nx - 1 - row }] = weights;

@@ -8,11 +8,10 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::repeats::RowSource;
-use super::{Coefficients, HalfSpacePlan, Loading, SurfaceLoad, components, transforms_memory};
+use super::{Coefficients, HalfSpacePlan, Loading, SurfaceLoad, components};
 use crate::compliance::kernel::COMPONENTS;
 use crate::compliance::response::interior::Place;
-use crate::model::grid::Grid;
-use crate::numerics::fft::{KernelRows, Transformed, Workspace};
+use crate::numerics::fft::{KernelRows, TransformMemory, Transformed};
 use crate::stress::options::StressProgress;
 use crate::stress::subcell::STRESSES;
 
@@ -35,17 +34,16 @@ const POINT_ROWS: usize = 8;
 pub(in crate::stress) struct PlaneMemory {
     /// Transformed coefficients of each load at one depth.
     rows: Vec<KernelRows>,
-    workspace: Workspace,
+    workspace: TransformMemory,
     /// Components of a part, on its own cells.
     fields: Vec<Vec<f64>>,
 }
 
-/// Bytes of [`PlaneMemory`].
-pub(in crate::stress) fn plane_memory(grid: &Grid, slides: bool, displacement: bool) -> u64 {
+/// Arrays of cells of [`PlaneMemory`]: coefficients of each load and component, and of the components that are convolved
+/// together a spectrum and a result each.
+pub(in crate::stress) fn plane_arrays(slides: bool, displacement: bool) -> usize {
     let loads = if slides { 3 } else { 1 };
-    // Coefficients of each load and component, and of the components that are convolved together
-    // a spectrum and a result each.
-    transforms_memory(grid, (loads * components(displacement) + 2 * TOGETHER) as u64)
+    loads * components(displacement) + 2 * TOGETHER
 }
 
 impl HalfSpacePlan {

@@ -4,18 +4,14 @@
 //! pressure p, σ_zz = −p and σ_xx = σ_yy = −ν p/(1 − ν) in every layer. Where one direction is open, it is that of a
 //! strip.
 
-#[cfg(test)]
-mod tests;
-
 use std::ops::Range;
 
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use crate::compliance::images::Images;
-use crate::compliance::kernel::cells::{CellSource, ComponentsAt, FAR};
-use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Pressure, Radial, Traction};
-use crate::compliance::kernel::plane::{Kernel, Kernels};
+use crate::compliance::images::CellImages;
+use crate::compliance::kernel::loads::{COMPONENTS, EXCHANGED, Radial};
+use crate::compliance::kernel::plane::{CellPlan, CellSource, ComponentsAt, FAR, Kernel};
 use crate::compliance::kernel::strip::LinePlan;
 use crate::compliance::response::interior::Place;
 use crate::model::body::{HalfSpace, Substrate};
@@ -33,9 +29,9 @@ const ROWS_TOGETHER: usize = 8;
 /// What a plan on a grid that repeats has besides the kernels of its cells.
 #[derive(Debug)]
 pub(in crate::stress) struct Repeats {
-    images: Images,
+    images: CellImages,
     /// Kernels of the rectangle of all images that are summed.
-    block: Kernels,
+    block: CellPlan,
     block_half: [f64; 2],
     /// Strips along the direction that is open, where there is one.
     strips: Option<LinePlan>,
@@ -58,7 +54,7 @@ impl Repeats {
         if periodic == [false; 2] {
             return None;
         }
-        let images = Images::plan(grid, STRESS_RINGS);
+        let images = CellImages::plan(grid, STRESS_RINGS);
         let sides = images.block_sides();
         // From one end of the rectangle to places beyond the other.
         let reach = images.block_reach() + sides[0].hypot(sides[1]);
@@ -67,7 +63,7 @@ impl Repeats {
         let line = Grid::line(grid.shape()[open], grid.size()[open]);
         let strips = line.ok().filter(|_| periodic != [true; 2]);
         Some(Self {
-            block: Kernels::of_cells::<6, Pressure>(body, sides, 1.0, reach),
+            block: CellPlan::new(body, sides, 1.0, reach),
             block_half: sides.map(|side| 0.5 * side),
             strips: strips.map(|line| LinePlan::new(body, &line, 1.0)),
             open,
@@ -81,16 +77,8 @@ impl Repeats {
     pub(super) fn block_kernel<const N: usize, L: Radial<N>>(
         &self,
         place: &Place,
-    ) -> Option<Kernel<'_, N>> {
-        let Kernels::Plane { plan, pressure, traction } = &self.block else {
-            return None;
-        };
-        let multipliers = match L::IS_TRACTION {
-            false => pressure,
-            // Made without rayon, so that a thread that waits for it cannot be asked to make it.
-            true => traction.get_or_init(|| plan.multipliers::<9, Traction>()),
-        };
-        Some(Kernel::new::<L>(plan, multipliers, place))
+    ) -> Kernel<'_, N> {
+        Kernel::new::<L>(&self.block, place)
     }
 
     /// Largest distance at which the cells' kernels are evaluated.
@@ -224,16 +212,13 @@ fn everywhere(body: &HalfSpace, place: &Place, axis: Axis) -> [f64; COMPONENTS] 
         None => (1.0 - 2.0 * material.poisson()) / (2.0 - 2.0 * material.poisson()),
         Some(_) => 1.0,
     } / material.shear();
-    let layers = || body.layers().iter().enumerate();
-    let above: f64 = layers()
-        .take(place.layer)
-        .map(|(_, layer)| layer.thickness() * compliance(layer.material()))
-        .sum();
-    let above = above + place.below_top * compliance(place.material);
-    let whole: f64 = match body.substrate() {
-        Substrate::Rigid => {
-            layers().map(|(_, layer)| layer.thickness() * compliance(layer.material())).sum()
-        }
+    let moved = |count: usize| -> f64 {
+        let layers = body.layers().iter().take(count);
+        layers.map(|layer| layer.thickness() * compliance(layer.material())).sum()
+    };
+    let above = moved(place.layer) + place.below_top * compliance(place.material);
+    let whole = match body.substrate() {
+        Substrate::Rigid => moved(body.layers().len()),
         Substrate::Elastic(_) => 0.0,
     };
     let mut values = [0.0; COMPONENTS];
@@ -261,4 +246,134 @@ pub(super) fn rows_of<'a>(arrays: &'a [Array2<f64>], columns: usize) -> Box<RowS
             }
         }
     })
+}
+
+/// Sums over images against waves in the layered body.
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::compliance::response::interior::{Column, InPlane};
+    use crate::error::Result;
+    use crate::model::body::{Interface, Layer};
+    use crate::stress::section::place;
+    use crate::stress::{Side, Stress, StressOptions, stress};
+
+    const CELLS: [usize; 2] = [24, 15];
+
+    /// Bare, under a thin hard and a thick soft layer, two layers of which one slips, and a layer on a rigid base;
+    /// thicknesses in cells.
+    fn bodies() -> Result<Vec<HalfSpace>> {
+        let (soft, hard) = (Elastic::new(1.0, 0.3)?, Elastic::new(5.0, 0.2)?);
+        let slipping = Layer::new(soft, 2.0)?.with_interface(Interface::Frictionless);
+        Ok(vec![
+            soft.into(),
+            HalfSpace::new(soft, [Layer::new(hard, 0.4)?])?,
+            HalfSpace::new(hard, [Layer::new(soft, 30.0)?])?,
+            HalfSpace::new(soft, [Layer::new(hard, 1.0)?, slipping])?,
+            HalfSpace::new(Substrate::Rigid, [Layer::new(soft, 3.0)?])?,
+        ])
+    }
+
+    /// Fields of pressures that are uniform over cells, 1 + cos(2πk x/L) cos(2πl y/L) at their centres.
+    fn waves(body: &HalfSpace, depth: f64, waves: [usize; 2]) -> Result<(Stress, Grid)> {
+        let size = CELLS.map(|n| n as f64);
+        let grid = Grid::new(CELLS, size)?.periodic([true; 2])?;
+        let phase =
+            |k: usize, i: usize| 2.0 * PI * (waves[k] * (2 * i + 1)) as f64 / (2 * CELLS[k]) as f64;
+        let pressure =
+            Array2::from_shape_fn(CELLS, |(i, j)| 1.0 + phase(0, i).cos() * phase(1, j).cos());
+        let options = StressOptions { displacement: true, ..StressOptions::default() };
+        Ok((stress(body, &grid, &pressure, &[depth], &options)?, grid))
+    }
+
+    /// Amplitudes of all waves that look like this one at the centres of the cells, with their wavenumbers.
+    fn aliases(wave: usize, cells: usize) -> Vec<(f64, f64)> {
+        (-400..=400_i64)
+            .map(|alias| {
+                let number = wave as f64 + (alias * cells as i64) as f64;
+                let at = PI * number / cells as f64;
+                let mean = if at.abs() < 1e-12 { 1.0 } else { at.sin() / at };
+                let sign = if alias % 2 == 0 { 1.0 } else { -1.0 };
+                (sign * mean, 2.0 * PI * number / cells as f64)
+            })
+            .collect()
+    }
+
+    fn state(body: &HalfSpace, place: &Place, alpha: f64) -> InPlane {
+        Column::new(body, alpha).at(body, place).pressure
+    }
+
+    /// Waves along x have the stress and displacement of the layered body, Σ over all that look alike; the mean has
+    /// none along the surface. Sums over images err by 1e-7 of the coefficient of the loaded cell, which is at most the
+    /// pressure; the sums of aliases end where e^{−αz} is 1e-12.
+    #[test]
+    fn waves_along_one_direction_are_those_of_the_body() -> Result<()> {
+        for (number, body) in bodies()?.iter().enumerate() {
+            let deepest = match body.substrate() {
+                Substrate::Rigid => 2.9,
+                Substrate::Elastic(_) => 6.0,
+            };
+            for depth in [0.3, 1.7, deepest] {
+                let (found, _) = waves(body, depth, [3, 0])?;
+                let place = place(body, depth, Side::Below)?;
+                let nu = place.material.poisson();
+                let i = 4;
+                let x = i as f64 + 0.5;
+                let mut due = [0.0; 5];
+                for (amplitude, q) in aliases(3, CELLS[0]) {
+                    let alpha = q.abs();
+                    if alpha * depth > 40.0 {
+                        continue;
+                    }
+                    let state = state(body, &place, alpha);
+                    let (along, across) = state.lateral_stress(place.material);
+                    let (sin, cos) = (alpha * x).sin_cos();
+                    due[0] += amplitude * along * cos;
+                    due[1] += amplitude * across * cos;
+                    due[2] -= amplitude * state.p * cos;
+                    due[3] += amplitude * state.tau * sin;
+                    due[4] += amplitude * state.w / alpha * cos;
+                }
+                let mean = [-nu / (1.0 - nu), -nu / (1.0 - nu), -1.0, 0.0];
+                let stresses = [found.xx(), found.yy(), found.zz(), found.xz()];
+                for ((stress, due), mean) in stresses.iter().zip(due).zip(mean) {
+                    for j in [0, 7] {
+                        let error = stress[[0, i, j]] - due - mean;
+                        assert!(error.abs() < 1e-6, "body {number}, z {depth}: {error:e}");
+                    }
+                }
+                // Shears across the wave are none.
+                assert!(found.yz().iter().chain(found.xy()).all(|s| s.abs() < 1e-6));
+                let uz = found.uz().expect("it was asked for");
+                let waves = uz[[0, i, 0]] - uz[[0, i + 4, 0]];
+                // Half a wave further the sign has changed; the mean drops out.
+                assert!((waves - 2.0 * due[4]).abs() < 2e-6, "{number} {waves:e} {:e}", due[4]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Crossed waves are those of the body, too: σ_zz.
+    #[test]
+    fn crossed_waves_are_those_of_the_body() -> Result<()> {
+        for body in &bodies()? {
+            let depth = 1.3;
+            let (found, _) = waves(body, depth, [2, 4])?;
+            let place = place(body, depth, Side::Below)?;
+            let (i, j) = (5, 6);
+            let mut due = -1.0;
+            for (a, qx) in aliases(2, CELLS[0]).into_iter().filter(|(_, q)| q.abs() < 25.0) {
+                for (b, qy) in aliases(4, CELLS[1]).into_iter().filter(|(_, q)| q.abs() < 25.0) {
+                    let state = state(body, &place, qx.hypot(qy));
+                    let [x, y] = [qx * (i as f64 + 0.5), qy * (j as f64 + 0.5)];
+                    due -= a * b * state.p * x.cos() * y.cos();
+                }
+            }
+            let error = found.zz()[[0, i, j]] - due;
+            assert!(error.abs() < 1e-6, "{error:e}");
+        }
+        Ok(())
+    }
 }

@@ -3,14 +3,15 @@
 //! The load of a cell, less its mean and the shares of its first moment
 //! ([`super::reconstruction`]), has neither force nor moment: its stresses fall off as the fourth
 //! power of the distance. At shallow depths they are summed over some cells around each, from the
-//! stresses of pieces of a cell ([`super::cut`]).
+//! stresses of pieces of a cell ([`super::reconstruction`]).
 
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::cut::{CUTS, Cuts, Piece};
-use super::reconstruction::{INERTIA, Interior, Reconstruction, RootCell, mean_root};
+use super::reconstruction::{
+    CUTS, Cuts, INERTIA, Interior, Piece, Reconstruction, RootCell, mean_root,
+};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
 use crate::stress::options::StressProgress;
@@ -106,7 +107,6 @@ pub(in crate::stress) struct NearTable {
 }
 
 impl NearTable {
-    /// Whether the depth is 0.
     pub(super) fn at_surface(&self) -> bool {
         self.at_surface
     }

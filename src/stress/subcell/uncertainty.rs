@@ -78,11 +78,11 @@ struct Wave {
 
 /// Largest steps of the pressure from cell to cell along one axis \[Pa\], by how well the pressure is known
 /// in the worse of the two cells.
-type Steps = [f64; 3];
+type AxisSteps = [f64; 3];
 
 /// Largest steps along x and along y in a part of the grid.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::stress) struct LocalSteps([Steps; 2]);
+pub(in crate::stress) struct LocalSteps([AxisSteps; 2]);
 
 impl Uncertainty {
     pub(super) fn new(
@@ -124,12 +124,12 @@ impl Uncertainty {
         let rows = window[0].start.saturating_sub(STEP_REACH)..(window[0].end + STEP_REACH).min(nx);
         let columns =
             window[1].start.saturating_sub(STEP_REACH)..(window[1].end + STEP_REACH).min(ny);
-        let count = |steps: &mut Steps, a: usize, b: usize| {
+        let count = |steps: &mut AxisSteps, a: usize, b: usize| {
             let step = (pressure[a] - pressure[b]).abs();
             let largest = &mut steps[self.known[a].max(self.known[b]) as usize];
             *largest = largest.max(step);
         };
-        let [mut along, mut across] = [Steps::default(); 2];
+        let [mut along, mut across] = [AxisSteps::default(); 2];
         for i in rows.clone() {
             for j in columns.clone() {
                 let cell = i * ny + j;
@@ -155,7 +155,7 @@ impl Uncertainty {
     ) -> f64 {
         let friction = friction[0].hypot(friction[1]);
         let material = place.material;
-        let error = |(steps, wave): (Steps, &Wave)| {
+        let error = |(steps, wave): (AxisSteps, &Wave)| {
             let parts = wave.shares.iter().zip(steps);
             let pressure = parts.map(|(share, step)| share * step).fold(0.0, f64::max);
             if pressure <= 0.0 {

@@ -2,7 +2,7 @@
 //!
 //! A step on which cells leave is not the step that was planned, and its displacement takes a second
 //! convolution. While cells leave, a step therefore takes its length from the periodic convolution, which
-//! costs a fifth, and applies the exact convolution to the change that remains when cells have left and
+//! costs a quarter, and applies the exact convolution to the change that remains when cells have left and
 //! balance is restored.
 
 use std::ops::Range;

@@ -15,9 +15,7 @@ use crate::contact::Contact;
 use crate::friction::{FrictionProgress, Last, Move, Rolling, RollingDirection};
 use crate::model::body::HalfSpace;
 use crate::model::surface::Surface;
-use crate::python::arguments::keywords::{
-    self, Keywords, motion_signature,
-};
+use crate::python::arguments::keywords::{self, Keywords, motion_signature};
 use crate::python::arguments::pair;
 use crate::python::bodies::body;
 use crate::python::contact::single::setup;

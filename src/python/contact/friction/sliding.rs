@@ -15,9 +15,7 @@ use crate::contact::{Contact, Motion, Options, choose_grid};
 use crate::friction::{FrictionProgress, FrictionReport, FrictionSolution, Last, Move, Step};
 use crate::model::body::HalfSpace;
 use crate::python::arguments::Repr;
-use crate::python::arguments::keywords::{
-    self, Keywords, motion_signature,
-};
+use crate::python::arguments::keywords::{self, Keywords, motion_signature};
 use crate::python::arguments::{number, pair};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;

@@ -1,4 +1,4 @@
-//! What a free end adds to the influence coefficients of cells.
+//! What a free end adds to the displacement of a quarter space: at points, and to the influence coefficients of cells.
 //!
 //! The displacement of cell a under unit pressure on cell b is the sum of that from the mirror image of b,
 //! in closed form at the centre of a, and of the mean over a of what keeps the face free. The means make the
@@ -9,14 +9,13 @@ use std::f64::consts::{EULER_GAMMA, PI};
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
 
-use super::mesh::Modes;
-use super::reduction::Reduction;
-use super::waves::Along;
-use super::{VANISHED, layers};
+use super::reduction::{Modes, Reduction};
+use super::waves::{Along, WaveRule, Width};
+use super::{VANISHED, layers_factor};
 use crate::compliance::convolution::{RowWeights, pair};
 use crate::compliance::influence::{CellInfluence, coefficients_apart};
-use crate::error::Result;
-use crate::model::body::HalfSpace;
+use crate::error::{Error, Result, finite, not_negative, positive};
+use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::model::material::Elastic;
 use crate::numerics::parallel::Threads;
@@ -36,17 +35,17 @@ const INTEGRATED: f64 = 4.0;
 
 /// Rows of cells at increasing distances from an end, interpolated from nodes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Nodes {
+pub(crate) struct Nodes {
     /// Distance of each node from the end.
-    pub(super) distances: Vec<f64>,
-    pub(super) rows: Vec<RowWeights>,
+    pub(crate) distances: Vec<f64>,
+    pub(crate) rows: Vec<RowWeights>,
     /// Length of a cell.
     pub(super) spacing: f64,
 }
 
 impl Nodes {
     /// Nodes for `count` rows of cells, of which the first has its centre at the distance `nearest`.
-    pub(super) fn new(nearest: f64, spacing: f64, count: usize) -> Self {
+    pub(crate) fn new(nearest: f64, spacing: f64, count: usize) -> Self {
         let (mut distances, mut rows) = (Vec::new(), Vec::new());
         let at = |row: usize| nearest + spacing * row as f64;
         while rows.len() < count {
@@ -73,14 +72,12 @@ impl Nodes {
 
     /// Means of functions of kx over a cell around x = `distance`.
     pub(super) fn mean(&self, modes: &Modes, k: f64, distance: f64) -> Array1<f64> {
-        let (dx, mut sums) = (self.spacing, Array1::zeros(modes.count()));
+        let dx = self.spacing;
         if distance < INTEGRATED * dx {
-            let factor = 1.0 / (k * dx);
-            let low = (distance - 0.5 * dx).max(0.0);
-            modes.add_integrals(k * (distance + 0.5 * dx), factor, &mut sums);
-            modes.add_integrals(k * low, -factor, &mut sums);
-            return sums;
+            let ends = [(distance - 0.5 * dx).max(0.0), distance + 0.5 * dx];
+            return modes.integrals(ends.map(|x| k * x), 1.0 / (k * dx));
         }
+        let mut sums = Array1::zeros(modes.count());
         for (part, w) in Rule::gauss_legendre(3).nodes(0.0, 0.5) {
             modes.add(k * (distance + part * dx), w, &mut sums);
         }
@@ -92,13 +89,6 @@ impl Nodes {
         let near = |d: &&f64| **d - 0.5 * self.spacing < most;
         self.distances.iter().take_while(near).count()
     }
-}
-
-/// Distances of nodes from an end, and weights of the nodes for `count` rows of cells of length `spacing`, of which the
-/// first has its centre at the distance `nearest`.
-pub(crate) fn node_rows(nearest: f64, spacing: f64, count: usize) -> (Vec<f64>, Vec<RowWeights>) {
-    let Nodes { distances, rows, .. } = Nodes::new(nearest, spacing, count);
-    (distances, rows)
 }
 
 /// Coefficient of the logarithm in what keeps the face free, −c ln k as k → 0. The whole body is displaced as much more than
@@ -139,7 +129,7 @@ pub(super) fn coefficients(
                 .iter()
                 .map(|&d| nodes.mean(&reduction.displacement, k, d))
                 .collect();
-            let factor = layers::factor(body, k);
+            let factor = layers_factor(body, k);
             for a in 0..near {
                 for b in 0..=a {
                     row[pair(a, b)] = factor * means[a].dot(&means[b]);
@@ -173,4 +163,89 @@ pub(super) fn coefficients(
         }
     });
     Ok(coefficients)
+}
+
+/// A body x ≥ 0, z ≥ 0 whose face x = 0 is free, under uniform pressure on the rectangle
+/// d ≤ x ≤ d + l, |y| ≤ b of its surface z = 0.
+///
+/// The displacement is that of a half-space under the load and its mirror image, and of what keeps the face
+/// free. The reduction to one equation is nacre's own, after Hetényi, J. Appl. Mech. 37 (1970) 289,
+/// doi:10.1115/1.3408508.
+///
+/// ```
+/// use nacre::{Elastic, ends::QuarterSpace};
+/// use std::f64::consts::PI;
+/// // For ν = ½, the edge sinks 2π²/(π² − 4) times as far as the surface of a half-space.
+/// let rubber = Elastic::new(1e6, 0.5)?;
+/// let body = QuarterSpace::new(rubber, 0.0, [2.0, 1.0])?;
+/// let half_space = nacre::influence::CellInfluence::plan(&rubber, [2.0, 2.0], 10.0)?;
+/// let ratio = body.displacement([0.0, 0.0])? / half_space.at([1.0, 0.0]);
+/// assert!((ratio / (2.0 * PI * PI / (PI * PI - 4.0)) - 1.0).abs() < 1e-5);
+/// # Ok::<(), nacre::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct QuarterSpace {
+    body: HalfSpace,
+    material: Elastic,
+    distance: f64,
+    length: f64,
+    half_width: f64,
+}
+
+impl QuarterSpace {
+    /// A `body`, which may have layers ([the model](crate::compliance::ends)), under unit pressure on the rectangle at this `distance` d \[m\] from the end, of
+    /// length l and half-width b \[m\].
+    ///
+    /// # Errors
+    /// On a rigid substrate; unless the distance is at least 0, and all lengths are finite and the last two above 0.
+    pub fn new(
+        body: impl Into<HalfSpace>,
+        distance: f64,
+        [length, half_width]: [f64; 2],
+    ) -> Result<Self> {
+        let body = body.into();
+        let Substrate::Elastic(material) = body.substrate() else {
+            return Err(Error::Inconsistent(
+                "body must not have a rigid substrate: its face is not free there",
+            ));
+        };
+        not_negative("distance", distance)?;
+        positive("length", length)?;
+        positive("half_width", half_width)?;
+        Ok(Self { body, material, distance, length, half_width })
+    }
+
+    /// Displacement \[m/Pa\] of the surface at (x, y) \[m\], x ≥ 0, per unit pressure.
+    ///
+    /// # Errors
+    /// Unless x is at least 0 and both are finite.
+    pub fn displacement(&self, [x, y]: [f64; 2]) -> Result<f64> {
+        not_negative("x", x)?;
+        finite("y", y)?;
+        let middle = self.distance + 0.5 * self.length;
+        let sides = [self.length, 2.0 * self.half_width];
+        let reach = (x + middle).hypot(y) + sides[0].hypot(sides[1]);
+        let half_space = CellInfluence::plan(&self.body, sides, reach)?;
+        let images = half_space.at([x - middle, y]) + half_space.at([x + middle, y]);
+        Ok(images + self.excess([x, y]))
+    }
+
+    /// The displacement beyond that of the load and its image.
+    pub(crate) fn excess(&self, [x, y]: [f64; 2]) -> f64 {
+        let reduction = Reduction::of(self.material.poisson());
+        let end = self.distance + self.length;
+        // On the edge itself amplitudes fall as k⁻² only; the rest is 1e-8 of the integral.
+        let shortest = self.length.min(self.half_width);
+        let highest = (VANISHED / (x + self.distance).max(1e-30)).min(1e4 / shortest);
+        let reach = y.abs() + self.half_width + end + x;
+        let waves = WaveRule::new(&[y.abs()], Width::Load(self.half_width), reach, highest);
+        let mut sum = 0.0;
+        for (k, weights) in waves.wavenumbers.iter().zip(&waves.weights) {
+            let modes = &reduction.displacement;
+            let load = modes.integrals([k * self.distance, k * end], 1.0 / k);
+            sum += layers_factor(&self.body, *k) * weights[0] * modes.at(k * x).dot(&load);
+        }
+        let short = 2.0 / self.material.plane_strain_modulus();
+        sum * short * 2.0 * self.half_width / (PI * PI)
+    }
 }
