@@ -10,7 +10,7 @@ use super::arguments::keywords::{
     self, Keywords, motion_docs, motion_signature, search_docs, search_signature, single_docs,
     single_signature,
 };
-use super::arguments::{read_only, real_matrix, remade};
+use super::arguments::{array_repr, read_only, real_matrix, remade};
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
@@ -304,16 +304,19 @@ impl PyContact {
         (a.grid(), a.body(), a.setup()) == (b.grid(), b.body(), b.setup())
     }
 
-    fn __repr__(&self) -> String {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (setup, none) = (self.contact.setup(), || "None".to_owned());
-        format!(
+        let coefficients = setup.coefficients.as_ref();
+        let coefficients =
+            coefficients.map(|given| array_repr(py, given.to_owned())).transpose()?;
+        Ok(format!(
             "Contact({}, {}, counterbody={}, coefficients={}, threads={})",
             self.body().__repr__(),
             self.grid().__repr__(),
             self.counterbody().map_or_else(none, |body| body.__repr__()),
-            if setup.coefficients.is_some() { "<array>" } else { "None" },
+            coefficients.unwrap_or_else(none),
             setup.threads.map_or_else(none, |threads| threads.to_string()),
-        )
+        ))
     }
 
     /// Callable and arguments that make the plan again.

@@ -52,8 +52,6 @@ CASE: dict[str, Any] = {
         "load": 10.0,
         "eccentricity": {"x": 1e-6},
         "tilt": [0.0, 0.0],
-        "method": "exact",
-        "refinement": 4,
         "threads": 1,
         "tolerance": 1e-8,
         "max_iterations": 10,

@@ -346,7 +346,7 @@ impl PyReport {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
-    /// >>> nacre.Report.from_dict(report.to_dict()) == report
+    /// >>> nacre.types.Report.from_dict(report.to_dict()) == report
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -317,7 +317,7 @@ impl PyStress {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> field = nacre.stress(steel, nacre.Grid((2, 2), (2.0, 2.0)), np.ones((2, 2)), 1.0)
-    /// >>> nacre.Stress.from_dict(field.to_dict()) == field
+    /// >>> nacre.types.Stress.from_dict(field.to_dict()) == field
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

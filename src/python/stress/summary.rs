@@ -89,7 +89,7 @@ impl PyStressSummary {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
     /// >>> summary = solution.stress_summary()
-    /// >>> nacre.StressSummary.from_dict(summary.to_dict()) == summary
+    /// >>> nacre.types.StressSummary.from_dict(summary.to_dict()) == summary
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -204,7 +204,7 @@ impl PyLayerStress {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
     /// >>> (layer,) = solution.stress_summary().layers
-    /// >>> nacre.LayerStress.from_dict(layer.to_dict()) == layer
+    /// >>> nacre.types.LayerStress.from_dict(layer.to_dict()) == layer
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -306,7 +306,7 @@ impl PyInterfaceStress {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0, grid=grid)
     /// >>> (interface,) = solution.stress_summary().interfaces
-    /// >>> nacre.InterfaceStress.from_dict(interface.to_dict()) == interface
+    /// >>> nacre.types.InterfaceStress.from_dict(interface.to_dict()) == interface
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -114,7 +114,7 @@ impl PyCreepCoefficients {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.25)
     /// >>> creep = nacre.creep_coefficients(steel, steel, (1e-3, 2e-3), cells=16)
-    /// >>> nacre.CreepCoefficients.from_dict(creep.to_dict()) == creep
+    /// >>> nacre.types.CreepCoefficients.from_dict(creep.to_dict()) == creep
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -154,7 +154,7 @@ impl PyFrictionReport {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> nacre.FrictionReport.from_dict(ball.report.to_dict()) == ball.report
+    /// >>> nacre.types.FrictionReport.from_dict(ball.report.to_dict()) == ball.report
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -55,7 +55,7 @@ impl Rolled {
         };
         let cells = keywords.count("cells", 1)?;
         let initial: Option<Py<PyFrictionSolution>> =
-            keywords.object("initial", "a nacre.FrictionSolution")?;
+            keywords.object("initial", "a nacre.types.FrictionSolution")?;
         if initial.is_some() && cells.is_none() {
             return Err(PyValueError::new_err(
                 "initial must be given with cells: the steady state does not depend on it",

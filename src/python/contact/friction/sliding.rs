@@ -57,7 +57,7 @@ impl Sliding {
     ) -> PyResult<Self> {
         let first = step(keywords)?;
         let initial: Option<Py<PyFrictionSolution>> =
-            keywords.object("initial", "a nacre.FrictionSolution")?;
+            keywords.object("initial", "a nacre.types.FrictionSolution")?;
         let found = found(keywords)?;
         let shape = shape(given)?.get().0.clone();
         let Some(given) = steps else {

@@ -591,7 +591,7 @@ impl PyFrictionSolution {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> nacre.FrictionSolution.from_dict(ball.to_dict()) == ball
+    /// >>> nacre.types.FrictionSolution.from_dict(ball.to_dict()) == ball
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
