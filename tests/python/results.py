@@ -56,7 +56,7 @@ FRICTION: dict[str, Callable[[], nacre.types.FrictionSolution]] = {
     ),
     "rolled": lambda: CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
     "given coefficients, slid": lambda: nacre.Contact(
-        COATED, GRID, coefficients=nacre.influence_coefficients(COATED, GRID, "image")
+        COATED, CELLS, coefficients=nacre.influence_coefficients(COATED, CELLS, "image")
     ).slide(BALL, load=10.0, friction=0.3, force=(1.0, None)),
     "line slid": lambda: LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),
     "line rolled": lambda: LINE.roll(ROD, load=1e4, friction=0.3, creepage=(1e-4, None)),

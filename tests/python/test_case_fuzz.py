@@ -113,6 +113,7 @@ def cases() -> Iterator[tuple[dict[str, Any], tuple[Any, ...]]]:
                 yield changed(whole, (*path[:-1], f"{path[-1]}s"), 1), path
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 def test_an_error_is_one_line_that_names_file_and_key(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.random.default_rng(1).normal(size=(8, 8)))

@@ -90,6 +90,7 @@ def with_examples() -> list[str]:
     return [name for name, thing in everything.items() if ">>> " in (thing.__doc__ or "")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", with_examples())
 def test_its_examples_are_true(name: str) -> None:
     docstring = nacre.__doc__ if name == "nacre" else OBJECTS[name].__doc__
@@ -103,6 +104,7 @@ def test_its_examples_are_true(name: str) -> None:
     assert result.failed == 0, "".join(said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [nacre.units, nacre.design, nacre.plot.sections])
 def test_the_examples_of_a_module_are_true(module: ModuleType) -> None:
     result = doctest.testmod(module, globs={**vars(module), "nacre": nacre}, optionflags=FLAGS)

@@ -116,6 +116,7 @@ def test_a_sharp_roller_on_a_wide_race_is_near_the_reference() -> None:
     assert solution.report.counterbody == roller
 
 
+@pytest.mark.slow
 def test_both_bodies_free_are_softer_and_warn_of_no_edge() -> None:
     roller = nacre.HalfSpace(UNIT, ends=STRAIGHT.ends)
     whole, one, both = (
@@ -144,6 +145,7 @@ def test_a_plan_has_the_ends_of_its_bodies() -> None:
     assert not solution.pressure[solution.x < -1e-4].any()
 
 
+@pytest.mark.slow
 def test_a_grid_is_found_that_fits_the_ends() -> None:
     roller = nacre.Roller(5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
     free = nacre.solve(roller, STEEL, nacre.HalfSpace(STEEL, ends=roller.ends), load=1e3)

@@ -207,6 +207,7 @@ def test_what_fails_is_one_line_and_its_exit_code(line: str, tmp_path: Path) -> 
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_what_does_not_converge_is_exit_code_1(tmp_path: Path, capsys: Capture) -> None:
     text = SLIDE.replace("load = 10.0", "load = 10.0\ntolerance = 1e-16")
     out = tmp_path / "out.nc"

@@ -163,6 +163,7 @@ def test_other_programs_find_the_same_pressure(
     claim("periodic-peers", float(np.abs(found.pressure - theirs).max() / theirs.max()))
 
 
+@pytest.mark.slow
 def test_stresses_repeat_and_bear_the_load() -> None:
     """A wave on a bare body has σ_zz = −p (1 + qz) e^{−qz} and σ_xx = −p (1 − qz) e^{−qz}.
 
@@ -190,6 +191,7 @@ def test_stresses_repeat_and_bear_the_load() -> None:
     assert summary.layers[0].von_mises[0] == pytest.approx(largest.max(), rel=1e-2)
 
 
+@pytest.mark.slow
 def test_plans_sections_and_files_know_that_stresses_repeat(tmp_path: Path) -> None:
     solution = nacre.solve(MAP, BODY, load=2e-3)
     plan = solution.stress_plan()

@@ -412,6 +412,7 @@ FINE_GRID = nacre.Grid(shape=(280, 270), size=(4e-4, 4e-4))
 HEAVY = 250.0
 
 
+@pytest.mark.slow
 def test_solves_on_one_plan_at_once_give_the_same_bits() -> None:
     contact = nacre.Contact(COATED, FINE_GRID, threads=2)
     loads = [HEAVY, 0.9 * HEAVY, 0.8 * HEAVY, 0.7 * HEAVY]
@@ -432,6 +433,7 @@ def test_the_number_of_threads_changes_no_bit() -> None:
     )
 
 
+@pytest.mark.slow
 def test_solves_of_one_plan_may_wait_for_each_other() -> None:
     # More solves than threads: were a thread held by each that waits, the third would not begin.
     contact = nacre.Contact(COATED, FINE_GRID, threads=2)
@@ -451,6 +453,7 @@ def test_solves_of_one_plan_may_wait_for_each_other() -> None:
                 np.testing.assert_array_equal(solved.result().pressure, expected)
 
 
+@pytest.mark.slow
 def test_other_threads_run_during_a_solve() -> None:
     contact = nacre.Contact(COATED, FINE_GRID, threads=1)
     started = threading.Event()
@@ -504,6 +507,7 @@ except KeyboardInterrupt as error:
     assert run.waited < 2.0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_a_plan_solves_in_a_forked_child() -> None:
     script = f"""{SCRIPT}

@@ -215,6 +215,7 @@ print(hash(some) == hash(functools.reduce(operator.add, [part] * 5000)))
 """
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_shapes_can_be_added() -> None:
     # In a process of its own: without lists, recursion ends the process.
     run = python("-c", SUMS)
