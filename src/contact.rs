@@ -61,7 +61,7 @@ impl Contact {
     /// Plans contacts of `body` on `grid`.
     ///
     /// # Errors
-    /// A method that does not suit the grid, no threads, or too little memory.
+    /// Given coefficients that do not suit the grid, no threads, or too little memory.
     pub fn plan(body: impl Into<Body>, grid: Grid, setup: Setup) -> Result<Self> {
         Ok(Self(Plan::new(body.into(), grid, setup)?))
     }
@@ -71,7 +71,7 @@ impl Contact {
         &self.0.body
     }
 
-    /// The setup that was planned: counterbody, method and threads.
+    /// The setup that was planned: counterbody, given coefficients and threads.
     pub fn setup(&self) -> &Setup {
         &self.0.setup
     }

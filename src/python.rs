@@ -74,6 +74,6 @@ mod core {
         module.setattr("IndentCurve", py.get_type::<indent::PyIndentCurve>())?;
         module.setattr("PullOff", py.get_type::<indent::PyPullOff>())?;
         module.setattr("slope_of", wrap_pyfunction!(indent::slope_of, module)?)?;
-        state::add_restorers(module)
+        Ok(())
     }
 }

@@ -17,8 +17,6 @@ from nacre.units import symbol
 if TYPE_CHECKING:
     import xarray
 
-PLAN = ("method", "refinement", "threads")
-"""Keywords of a plan."""
 MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
 """Keywords of the motion along z."""
 
@@ -250,7 +248,7 @@ def creep_curve(
     for name in ("creepage", "force", "cells", "initial"):
         if name in keywords:
             raise ValueError(f"{name} must not be given: creepages say what is asked")
-    plan = {name: keywords.pop(name) for name in PLAN if name in keywords}
+    plan = {"threads": keywords.pop("threads", None)}
     grid = keywords.pop("grid", None)
     if grid is None:
         motion = {name: keywords[name] for name in MOTION if name in keywords}

@@ -29,8 +29,3 @@ __all__ = [
     "StressPlan",
     "StressSummary",
 ]
-
-# Pickles and the documentation find them here.
-for _name in __all__:
-    if globals()[_name].__module__ == "nacre":
-        globals()[_name].__module__ = __name__

@@ -4,7 +4,7 @@ mod datum;
 
 use std::sync::{Arc, OnceLock};
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayRef2};
 
 use super::cascade::discretisation::Unresolved;
 use super::cascade::levels::Levels;
@@ -148,28 +148,65 @@ pub(super) fn operator(
     additions: &[Addition],
     threads: &Arc<Threads>,
 ) -> Result<(Array2<f64>, Datum)> {
-    let coefficients = total_coefficients(body, setup, grid, threads)?;
+    let coefficients = match &setup.coefficients {
+        Some(given) => {
+            check_coefficients(given, grid)?;
+            given.to_owned()
+        }
+        None => total_coefficients(body, setup, grid, threads)?,
+    };
     let datum = Datum::find(&bodies(body, setup), grid, (&coefficients, additions), threads)?;
     let coefficients = datum.moved(coefficients, grid);
     // No coefficient of a positive definite operator is larger than that of the loaded cell.
     let own = coefficients[[0, 0]];
     let larger = |c: &f64| c.abs() > own;
-    if setup.method != Method::Exact && (own <= 0.0 || coefficients.iter().any(larger)) {
+    if setup.coefficients.is_some() && (own <= 0.0 || coefficients.iter().any(larger)) {
         return Err(INDEFINITE);
     }
     Ok((coefficients, datum))
 }
 
-/// Influence coefficients of body and counterbody together.
+/// Largest difference between given coefficients that are the same on a grid that repeats, relative to that of the loaded
+/// cell: rounding.
+const UNEVEN: f64 = 1e-9;
+
+/// Checks given coefficients.
+///
+/// # Errors
+/// Another shape than the grid, a coefficient that is not finite, and coefficients that do not repeat where the grid does.
+pub(super) fn check_coefficients(coefficients: &ArrayRef2<f64>, grid: &Grid) -> Result<()> {
+    let (name, expected) = ("coefficients", grid.shape());
+    let found @ [nx, ny] = [coefficients.nrows(), coefficients.ncols()];
+    if found != expected {
+        return Err(Error::Shape { name, expected, found });
+    }
+    if let Some((index, _)) = coefficients.indexed_iter().find(|(_, c)| !c.is_finite()) {
+        return Err(Error::NonFinite { name, index: index.into() });
+    }
+    let [along_x, along_y] = grid.is_periodic();
+    let image = |i: usize, n: usize, repeats: bool| if repeats { (n - i) % n } else { i };
+    let uneven = |((i, j), c): ((usize, usize), &f64)| {
+        let same = coefficients[[image(i, nx, along_x), image(j, ny, along_y)]];
+        (c - same).abs() > UNEVEN * coefficients[[0, 0]].abs()
+    };
+    if coefficients.indexed_iter().any(uneven) {
+        return Err(Error::Inconsistent(
+            "coefficients must be the same at the offsets d and n - d along a direction in which a grid of n cells repeats",
+        ));
+    }
+    Ok(())
+}
+
+/// Exact influence coefficients of body and counterbody together.
 fn total_coefficients(
     body: &Body,
     setup: &Setup,
     grid: &Grid,
     threads: &Threads,
 ) -> Result<Array2<f64>> {
-    let mut coefficients = coefficients_on(&**body, grid, setup.method, threads)?;
+    let mut coefficients = coefficients_on(&**body, grid, Method::Exact, threads)?;
     if let Some(counterbody) = &setup.counterbody {
-        coefficients += &coefficients_on(&**counterbody, grid, setup.method, threads)?;
+        coefficients += &coefficients_on(&**counterbody, grid, Method::Exact, threads)?;
     }
     Ok(coefficients)
 }

@@ -31,7 +31,7 @@ use scale::LocalDisplacement;
 /// The error for an operator K with a pressure p for which pᵀK p < 0.
 pub(super) const INDEFINITE: Error = Error::Inconsistent(
     "the influence coefficients are not positive definite, so that the contact has no unique solution; \
-     take the method \"exact\", a larger refinement or a grid of more cells",
+     leave out coefficients that are given, or take a grid of more cells",
 );
 
 /// One contact problem: operator, degrees of freedom and undeformed gap.

@@ -6,9 +6,10 @@ pub(super) mod report;
 pub(super) mod tangent;
 pub(super) mod warnings;
 
-use ndarray::{Array1, Array2};
+use ndarray::{ArcArray2, Array1, Array2};
 
 use super::hardness::{Hardness, check_indentation};
+use super::plan::check_coefficients;
 use crate::error::{Error, Result, finite};
 use crate::model::grid::Grid;
 use gap::Gap;
@@ -30,6 +31,8 @@ pub struct Solution {
     /// Permanent indentation \[m\], ≥ 0, with that of the solves before; `None` where no cell has one. The gap
     /// contains it.
     pub indentation: Option<Array2<f64>>,
+    /// Influence coefficients that were given ([`Setup`](super::Setup)); `None` where they are those of the bodies.
+    pub coefficients: Option<ArcArray2<f64>>,
     /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
@@ -44,6 +47,7 @@ impl PartialEq for Solution {
             && self.displacement == other.displacement
             && self.hardness == other.hardness
             && self.indentation == other.indentation
+            && self.coefficients == other.coefficients
             && self.gap() == other.gap()
     }
 }
@@ -103,6 +107,7 @@ impl Solution {
             tilt,
             hardness: None,
             indentation: None,
+            coefficients: None,
             report,
             gap: Gap::Known(gap),
         })
@@ -125,6 +130,15 @@ impl Solution {
             check_indentation(indentation, self.grid())?;
         }
         Ok(Self { hardness, indentation, ..self })
+    }
+
+    /// The solution with the influence coefficients that were given.
+    ///
+    /// # Errors
+    /// Coefficients that do not suit the grid.
+    pub fn with_coefficients(self, coefficients: Array2<f64>) -> Result<Self> {
+        check_coefficients(&coefficients, self.grid())?;
+        Ok(Self { coefficients: Some(coefficients.into_shared()), ..self })
     }
 
     /// The solution itself, if the tolerance was met.

@@ -86,7 +86,7 @@ def test_every_field_of_a_result_is_documented(name: str) -> None:
     told = {
         field.target.id: text.value.value
         for field, text in itertools.pairwise(body)
-        if isinstance(field, ast.AnnAssign) and isinstance(text, ast.Expr)
+        if (type(field), type(text)) == (ast.AnnAssign, ast.Expr)
     }
     for field in dataclasses.fields(kind):
         assert told[field.name].split("\n")[0].endswith((".", ":"))
@@ -112,6 +112,7 @@ def with_examples() -> list[str]:
     return [name for name, thing in everything.items() if ">>> " in (thing.__doc__ or "")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", with_examples())
 def test_its_examples_are_true(name: str) -> None:
     docstring = nacre.__doc__ if name == "nacre" else OBJECTS[name].__doc__
@@ -125,6 +126,7 @@ def test_its_examples_are_true(name: str) -> None:
     assert result.failed == 0, "".join(said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [nacre.units, nacre.design, nacre.plot.sections])
 def test_the_examples_of_a_module_are_true(module: ModuleType) -> None:
     result = doctest.testmod(module, globs={**vars(module), "nacre": nacre}, optionflags=FLAGS)

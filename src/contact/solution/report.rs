@@ -6,7 +6,6 @@ use ndarray::Array2;
 
 use super::warnings::Warning;
 use crate::compliance::ends::{Ends, FreeEnds};
-use crate::compliance::influence::Method;
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::options::Motion;
@@ -25,7 +24,7 @@ pub struct Report {
     /// How the iteration ended.
     pub termination: Termination,
     /// Solver that produced the solution, also where the algorithm that was asked for fell back to another.
-    /// `None` where it is not known: in the reports of a running solve, and in files of format 0.
+    /// `None` where it is not known: in the reports of a running solve.
     pub solver: Option<Solver>,
     /// Iterations done.
     pub iterations: usize,
@@ -52,8 +51,6 @@ pub struct Report {
     pub body: Body,
     /// The body that carries the shape; rigid where `None`.
     pub counterbody: Option<Body>,
-    /// How the influence coefficients were computed.
-    pub method: Method,
     /// Load or approach and tilts that were asked for.
     pub motion: Motion,
     /// Unit vector along which the shape rolls, and friction acts where no other direction is given: y in
@@ -111,7 +108,6 @@ impl Report {
             grid: plan.grid,
             body: plan.body.clone(),
             counterbody: plan.setup.counterbody.clone(),
-            method: plan.setup.method,
             motion: *motion,
             rolling_direction: plan.grid.rolling_direction().or_else(|| shape.rolling_direction()),
             tolerance,
