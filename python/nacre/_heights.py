@@ -427,8 +427,8 @@ def _three(name: str, columns: tuple[int, ...]) -> tuple[int, ...]:
     """Return the columns of x, y and z, all of which must be known."""
     if len(columns) != 3:
         raise ValueError(
-            f"{name!r} holds points, not a matrix: columns {columns[0]} and {columns[1]} are places "
-            f"on a grid; name the columns x, y and z in the line above, or leave those three alone"
+            f"{name!r} holds points, not a matrix: columns {columns[0]} and {columns[1]} are "
+            f"places on a grid; name the columns x, y and z in the line above, or leave those alone"
         )
     return columns
 
@@ -442,7 +442,7 @@ def _are_places(pairs: Array) -> bool:
 
 
 def _distinct(values: Array) -> Array:
-    """Return coordinates in order; those that differ by rounding or a stage's error are the same."""
+    """Return coordinates in order, once each but for rounding or the error of a stage."""
     found = np.unique(values)
     gaps = np.diff(found)
     same = found[np.insert(gaps > 1e-6 * (np.ptp(found) or 1.0), 0, True)]
@@ -538,8 +538,8 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
             return values[:, 1:]
         raise ValueError(
             f"{name!r} holds more than heights: the first {which} of its {where} counts or gives "
-            f"places, {line[0]:g} to {line[-1]:g} in equal steps; leave it out of the file, or give "
-            f"the heights alone as an array, HeightMap(heights, spacing)"
+            f"places, {line[0]:g} to {line[-1]:g} in equal steps; leave it out of the file, or "
+            f"give the heights alone as an array, HeightMap(heights, spacing)"
         )
     return values
 

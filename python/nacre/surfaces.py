@@ -127,8 +127,8 @@ def _check_size(
         remedy = (
             "check spacing=, in metres, and unit="
             if is_given
-            else "x and y seem to have another unit than the heights: give spacing=, in metres, and "
-            "unit= of the heights"
+            else "x, y and z seem to have different units: give spacing=, in metres, and unit= of "
+            "the heights"
         )
         raise ValueError(f"spacing must go with the heights: in {name} {sizes}; {remedy}")
 

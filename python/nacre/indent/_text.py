@@ -60,6 +60,10 @@ class Table:
     """Decimal mark."""
     above: str = ""
     """The nearest line above the table."""
+    title: str = ""
+    """The line above those that name the columns."""
+    head: str = ""
+    """All lines above the table."""
 
     def number(self, row: int, column: int) -> float | None:
         """Return a number of the table; None where the field holds another text or none."""
@@ -91,7 +95,9 @@ def tables(
     for table, above in found:
         table.decimal = decimal or _decimal(path, table)
         table.above = above[0] if above else ""
-        table.columns = _columns(table, above, delimiter)
+        table.columns, used = _columns(table, above, delimiter)
+        table.title = above[used] if 0 < used < len(above) else ""
+        table.head = "\n".join(reversed(above))
     return [table for table, _ in found]
 
 
@@ -133,6 +139,8 @@ def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Ta
             continue
         fields = [] if line.startswith(("#", "%")) else fields_of(line, delimiter)
         if _is_row(fields, delimiter):
+            if run is not None and delimiter != " " and len(run.rows) >= LEAST_ROWS:
+                fields += [""] * (run.width - len(fields))  # a test beside it that is longer
             if run is not None and len(fields) != run.width and len(run.rows) >= LEAST_ROWS:
                 raise ValueError(
                     f"{str(path)!r} must have as many fields in each row, line {number} has "
@@ -185,8 +193,8 @@ def _decimal(path: Path, table: Table) -> str:
     return "," if commas else "."
 
 
-def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]:
-    """Return the columns of a table by the lines above it, the nearest first."""
+def _columns(table: Table, above: Sequence[str], delimiter: str) -> tuple[list[Column], int]:
+    """Return the columns of a table, and how many of the lines above, the nearest first, say it."""
     empty = [Column("", "", None)] * table.width
     said = [
         line
@@ -206,8 +214,8 @@ def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]
                 else column
                 for heading, text, column in zip(headings, beneath, columns, strict=True)
             ]
-        return columns
-    return empty
+        return columns, above.index(line) + 1
+    return empty, 0
 
 
 def _headings(line: str, delimiter: str, width: int) -> list[str] | None:
