@@ -6,7 +6,7 @@ import html
 
 import nacre._core as core
 from nacre._display import numbers as normal_numbers
-from nacre.units import symbol, written
+from nacre.units import printable, symbol, written
 
 NOISE = 1e-8
 """Share of a vector below which a component is printed as 0."""
@@ -71,7 +71,7 @@ def line(solution: core.FrictionSolution) -> str:
         if shift is not None
         else f"creepage ({(creepage or (0.0, 0.0))[0]:.4g}, {(creepage or (0.0, 0.0))[1]:.4g})"
     )
-    return (
+    return printable(
         f"<FrictionSolution on {nx} x {ny} cells: force {_pair(solution.force, unit)}, "
         f"{motion}, {'converged' if solution.report.converged else 'not converged'}>"
     )
@@ -83,7 +83,7 @@ def text(solution: core.FrictionSolution) -> str:
     width = max(len(name) for name, _ in rows)
     lines = [f"{name:{width}}  {value}" for name, value in rows]
     lines += [f"warning: {warning}" for warning in solution.normal.report.warnings]
-    return "\n".join(lines)
+    return printable("\n".join(lines))
 
 
 def _rows(solution: core.FrictionSolution) -> list[tuple[str, str]]:

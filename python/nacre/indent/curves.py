@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal, TypedDict, Unpack, overload
 import numpy as np
 import numpy.typing as npt
 
+from nacre._arrays import plain
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
 from nacre.indent._text import tables
 from nacre.units import written
@@ -226,7 +227,7 @@ def _curve(depth: Array, force: Array, time: Array | None, name: str) -> Curve:
 
 def _checked(name: str, values: npt.ArrayLike) -> Array:
     """Return values as an array that cannot be written to."""
-    array = np.asarray(values)
+    array = np.asarray(plain(name, values))
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name} must be real numbers, got {array.dtype}")
     if array.ndim != 1:
