@@ -55,6 +55,8 @@ from nacre.studies import sweep
 from nacre.units import display_units
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from nacre import case as case
     from nacre import design as design
     from nacre import friction as friction
@@ -98,6 +100,24 @@ __all__ = [
     "surface_compliance",
     "sweep",
 ]
+
+
+def _read_profile(
+    path: "str | PathLike[str]",
+    *,
+    unit: str | tuple[str, str] | None = None,
+    x: str | int | None = None,
+    drop: str | int | None = None,
+    height: str | int | None = None,
+) -> SampledProfile:
+    """Read a measured profile of a roller; see `nacre.surfaces.read_profile`."""
+    from nacre.surfaces import read_profile
+
+    return read_profile(path, unit=unit, x=x, drop=drop, height=height)
+
+
+# Of the compiled class, whose files are read in Python.
+SampledProfile.read = staticmethod(_read_profile)  # type: ignore[method-assign]
 
 _LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")
 """Modules that are imported when they are first used, as `nacre.plot`."""

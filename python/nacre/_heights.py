@@ -401,7 +401,7 @@ def _fits(table: Table, counts: tuple[int, int]) -> int | None:
     return None
 
 
-def _words(headings: Sequence[Column]) -> list[str]:
+def first_words(headings: Sequence[Column]) -> list[str]:
     """Return the first word of each heading, in small letters."""
     return [re.split(r"[\s_:.-]", column.name.lower().strip())[0] for column in headings]
 
@@ -411,14 +411,14 @@ def _coordinates(headings: Sequence[Column], values: Array) -> tuple[int, ...] |
     width = values.shape[1]
     if width < 3:
         return None
-    names = _words(headings)
+    names = first_words(headings)
     known = [[k for k, name in enumerate(names) if name in words] for words in AXES]
     if all(len(hits) == 1 for hits in known):
         return tuple(hits[0] for hits in known)
     for pair in ((0, 1), (1, 2)):
         if _are_places(values[:, pair]):
             rest = [k for k in range(width) if k not in pair]
-            rest = [k for k in rest if not (k == 0 and _is_counter(values[:, 0]))]
+            rest = [k for k in rest if not (k == 0 and is_counter(values[:, 0]))]
             return (*pair, *rest) if len(rest) == 1 else pair
     return None
 
@@ -435,7 +435,9 @@ def _three(name: str, columns: tuple[int, ...]) -> tuple[int, ...]:
 
 def _are_places(pairs: Array) -> bool:
     """Return whether pairs of numbers are the places of a grid, most of which are taken once."""
-    if len(pairs) < 4 or not np.isfinite(pairs).all() or len(np.unique(pairs, axis=0)) < len(pairs):
+    if len(pairs) < 4 or not np.isfinite(pairs).all():
+        return False
+    if np.unique(pairs[:, 0] + 1j * pairs[:, 1]).size < len(pairs):
         return False
     counts = [len(_distinct(pairs[:, axis])) for axis in (0, 1)]
     return min(counts) > 1 and LEAST_MEASURED * counts[0] * counts[1] <= len(pairs)
@@ -494,18 +496,18 @@ def _rises_evenly(values: Array) -> bool:
     return bool((np.abs(steps - mean) <= 0.01 * abs(mean)).all())
 
 
-def _is_counter(values: Array) -> bool:
+def is_counter(values: Array) -> bool:
     """Return whether numbers count from 0 or 1."""
     return bool(values.size > 1 and values[0] in (0, 1) and (values[1:] == values[:-1] + 1).all())
 
 
 def _is_profile(headings: Sequence[Column], values: Array) -> bool:
     """Return whether a table has two columns or lines, one of which are places in order."""
-    words = _words(headings)
+    words = first_words(headings)
     if len(words) == 2 and words[0] in AXES[0] and words[1] in AXES[2]:
         return True
     for table in (values.T, values):
-        lines = table[1:] if len(table) == 3 and _is_counter(table[0]) else table
+        lines = table[1:] if len(table) == 3 and is_counter(table[0]) else table
         if len(lines) != 2 or lines.shape[1] < 4:
             continue
         for line in lines:
@@ -525,7 +527,7 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
         )
     corner = bool(np.isnan(values[0, 0]))
     left, top = values[corner:, 0], values[0, corner:]
-    if corner and _is_counter(top) and _is_counter(left):
+    if corner and is_counter(top) and is_counter(left):
         return values[1:, 1:]
     for which, line, others in (
         ("column", left, values[corner:, 1:].T),
@@ -534,7 +536,7 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
         if not _rises_evenly(line) or any(map(_rises_evenly, others)):
             continue
         first = headings[0].name.lower().strip("# .") if headings else None
-        if which == "column" and _is_counter(line) and first in NUMBERED:
+        if which == "column" and is_counter(line) and first in NUMBERED:
             return values[:, 1:]
         raise ValueError(
             f"{name!r} holds more than heights: the first {which} of its {where} counts or gives "
@@ -593,7 +595,8 @@ def _row(text: str, mark: str | None) -> tuple[list[float] | None, list[str]]:
     """Return the numbers of a line, None where it holds another text, and its fields then."""
     if "_" not in text:
         with suppress(ValueError):
-            return [float(field) for field in text.split(mark)], []  # the usual line
+            usual = text if mark == "," else text.replace(",", ".")
+            return [float(field) for field in usual.split(mark)], []
     fields = fields_of(text, mark or " ")
     # Where commas separate, those within quotes are decimal.
     numbers = [_number(field.replace(",", ".")) for field in fields]

@@ -94,6 +94,8 @@ def table(path: Path, channel: str | int | None) -> Heights:
     own = text.matrix(first)
     lines = [row[-own.heights.shape[0] :] for row in first.rows[-own.heights.shape[1] :]]
     first.lines, first.rows = first.lines[-len(lines) :], lines
+    if not text.above:
+        return own._replace(is_metric=False)
     try:
         with AscReader(io.StringIO(text.plain())) as reader:
             found = _heights(reader, channel)

@@ -1,4 +1,4 @@
-"""Measured surfaces from files, and from SurfaceTopography."""
+"""Measured surfaces and profiles from files, and from SurfaceTopography."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from nacre import _core as core
 from nacre import _heights
 from nacre._heights import LEAST_MEASURED, METRES, Heights, without_sentinels
 from nacre._instruments import instrument, of_topography
+from nacre._profiles import read_profile as read_profile
 
 Array = npt.NDArray[np.float64]
 
