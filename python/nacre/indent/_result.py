@@ -32,7 +32,7 @@ Array = npt.NDArray[np.float64]
 UNFIT = "the model does not fit the data"
 """Reason why no parameter is identifiable where the residuals are no noise."""
 
-GIVEN = 4
+GIVEN = 6
 """Most numbers on which a table says that an estimate depends."""
 
 
