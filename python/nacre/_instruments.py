@@ -7,6 +7,7 @@ import io
 import re
 import warnings
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from nacre._heights import Heights, Text
 
 TABLES = ("asc", "xyz")
 """Formats of SurfaceTopography for tables in text, which take any numbers for heights."""
+HEADED = ("di", "ezd", "nmm", "mnt")
+"""Formats without a mark at the beginning, which may begin with text."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 """Name of the standard in an X3P."""
 
@@ -24,65 +27,64 @@ REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
 def instrument(path: Path, channel: str | int | None) -> Heights:
     """Return the heights in an instrument's file, in the unit of the file.
 
-    The readers of the file's ending are asked first, and those without heights passed over. Text
-    that no format claims is a table.
+    Readers of the file's ending are asked first, then those of its first bytes. Text that none of
+    them knows is a table. Readers without heights are passed over.
     """
     with extra("surfaces"), warnings.catch_warnings():
         warnings.simplefilter("ignore", ImportWarning)  # a warning that MPI is missing
         from SurfaceTopography.IO import MagicMatch, readers
 
-    ending = path.suffix.lower().lstrip(".")
-    with path.open("rb") as file:
-        start = file.read(512)
-    likely = [reader for reader in readers if ending in (reader.file_extensions() or ())]
-    asked = likely + [reader for reader in readers if reader not in likely]
+    content, ending = path.read_bytes(), path.suffix.lower().lstrip(".")
+    others = [reader for reader in readers if reader.format() not in TABLES]
+    match = {reader: reader.can_read(content[:512]) for reader in others}
+    likely = [reader for reader in others if ending in (reader.file_extensions() or ())]
+    likely += [one for one in others if match[one] == MagicMatch.YES and one not in likely]
     reasons: dict[str, str] = {}
-    for reader in asked:
-        match = reader.can_read(start)
-        if reader.format() in TABLES or (match == MagicMatch.NO and reader not in likely):
-            continue
-        try:
-            with reader(_mended(path) if reader.format() == "x3p" else str(path)) as opened:
-                return _heights(opened, channel)
-        except Unfound as error:
-            raise ValueError(f"{error}, got {channel!r}") from None
-        except Exception as error:  # readers raise anything for a damaged or another file
-            if reader in likely or match == MagicMatch.YES:
+
+    def found(asked: Sequence[Any]) -> Heights | None:
+        for reader in asked:
+            try:
+                with reader(_mended(path) if reader.format() == "x3p" else str(path)) as opened:
+                    return _heights(opened, channel)
+            except Unfound as error:
+                raise ValueError(f"{error}, got {channel!r}") from None
+            except Exception as error:  # readers raise anything for a damaged or another file
                 said = f"no {error}" if isinstance(error, KeyError) else str(error)
                 reasons[reader.name()] = said or type(error).__name__
-    if not reasons or set(likely) & {reader for reader in readers if reader.format() in TABLES}:
-        if is_text(start):
-            return table(path, channel)
-    if reasons:
-        said = "; ".join(
-            f"{name}: {' '.join(text.split())[:200]}" for name, text in reasons.items()
-        )
-        if not likely:
-            raise ValueError(f"{str(path)!r} has no format that SurfaceTopography reads; {said}")
-        raise ValueError(f"{str(path)!r} cannot be read: {said}")
-    raise ValueError(
-        f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
-        ".csv and .xyz"
-    )
+        return None
+
+    if (heights := found(likely)) is not None:
+        return heights
+    told = "; ".join(f"{name}: {' '.join(text.split())[:200]}" for name, text in reasons.items())
+    is_text = 0 not in content or 0 not in content[:1000:2] or 0 not in content[1:1000:2]
+    unreadable = "has no format that SurfaceTopography reads"
+    if is_text:
+        try:
+            text = Text.of(path)
+        except ValueError as error:
+            said = str(error).removeprefix(f"{str(path)!r} ")
+            if not said.startswith("must be text") and not said.endswith("got none"):
+                unreadable = said
+        else:
+            return _table(text, channel)
+    maybe = [one for one in others if match[one] == MagicMatch.MAYBE and one not in likely]
+    if (heights := found([one for one in maybe if not is_text or one.format() in HEADED])) is None:
+        if any(ending in (reader.file_extensions() or ()) for reader in likely):
+            raise ValueError(f"{str(path)!r} cannot be read: {told}")
+        if likely:
+            raise ValueError(f"{str(path)!r} {unreadable}; {told}")
+        raise ValueError(f"{str(path)!r} {unreadable}; nacre itself reads .npy, .csv and .xyz")
+    return heights
 
 
 class Unfound(ValueError):
     """A channel that a file does not have."""
 
 
-def table(path: Path, channel: str | int | None) -> Heights:
+def _table(text: Text, channel: str | int | None) -> Heights:
     """Return the heights of a table; SurfaceTopography knows the heads of a matrix."""
     from SurfaceTopography.IO import AscReader
 
-    try:
-        text = Text.of(path)
-    except ValueError as error:
-        if "got none" not in str(error):
-            raise
-        raise ValueError(
-            f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
-            ".csv and .xyz"
-        ) from None
     has_channels = all(found.title.startswith("#") for found in text.tables[1:])
     if len(text.tables) > 1 and not has_channels:
         text.tables = [text.chosen(channel)]
@@ -92,25 +94,21 @@ def table(path: Path, channel: str | int | None) -> Heights:
     if points is not None:
         return points
     own = text.matrix(first)
+    if not text.above and channel is None:
+        return own._replace(is_metric=False)
+    # Without what was left out.
     lines = [row[-own.heights.shape[0] :] for row in first.rows[-own.heights.shape[1] :]]
     first.lines, first.rows = first.lines[-len(lines) :], lines
-    if not text.above:
-        return own._replace(is_metric=False)
     try:
         with AscReader(io.StringIO(text.plain())) as reader:
             found = _heights(reader, channel)
     except Unfound as error:
         raise ValueError(f"{error}, got {channel!r}") from None
     except Exception:
-        return own
+        return own._replace(is_metric=False)
     if found.unit is None and found.spacing is None:
         return own._replace(heights=found.heights, is_metric=False)
     return found._replace(is_metric=False)
-
-
-def is_text(start: bytes) -> bool:
-    """Return whether a file that begins so is text."""
-    return 0 not in start or start[:2] in (b"\xff\xfe", b"\xfe\xff") or 0 not in start[::2]
 
 
 def _mended(path: Path) -> str | io.BytesIO:

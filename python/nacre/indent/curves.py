@@ -20,7 +20,7 @@ from nacre.units import written
 
 Array = npt.NDArray[np.float64]
 
-AFMFORMATS = re.compile(r'"spring constant"\s*:\s*([0-9.eE+-]+)')
+SPRING_CONSTANT = re.compile(r'"spring constant"\s*:\s*([0-9.eE+-]+)')
 """Spring constant [N/m] in the head of a table that afmformats wrote, in SI units."""
 LEAST_POINTS = 3
 """Fewest points of a curve: with less, no law of two parameters could be tested."""
@@ -353,10 +353,12 @@ def read(
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     where = repr(str(path))
     found = tables(path, delimiter, decimal, encoding)
-    if (head := AFMFORMATS.search(found[0].head)) is not None and "afmformats" in found[0].head:
-        if depth is None and spring_constant is None:
-            spring_constant = float(head[1])
+    head = found[0].head
+    if "afmformats" in head:  # all in SI units
         units = {"depth": "m", "force": "N", **units}
+        said = SPRING_CONSTANT.search(head)
+        if said is not None and depth is None and spring_constant is None:
+            spring_constant = float(said[1])
     if spring_constant is not None and not 0 < spring_constant < math.inf:
         raise ValueError(f"spring_constant must be positive and finite, got {spring_constant}")
     is_spring = spring_constant is not None
