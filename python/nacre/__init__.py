@@ -49,14 +49,13 @@ from nacre._core import (
     stress,
     surface_compliance,
 )
+from nacre._profiles import read_profile
 from nacre.files import load
 from nacre.friction import creep_coefficients
 from nacre.studies import sweep
 from nacre.units import display_units
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     from nacre import case as case
     from nacre import design as design
     from nacre import friction as friction
@@ -102,22 +101,8 @@ __all__ = [
 ]
 
 
-def _read_profile(
-    path: "str | PathLike[str]",
-    *,
-    unit: str | tuple[str, str] | None = None,
-    x: str | int | None = None,
-    drop: str | int | None = None,
-    height: str | int | None = None,
-) -> SampledProfile:
-    """Read a measured profile of a roller; see `nacre.surfaces.read_profile`."""
-    from nacre.surfaces import read_profile
-
-    return read_profile(path, unit=unit, x=x, drop=drop, height=height)
-
-
 # Of the compiled class, whose files are read in Python.
-SampledProfile.read = staticmethod(_read_profile)  # type: ignore[method-assign]
+SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 
 _LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")
 """Modules that are imported when they are first used, as `nacre.plot`."""

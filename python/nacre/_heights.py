@@ -523,7 +523,7 @@ def _matrix(name: str, headings: Sequence[Column], values: Array, where: str) ->
     if _is_profile(headings, values):
         raise ValueError(
             f"{name!r} holds a profile, places beside heights, not a map: a surface must have two "
-            f"dimensions, got a line; nacre.surfaces.read_profile reads it for a Roller"
+            f"dimensions, got a line; SampledProfile.read reads it for a Roller"
         )
     corner = bool(np.isnan(values[0, 0]))
     left, top = values[corner:, 0], values[0, corner:]

@@ -66,7 +66,7 @@ def read_profile(
     >>> import tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "crown.csv"
     >>> _ = path.write_text("x (mm);drop (um)\n-10;5,0\n0;0,0\n10;5,0\n", encoding="utf-8")
-    >>> nacre.surfaces.read_profile(path).drop
+    >>> nacre.SampledProfile.read(path).drop
     array([5.e-06, 0.e+00, 5.e-06])
     """
     path = Path(path)

@@ -101,7 +101,11 @@ def test_a_map_of_an_instrument_is_read(kind: str) -> None:
 @pytest.mark.parametrize(
     ("name", "options", "message"),
     [
-        ("csv_profile_as_matrix/profile.csv", {}, "a profile, .* two dimensions, .*read_profile"),
+        (
+            "csv_profile_as_matrix/profile.csv",
+            {},
+            "a profile, .* two dimensions, .*SampledProfile.read",
+        ),
         (
             "csv_profile_as_matrix/profile.csv",
             {"unit": "um", "spacing": 1e-6, "transpose": True},
