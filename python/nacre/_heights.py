@@ -84,6 +84,8 @@ class Heights(NamedTuple):
     """Unit that the file names."""
     is_metric: bool = True
     """Whether the numbers are metres where no unit is named."""
+    named: tuple[str, ...] = ()
+    """Units of columns, in which the numbers are no more."""
     note: str = ""
     """What a message adds to the name of the file."""
 
@@ -189,6 +191,15 @@ class Text:
                 if table is not None:
                     torn[len(found.tables)] = table.lines[0], table.width, number
                 table = Table([], [])
+                if near and (top := _numbers_beside(near[-1], mark, len(row))) is not None:
+                    if len(top) < len(row) - 1:
+                        raise ValueError(
+                            f"{str(path)!r} must hold numbers, the line above line {number} has "
+                            f"{near[-1][:60]!r}"
+                        )
+                    table.rows.append([np.nan, *top])  # places along a line, and a word beside
+                    table.lines.append(found.above.pop()[0])
+                    near.pop()
                 table.headings, table.title = _headings(near, mark, len(row))
                 near = []
                 found.tables.append(table)
@@ -295,7 +306,9 @@ class Text:
         ]
         x, y, z = (metres(unit or "") for unit in units)
         if x and y and z:
-            return Heights(heights, (steps[0] * (x / z), steps[1] * (y / z)), units[2], False)
+            named = tuple(str(unit) for unit in units)
+            steps = steps[0] * (x / z), steps[1] * (y / z)
+            return Heights(heights, steps, units[2], False, named)
         return Heights(heights, steps, self.unit(), False)
 
     def matrix(self, table: Table) -> Heights:
@@ -561,6 +574,19 @@ def _headings(near: Sequence[str], mark: str | None, width: int) -> tuple[list[C
     if units:
         columns = [one._replace(unit=_bare_unit(u)) for one, u in zip(columns, units, strict=True)]
     return columns, near[-2] if len(near) > 1 else ""
+
+
+def _numbers_beside(line: str, mark: str | None, width: int) -> list[float] | None:
+    """Return the numbers after the first field of a line that is a row but for texts, else None.
+
+    They are none where another field than the first is a text.
+    """
+    fields = fields_of(line, mark or " ")
+    numbers = [_number(field.replace(",", ".")) for field in fields]
+    found = [number for number in numbers if number is not None and np.isfinite(number)]
+    if line[0] in "#%" or len(fields) != width or 2 * len(found) <= max(width, 3):
+        return None
+    return found if numbers[0] is None else []
 
 
 def _bare_unit(text: str) -> str | None:

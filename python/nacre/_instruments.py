@@ -18,6 +18,8 @@ from nacre._heights import Heights, Text
 
 TABLES = ("asc", "xyz")
 """Formats of SurfaceTopography for tables in text, which take any numbers for heights."""
+ENDINGS = ("txt", "asc", "dat")
+"""Endings of tables in text, some of which other formats have, too."""
 HEADED = ("di", "ezd", "nmm", "mnt")
 """Formats without a mark at the beginning, which may begin with text."""
 REVISION = re.compile(rb"(<(?:\w+:)?Revision>)[^<]*5436[^<]*(</)")
@@ -57,14 +59,13 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
         return heights
     told = "; ".join(f"{name}: {' '.join(text.split())[:200]}" for name, text in reasons.items())
     is_text = 0 not in content or 0 not in content[:1000:2] or 0 not in content[1:1000:2]
-    unreadable = "has no format that SurfaceTopography reads"
     if is_text:
         try:
             text = Text.of(path)
         except ValueError as error:
-            said = str(error).removeprefix(f"{str(path)!r} ")
-            if not said.startswith("must be text") and not said.endswith("got none"):
-                unreadable = said
+            is_table = not re.search("must be text|got none$", str(error))
+            if is_table and (not likely or ending in ENDINGS):
+                raise
         else:
             return _table(text, channel)
     maybe = [one for one in others if match[one] == MagicMatch.MAYBE and one not in likely]
@@ -72,8 +73,11 @@ def instrument(path: Path, channel: str | int | None) -> Heights:
         if any(ending in (reader.file_extensions() or ()) for reader in likely):
             raise ValueError(f"{str(path)!r} cannot be read: {told}")
         if likely:
-            raise ValueError(f"{str(path)!r} {unreadable}; {told}")
-        raise ValueError(f"{str(path)!r} {unreadable}; nacre itself reads .npy, .csv and .xyz")
+            raise ValueError(f"{str(path)!r} has no format that SurfaceTopography reads; {told}")
+        raise ValueError(
+            f"{str(path)!r} has no format that SurfaceTopography reads; nacre itself reads .npy, "
+            ".csv and .xyz"
+        )
     return heights
 
 

@@ -89,7 +89,8 @@ def _found(path: Any, channel: str | int | None) -> tuple[str, Heights]:
 
 def _metres(name: str, found: Heights, unit: str | None) -> float:
     """Return the length of the unit [m]."""
-    said = unit or found.unit
+    is_named = unit is not None and METRES[unit] in map(_heights.metres, found.named)
+    said = found.unit if unit is None or is_named else unit
     if said is None and not found.is_metric:
         sizes = f"its heights span {_span(found.heights):.4g}"
         if found.spacing is not None:

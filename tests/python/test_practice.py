@@ -221,6 +221,11 @@ DOME = 280 - X**2 / 5000
         (COUNTED + "Raw\n" + COUNTED, "channel must be given: .* 2 tables, 0 .* 1 .'Raw', 6 lines"),
         (HEAD.replace("6", "7") + COUNTED, "counts or gives places, 1 to 6"),
         (rows(2.5 * ALONG, 2.5 * ACROSS, Z, Z**2), "holds points, not a matrix: columns 0 and 1"),
+        ("1.0,x4,2,3,4\n" + rows(*heights((6, 5)).T), "must hold numbers, .* has '1.0,x4,2,3,4'"),
+        (
+            "y,0.5,1,1.5,2\n" + rows(0.5 * np.arange(6), *heights((6, 4)).T),
+            "first column .* places",
+        ),
         (rows(X, DOME), "holds a profile"),
         (rows(X[::-1], DOME, mark=";", comma=True), "holds a profile"),
         ("Lateral,Height\n" + rows(X, DOME), "holds a profile"),
@@ -238,6 +243,17 @@ def test_no_keywords_make_a_map_of_what_is_none(
     for options in ({}, {"unit": "um"}, {"unit": "um", "spacing": 1e-5, "transpose": True}):
         with pytest.raises(ValueError, match=message):
             nacre.HeightMap.read(path, **options)
+
+
+@pytest.mark.parametrize("unit", [None, "mm", "µm"])
+def test_a_unit_of_a_column_is_not_applied_again(unit: str | None, tmp_path: Path) -> None:
+    x, heights = np.linspace(0, 1, 6), np.random.default_rng(0).uniform(0, 1, (6, 6))
+    rows = [f"{x[i]},{x[j]},{heights[i, j]}" for i in range(6) for j in range(6)]
+    path = tmp_path / "scan.csv"
+    path.write_text("\n".join(["x [mm],y [mm],z [µm]", *rows]), encoding="utf-8")
+    found = nacre.HeightMap.read(path, unit=unit, detrend="none")
+    assert found.spacing == pytest.approx((2e-4, 2e-4))
+    assert np.diff(found.heights) == pytest.approx(1e-6 * np.diff(heights))
 
 
 def test_matrices_of_few_columns_stay_readable(tmp_path: Path) -> None:
