@@ -14,7 +14,7 @@ use super::tip::PyTip;
 use crate::Result;
 use crate::compliance::response::Body;
 use crate::indent::{Adhesion, Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
-use crate::python::stress::keywords::issue_warnings;
+use crate::python::errors::issue_warnings;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
 ///
