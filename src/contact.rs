@@ -14,7 +14,6 @@ mod automatic;
 mod batch;
 mod cascade;
 mod driver;
-mod hardness;
 mod options;
 mod plan;
 mod problem;
@@ -25,14 +24,13 @@ mod start;
 pub use automatic::{choose_grid, solve, solve_watched};
 pub use batch::Case;
 pub use cascade::discretisation::Discretisation;
-pub use hardness::Hardness;
 pub use options::{Algorithm, Motion, Options, Setup};
+pub use problem::bounds::Hardness;
 pub(crate) use problem::freedoms::OVERFLOW;
 pub(crate) use problem::patch::{block, bounds};
-pub use solution::Solution;
-pub use solution::report::{Balance, Progress, Report};
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::Warning;
+pub use solution::{Balance, Progress, Report, Solution};
 
 pub use solver::{Solver, Termination};
 

@@ -35,8 +35,6 @@ use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
-mod law;
-mod linear;
 mod newton;
 mod session;
 mod solution;

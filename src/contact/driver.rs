@@ -9,17 +9,17 @@ use ndarray::Array2;
 
 use super::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
 use super::cascade::{Cascade, Coarser};
-use super::hardness::{Hardness, check_indentation};
 use super::options::{Algorithm, Motion, Options};
 use super::plan::{Plan, bodies};
 use super::problem::bounds::Bounds;
-use super::problem::fields::{Fields, slice};
+use super::problem::bounds::{Hardness, check_indentation};
 use super::problem::freedoms::{Freedoms, OVERFLOW};
+use super::problem::{Fields, slice};
 use super::problem::{Problem, Quality};
+use super::solution::Gap;
 use super::solution::Solution;
-use super::solution::gap::Gap;
-use super::solution::report::{Carried, Progress, Report};
 use super::solution::warnings::{Warning, warnings};
+use super::solution::{Carried, Progress, Report};
 use super::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
 use super::start::{
     Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::hardness::Hardness;
+use super::problem::bounds::Hardness;
 use crate::compliance::influence::Method;
 use crate::compliance::response::Body;
 use crate::error::{Error, Result};

@@ -5,7 +5,7 @@ use std::sync::{Arc, Weak};
 use ndarray::{Array2, ArrayRef2};
 
 use super::problem::Problem;
-use super::problem::fields::{array, slice};
+use super::problem::{array, slice};
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;

@@ -4,9 +4,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::law::Law;
-use super::linear::Operator;
-use super::newton::{Effort, TractionProblem};
+use super::newton::{Effort, Law, Operator, TractionProblem};
 use super::step::RollingDirection;
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use ndarray::{Array2, Axis};
 
-use super::law::{CellState, Law};
-use super::linear::Operator;
-use super::newton::{ConvolutionWatch, Effort, TractionProblem, TractionResult};
+use super::newton::{
+    CellState, ConvolutionWatch, Effort, Law, Operator, TractionProblem, TractionResult,
+};
 use super::solution::TangentialMotion;
 use super::step::{Freedom, Friction, Rolling, RollingDirection};
 use crate::compliance::traction::{Tangential, TangentialWindow};

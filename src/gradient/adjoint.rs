@@ -4,9 +4,8 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::output::{Direction, Gradient, Output};
 use super::parameter::{Parameter, Slope, all, named};
-use super::seed::{Seed, offsets};
+use super::seed::{Direction, Gradient, Output, Seed, offsets};
 use super::state::{Linearised, Saddle};
 use super::stress::StressSeed;
 use crate::contact::Solution;

@@ -2,9 +2,8 @@
 
 use ndarray::Array2;
 
-use super::output::{Measure, StressOutput, StressPlace};
 use super::parameter::Parameter;
-use super::seed::{Seed, bilinear};
+use super::seed::{Measure, Seed, StressOutput, StressPlace, bilinear};
 use super::state::Linearised;
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result, require};

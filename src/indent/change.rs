@@ -24,12 +24,11 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::Adhesion;
-use super::density::{Density, bessel_sum};
+use super::density::{Answer, Density, Rate, Zone, bessel_sum};
 use super::equation::stack::{Parameter, StackLevel};
-use super::equation::system::{add, times};
+use super::equation::{add, times};
 use super::point::{Point, check_distances};
 use super::tip::TipParameter;
-use super::zone::{Answer, Rate, Zone};
 use crate::error::{Error, Result};
 use crate::numerics::parallel::dot;
 

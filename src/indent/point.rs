@@ -4,11 +4,10 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
-use super::density::{Density, bessel_sum};
+use super::density::{Answer, Density, Zone, bessel_sum};
 use super::equation::stack::StackLevel;
-use super::equation::system::{Parts, add, times};
+use super::equation::{Parts, add, times};
 use super::tip::Tip;
-use super::zone::{Answer, Zone};
 use crate::error::{Result, require};
 
 mod disc;

@@ -13,7 +13,7 @@
 use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
-use crate::contact::problem::fields::{Fields, slice_mut};
+use crate::contact::problem::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Multipliers, Problem, Quality};
 use crate::error::Result;
 use crate::model::grid::full_window;

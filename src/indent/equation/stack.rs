@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::super::tip::TipParameter;
-use super::waves::Waves;
+use super::basis::Waves;
 use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives};
 use crate::error::{Error, Result};
 use crate::model::body::BodyParameter;

@@ -16,7 +16,7 @@ use super::Point;
 use crate::error::{Error, Result};
 use crate::indent::adhesion::Adhesion;
 use crate::indent::density::{Density, oscillating};
-use crate::indent::equation::waves::Waves;
+use crate::indent::equation::basis::Waves;
 use crate::numerics::special::chebyshev_nodes;
 
 /// Nodes of a panel. What oscillates is analytic up to two thicknesses from the real axis, so that eight nodes on a panel of one
