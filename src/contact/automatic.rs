@@ -15,6 +15,7 @@ use crate::compliance::response::Body;
 use crate::contact::automatic::relief::overlap;
 use crate::contact::automatic::search::{Search, moved_out, touched_sides};
 use crate::contact::automatic::task::{Task, cells_in_contact, frame_of};
+use crate::contact::driver::WatchedSolve;
 use crate::contact::options::{Algorithm, Motion, Options, Setup};
 use crate::contact::plan::bodies;
 use crate::contact::problem::bounds::Hardness;
@@ -44,26 +45,24 @@ const ENLARGEMENTS: usize = 10;
 /// ```
 pub fn solve(shape: &dyn Surface, body: impl Into<Body>, motion: &Motion) -> Result<Solution> {
     let (setup, options) = (Setup::default(), Options::default());
-    let mut go_on = |_: &_| ControlFlow::Continue(());
-    let solution = solve_watched(shape, &body.into(), &setup, motion, &options, &mut go_on)?;
+    let solution = solve_with(shape, &body.into(), &setup, motion, &options)?;
     solution.require_converged(options.tolerance)
 }
 
-/// [`solve`] with a setup and options, that calls `progress` with each iteration on each grid; its break ends
-/// the solve with [`Termination::Stopped`]. The solution says whether it converged.
+/// [`solve`] with a setup and options; a callback of [`Options::watched`] is told of each iteration on each grid. The
+/// solution says whether it converged.
 ///
 /// The grid is chosen as [`choose_grid`] says, with the default algorithm and no pressure to start from. Other
 /// options then solve once more on this grid.
 ///
 /// # Errors
 /// Bad input; a shape without end in a direction; [`Error::NoGrid`].
-pub fn solve_watched(
+pub fn solve_with<'a>(
     shape: &dyn Surface,
     body: &Body,
     setup: &Setup,
     motion: &Motion,
-    options: &Options,
-    progress: &mut Progress,
+    options: impl Into<WatchedSolve<'a>>,
 ) -> Result<Solution> {
     check_carried(setup.counterbody.as_ref(), shape)?;
     let ends = Ends::of(&bodies(body, setup));
@@ -75,15 +74,17 @@ pub fn solve_watched(
         motion,
         ends: ends.range(),
     };
-    if let Some(grid) = shape.grid() {
-        return task.solve(grid, options, progress);
-    }
+    let mut asked = options.into();
+    let options = asked.options;
     // A break ends all solves that follow.
     let mut stopped = false;
     let mut watched = |report: &Report| {
-        stopped = stopped || progress(report).is_break();
+        stopped = stopped || asked.tell(report).is_break();
         if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
+    if let Some(grid) = shape.grid() {
+        return task.solve(grid, options, &mut watched);
+    }
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
@@ -116,24 +117,20 @@ pub fn solve_watched(
 /// of the peak pressure ([`Report::discretisation`]) is at most 1 %. Where this needs more than 2²² cells, or
 /// where dividing the cells does not lower the estimate, the solution has the warning [`Warning::PeakError`].
 ///
-/// To choose the grid takes a solution on it, which [`solve`] and [`solve_watched`] return.
+/// To choose the grid takes a solution on it, which [`solve`] and [`solve_with`] return.
 ///
 /// # Errors
 /// Bad input; a shape without end in a direction; [`Error::NoGrid`].
-pub fn choose_grid(
+pub fn choose_grid<'a>(
     shape: &dyn Surface,
     body: &Body,
     setup: &Setup,
     motion: &Motion,
-    options: &Options,
-    progress: &mut Progress,
+    options: impl Into<WatchedSolve<'a>>,
 ) -> Result<Grid> {
     match shape.grid() {
         Some(grid) => Ok(grid),
-        None => {
-            let solution = solve_watched(shape, body, setup, motion, options, progress)?;
-            Ok(*solution.grid())
-        }
+        None => Ok(*solve_with(shape, body, setup, motion, options)?.grid()),
     }
 }
 

@@ -15,11 +15,10 @@ use ndarray::Array2;
 
 use crate::compliance::convolution::{Addition, Convolution};
 use crate::contact::cascade::discretisation::GridResult;
-use crate::contact::problem::LocalDisplacement;
 use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, bounds, copied, enclosing, widened};
-use crate::contact::problem::{Fields, Problem};
+use crate::contact::problem::{Fields, LocalDisplacement, Problem};
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
 use crate::contact::solver::{
     Outcome, StopCriteria, Tally, Termination, active_set, polonsky_keer,

@@ -13,7 +13,7 @@ use crate::compliance::influence::Method;
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::options::Motion;
-use crate::contact::plan::Plan;
+use crate::contact::plan::Contact;
 use crate::contact::problem::bounds::{Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::rows;
@@ -442,7 +442,7 @@ impl Report {
 
     /// A report with nothing iterated yet.
     pub(in crate::contact) fn planned(
-        plan: &Plan,
+        plan: &Contact,
         shape: &dyn Surface,
         motion: &Motion,
         tolerance: f64,

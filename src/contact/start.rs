@@ -4,8 +4,7 @@ use std::sync::{Arc, Weak};
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::problem::Problem;
-use super::problem::{array, slice};
+use crate::contact::problem::{Problem, array, slice};
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;

@@ -343,14 +343,14 @@ impl<'a> Session<'a> {
         let mut watch = |_: &crate::contact::Report| course.tell();
         let (contact, grid) = (self.contact, self.contact.grid());
         if !self.coupled {
-            return contact.solve_watched(self.shape, motion, &options, &mut watch);
+            return contact.solve(self.shape, motion, options.watched(&mut watch));
         }
         options.initial = pressure.filter(|p| p.iter().any(|p| *p > 0.0)).cloned();
         let q: Vec<f64> = traction.iter().flatten().copied().collect();
         let lift = self.tangential.window(grid.shape()).lift(&q);
         let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
         let lifted = Lifted::new(self.shape, grid, lift);
-        contact.solve_watched(&lifted, motion, &options, &mut watch)
+        contact.solve(&lifted, motion, options.watched(&mut watch))
     }
 
     /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;

@@ -286,7 +286,6 @@ impl Linearised {
         let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
         let mut ask = || watch.map_or(ControlFlow::Continue(()), |watch| watch());
         let found = self.tangent.solve_beside(&rest, &span, tolerance, &mut ask)?;
-        let found = found.ok_or(Error::Stopped)?;
         psi.iter_mut().zip(found).for_each(|(psi, y)| *psi += y);
         self.tangent.apply(&psi, &mut image);
         image.iter_mut().zip(right).for_each(|(image, r)| *image -= r);

@@ -4,8 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use spec_math::cephes64::{j0, j1};
 
-use crate::indent::equation::basis::Waves;
-use crate::indent::equation::basis::{Break, Panel};
+use crate::indent::equation::basis::{Break, Panel, Waves};
 use crate::indent::equation::{Parts, add, times};
 use crate::indent::tip::{FEW_KINKS, TipParameter};
 use crate::numerics::quadrature::Rule;

@@ -7,8 +7,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, require};
-use crate::indent::equation::basis::Basis;
-use crate::indent::equation::basis::Waves;
+use crate::indent::equation::basis::{Basis, Waves};
 use crate::indent::equation::stack::{Stack, StackLevel};
 use crate::indent::tip::{MOST_KINKS, Tip};
 use crate::numerics::dense::{backward, cholesky, forward};

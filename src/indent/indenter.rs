@@ -7,8 +7,7 @@ use spec_math::cephes64::j1;
 
 use crate::error::{Error, Result, finite, require};
 use crate::indent::adhesion::{Adhesion, Branch, Control};
-use crate::indent::density::Zone;
-use crate::indent::density::bessel_sum;
+use crate::indent::density::{Zone, bessel_sum};
 use crate::indent::equation::stack::Stack;
 use crate::indent::equation::{Parts, bracketed, times};
 use crate::indent::point::{Point, PullOff};

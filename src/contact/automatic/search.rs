@@ -1,11 +1,10 @@
 //! The search for the rectangle of a contact, on a coarse grid that is enlarged and reduced until it fits.
 
-use super::relief::{Low, Overlap, Relief, limited, overlap};
-use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
 use crate::compliance::response::Body;
+use crate::contact::automatic::relief::{Low, Overlap, Relief, limited, overlap};
+use crate::contact::automatic::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
 use crate::contact::options::{Algorithm, Options};
-use crate::contact::solution::Progress;
-use crate::contact::solution::Solution;
+use crate::contact::solution::{Progress, Solution};
 use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
 use crate::model::grid::{Grid, Window};

@@ -1,13 +1,10 @@
 //! The contact that is solved on one grid after another, and rectangles.
 
 use crate::compliance::response::Body;
-use crate::contact::options::Motion;
-use crate::contact::options::{Options, Setup};
-use crate::contact::plan::Plan;
+use crate::contact::options::{Motion, Options, Setup};
+use crate::contact::plan::Contact;
 use crate::contact::problem::patch::bounds;
-use crate::contact::solution::Progress;
-use crate::contact::solution::Solution;
-use crate::contact::start::Sampled;
+use crate::contact::solution::{Progress, Solution};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window};
 use crate::model::surface::Surface;
@@ -62,9 +59,11 @@ impl Task<'_> {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        let plan = Plan::new(self.body.clone(), grid, self.setup.clone())?;
-        let (shape, motion) = (self.shape, self.motion);
-        plan.run(|| plan.solve(shape, &mut Sampled::default(), motion, options, progress))
+        Contact::plan(self.body, grid, self.setup.clone())?.solve(
+            self.shape,
+            self.motion,
+            options.watched(progress),
+        )
     }
 
     /// The approach and the tilts, where all three are prescribed; a direction without any condition

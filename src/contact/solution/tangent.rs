@@ -13,7 +13,7 @@ use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::{bodies, operator};
 use crate::contact::problem::patch::{block, bounds};
-use crate::contact::solver::linear_cg;
+use crate::contact::solver::linear_cg::{self, Watch};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
 use crate::numerics::parallel::{Threads, check_memory, dot};
@@ -160,16 +160,6 @@ impl Tangent {
         &self.convolution
     }
 
-    /// `out` = K `input` on the contact, 0 elsewhere.
-    pub(super) fn apply_on_contact(
-        &self,
-        input: &[f64],
-        out: &mut [f64],
-        workspace: &mut Workspace,
-    ) {
-        self.restricted(&self.convolution, input, out, workspace);
-    }
-
     /// `out` = `operator` `input` on the contact, 0 elsewhere.
     fn restricted(
         &self,
@@ -192,21 +182,8 @@ impl Tangent {
         self.restricted(&self.convolution, input, out, &mut workspace);
     }
 
-    /// K_CC⁻¹ `right`, to a residual of `tolerance` relative to `right`; `None` where `watch` breaks.
-    ///
-    /// # Errors
-    /// As [`linear_cg::solve`].
-    pub(super) fn solve(
-        &self,
-        right: &[f64],
-        tolerance: f64,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Vec<f64>>> {
-        self.solve_beside(right, &[], tolerance, watch)
-    }
-
     /// The field y without a part in `span`, which is orthonormal, for which `right` − K y lies in it, to a residual of
-    /// `tolerance` relative to `right` beside the span; `None` where `watch` breaks.
+    /// `tolerance` relative to `right` beside the span. Without a span it is K_CC⁻¹ `right`.
     ///
     /// # Errors
     /// As [`linear_cg::solve`].
@@ -215,8 +192,8 @@ impl Tangent {
         right: &[f64],
         span: &[&[f64]],
         tolerance: f64,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Vec<f64>>> {
+        watch: &mut Watch,
+    ) -> Result<Vec<f64>> {
         let [mut first, mut second] = [self.convolution.workspace(), self.convolution.workspace()];
         let beside = |values: &mut [f64]| {
             for column in span {
@@ -231,7 +208,7 @@ impl Tangent {
         // What is left beside the span may be rounding.
         let part = dot(&rest, &rest).sqrt() / dot(right, right).sqrt().max(f64::MIN_POSITIVE);
         if part <= NOTHING {
-            return Ok(Some(vec![0.0; right.len()]));
+            return Ok(vec![0.0; right.len()]);
         }
         let tolerance = tolerance.max(ROUNDING / part);
         linear_cg::solve(
@@ -265,51 +242,43 @@ impl Solution {
     /// contact C stays, K p = δ + s_x x + s_y y − h on it, so that the tangent is
     /// dA Bᵀ K_CC⁻¹ B, where B = (1, x, y) on C. All zero where nothing touches.
     ///
+    /// `watch` is asked before each iteration whether to continue.
+    ///
     /// # Errors
-    /// Too little memory, or [`Error::NotConverged`](crate::Error::NotConverged).
+    /// Too little memory, [`Error::NotConverged`](crate::Error::NotConverged), or
+    /// [`Error::Stopped`](crate::Error::Stopped) where `watch` breaks.
     ///
     /// ```
     /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
     /// // A rigid flat punch of radius a on a half-space: dW/dδ = 2 E* a.
     /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
     /// let solution = contact.solve(&FlatPunch::new(1.0)?, &Motion::load(1.0), &Options::default())?;
-    /// let [[normal, coupled, _], ..] = solution.stiffness()?;
+    /// let [[normal, coupled, _], ..] = solution.stiffness(None)?;
     /// assert!((normal / 2.0 - 1.0).abs() < 0.02 && coupled.abs() < 1e-9);
     /// # Ok::<(), nacre::Error>(())
     /// ```
-    pub fn stiffness(&self) -> Result<[[f64; 3]; 3]> {
-        let never = &mut || ControlFlow::Continue(());
-        Ok(self.stiffness_watched(never)?.unwrap_or_default())
-    }
-
-    /// [`Solution::stiffness`] that asks `watch` before each iteration whether to go on; `None` where
-    /// `watch` breaks.
-    ///
-    /// # Errors
-    /// Too little memory, or [`Error::NotConverged`](crate::Error::NotConverged).
-    pub fn stiffness_watched(
-        &self,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<[[f64; 3]; 3]>> {
+    pub fn stiffness(&self, watch: Option<&mut Watch>) -> Result<[[f64; 3]; 3]> {
+        let go_on = &mut || ControlFlow::Continue(());
+        let watch: &mut Watch = match watch {
+            Some(watch) => watch,
+            None => go_on,
+        };
         let touching = |i: usize, j: usize| self.pressure[[i, j]] > 0.0;
         let Some(window) = bounds(&full_window(self.grid().shape()), touching) else {
-            return Ok(Some([[0.0; 3]; 3]));
+            return Ok([[0.0; 3]; 3]);
         };
         let tangent = Tangent::plan(self, window)?;
         let mut columns: Vec<[Vec<f64>; 2]> = Vec::new();
         for freedom in 0..3 {
             let right = tangent.column(freedom);
-            let Some(pressure) = tangent.solve(&right, TOLERANCE, watch)? else {
-                return Ok(None);
-            };
+            let pressure = tangent.solve_beside(&right, &[], TOLERANCE, watch)?;
             columns.push([right, pressure]);
         }
         // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
-        let mut workspace = tangent.convolution().workspace();
         let mut stiffness = [[0.0; 3]; 3];
         for (j, [b, x]) in columns.iter().enumerate() {
             let mut rest = vec![0.0; b.len()];
-            tangent.apply_on_contact(x, &mut rest, &mut workspace);
+            tangent.apply(x, &mut rest);
             rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
             for (i, [b, y]) in columns.iter().enumerate() {
                 stiffness[i][j] = dot(b, x) + dot(y, &rest);
@@ -321,7 +290,7 @@ impl Solution {
             stiffness[axis + 1] = [0.0; 3];
             stiffness.iter_mut().for_each(|row| row[axis + 1] = 0.0);
         }
-        Ok(Some(stiffness))
+        Ok(stiffness)
     }
 }
 

@@ -2,12 +2,11 @@
 
 use spec_math::cephes64::{j0, j1};
 
-use super::{Point, check_distances};
 use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result, require};
 use crate::indent::equation::add;
-use crate::indent::equation::basis::Panel;
-use crate::indent::equation::basis::Waves;
+use crate::indent::equation::basis::{Panel, Waves};
+use crate::indent::point::{Point, check_distances};
 use crate::indent::tip::FEW_KINKS;
 use crate::numerics::quadrature::Rule;
 

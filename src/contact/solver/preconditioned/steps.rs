@@ -11,9 +11,8 @@ use crate::compliance::convolution::Convolution;
 use crate::contact::problem::Problem;
 use crate::contact::problem::balance::Products;
 use crate::contact::problem::bounds::{clip, in_contact, not_allowed};
-use crate::contact::solver::preconditioned::Arrays;
 use crate::contact::solver::preconditioned::{
-    Displacement, Images, PATIENCE, Preconditioned, Step,
+    Arrays, Displacement, Images, PATIENCE, Preconditioned, Step,
 };
 use crate::numerics::parallel::{ONE, Total, all, dot, sum, update, where_positive};
 

@@ -14,10 +14,9 @@ use crate::compliance::convolution::Convolution;
 use crate::compliance::influence::{Method, influence_coefficients};
 use crate::compliance::response::Body;
 use crate::contact::options::Motion;
-use crate::contact::problem::LocalDisplacement;
-use crate::contact::problem::Problem;
 use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::problem::{LocalDisplacement, Problem};
 use crate::contact::solver::preconditioned::{
     Approximation, Assessment, Memory, PATIENCE, Preconditioned, Step,
 };
