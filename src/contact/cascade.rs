@@ -18,7 +18,7 @@ use crate::contact::cascade::discretisation::GridResult;
 use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, bounds, copied, enclosing, widened};
-use crate::contact::problem::{Fields, LocalDisplacement, Problem};
+use crate::contact::problem::{LocalDisplacement, Problem, SolutionFields};
 use crate::contact::solver::preconditioned::{Approximation, Memory, Preconditioned};
 use crate::contact::solver::{
     Outcome, StopCriteria, Tally, Termination, active_set, polonsky_keer,
@@ -164,7 +164,7 @@ impl<'a> Cascade<'a> {
     pub(super) fn solve_in_window(
         mut self,
         problem: &Problem,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         criteria: StopCriteria,
         tally: &mut Tally,
     ) -> Result<Outcome> {
@@ -196,7 +196,7 @@ impl<'a> Cascade<'a> {
     }
 
     /// Opens the window around the cells that overlap outside it; false where there are none.
-    fn open(&mut self, problem: &Problem, fields: &Fields) -> bool {
+    fn open(&mut self, problem: &Problem, fields: &SolutionFields) -> bool {
         let shape = self.finest.shape();
         let [x, y] = self.patch.window.clone();
         let outside = |i: usize, j: usize| !(x.contains(&i) && y.contains(&j));

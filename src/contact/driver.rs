@@ -15,7 +15,7 @@ use crate::contact::options::{Algorithm, Motion, Options};
 use crate::contact::plan::{Contact, bodies};
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
 use crate::contact::problem::freedoms::{Freedoms, OVERFLOW};
-use crate::contact::problem::{Fields, Problem, Quality, slice};
+use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
 use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
 use crate::contact::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
@@ -202,7 +202,7 @@ impl<'a> Steps<'a> {
         given: &'s dyn Surface,
         sampled: &mut Sampled<'s>,
         tally: &mut Tally,
-    ) -> Result<(Arc<Array2<f64>>, Fields, Option<Coarser>)> {
+    ) -> Result<(Arc<Array2<f64>>, SolutionFields, Option<Coarser>)> {
         let (plan, rows, options) = (self.plan, self.rows(), self.options);
         // An approach that may be too large for a solution is looked at before.
         let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
@@ -215,7 +215,7 @@ impl<'a> Steps<'a> {
                 if self.freedoms.any_prescribed() {
                     self.freedoms.prescribe(Arc::make_mut(&mut gap));
                 }
-                Ok((gap, Fields::new(plan.grid.shape(), &rows)))
+                Ok((gap, SolutionFields::new(plan.grid.shape(), &rows)))
             },
             || {
                 let ahead = self.cascades() && options.initial.is_none() && !bounded;
@@ -243,7 +243,7 @@ impl<'a> Steps<'a> {
         problem: &Problem,
         gap: &Array2<f64>,
         ahead: Option<Coarser>,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<(Outcome, Vec<GridResult>)> {
         let levels = &self.plan.levels;
@@ -270,7 +270,7 @@ impl<'a> Steps<'a> {
         start: Array2<f64>,
         problem: &Problem,
         gap: &Array2<f64>,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<Outcome> {
         if self.cascades() {
@@ -286,7 +286,7 @@ impl<'a> Steps<'a> {
         &self,
         problem: &Problem,
         gap: &Array2<f64>,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<Outcome> {
         let g = fields.gap(problem);
@@ -300,7 +300,7 @@ impl<'a> Steps<'a> {
         &self,
         problem: &Problem,
         gap: &Arc<Array2<f64>>,
-        mut fields: Fields,
+        mut fields: SolutionFields,
         (outcome, quality): (Outcome, Quality),
         results: Vec<GridResult>,
         mut report: Report,
@@ -359,7 +359,7 @@ impl<'a> Steps<'a> {
         &self,
         mut results: Vec<GridResult>,
         finest: GridResult,
-        fields: &Fields,
+        fields: &SolutionFields,
         warnings: &[Warning],
     ) -> Option<Discretisation> {
         results.push(finest);

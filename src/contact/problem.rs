@@ -395,7 +395,7 @@ impl Multipliers {
 }
 
 /// Pressure and displacement of a problem, and their quality once it was checked.
-pub(crate) struct Fields {
+pub(crate) struct SolutionFields {
     pub(crate) pressure: Array2<f64>,
     /// Window outside which the pressure is zero.
     pub(crate) window: Window,
@@ -405,8 +405,8 @@ pub(crate) struct Fields {
     pub(crate) quality: Option<Quality>,
 }
 
-impl Fields {
-    /// Fields of zeros.
+impl SolutionFields {
+    /// SolutionFields of zeros.
     ///
     /// The system hands out their memory as it is written, most of it when the memory of the iteration is
     /// free again.

@@ -52,15 +52,15 @@ pub(super) struct Tally<'a> {
     pub(super) iterations: usize,
     /// Work on all grids, in the unit of `Convolution::work`.
     pub(super) work: f64,
-    caller: &'a mut Caller<'a>,
+    caller: &'a mut Listener<'a>,
 }
 
 /// Callback that gets the iterations, the work and the quality, and breaks to stop.
-type Caller<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
+type Listener<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
 
 impl<'a> Tally<'a> {
     /// Nothing is done yet.
-    pub(super) fn new(caller: &'a mut Caller<'a>) -> Self {
+    pub(super) fn new(caller: &'a mut Listener<'a>) -> Self {
         Self { iterations: 0, work: 0.0, caller }
     }
 

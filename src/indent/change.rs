@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use super::adhesion::Adhesion;
 use super::density::{Answer, Density, Rate, Zone, bessel_sum};
-use super::equation::stack::{Parameter, StackLevel};
+use super::equation::stack::{IndentParameter, StackLevel};
 use super::equation::{add, times};
 use super::point::{Point, check_distances};
 use super::tip::TipParameter;
@@ -47,7 +47,7 @@ pub enum Held {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
     /// A number of bodies, tip or adhesion.
-    Parameter(Parameter),
+    Parameter(IndentParameter),
     /// What was given.
     Held,
 }
@@ -176,29 +176,31 @@ impl Point {
             "the state does not depend on this parameter: take one of the bodies, the tip or the adhesion",
         );
         match (parameter, self.adhesion) {
-            (Parameter::Work, Adhesion::Jkr { work }) => effect.edge = self.step() / (2.0 * work),
-            (Parameter::Work, Adhesion::Dmt { .. }) => {}
-            (Parameter::Work, Adhesion::Maugis { strength, .. }) => {
+            (IndentParameter::Work, Adhesion::Jkr { work }) => {
+                effect.edge = self.step() / (2.0 * work)
+            }
+            (IndentParameter::Work, Adhesion::Dmt { .. }) => {}
+            (IndentParameter::Work, Adhesion::Maugis { strength, .. }) => {
                 effect.opening = 1.0 / strength;
             }
-            (Parameter::Strength, Adhesion::Maugis { work, strength }) => {
+            (IndentParameter::Strength, Adhesion::Maugis { work, strength }) => {
                 let zone = self.zone.as_ref().ok_or(unknown)?;
                 effect.stress = 1.0 / strength;
                 effect.opening = -work / (strength * strength);
                 effect.edge = effect.stress * zone.density();
             }
-            (Parameter::Work | Parameter::Strength, _) => return Err(unknown),
-            (Parameter::Tip(TipParameter::Number(k)), _) if k >= tip.numbers().len() => {
+            (IndentParameter::Work | IndentParameter::Strength, _) => return Err(unknown),
+            (IndentParameter::Tip(TipParameter::Number(k)), _) if k >= tip.numbers().len() => {
                 return Err(unknown);
             }
-            (Parameter::Tip(own), _) => {
+            (IndentParameter::Tip(own), _) => {
                 effect.rate = Some(own);
                 effect.widening = tip.fixed_radius().map_or(0.0, |a| match own {
                     TipParameter::Area => 0.5 * a,
                     TipParameter::Number(_) => 1.0,
                 });
             }
-            (Parameter::Body(..), adhesion) => {
+            (IndentParameter::Body(..), adhesion) => {
                 let found = stack.parameters().iter().position(|own| *own == parameter);
                 let found = found.ok_or(unknown)?;
                 effect.number = Some(found);

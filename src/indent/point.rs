@@ -223,8 +223,8 @@ impl Point {
     /// assert_eq!(indent.at_approach(10.0)?.warnings()[0].kind(), "steep");
     /// # Ok::<(), nacre::Error>(())
     /// ```
-    pub fn warnings(&self) -> Vec<Warning> {
-        Warning::of(&self.parts.tip, self.radius, self.approach)
+    pub fn warnings(&self) -> Vec<IndentWarning> {
+        IndentWarning::of(&self.parts.tip, self.radius, self.approach)
     }
 }
 
@@ -235,7 +235,7 @@ const STEEP: f64 = 0.5;
 /// What makes a state of an indentation doubtful.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Warning {
+pub enum IndentWarning {
     /// The tip is steep within the contact, or the surface at the edge of a flat punch.
     Steep {
         /// Largest slope of the tip within the contact; of a flat punch 2/π of its approach over its radius, the slope of a
@@ -244,7 +244,7 @@ pub enum Warning {
     },
 }
 
-impl Warning {
+impl IndentWarning {
     /// Warnings of a contact.
     pub(super) fn of(tip: &Tip, radius: f64, approach: f64) -> Vec<Self> {
         let slope = match tip.fixed_radius() {
@@ -265,7 +265,7 @@ impl Warning {
     }
 }
 
-impl fmt::Display for Warning {
+impl fmt::Display for IndentWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Steep { slope } => write!(

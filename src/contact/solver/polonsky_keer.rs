@@ -13,8 +13,8 @@
 use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
-use crate::contact::problem::{Fields, slice_mut};
 use crate::contact::problem::{INDEFINITE, Multipliers, Problem, Quality};
+use crate::contact::problem::{SolutionFields, slice_mut};
 use crate::error::Result;
 use crate::model::grid::full_window;
 use crate::numerics::parallel::dot;
@@ -30,7 +30,7 @@ const ROUNDING: f64 = 1e-12;
 /// [`INDEFINITE`].
 pub(crate) fn solve(
     problem: &Problem,
-    fields: &mut Fields,
+    fields: &mut SolutionFields,
     criteria: StopCriteria,
     tally: &mut Tally,
 ) -> Result<Outcome> {
@@ -42,7 +42,7 @@ pub(crate) fn solve(
     let mut search = Search { direction: vec![0.0; cells], conjugacy: Conjugacy::default() };
     loop {
         let (found, now) = assess(problem, fields, criteria.tolerance, workspace, tally);
-        let Fields { pressure, displacement, .. } = fields;
+        let SolutionFields { pressure, displacement, .. } = fields;
         let (p, u) = (slice_mut(pressure), slice_mut(displacement));
         problem.gap_into(u, found, &mut g);
         let end = |termination| {
@@ -74,12 +74,12 @@ pub(crate) fn solve(
 /// Displacement, multipliers and quality of the pressure.
 fn assess(
     problem: &Problem,
-    fields: &mut Fields,
+    fields: &mut SolutionFields,
     tolerance: f64,
     workspace: &mut Workspace,
     tally: &mut Tally,
 ) -> (Multipliers, Quality) {
-    let Fields { pressure, displacement, window, multipliers, quality } = fields;
+    let SolutionFields { pressure, displacement, window, multipliers, quality } = fields;
     let (p, u) = (slice_mut(pressure), slice_mut(displacement));
     let mut judge = |near| {
         tally.work += problem.convolution.work();

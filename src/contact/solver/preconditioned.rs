@@ -85,7 +85,7 @@ enum Images {
 
 /// Outcome of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Step {
+enum StepOutcome {
     /// The step was made as planned.
     Whole,
     /// Cells lost their pressure on the way.
@@ -135,7 +135,7 @@ impl<'a> Preconditioned<'a> {
         tally: &mut Tally,
     ) -> Outcome {
         let before = tally.work;
-        let mut last = Step::Truncated;
+        let mut last = StepOutcome::Truncated;
         let mut course = Course::new();
         self.start(p);
         for iterations in 0.. {
@@ -159,7 +159,7 @@ impl<'a> Preconditioned<'a> {
             self.prepare_images(p, contact_changed, iterations);
             last = self.step(p, last);
             tally.work = before + self.work;
-            if last == Step::Stalled {
+            if last == StepOutcome::Stalled {
                 return end(Termination::IterationLimit);
             }
             tally.iterations += 1;

@@ -19,7 +19,7 @@ const LEVELS: usize = 12;
 
 /// A number that an indentation depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parameter {
+pub enum IndentParameter {
     /// A number of the body of this position.
     Body(usize, BodyParameter),
     /// A number of the tip.
@@ -60,7 +60,7 @@ pub struct Stack(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     bodies: Vec<Body>,
-    parameters: Vec<Parameter>,
+    parameters: Vec<IndentParameter>,
     /// lim α û/p̂ of all bodies for short waves, and its derivatives.
     short: f64,
     short_rates: Vec<f64>,
@@ -106,7 +106,7 @@ impl Stack {
             let own = body.parameters();
             let rates = asymptote_derivatives(body, &own);
             short_rates.extend(rates.iter().map(|rate| rate.short));
-            parameters.extend(own.iter().map(|own| Parameter::Body(number, *own)));
+            parameters.extend(own.iter().map(|own| IndentParameter::Body(number, *own)));
         }
         Ok(Self(Arc::new(Shared {
             bodies: bodies.to_vec(),
@@ -130,7 +130,7 @@ impl Stack {
     }
 
     /// Numbers of the bodies, with respect to which there are derivatives: those of half-spaces.
-    pub fn parameters(&self) -> &[Parameter] {
+    pub fn parameters(&self) -> &[IndentParameter] {
         &self.0.parameters
     }
 

@@ -12,21 +12,21 @@ use crate::contact::problem::Problem;
 use crate::contact::problem::balance::Products;
 use crate::contact::problem::bounds::{clip, in_contact, not_allowed};
 use crate::contact::solver::preconditioned::{
-    Arrays, Displacement, Images, PATIENCE, Preconditioned, Step,
+    Arrays, Displacement, Images, PATIENCE, Preconditioned, StepOutcome,
 };
 use crate::numerics::parallel::{ONE, Total, all, dot, sum, update, where_positive};
 
 impl Preconditioned<'_> {
     /// A step of the pressure `p`, after the step `last`.
-    pub(super) fn step(&mut self, p: &mut [f64], last: Step) -> Step {
+    pub(super) fn step(&mut self, p: &mut [f64], last: StepOutcome) -> StepOutcome {
         let exact = self.problem.convolution;
-        if last != Step::Truncated {
+        if last != StepOutcome::Truncated {
             let slope = self.search_direction(p, exact);
             return self.exact_step(p, slope);
         }
         let slope = self.search_direction(p, &self.approximation.periodic);
         match self.step_with_losses(p, slope) {
-            Step::Stalled => {
+            StepOutcome::Stalled => {
                 let Arrays { direction, .. } = self.memory.arrays(p.len());
                 exact.rows_in(direction, 0..exact.shape()[0], &mut self.workspace);
                 self.exact_step(p, slope)
@@ -53,12 +53,12 @@ impl Preconditioned<'_> {
     }
 
     /// A step of exact length. Where cells leave, the displacement is computed afresh.
-    fn exact_step(&mut self, p: &mut [f64], slope: f64) -> Step {
+    fn exact_step(&mut self, p: &mut [f64], slope: f64) -> StepOutcome {
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
         let bounds = problem.bounds;
         let curvature = self.respond(problem.convolution);
         let Some(length) = best_length(slope, curvature).map(all) else {
-            return Step::Stalled;
+            return StepOutcome::Stalled;
         };
         let Arrays { u, direction, response, .. } = self.memory.arrays(p.len());
         let (inputs, outputs) = ([&*direction, response, problem.gap], [&mut *p, u]);
@@ -73,7 +73,7 @@ impl Preconditioned<'_> {
         });
         let near = (&*u, self.lambda);
         let (done, factor) = balance(problem, p, near, fit.counted, fit.moments);
-        if done == Step::Whole {
+        if done == StepOutcome::Whole {
             self.displacement = Displacement::Fitted(fit);
             return done;
         }
@@ -84,8 +84,8 @@ impl Preconditioned<'_> {
     }
 
     /// A step of approximate length, with the exact displacement however many cells leave.
-    /// [`Step::Stalled`], with the pressure unchanged up to rounding, where it would not descend.
-    fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> Step {
+    /// [`StepOutcome::Stalled`], with the pressure unchanged up to rounding, where it would not descend.
+    fn step_with_losses(&mut self, p: &mut [f64], slope: f64) -> StepOutcome {
         // Best length along the change, relative to the planned one. Outside this range so many cells have
         // left that the plan was worth little; beyond 2 the energy would rise. Chosen by trial.
         const AS_PLANNED: Range<f64> = 0.6..1.8;
@@ -95,7 +95,7 @@ impl Preconditioned<'_> {
         let (problem, freedoms) = (self.problem, self.problem.freedoms);
         let curvature = self.respond(&self.approximation.periodic) * self.curvature_ratio;
         let Some(length) = best_length(slope, curvature).map(all) else {
-            return Step::Stalled;
+            return StepOutcome::Stalled;
         };
         let Arrays { u, direction, trial, r, response, .. } = self.memory.arrays(p.len());
         let (lost, moments) =
@@ -140,7 +140,7 @@ impl Preconditioned<'_> {
             });
         }
         if back >= 1.0 {
-            return Step::Stalled;
+            return StepOutcome::Stalled;
         }
         let [least, most] = CHANGE_OF_RATIO;
         let ratio = self.curvature_ratio / best.clamp(least, most);
@@ -150,13 +150,13 @@ impl Preconditioned<'_> {
             done
         } else {
             // The next step is an exact one.
-            Step::Whole
+            StepOutcome::Whole
         }
     }
 }
 
-/// [`Step::Whole`] where a pressure of these `moments`, from which `lost` cells were clipped, is balanced.
-/// Otherwise restores balance up to a factor on `p`, which is returned with [`Step::Truncated`]. The displacement and λ
+/// [`StepOutcome::Whole`] where a pressure of these `moments`, from which `lost` cells were clipped, is balanced.
+/// Otherwise restores balance up to a factor on `p`, which is returned with [`StepOutcome::Truncated`]. The displacement and λ
 /// before the step are `near`.
 fn balance(
     problem: &Problem,
@@ -164,22 +164,22 @@ fn balance(
     near: (&[f64], [f64; 3]),
     lost: f64,
     moments: [f64; 3],
-) -> (Step, f64) {
+) -> (StepOutcome, f64) {
     let freedoms = problem.freedoms;
     // A direction that lost cells since it was made is out of balance, too.
     if lost <= 0.0 && freedoms.on_target(moments) {
-        return (Step::Whole, 1.0);
+        return (StepOutcome::Whole, 1.0);
     }
     if problem.bounds.is_limited() {
         problem.rebalance_within(p, near.0, near.1);
-        return (Step::Truncated, 1.0);
+        return (StepOutcome::Truncated, 1.0);
     }
     let factor = freedoms.to_load(moments[0]);
     let factor = factor.filter(|_| freedoms.only_force()).unwrap_or_else(|| {
         problem.rebalance(p);
         1.0
     });
-    (Step::Truncated, factor)
+    (StepOutcome::Truncated, factor)
 }
 
 /// The length of the step to the least energy; `None` where the energy does not fall.

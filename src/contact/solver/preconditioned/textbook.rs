@@ -18,7 +18,7 @@ use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{LocalDisplacement, Problem};
 use crate::contact::solver::preconditioned::{
-    Approximation, Assessment, Memory, PATIENCE, Preconditioned, Step,
+    Approximation, Assessment, Memory, PATIENCE, Preconditioned, StepOutcome,
 };
 use crate::error::Result;
 use crate::model::body::{HalfSpace, Layer};
@@ -31,7 +31,7 @@ pub(super) type Field = Vec<f64>;
 
 /// Decisions, each of which the comparison must meet at least once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Branch {
+pub(super) enum Decision {
     /// So many cells joined that the next direction is not conjugate.
     ManyJoined,
     /// Images were renewed, since the contact stayed.
@@ -73,7 +73,7 @@ pub(super) struct Textbook<'a> {
     /// r · z of the last direction.
     descent: f64,
     curvature_ratio: f64,
-    pub(super) seen: HashSet<Branch>,
+    pub(super) seen: HashSet<Decision>,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -173,7 +173,7 @@ impl<'a> Textbook<'a> {
         let contact: Vec<bool> = zip(&pressed, &overlap).map(|(&p, &o)| p || o > 0.0).collect();
         if 10.0 * (count(&contact) - count(&pressed)) > count(&pressed) {
             self.conjugate = false;
-            self.seen.insert(Branch::ManyJoined);
+            self.seen.insert(Decision::ManyJoined);
         }
         self.changed = contact != pressed || self.contact != pressed;
         self.r_before = std::mem::replace(&mut self.r, on(&contact, &overlap));
@@ -201,7 +201,7 @@ impl<'a> Textbook<'a> {
             return z;
         }
         self.conjugate = false;
-        self.seen.insert(Branch::Orthogonal);
+        self.seen.insert(Decision::Orthogonal);
         let (mean, _) = self.nearest(&self.r, &self.contact);
         on(&self.contact, &sum(&self.r, -1.0, &mean))
     }
@@ -212,11 +212,11 @@ impl<'a> Textbook<'a> {
             self.invert_freedoms();
             self.conjugate = false;
             self.age = 0;
-            self.seen.insert(Branch::Renewed);
+            self.seen.insert(Decision::Renewed);
         } else if self.age >= 3 && iterations >= 20 {
             self.invert_freedoms();
             self.age = 0;
-            self.seen.insert(Branch::TooOld);
+            self.seen.insert(Decision::TooOld);
         } else if self.changed {
             self.age += 1;
         }
@@ -228,43 +228,48 @@ impl<'a> Textbook<'a> {
         self.direction = on(&self.contact, &sum(&z, beta, &self.direction));
         if dot(&self.r, &self.direction) <= 0.0 {
             self.direction = z;
-            self.seen.insert(Branch::Gradient);
+            self.seen.insert(Decision::Gradient);
         }
         dot(&self.r, &self.direction)
     }
 
     /// An exact step; after a step that lost cells, one with losses first.
-    pub(super) fn step(&mut self, p: &mut Field, last: Step, iterations: usize) -> Step {
+    pub(super) fn step(
+        &mut self,
+        p: &mut Field,
+        last: StepOutcome,
+        iterations: usize,
+    ) -> StepOutcome {
         let slope = self.turn(iterations);
-        if last == Step::Truncated {
+        if last == StepOutcome::Truncated {
             let step = self.step_with_losses(p, slope);
-            if step != Step::Stalled {
+            if step != StepOutcome::Stalled {
                 return step;
             }
-            self.seen.insert(Branch::Repeated);
+            self.seen.insert(Decision::Repeated);
         }
         let curvature = dot(&self.direction, &convolved(self.problem.convolution, &self.direction));
-        best_length(slope, curvature).map_or(Step::Stalled, |length| self.advance(p, length))
+        best_length(slope, curvature).map_or(StepOutcome::Stalled, |length| self.advance(p, length))
     }
 
     /// p ← [p + length d]₊, balanced.
-    fn advance(&self, p: &mut Field, length: f64) -> Step {
+    fn advance(&self, p: &mut Field, length: f64) -> StepOutcome {
         let moved = sum(p, length, &self.direction);
         *p = moved.iter().map(|p| p.max(0.0)).collect();
         let whole = moved.iter().all(|&p| p >= 0.0);
         if whole && self.problem.freedoms.on_target(self.moments(p)) {
-            return Step::Whole;
+            return StepOutcome::Whole;
         }
         self.problem.rebalance(p);
-        Step::Truncated
+        StepOutcome::Truncated
     }
 
     /// Length by the periodic convolution; then the best length along the change that remains.
-    fn step_with_losses(&mut self, p: &mut Field, slope: f64) -> Step {
+    fn step_with_losses(&mut self, p: &mut Field, slope: f64) -> StepOutcome {
         let periodic = convolved(&self.approximation.periodic, &self.direction);
         let curvature = dot(&self.direction, &periodic) * self.curvature_ratio;
         let Some(length) = best_length(slope, curvature) else {
-            return Step::Stalled;
+            return StepOutcome::Stalled;
         };
         let mut next = p.clone();
         let done = self.advance(&mut next, length);
@@ -272,26 +277,26 @@ impl<'a> Textbook<'a> {
         let curvature = dot(&change, &convolved(self.problem.convolution, &change));
         let best = best_length(dot(&change, &self.r), curvature).unwrap_or(0.0);
         if best <= 0.0 {
-            return Step::Stalled;
+            return StepOutcome::Stalled;
         }
         let ratio = self.curvature_ratio / best.clamp(0.8, 1.25);
         self.curvature_ratio = ratio.clamp(0.5, 2.0);
         if best < 0.6 {
-            self.seen.insert(Branch::Shortened);
+            self.seen.insert(Decision::Shortened);
             *p = sum(p, best, &change);
-            return Step::Whole;
+            return StepOutcome::Whole;
         }
         *p = next;
         if best < 1.8 {
             return done;
         }
-        self.seen.insert(Branch::TooShort);
-        Step::Whole
+        self.seen.insert(Decision::TooShort);
+        StepOutcome::Whole
     }
 }
 
 /// A problem of the comparison; lengths and moduli are of order 1.
-struct Case {
+struct ComparedProblem {
     name: &'static str,
     body: Body,
     grid: Grid,
@@ -301,13 +306,13 @@ struct Case {
     start: f64,
 }
 
-fn cases() -> Result<[Case; 6]> {
+fn cases() -> Result<[ComparedProblem; 6]> {
     let bare = Elastic::new(1.0, 0.0)?;
     let hard = Layer::new(Elastic::new(4.0, 0.2)?, 0.4)?;
     let coated = HalfSpace::new(Elastic::new(1.0, 0.3)?, [hard])?;
     let (load, light) = (Motion::load(1e-3), Motion::load(1e-4));
     Ok([
-        Case {
+        ComparedProblem {
             name: "paraboloid",
             body: bare.into(),
             grid: Grid::new([53, 64], [3.0, 4.2])?,
@@ -315,7 +320,7 @@ fn cases() -> Result<[Case; 6]> {
             gap: |x, y| 5e-4 * x * x + 4e-4 * y * y,
             start: f64::INFINITY,
         },
-        Case {
+        ComparedProblem {
             name: "coated",
             body: coated.into(),
             grid: Grid::new([66, 49], [3.4, 3.1])?,
@@ -323,7 +328,7 @@ fn cases() -> Result<[Case; 6]> {
             gap: |x, y| 5e-4 * ((x - 0.1).powi(2) + y * y),
             start: f64::INFINITY,
         },
-        Case {
+        ComparedProblem {
             name: "crowned roller, both moments",
             body: bare.into(),
             grid: Grid::new([71, 50], [6.0, 1.6])?,
@@ -331,7 +336,7 @@ fn cases() -> Result<[Case; 6]> {
             gap: |x, y| 1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2),
             start: f64::INFINITY,
         },
-        Case {
+        ComparedProblem {
             name: "rough, of finite extent",
             body: bare.into(),
             grid: Grid::new([60, 55], [3.0, 2.5])?.centered_at([0.3, -0.2])?,
@@ -343,7 +348,7 @@ fn cases() -> Result<[Case; 6]> {
             },
             start: 0.4,
         },
-        Case {
+        ComparedProblem {
             name: "approach and tilt",
             body: bare.into(),
             grid: Grid::new([48, 57], [4.0, 3.6])?,
@@ -351,7 +356,7 @@ fn cases() -> Result<[Case; 6]> {
             gap: |x, y| 5e-4 * x * x + 6e-4 * y * y,
             start: f64::INFINITY,
         },
-        Case {
+        ComparedProblem {
             name: "line",
             body: bare.into(),
             grid: Grid::line(71, 3.3)?,
@@ -364,7 +369,10 @@ fn cases() -> Result<[Case; 6]> {
 
 /// Calls `work` with the fused iteration of `case`, its textbook form, and the pressure that both start from:
 /// uniform on all cells that can touch within the radius of the start, and balanced.
-fn with_both<R>(case: &Case, work: impl FnOnce(Preconditioned, Textbook, Field) -> R) -> Result<R> {
+fn with_both<R>(
+    case: &ComparedProblem,
+    work: impl FnOnce(Preconditioned, Textbook, Field) -> R,
+) -> Result<R> {
     let coefficients = influence_coefficients(case.body.clone(), &case.grid, Method::Exact)?;
     let convolution = Convolution::plan(&coefficients, Some(1))?;
     let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
@@ -409,7 +417,7 @@ fn fused_iteration_is_the_textbook_one() -> Result<()> {
     for (case, before) in runs {
         with_both(case, |mut fused, mut textbook, start| {
             let (mut p, mut q) = (start.clone(), start);
-            let (mut last, mut step) = (Step::Truncated, Step::Truncated);
+            let (mut last, mut step) = (StepOutcome::Truncated, StepOutcome::Truncated);
             for iteration in 0..=100 {
                 let at = format!("{}, iteration {iteration} after {before}", case.name);
                 assert!(iteration < 100, "{at}: not converged");
