@@ -18,7 +18,6 @@ pub use driver::WatchedSolve;
 pub use options::{Algorithm, Motion, Options, Setup};
 pub use plan::Contact;
 pub use problem::bounds::Hardness;
-pub(crate) use problem::freedoms::OVERFLOW;
 pub(crate) use problem::patch::{block, bounds};
 pub(crate) use solution::tangent::Tangent;
 pub use solution::warnings::Warning;

@@ -14,7 +14,7 @@ use crate::compliance::ends::{Ends, check_carried};
 use crate::compliance::response::Body;
 use crate::contact::automatic::relief::overlap;
 use crate::contact::automatic::search::{Search, moved_out, touched_sides};
-use crate::contact::automatic::task::{Task, cells_in_contact, frame_of};
+use crate::contact::automatic::task::{Task, frame_of};
 use crate::contact::driver::WatchedSolve;
 use crate::contact::options::{Algorithm, Motion, Options, Setup};
 use crate::contact::plan::bodies;
@@ -150,7 +150,8 @@ fn solve_on_fit_grid(
         }
         let frame = frame_of(&grid);
         let missed = overlap(&task, &solution, frame)?;
-        let touched = cells_in_contact(&solution)
+        let touched = solution
+            .cells_in_contact()
             .map(|contact| touched_sides(&contact, &grid, task.shape.extent()))
             .unwrap_or_default();
         let warning;

@@ -14,7 +14,7 @@ use crate::contact::cascade::{Cascade, Coarser};
 use crate::contact::options::{Algorithm, Motion, Options};
 use crate::contact::plan::{Contact, bodies};
 use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
-use crate::contact::problem::freedoms::{Freedoms, OVERFLOW};
+use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
 use crate::contact::solution::warnings::{Warning, warnings};
 use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
@@ -306,7 +306,7 @@ impl<'a> Steps<'a> {
         mut report: Report,
     ) -> Result<Solution> {
         if quality.overflows() {
-            return Err(OVERFLOW);
+            return Err(Error::Overflow);
         }
         let (plan, grid) = (self.plan, &self.plan.grid);
         let indentation = (problem.bounds.is_limited()).then(|| fields.indentation(problem));

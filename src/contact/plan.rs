@@ -14,7 +14,7 @@ use crate::compliance::traction::Tangential;
 use crate::contact::cascade::Levels;
 use crate::contact::cascade::discretisation::Unresolved;
 use crate::contact::options::Setup;
-use crate::contact::problem::{INDEFINITE, LocalDisplacement};
+use crate::contact::problem::LocalDisplacement;
 use crate::contact::solver::linear_cg;
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
@@ -180,7 +180,7 @@ pub(super) fn bodies<'a>(body: &'a Body, setup: &'a Setup) -> Vec<&'a Body> {
 /// free ends, and their datum.
 ///
 /// # Errors
-/// [`INDEFINITE`] where the coefficients show that they are not positive definite.
+/// [`Error::Indefinite`] where the coefficients show that they are not positive definite.
 pub(super) fn operator(
     body: &Body,
     setup: &Setup,
@@ -195,7 +195,7 @@ pub(super) fn operator(
     let own = coefficients[[0, 0]];
     let larger = |c: &f64| c.abs() > own;
     if setup.method != Method::Exact && (own <= 0.0 || coefficients.iter().any(larger)) {
-        return Err(INDEFINITE);
+        return Err(Error::Indefinite);
     }
     Ok((coefficients, datum))
 }
@@ -256,7 +256,7 @@ impl Datum {
     /// Finds the datum for the `coefficients` of `bodies` together on `grid`, and what their free ends add.
     ///
     /// # Errors
-    /// [`INDEFINITE`] where the operator is not positive definite with any datum.
+    /// [`Error::Indefinite`] where the operator is not positive definite with any datum.
     pub(crate) fn find(
         bodies: &[&Body],
         grid: &Grid,
@@ -298,7 +298,7 @@ impl Datum {
                 ..near
             });
         }
-        Err(INDEFINITE)
+        Err(Error::Indefinite)
     }
 
     /// Coefficients on `grid`, whose datum is its own width, with this datum.

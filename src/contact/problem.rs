@@ -24,17 +24,10 @@ use crate::contact::problem::balance::FitSums;
 use crate::contact::problem::bounds::{Bounds, is_below, not_allowed, residual};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::Patch;
-use crate::error::Error;
 use crate::model::grid::{Grid, Window};
 use crate::numerics::parallel::{
     Lanes, ONE, Row, Rows, Total, ZERO, all, sum, update, update_with_largest, where_positive,
 };
-
-/// The error for an operator K with a pressure p for which pᵀK p < 0.
-pub(super) const INDEFINITE: Error = Error::Inconsistent(
-    "the influence coefficients are not positive definite, so that the contact has no unique solution; \
-     take the method \"exact\", a larger refinement or a grid of more cells",
-);
 
 /// One contact problem: operator, degrees of freedom and undeformed gap.
 pub(super) struct Problem<'a> {

@@ -16,12 +16,12 @@ use crate::contact::options::Motion;
 use crate::contact::plan::Contact;
 use crate::contact::problem::bounds::{Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
-use crate::contact::problem::patch::rows;
+use crate::contact::problem::patch::{bounds, rows};
 use crate::contact::problem::{Multipliers, Quality};
 use crate::contact::solution::warnings::Warning;
 use crate::contact::solver::{Solver, Termination};
-use crate::error::{Error, Result, finite};
-use crate::model::grid::{Grid, Window};
+use crate::error::{Error, Result, all_finite, finite, same_shape};
+use crate::model::grid::{Grid, Window, full_window};
 use crate::model::surface::Surface;
 use crate::numerics::parallel::{Row, update_with_largest};
 
@@ -85,16 +85,10 @@ impl Solution {
         let expected = report.grid.shape();
         let fields = [&pressure, &gap, &displacement];
         for (name, field) in ["pressure", "gap", "displacement"].into_iter().zip(fields) {
-            let found = [field.nrows(), field.ncols()];
-            if found != expected {
-                return Err(Error::Shape { name, expected, found });
-            }
+            same_shape(name, field, expected)?;
         }
-        for (name, field) in [("pressure", &pressure), ("displacement", &displacement)] {
-            if let Some((index, _)) = field.indexed_iter().find(|(_, v)| !v.is_finite()) {
-                return Err(Error::NonFinite { name, index: index.into() });
-            }
-        }
+        all_finite("pressure", &pressure)?;
+        all_finite("displacement", &displacement)?;
         for (name, requirement, field, smallest) in [
             ("pressure", "at least 0", &pressure, 0.0),
             ("gap", "a number or +inf", &gap, f64::MIN),
@@ -257,6 +251,11 @@ impl Solution {
                 (t + 1.0) * t * (t - 1.0) / 6.0,
             ],
         ))
+    }
+
+    /// The smallest window that holds all cells in contact; `None` where nothing touches.
+    pub(crate) fn cells_in_contact(&self) -> Option<Window> {
+        bounds(&full_window(self.grid().shape()), |i, j| self.pressure[[i, j]] > 0.0)
     }
 
     /// Force per length along x, Σ p dy (nx,) \[N/m\].

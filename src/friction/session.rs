@@ -15,8 +15,8 @@ use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
 use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
 use crate::compliance::traction::Tangential;
-use crate::contact::{Contact, Motion, OVERFLOW, Options, Solution, Termination, Warning};
-use crate::error::{Error, Result, require};
+use crate::contact::{Contact, Motion, Options, Solution, Termination, Warning};
+use crate::error::{Error, Result, fraction};
 use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
 
@@ -85,9 +85,7 @@ impl<'a> Session<'a> {
         shape: &'a dyn Surface,
         options: FrictionOptions,
     ) -> Result<Self> {
-        let tolerance = options.tolerance;
-        let holds = tolerance > 0.0 && tolerance < 1.0;
-        require("tolerance", tolerance, holds, "above 0 and below 1")?;
+        fraction("tolerance", options.tolerance)?;
         let tangential = contact.tangential()?;
         Ok(Self {
             contact,
@@ -287,7 +285,7 @@ impl<'a> Session<'a> {
         };
         let mut fields = task.fields(&self.tangential, pressed, solved.as_ref());
         if !fields.are_finite() {
-            return Err(OVERFLOW);
+            return Err(Error::Overflow);
         }
         if course.stopped {
             fields.restore(task);

@@ -4,7 +4,7 @@ use ndarray::Array2;
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
-use crate::error::{Error, Result, same_shape};
+use crate::error::{Error, Result, all_finite, same_shape};
 use crate::model::grid::Grid;
 use crate::stress::{Member, Stress, StressPlan, WatchedStress};
 
@@ -176,9 +176,7 @@ impl FrictionSolution {
         ];
         for (name, field) in named.into_iter().flat_map(|(name, [x, y])| [(name, x), (name, y)]) {
             same_shape(name, field, expected)?;
-            if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
-                return Err(Error::NonFinite { name, index: index.into() });
-            }
+            all_finite(name, field)?;
         }
         Ok(self)
     }

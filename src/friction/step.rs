@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use crate::contact::Motion;
-use crate::error::{Error, Result, finite, require, same_shape};
+use crate::error::{Error, Result, finite, not_negative, require, same_shape};
 use crate::model::grid::Grid;
 
 /// Coefficient of friction μ ≥ 0.
@@ -45,10 +45,7 @@ impl Friction {
     }
 
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
-        let check = |value: f64| {
-            let holds = value >= 0.0 && value.is_finite();
-            require("friction", value, holds, "finite and at least 0").map(|_| ())
-        };
+        let check = |value: f64| not_negative("friction", value).map(|_| ());
         match self {
             Self::Uniform(coefficient) => check(*coefficient),
             Self::Cells(coefficients) => {

@@ -9,7 +9,7 @@ use super::seed::{Direction, Gradient, Output, Seed, offsets};
 use super::state::{Linearised, Saddle};
 use super::stress::StressSeed;
 use crate::contact::Solution;
-use crate::error::{Error, Result, require, same_shape};
+use crate::error::{Error, Result, fraction, same_shape};
 use crate::model::surface::Surface;
 use crate::numerics::parallel::dot;
 
@@ -83,9 +83,7 @@ impl<'a> Linearisation<'a> {
         shape: Option<&'a dyn Surface>,
         options: &LinearOptions<'a>,
     ) -> Result<Self> {
-        let tolerance = options.tolerance;
-        let holds = tolerance > 0.0 && tolerance < 1.0;
-        require("tolerance", tolerance, holds, "above 0 and below 1")?;
+        fraction("tolerance", options.tolerance)?;
         let state = Linearised::new(solution, options.watch)?;
         Ok(Self {
             parameters: all(solution, shape),

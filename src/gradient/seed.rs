@@ -366,12 +366,8 @@ pub(super) fn bilinear(grid: &Grid, at: [f64; 2]) -> Result<Vec<([usize; 2], f64
         let name = ["x", "y"][axis];
         let value = finite(name, at[axis])?;
         let position = (value - grid.center()[axis]) / grid.spacing()[axis] + 0.5 * (n - 1) as f64;
-        require(
-            name,
-            value,
-            (-0.5 - CENTRE..=n as f64 - 0.5 + CENTRE).contains(&position),
-            "on the grid",
-        )?;
+        let is_on_grid = (-0.5 - CENTRE..=n as f64 - 0.5 + CENTRE).contains(&position);
+        require(name, value, is_on_grid, "on the grid")?;
         let nearest = position.round();
         let position = match (position - nearest).abs() < CENTRE {
             true => nearest,

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use crate::compliance::influence::Method;
-use crate::contact::{Solution, Tangent, block, bounds};
+use crate::contact::{Solution, Tangent, block};
 use crate::error::{Error, Result};
-use crate::model::grid::{Window, full_window};
+use crate::model::grid::Window;
 use crate::numerics::parallel::dot;
 
 /// Cells around the contact that the window holds, which may join it first.
@@ -69,8 +69,7 @@ impl Linearised {
         check(solution)?;
         let grid = solution.grid();
         let shape = grid.shape();
-        let touching = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
-        let Some(inner) = bounds(&full_window(shape), touching) else {
+        let Some(inner) = solution.cells_in_contact() else {
             return Err(refused("nothing touches, so that every derivative is 0 or undefined"));
         };
         let window: Window = [0, 1].map(|axis| {

@@ -6,7 +6,7 @@ use super::parameter::Parameter;
 use super::seed::{Measure, Seed, StressOutput, StressPlace, bilinear};
 use super::state::Linearised;
 use crate::contact::{Solution, block};
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Result, positive, require};
 use crate::model::body::{BodyParameter, HalfSpace, Interface};
 use crate::stress::{Section, Side, StressOptions, Tensor, Weights};
 
@@ -262,12 +262,7 @@ fn soft_maximum(
     sharpness: f64,
     planes: &[Weights],
 ) -> Result<(f64, Vec<Weights>, Option<String>)> {
-    require(
-        "sharpness",
-        sharpness,
-        sharpness > 0.0 && sharpness.is_finite(),
-        "finite and above 0",
-    )?;
+    positive("sharpness", sharpness)?;
     let cells = planes[0][0].len();
     let stress = |plane: &Weights, k: usize| std::array::from_fn(|c| plane[c][k]);
     let values: Vec<f64> = planes

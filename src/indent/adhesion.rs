@@ -80,12 +80,8 @@ impl Adhesion {
         }
         if let Self::Maugis { work, strength } = self {
             positive("strength", strength)?;
-            require(
-                "work/strength",
-                work / strength,
-                (1e-100..=1e100).contains(&(work / strength)),
-                "a length between 1e-100 and 1e100",
-            )?;
+            let (length, requirement) = (work / strength, "a length between 1e-100 and 1e100");
+            require("work/strength", length, (1e-100..=1e100).contains(&length), requirement)?;
         }
         Ok(self)
     }

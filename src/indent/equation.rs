@@ -19,9 +19,8 @@ use crate::numerics::roots;
 /// # Errors
 /// Errors of `f`, and equal signs at both ends.
 pub(super) fn bracketed(f: impl FnMut(f64) -> Result<f64>, bracket: [f64; 2]) -> Result<f64> {
-    roots::bracketed(f, bracket)?.ok_or(Error::Inconsistent(
-        "no state of this kind exists within the radii that can be computed",
-    ))
+    roots::bracketed(f, bracket)?
+        .ok_or(Error::NoState("no state of this kind exists within the radii that can be computed"))
 }
 
 /// B = 1 + 2/π ∫ M b̂ b̂ᵀ dα on the functions b of a contact, with its factor.

@@ -8,7 +8,7 @@ use super::density::{Answer, Density, Zone, bessel_sum};
 use super::equation::stack::StackLevel;
 use super::equation::{Parts, add, times};
 use super::tip::Tip;
-use crate::error::{Result, require};
+use crate::error::{Result, not_negative};
 
 mod disc;
 mod interior;
@@ -296,6 +296,5 @@ pub struct PullOff {
 
 /// An error unless each of `r` is a distance from the axis.
 pub(super) fn check_distances(r: &[f64]) -> Result<()> {
-    let check = |r: &f64| require("r", *r, r.is_finite() && *r >= 0.0, "finite and at least 0");
-    r.iter().try_for_each(|r| check(r).map(|_| ()))
+    r.iter().try_for_each(|r| not_negative("r", *r).map(|_| ()))
 }

@@ -315,7 +315,7 @@ impl HalfSpace {
     }
 
     /// Material of a layer, or of the substrate, which has the number of layers.
-    fn material(&self, place: usize) -> Option<Elastic> {
+    pub(crate) fn material(&self, place: usize) -> Option<Elastic> {
         match (self.layers.get(place), self.substrate) {
             (Some(layer), _) => Some(layer.material),
             (None, Substrate::Elastic(material)) if place == self.layers.len() => Some(material),

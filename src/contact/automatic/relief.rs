@@ -2,7 +2,7 @@
 
 use crate::compliance::influence::CellInfluence;
 use crate::compliance::response::Body;
-use crate::contact::automatic::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
+use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
 use crate::contact::problem::patch::block;
 use crate::contact::solution::Solution;
 use crate::error::Result;
@@ -266,7 +266,7 @@ impl<'a> Nearby<'a> {
         };
         let any_hard = hard(task.body) || task.setup.counterbody.as_ref().is_some_and(hard);
         let (frame, spacing) = (frame_of(solution.grid()), solution.grid().spacing());
-        let window = cells_in_contact(solution).unwrap_or([0..0, 0..0]);
+        let window = solution.cells_in_contact().unwrap_or([0..0, 0..0]);
         let end = |k: usize, cell: usize| frame[k][0] + spacing[k] * cell as f64;
         Self {
             solution,
@@ -304,7 +304,7 @@ struct Pressed {
 impl Pressed {
     fn by(solution: &Solution) -> Self {
         let (grid, pressure) = (solution.grid(), &solution.pressure);
-        let window = cells_in_contact(solution).unwrap_or([0..0, 0..0]);
+        let window = solution.cells_in_contact().unwrap_or([0..0, 0..0]);
         let across = [0, 1].map(|k| window[k].len().div_ceil(BLOCKS).max(1));
         let sides = [0, 1].map(|k| across[k] as f64 * grid.spacing()[k]);
         let parts = |k: usize| {

@@ -3,10 +3,9 @@
 use crate::compliance::response::Body;
 use crate::contact::options::{Motion, Options, Setup};
 use crate::contact::plan::Contact;
-use crate::contact::problem::patch::bounds;
 use crate::contact::solution::{Progress, Solution};
 use crate::error::Result;
-use crate::model::grid::{Grid, Window, full_window};
+use crate::model::grid::Grid;
 use crate::model::surface::Surface;
 
 /// Ends of a rectangle along x and along y.
@@ -23,12 +22,6 @@ pub(super) fn frame_of(grid: &Grid) -> Frame {
         let half = 0.5 * grid.size()[k];
         [grid.center()[k] - half, grid.center()[k] + half]
     })
-}
-
-/// The smallest window that holds all cells in contact; `None` where nothing touches.
-pub(super) fn cells_in_contact(solution: &Solution) -> Option<Window> {
-    let touches = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
-    bounds(&full_window(solution.grid().shape()), touches)
 }
 
 /// A shape that is pressed into a body.

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, none_negative, same_shape};
 use crate::model::grid::{Grid, Window};
 use crate::numerics::parallel::{Lanes, ONE, ZERO, all, where_positive};
 
@@ -158,7 +158,7 @@ impl Hardness {
         let values = match self {
             Self::Uniform(value) => std::slice::from_ref(value),
             Self::Cells(values) => {
-                check_shape(name, values, grid)?;
+                same_shape(name, values, grid.shape())?;
                 values.as_slice().unwrap_or(&[])
             }
         };
@@ -190,24 +190,8 @@ impl Hardness {
     }
 }
 
-/// An error unless an array has the shape of `grid`.
-fn check_shape(name: &'static str, values: &ArrayRef2<f64>, grid: &Grid) -> Result<()> {
-    let (expected, found) = (grid.shape(), [values.nrows(), values.ncols()]);
-    match found == expected {
-        true => Ok(()),
-        false => Err(Error::Shape { name, expected, found }),
-    }
-}
-
 /// An error unless an indentation to start with suits `grid`, and is finite and nowhere below 0.
 pub(crate) fn check_indentation(indentation: &ArrayRef2<f64>, grid: &Grid) -> Result<()> {
-    let name = "indentation";
-    check_shape(name, indentation, grid)?;
-    if let Some((index, _)) = indentation.indexed_iter().find(|(_, w)| !w.is_finite()) {
-        return Err(Error::NonFinite { name, index: index.into() });
-    }
-    match indentation.iter().find(|w| **w < 0.0) {
-        Some(&value) => Err(Error::Parameter { name, requirement: "at least 0 everywhere", value }),
-        None => Ok(()),
-    }
+    same_shape("indentation", indentation, grid.shape())?;
+    none_negative("indentation", indentation)
 }

@@ -42,11 +42,6 @@ const PERIODIC: [&str; 2] = [
     "along y the grid is periodic: eccentricity, moment and tilt must be None there",
 ];
 
-/// The error for numbers that are too large to be computed with.
-pub(crate) const OVERFLOW: Error = Error::Inconsistent(
-    "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish",
-);
-
 impl Freedoms {
     /// Checks `motion` and expresses it on `grid`.
     pub(crate) fn new(motion: &Motion, grid: &Grid) -> Result<Self> {
@@ -98,7 +93,7 @@ impl Freedoms {
         // Products like Σ p u are of second degree in the target.
         let vanishes = loaded[0] && target[0] < f64::MIN_POSITIVE / f64::EPSILON;
         if vanishes || target.iter().any(|sum| !(sum * sum).is_finite()) {
-            return Err(OVERFLOW);
+            return Err(Error::Overflow);
         }
         let coordinates = [0, 1].map(|k| grid.coordinates(k).to_vec());
         let columns = [0, 1].map(|k| {

@@ -12,7 +12,7 @@ use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::{bodies, operator};
-use crate::contact::problem::patch::{block, bounds};
+use crate::contact::problem::patch::block;
 use crate::contact::solver::linear_cg::{self, Watch};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
@@ -263,8 +263,7 @@ impl Solution {
             Some(watch) => watch,
             None => go_on,
         };
-        let touching = |i: usize, j: usize| self.pressure[[i, j]] > 0.0;
-        let Some(window) = bounds(&full_window(self.grid().shape()), touching) else {
+        let Some(window) = self.cells_in_contact() else {
             return Ok([[0.0; 3]; 3]);
         };
         let tangent = Tangent::plan(self, window)?;

@@ -5,7 +5,6 @@
 
 use std::ops::ControlFlow;
 
-use crate::contact::problem::INDEFINITE;
 use crate::error::{Error, Result};
 use crate::numerics::parallel::dot;
 
@@ -20,7 +19,7 @@ pub type Watch<'a> = dyn FnMut() -> ControlFlow<()> + 'a;
 /// iteration whether to continue.
 ///
 /// # Errors
-/// [`INDEFINITE`] where A is not positive definite and the iteration meets it; [`Error::NotConverged`]; [`Error::Stopped`]
+/// [`Error::Indefinite`] where A is not positive definite and the iteration meets it; [`Error::NotConverged`]; [`Error::Stopped`]
 /// where `watch` breaks.
 pub(crate) fn solve(
     right: &[f64],
@@ -51,7 +50,7 @@ pub(crate) fn solve(
         apply(&direction, &mut image);
         let curvature = dot(&direction, &image);
         if curvature <= 0.0 {
-            return Err(INDEFINITE);
+            return Err(Error::Indefinite);
         }
         let step = descent / curvature;
         for k in 0..cells {

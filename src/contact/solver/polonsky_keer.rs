@@ -13,9 +13,9 @@
 use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
-use crate::contact::problem::{INDEFINITE, Multipliers, Problem, Quality};
+use crate::contact::problem::{Multipliers, Problem, Quality};
 use crate::contact::problem::{SolutionFields, slice_mut};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::grid::full_window;
 use crate::numerics::parallel::dot;
 
@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-12;
 /// quality.
 ///
 /// # Errors
-/// [`INDEFINITE`].
+/// [`Error::Indefinite`].
 pub(crate) fn solve(
     problem: &Problem,
     fields: &mut SolutionFields,
@@ -156,7 +156,7 @@ impl Search {
             if beta <= 0.0 {
                 let one_cell = problem.self_influence();
                 if one_cell <= 0.0 || energy < -ROUNDING * one_cell * size * size {
-                    return Err(INDEFINITE);
+                    return Err(Error::Indefinite);
                 }
                 // A contact whose gap is exactly zero everywhere has only cells that join; their step is
                 // that of a single cell.

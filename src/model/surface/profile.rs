@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Error, Result, not_negative, positive, require};
 use crate::model::hertz::Line;
 use crate::model::surface::quadric::sagitta;
 use crate::model::surface::sagitta_slope;
@@ -161,14 +161,8 @@ impl CrownedProfile {
     /// # Errors
     /// Unless `crown_radius` is finite and above 0, and `flat_length` finite and at least 0.
     pub fn new(flat_length: f64, crown_radius: f64) -> Result<Self> {
-        require(
-            "flat_length",
-            flat_length,
-            flat_length >= 0.0 && flat_length.is_finite(),
-            "finite and at least 0",
-        )?;
         Ok(Self {
-            flat_length: flat_length + 0.0,
+            flat_length: not_negative("flat_length", flat_length)? + 0.0,
             crown_radius: positive("crown_radius", crown_radius)?,
         })
     }
@@ -330,18 +324,10 @@ impl LogarithmicProfile {
     pub fn new(amplitude: f64, length: f64, flat_length: f64, end_factor: f64) -> Result<Self> {
         positive("amplitude", amplitude)?;
         positive("length", length)?;
-        require(
-            "flat_length",
-            flat_length,
-            (0.0..length).contains(&flat_length),
-            "at least 0 and below the length",
-        )?;
-        require(
-            "end_factor",
-            end_factor,
-            end_factor > 0.0 && end_factor <= 1.0,
-            "above 0 and at most 1",
-        )?;
+        let holds = (0.0..length).contains(&flat_length);
+        require("flat_length", flat_length, holds, "at least 0 and below the length")?;
+        let holds = end_factor > 0.0 && end_factor <= 1.0;
+        require("end_factor", end_factor, holds, "above 0 and at most 1")?;
         Ok(Self { amplitude, length, flat_length: flat_length + 0.0, end_factor })
     }
 
