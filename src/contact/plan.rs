@@ -214,16 +214,6 @@ fn total_coefficients(
     Ok(coefficients)
 }
 
-// The datum of a line contact: where the displacement is 0.
-//
-// In plane strain the displacement grows as A/π ln(1/y) with the distance y from the load, where A belongs
-// to the substrates, so that it is counted from that of the bare substrate at a distance, the datum. Users
-// see the datum at the width of the grid ([`Grid::line`]). Below a stiff layer that is wider than the grid
-// the true displacement at this distance is far less: pressures would lift the surface, and the operator
-// would not be positive definite. Such contacts are solved with a farther datum ℓ'. Under a load W this
-// changes no pressure, and displacement and approach by the same A W/π ln(ℓ'/ℓ), which is taken back in the
-// end. The method is nacre's own.
-
 /// Factor between data that are tried.
 const FARTHER: f64 = 10.0;
 
@@ -234,7 +224,15 @@ const TRIALS: i32 = 15;
 /// Residual of the linear system. The error of the sum that is found is its square.
 const TOLERANCE: f64 = 1e-6;
 
-/// The datum that contacts on a line grid are solved with.
+/// The datum that line contacts are solved with: where the displacement is 0.
+///
+/// In plane strain the displacement grows as A/π ln(1/y) with the distance y from the load, where A belongs
+/// to the substrates, so that it is counted from that of the bare substrate at a distance, the datum. Users
+/// see the datum at the width of the grid ([`Grid::line`]). Below a stiff layer that is wider than the grid
+/// the true displacement at this distance is far less: pressures would lift the surface, and the operator
+/// would not be positive definite. Such contacts are solved with a farther datum ℓ'. Under a load W this
+/// changes no pressure, and displacement and approach by the same A W/π ln(ℓ'/ℓ), which is taken back in the
+/// end. The method is nacre's own.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Datum {
     /// A of both bodies \[1/Pa\], over the period where a grid repeats in one direction; 0 where there is no datum.

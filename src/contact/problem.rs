@@ -473,15 +473,13 @@ pub(crate) fn slice_mut(array: &mut Array2<f64>) -> &mut [f64] {
     array.as_slice_mut().unwrap_or(&mut [])
 }
 
-// The local displacement of a contact, to which residual and overlap are compared.
-//
-// On a substrate that is much softer than its coat, the coat sinks in as a whole. This part of the
-// displacement does not change over the contact, and says nothing about how well the surfaces fit. The
-// local displacement is of the size of the part that does: of contacts of radius a with mean pressure p,
-// it is a multiple of p a D(1/a), where D(α) = α û/p̂ is the response of both bodies together. The estimate
-// is nacre's own.
-
-/// Local displacements of contacts of any number of cells.
+/// Local displacements of contacts of any number of cells, to which residual and overlap are compared.
+///
+/// On a substrate that is much softer than its coat, the coat sinks in as a whole. This part of the
+/// displacement does not change over the contact, and says nothing about how well the surfaces fit. The
+/// local displacement is of the size of the part that does: of contacts of radius a with mean pressure p,
+/// it is a multiple of p a D(1/a), where D(α) = α û/p̂ is the response of both bodies together. The estimate
+/// is nacre's own.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalDisplacement {
     /// Displacement per mean pressure \[m/Pa\] of contacts of 1, 2, 4, … cells.

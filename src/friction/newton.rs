@@ -337,7 +337,15 @@ pub(super) struct Constraints {
     preconditioned: Vec<Vec<f64>>,
 }
 
-/// One linear system.
+/// One linear system of Newton's method, solved by GMRES that keeps forces.
+///
+/// ```text
+/// A d − C δ = b      Cᵀ d = c
+/// ```
+///
+/// M approximates A⁻¹. With S = Cᵀ M C, the operator G = M − M C S⁻¹ Cᵀ M makes nothing that has a force, Cᵀ G = 0, and
+/// G C = 0: GMRES on G A d = G b leaves C δ free and keeps Cᵀ d. Saad, Iterative Methods for Sparse Linear Systems,
+/// 2nd ed., SIAM (2003), §6.5 and §14; the preconditioner for rolling is derived here.
 pub(super) struct NewtonSystem<'a> {
     pub(super) operator: Operator<'a>,
     pub(super) states: &'a [CellState],
@@ -538,7 +546,7 @@ pub(super) enum CellState {
     },
 }
 
-/// Bounds of the tractions, and what keeps them: cells of a window.
+/// Coulomb's law in the cells of a window: |q| ≤ μp; no slip below the bound; slip against the traction at it.
 #[derive(Debug)]
 pub(super) struct Law {
     /// μp of each cell, 0 outside the contact \[Pa\].

@@ -202,14 +202,6 @@ fn bessel_slopes(g: &[f64], alpha: &[f64], r: f64) -> f64 {
     terms.map(|(g, alpha)| -g * alpha * j1(alpha * r)).sum()
 }
 
-// The zone around a contact in which a constant stress acts: its density, its load and what the contact answers.
-//
-// ```text
-// ψ(t) = −2/π σ₀ √(c²−t²)      a < t < c
-// ```
-//
-// is the density of a uniform stress −σ₀ on r < c, without the part of the contact.
-
 /// Nodes of the integral over a panel of a zone, beside half of the phase of the shortest wave over it.
 const NODES: usize = 24;
 
@@ -223,9 +215,16 @@ const ROOT_NODES: usize = 16;
 pub(super) type Rate = [f64; 2];
 
 /// Rate of a zone that grows from nothing: the zone itself.
-const WHOLE: Rate = [1.0, 0.0];
+pub(super) const WHOLE: Rate = [1.0, 0.0];
 
-/// A cohesive zone, and what the contact answers to it at approach 0.
+/// A cohesive zone, in which a constant stress acts, and what the contact answers to it at approach 0.
+///
+/// ```text
+/// ψ(t) = −2/π σ₀ √(c²−t²)      a < t < c
+/// ```
+///
+/// is the density of a uniform stress −σ₀ on r < c, without the part of the contact. What is asked of a [`Rate`] is that of
+/// [`WHOLE`] itself, or its change.
 #[derive(Debug, Clone)]
 pub(super) struct Zone {
     pub(super) inner: f64,
@@ -272,7 +271,7 @@ impl Zone {
         let Some(level) = &system.level else {
             return Answer { values: vec![0.0; system.ones.len()], ..Answer::default() };
         };
-        let own = self.transform_rate(rate, &level.waves);
+        let own = self.transform(rate, &level.waves);
         let right = system.couple(&times(&level.excess, &own));
         let values = system.solve(right.iter().map(|c| -c).collect());
         let mut hat = system.transform(&values);
@@ -292,12 +291,7 @@ impl Zone {
     }
 
     /// ψ at the inner edge.
-    pub(super) fn density(&self) -> f64 {
-        self.density_rate(WHOLE)
-    }
-
-    /// Change of ψ at the inner edge.
-    pub(super) fn density_rate(&self, [stress, outer]: Rate) -> f64 {
+    pub(super) fn density(&self, [stress, outer]: Rate) -> f64 {
         let reach = self.reach();
         -2.0 / PI * self.strength * (stress * reach + outer * self.outer / reach)
     }
@@ -308,25 +302,15 @@ impl Zone {
     }
 
     /// 2π ∫ ψ over the zone: its load.
-    pub(super) fn load(&self) -> f64 {
-        self.load_rate(WHOLE)
-    }
-
-    /// Change of its load.
-    pub(super) fn load_rate(&self, [stress, outer]: Rate) -> f64 {
+    pub(super) fn load(&self, [stress, outer]: Rate) -> f64 {
         let angle = self.reach().atan2(self.inner);
         let area = self.outer * self.outer * angle - self.inner * self.reach();
         -2.0 * self.strength * (stress * area + outer * 2.0 * self.outer * angle)
     }
 
-    /// ψ̂(α) at all waves.
-    pub(super) fn transform(&self, waves: &Waves) -> Vec<f64> {
-        self.transform_rate(WHOLE, waves)
-    }
-
-    /// Change of ψ̂(α) at all waves; t = c cos η. Over a wide zone it is that of the whole disc, of π/2 c σ₀ J₁(αc)/α, without that
+    /// ψ̂(α) at all waves; t = c cos η. Over a wide zone it is that of the whole disc, of π/2 c σ₀ J₁(αc)/α, without that
     /// of the contact, over which there are fewer oscillations.
-    pub(super) fn transform_rate(&self, rate: Rate, waves: &Waves) -> Vec<f64> {
+    pub(super) fn transform(&self, rate: Rate, waves: &Waves) -> Vec<f64> {
         let [stress, outer] = rate;
         let angle = self.reach().atan2(self.inner);
         if self.inner > 0.5 * self.outer {
@@ -369,14 +353,9 @@ impl Zone {
         sums
     }
 
-    /// ∫ ψ/√(r²−t²) over a < t < min(r, c).
-    pub(super) fn abel(&self, r: f64) -> f64 {
-        self.abel_rate(WHOLE, r)
-    }
-
-    /// Change of ∫ ψ/√(r²−t²) over a < t < min(r, c). With m = min(r, c), t = m cos η and η = ε sinh x, where ε is the distance
+    /// ∫ ψ/√(r²−t²) over a < t < min(r, c). With m = min(r, c), t = m cos η and η = ε sinh x, where ε is the distance
     /// from the root's double zero. At r = c that with the outer radius has no limit: it is −∞.
-    pub(super) fn abel_rate(&self, [stress, outer]: Rate, r: f64) -> f64 {
+    pub(super) fn abel(&self, [stress, outer]: Rate, r: f64) -> f64 {
         let (a, c) = (self.inner, self.outer);
         let factor = -2.0 / PI * self.strength;
         let m = r.min(c);
@@ -402,13 +381,8 @@ impl Zone {
         factor * Rule::kept(ROOT_NODES).over_panels(0.0, (most / size).asinh(), integrand)
     }
 
-    /// Part of the pressure within the contact, r ≤ a, that is due to the zone; at its edge −σ₀.
-    pub(super) fn inside(&self, r: f64) -> f64 {
-        self.inside_rate(WHOLE, r)
-    }
-
-    /// Change of −∫ ψ'/√(t²−r²) over the zone at r ≤ a.
-    pub(super) fn inside_rate(&self, [stress, outer]: Rate, r: f64) -> f64 {
+    /// Part −∫ ψ'/√(t²−r²) of the pressure within the contact, r ≤ a; at its edge −σ₀.
+    pub(super) fn inside(&self, [stress, outer]: Rate, r: f64) -> f64 {
         let (a, c) = (self.inner, self.outer);
         let rest = (c - r) * (c + r);
         let angle = (self.reach() / rest.sqrt()).min(1.0).asin();
@@ -429,7 +403,7 @@ impl Zone {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use super::Zone;
+    use super::{WHOLE, Zone};
     use crate::indent::equation::basis::Waves;
 
     /// A zone from the axis on is a disc of uniform stress: its load, its transform J₁, its displacement at the edge, and the
@@ -438,20 +412,20 @@ mod tests {
     fn a_disc_of_uniform_stress() {
         let (c, strength) = (0.7, 3.0);
         let zone = Zone::alone(0.0, c, strength);
-        assert!((zone.load() / (-PI * c * c * strength) - 1.0).abs() < 1e-14);
+        assert!((zone.load(WHOLE) / (-PI * c * c * strength) - 1.0).abs() < 1e-14);
         assert!(
-            (zone.inside(0.3) / (-2.0 / PI * strength)
+            (zone.inside(WHOLE, 0.3) / (-2.0 / PI * strength)
                 - (c / (c * c - 0.09_f64).sqrt()).min(1.0).asin())
             .abs()
                 < 1e-14
         );
         let waves = Waves::plan(1.0, 3.0, 1.0, |alpha| (-alpha).exp());
-        for (alpha, found) in waves.alpha.iter().zip(zone.transform(&waves)) {
+        for (alpha, found) in waves.alpha.iter().zip(zone.transform(WHOLE, &waves)) {
             let due = -strength * c * spec_math::cephes64::j1(alpha * c) / alpha;
             assert!((found - due).abs() < 1e-14, "{alpha}: {found} {due}");
         }
         // ∫ √(c²−t²)/√(r²−t²): elliptic integrals E at r < c; r E(c... ) is π/2 · c at r → 0.
-        let near_axis = zone.abel(1e-6) / (-2.0 / PI * strength);
+        let near_axis = zone.abel(WHOLE, 1e-6) / (-2.0 / PI * strength);
         assert!((near_axis / (FRAC_PI_2 * c) - 1.0).abs() < 1e-10);
         for r in [0.2, 0.6999999, 0.7000001, 2.0] {
             let fine = 4000;
@@ -465,7 +439,11 @@ mod tests {
                 })
                 .sum();
             let due = -2.0 / PI * strength * sum * FRAC_PI_2 / f64::from(fine);
-            assert!((zone.abel(r) / due - 1.0).abs() < 1e-6, "{r}: {} {due}", zone.abel(r));
+            assert!(
+                (zone.abel(WHOLE, r) / due - 1.0).abs() < 1e-6,
+                "{r}: {} {due}",
+                zone.abel(WHOLE, r)
+            );
         }
     }
 }

@@ -7,7 +7,7 @@ use spec_math::cephes64::j1;
 
 use crate::error::{Error, Result, finite, require};
 use crate::indent::adhesion::{Adhesion, Branch, Control};
-use crate::indent::density::{Zone, bessel_sum};
+use crate::indent::density::{WHOLE, Zone, bessel_sum};
 use crate::indent::equation::stack::Stack;
 use crate::indent::equation::{Parts, bracketed, times};
 use crate::indent::point::{Point, PullOff};
@@ -376,21 +376,19 @@ impl Indent {
     }
 }
 
-// The cohesive zone of Maugis and Dugdale around a contact, on any stack.
-//
-// A stress −σ₀ acts on a < r < c, and the gap is w/σ₀ at c. The density of a uniform stress is known,
-//
-// ```text
-// ψ(t) = −2/π σ₀ √(c²−t²)      a < t < c
-// ```
-//
-// so that φ on the contact satisfies its equation with −2/π ∫ M cos αs ψ̂ dα more on the right. φ(a) = ψ(a) fixes δ, since the
-// stress has no infinity, and the gap fixes c. Before the tip touches, ψ acts on 0 < t < c alone: the surfaces are apart, the
-// load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived here; on a bare body they are Maugis's closed form
-// (J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T).
-
-/// The contact of radius `a` with a cohesive zone, whose width c − a is looked for from e^`start` on; at the end its
+/// The contact of radius `a` with the cohesive zone of Maugis and Dugdale, on any stack, whose width c − a is looked for from e^`start` on; at the end its
 /// logarithm is in `start`.
+///
+/// A stress −σ₀ acts on a < r < c, and the gap is w/σ₀ at c. The density of a uniform stress is known,
+///
+/// ```text
+/// ψ(t) = −2/π σ₀ √(c²−t²)      a < t < c
+/// ```
+///
+/// so that φ on the contact satisfies its equation with −2/π ∫ M cos αs ψ̂ dα more on the right. φ(a) = ψ(a) fixes δ, since the
+/// stress has no infinity, and the gap fixes c. Before the tip touches, ψ acts on 0 < t < c alone: the surfaces are apart, the
+/// load is −πσ₀c², and δ = g(c) + u(c) − w/σ₀. On layers both were derived here; on a bare body they are Maugis's closed form
+/// (J. Colloid Interface Sci. 150 (1992) 243, doi:10.1016/0021-9797(92)90285-T).
 fn with_zone(
     stack: &Stack,
     tip: &Tip,
@@ -408,10 +406,10 @@ fn with_zone(
             parts = Arc::new(Parts::new(stack, tip, a, 2.0 * outer)?);
         }
         let zone = Zone::around(&parts, outer, strength);
-        let approach = parts.hertzian() + (zone.density() - zone.answer.edge) / parts.edge[0];
+        let approach = parts.hertzian() + (zone.density(WHOLE) - zone.answer.edge) / parts.edge[0];
         let mut point =
             Point::new(Arc::clone(&parts), Adhesion::Maugis { work, strength }, approach);
-        point.load += zone.load() + 2.0 * PI * dot(&zone.answer.values, &parts.system.ones);
+        point.load += zone.load(WHOLE) + 2.0 * PI * dot(&zone.answer.values, &parts.system.ones);
         point.outer_radius = Some(outer);
         point.zone = Some(zone);
         let gap = point.gap(&[outer])?[0];

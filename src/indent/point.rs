@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
-use super::density::{Answer, Density, Zone, bessel_sum};
+use super::density::{Answer, Density, WHOLE, Zone, bessel_sum};
 use super::equation::stack::StackLevel;
 use super::equation::{Parts, add, times};
 use super::tip::Tip;
@@ -130,7 +130,7 @@ impl Point {
                     true => Density { edge: 0.0, ..self.density() }.pressure(*r),
                     false => 0.0,
                 };
-                return from_contact + zone.inside(*r);
+                return from_contact + zone.inside(WHOLE, *r);
             }
             if *r >= a {
                 return match density.edge.abs() > 0.0 {
@@ -161,7 +161,7 @@ impl Point {
             if *r <= self.radius {
                 return self.approach - self.parts.tip.gap(*r);
             }
-            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(*r));
+            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(WHOLE, *r));
             let layers =
                 waves.as_ref().map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
             short * (density.abel(*r) + zone + layers)
@@ -196,7 +196,7 @@ impl Point {
                 let system = &self.parts.system;
                 let [mut hat] = system.transforms_at(&level.waves, [&self.values()]);
                 if let Some(zone) = &self.zone {
-                    add(&mut hat, 1.0, &zone.transform(&level.waves));
+                    add(&mut hat, 1.0, &zone.transform(WHOLE, &level.waves));
                 }
                 hat
             }

@@ -1,7 +1,7 @@
 //! Pressures that a cell can carry: surfaces that touch push each other and never pull, up to a hardness.
 //!
 //! ```text
-//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0
+//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0, and −g is the depth of the permanent dent
 //! ```
 //!
 //! A pressure between the bounds is free to change. One at a bound is held there until the gap has the wrong sign. The
@@ -129,17 +129,10 @@ pub(crate) fn not_allowed(p: Lanes, limit: Lanes) -> Lanes {
     (p.simd_lt(ZERO) | p.simd_gt(limit)) & ONE
 }
 
-// A limit of the pressure: elastic, perfectly plastic surfaces, which yield at their hardness.
-//
-// ```text
-// p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0, and −g is the depth of the permanent dent
-// ```
-//
-// Polonsky & Keer, Wear 231 (1999) 206, §2.3, doi:10.1016/S0043-1648(99)00113-1; Almqvist, Sahlin, Larsson &
-// Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008. The iteration holds a cell at the hardness
-// as it holds one at 0 (`problem/bounds.rs`).
-
-/// Largest pressure that a surface bears \[Pa\], above 0; +∞ where it does not yield.
+/// Largest pressure that an elastic, perfectly plastic surface bears \[Pa\], above 0; +∞ where it does not yield.
+///
+/// Polonsky & Keer, Wear 231 (1999) 206, §2.3, doi:10.1016/S0043-1648(99)00113-1; Almqvist, Sahlin, Larsson &
+/// Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Hardness {
     /// One number for all cells.

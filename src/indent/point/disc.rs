@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use super::Point;
 use crate::error::{Error, Result};
 use crate::indent::adhesion::Adhesion;
-use crate::indent::density::{Density, oscillating};
+use crate::indent::density::{Density, WHOLE, oscillating};
 use crate::indent::equation::basis::Waves;
 use crate::numerics::special::chebyshev_nodes;
 
@@ -225,7 +225,8 @@ impl Point {
         // Where it ends at the edge, the pressure does so as a root.
         let ends = density.edge.abs() <= 0.0 && self.zone.is_none();
         let most = least(&places, |r| {
-            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.inside(r) + zone.strength());
+            let zone =
+                self.zone.as_ref().map_or(0.0, |zone| zone.inside(WHOLE, r) + zone.strength());
             let pressure = density.pressure_of(r, slopes) + zone;
             Ok(match ends {
                 true => pressure / (1.0 - (r / a).powi(2)).sqrt(),

@@ -4,6 +4,7 @@ use spec_math::cephes64::{j0, j1};
 
 use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result, require};
+use crate::indent::density::WHOLE;
 use crate::indent::equation::add;
 use crate::indent::equation::basis::{Panel, Waves};
 use crate::indent::point::{Point, check_distances};
@@ -144,7 +145,7 @@ impl Point {
             add(&mut hat, weight, &cos);
         }
         if let Some(zone) = &self.zone {
-            add(&mut hat, 1.0, &zone.transform(waves));
+            add(&mut hat, 1.0, &zone.transform(WHOLE, waves));
         }
         hat
     }
