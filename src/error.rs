@@ -313,6 +313,11 @@ fn missed([residual, overlap, balance]: [f64; 3], tolerance: f64) -> String {
     missed.join(", ")
 }
 
+/// An error with this `message`, of arguments that contradict each other, where they are `wrong`.
+pub(crate) fn refuse_if(wrong: bool, message: &'static str) -> Result<()> {
+    if wrong { Err(Error::Inconsistent(message)) } else { Ok(()) }
+}
+
 /// Returns `value`, or an error with the `requirement` unless it `holds`.
 pub(crate) fn require(
     name: &'static str,

@@ -16,7 +16,7 @@ use crate::contact::cascade::discretisation::Unresolved;
 use crate::contact::options::Setup;
 use crate::contact::problem::LocalDisplacement;
 use crate::contact::solver::linear_cg;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, refuse_if};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::{Threads, check_memory};
 
@@ -64,11 +64,10 @@ impl Contact {
         check_memory(grid.shape(), Self::memory(&grid))?;
         let ends = Ends::of(&bodies(&body, &setup));
         ends.check(&grid)?;
-        if ends.any() && grid.is_periodic()[0] {
-            return Err(Error::Inconsistent(
-                "bodies must go on along x where the grid is periodic along x: leave out their ends",
-            ));
-        }
+        refuse_if(
+            ends.any() && grid.is_periodic()[0],
+            "bodies must go on along x where the grid is periodic along x: leave out their ends",
+        )?;
         let threads = Arc::new(Threads::new(setup.threads)?);
         let additions = ends.additions(&grid, &grid, &threads)?;
         let (finest, datum) = operator(&body, &setup, &grid, &additions, &threads)?;
@@ -127,14 +126,11 @@ impl Contact {
         if let Some(known) = self.tangential.get() {
             return Ok(Arc::clone(known));
         }
-        if self.ends.any() {
-            return Err(Error::Inconsistent(crate::compliance::traction::GO_ON));
-        }
-        if self.grid.is_periodic() != [false; 2] {
-            return Err(Error::Inconsistent(
-                "friction needs a grid that is not periodic: give a wider grid",
-            ));
-        }
+        refuse_if(self.ends.any(), crate::compliance::traction::GO_ON)?;
+        refuse_if(
+            self.grid.is_periodic() != [false; 2],
+            "friction needs a grid that is not periodic: give a wider grid",
+        )?;
         let counterbody = self.setup.counterbody.as_ref();
         let threads = Arc::new(Threads::new(Some(self.convolution.threads()))?);
         let new = Tangential::plan(&self.body, counterbody, &self.grid, &threads)?;

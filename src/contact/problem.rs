@@ -425,10 +425,8 @@ impl SolutionFields {
     /// The permanent indentation: −g of the cells at the hardness, 0 of the others.
     pub(crate) fn indentation(&self, problem: &Problem) -> Array2<f64> {
         let cells = self.gap(problem).into_iter().zip(&self.pressure).enumerate();
-        let deeper = cells.map(|(k, (g, p))| match *p >= problem.bounds.limit(k) {
-            true => (-g).max(0.0),
-            false => 0.0,
-        });
+        let deeper = cells
+            .map(|(k, (g, p))| if *p >= problem.bounds.limit(k) { (-g).max(0.0) } else { 0.0 });
         array([self.pressure.nrows(), self.pressure.ncols()], deeper.collect())
     }
 

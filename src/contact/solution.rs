@@ -208,10 +208,8 @@ impl Solution {
         let mut highest = self.pressure.indexed_iter().filter(|(_, p)| **p >= peak);
         let depth = |at: (usize, usize)| self.indentation.as_ref().map_or(0.0, |w| w[at]);
         let first = highest.next().map_or((0, 0), |(at, _)| at);
-        let deepest = highest.fold(first, |best, (at, _)| match depth(at) > depth(best) {
-            true => at,
-            false => best,
-        });
+        let deepest =
+            highest.fold(first, |best, (at, _)| if depth(at) > depth(best) { at } else { best });
         [self.grid().x()[deepest.0], self.grid().y()[deepest.1]]
     }
 

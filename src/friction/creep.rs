@@ -8,7 +8,7 @@ use super::newton::{Effort, Law, Operator, TractionProblem};
 use super::step::RollingDirection;
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Error, Result, positive, refuse_if, require};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
@@ -86,9 +86,10 @@ pub fn creep_coefficients(
     }
     require("cells", cells as f64, cells >= 8, "at least 8")?;
     for body in std::iter::once(&body).chain(&counterbody) {
-        if body.half_space().is_some_and(|layers| layers.ends() != [None; 2]) {
-            return Err(Error::Inconsistent(crate::compliance::traction::GO_ON));
-        }
+        refuse_if(
+            body.half_space().is_some_and(|layers| layers.ends() != [None; 2]),
+            crate::compliance::traction::GO_ON,
+        )?;
     }
     let shear = shear(&body, counterbody.as_ref())?;
     let threads = Arc::new(Threads::new(None)?);

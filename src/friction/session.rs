@@ -114,17 +114,14 @@ impl<'a> Session<'a> {
             }
         };
         let earlier = solution.map(|last| &last.normal);
-        let start = Start {
-            // The pressure of bodies whose tractions do not act on it is known for the same motion.
-            known: earlier.filter(|normal| {
-                last.is_some_and(|last| last.is_own)
-                    && !self.coupled
-                    && normal.report.converged()
-                    && normal.report.motion == motion
-            }),
-            pressure: earlier.map(|normal| &normal.pressure),
-        };
-        self.settle(&task, &motion, friction, start, progress)
+        // The pressure of bodies whose tractions do not act on it is known for the same motion.
+        let known = earlier.filter(|normal| {
+            last.is_some_and(|last| last.is_own)
+                && !self.coupled
+                && normal.report.converged()
+                && normal.report.motion == motion
+        });
+        self.settle(&task, &motion, friction, [earlier, known], progress)
     }
 
     /// Motion, friction and problem of a step of sliding.
@@ -186,31 +183,29 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Pressure and tractions in turn until neither changes the other.
+    /// Pressure and tractions in turn until neither changes the other, from the pressure of the `earlier` solution, or with
+    /// the `known` one.
     fn settle(
         &self,
         task: &TractionTask,
         motion: &Motion,
         friction: &Friction,
-        start: Start,
+        [earlier, known]: [Option<&Solution>; 2],
         progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
         let mut course = FrictionCourse::new(self, progress);
         let mut traction = task.before.traction.clone();
-        let mut pressure: Option<Array2<f64>> = start.pressure.cloned();
+        let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
         let (normal, solved) = loop {
-            let normal = match start.known {
+            let normal = match known {
                 Some(known) => known.clone(),
                 None => self.press(motion, &traction, pressure.as_ref(), &mut course)?,
             };
             course.report.sweeps += 1;
             let is_first = course.report.sweeps == 1;
             let change = change(&normal, pressure.as_ref());
-            course.report.pressure_change = match self.coupled && !is_first {
-                true => change,
-                false => 0.0,
-            };
+            course.report.pressure_change = if self.coupled && !is_first { change } else { 0.0 };
             let bound = bounds(&normal.pressure, friction)?;
             if course.stopped {
                 break (normal, None);
@@ -218,10 +213,7 @@ impl<'a> Session<'a> {
             task.check(grid, &bound, tolerance)?;
             let is_settled = !self.coupled || !is_first && change <= tolerance;
             // While the pressure still changes, tractions need not be exact.
-            let goal = match is_settled {
-                true => tolerance,
-                false => tolerance.max(LOOSE * change.min(1.0)),
-            };
+            let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
             let [x, y, _] = task.increments.map(Freedom::force);
             let starts = match is_first && x.hypot(y) > 0.0 && task.slides() {
                 true => self.starts(motion, &normal, [x, y], friction, &traction)?,
@@ -411,14 +403,6 @@ impl<'a> Session<'a> {
     }
 }
 
-/// From what the pressure is found.
-struct Start<'a> {
-    /// The pressure's solution, where it is known.
-    known: Option<&'a Solution>,
-    /// The pressure before.
-    pressure: Option<&'a Array2<f64>>,
-}
-
 /// Largest change of the pressure over its peak; infinite where there was none before.
 fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
     let Some(before) = before else {
@@ -426,10 +410,7 @@ fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
     };
     let pairs = normal.pressure.iter().zip(before);
     let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    match moved > 0.0 {
-        true => moved / normal.peak_pressure(),
-        false => 0.0,
-    }
+    if moved > 0.0 { moved / normal.peak_pressure() } else { 0.0 }
 }
 
 /// The state that a solution leaves, or that of bodies that have not touched.

@@ -106,16 +106,10 @@ impl TractionTask<'_> {
         }
         let leaves = |direction: RollingDirection| {
             let axis = Axis(direction.axis());
-            let edge = match direction.is_forward() {
-                true => bound.len_of(axis) - 1,
-                false => 0,
-            };
+            let edge = if direction.is_forward() { bound.len_of(axis) - 1 } else { 0 };
             bound.index_axis(axis, edge).iter().any(|bound| *bound > 0.0)
         };
-        match self.direction().is_some_and(leaves) {
-            false => Ok(()),
-            true => Err(Error::RollsOffGrid),
-        }
+        if self.direction().is_some_and(leaves) { Err(Error::RollsOffGrid) } else { Ok(()) }
     }
 
     /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;

@@ -369,10 +369,7 @@ pub(super) fn bilinear(grid: &Grid, at: [f64; 2]) -> Result<Vec<([usize; 2], f64
         let is_on_grid = (-0.5 - CENTRE..=n as f64 - 0.5 + CENTRE).contains(&position);
         require(name, value, is_on_grid, "on the grid")?;
         let nearest = position.round();
-        let position = match (position - nearest).abs() < CENTRE {
-            true => nearest,
-            false => position,
-        };
+        let position = if (position - nearest).abs() < CENTRE { nearest } else { position };
         let position = position.clamp(0.0, (n - 1) as f64);
         let below = position as usize;
         let weight = position - below as f64;

@@ -123,18 +123,12 @@ impl Density<'_> {
         };
         let nodes = panels.into_iter().flat_map(|panel| panel.nodes(rule));
         let (angles, weights): (Vec<f64>, Vec<f64>) = nodes.unzip();
-        let places: Vec<f64> = match is_axis {
-            true => angles,
-            false => angles.iter().map(|angle| r * angle.cosh()).collect(),
-        };
+        let places: Vec<f64> =
+            if is_axis { angles } else { angles.iter().map(|angle| r * angle.cosh()).collect() };
         let slopes = slopes(&places);
         let terms = slopes.iter().zip(&weights).zip(&places);
-        let sum: f64 = terms
-            .map(|((slope, w), t)| match is_axis {
-                true => w * slope / t,
-                false => w * slope,
-            })
-            .sum();
+        let sum: f64 =
+            terms.map(|((slope, w), t)| if is_axis { w * slope / t } else { w * slope }).sum();
         singular - sum
     }
 
@@ -372,10 +366,7 @@ impl Zone {
             let eta = size * x.sinh();
             let sine = m * eta.sin();
             let larger = (near * near + sine * sine).sqrt();
-            let value = match r < c {
-                true => larger,
-                false => sine * sine / larger,
-            };
+            let value = if r < c { larger } else { sine * sine / larger };
             (stress * value + outer * c / larger) * size * x.cosh()
         };
         factor * Rule::kept(ROOT_NODES).over_panels(0.0, (most / size).asinh(), integrand)
@@ -392,10 +383,7 @@ impl Zone {
 
     /// Pressure beyond the contact.
     pub(super) fn outside(&self, r: f64) -> f64 {
-        match r <= self.outer {
-            true => -self.strength,
-            false => 0.0,
-        }
+        if r <= self.outer { -self.strength } else { 0.0 }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use spec_math::cephes64::j1;
 
-use crate::error::{Error, Result, finite, require};
+use crate::error::{Error, Result, finite, refuse_if, require};
 use crate::indent::adhesion::{Adhesion, Branch, Control};
 use crate::indent::density::{WHOLE, Zone, bessel_sum};
 use crate::indent::equation::stack::Stack;
@@ -115,11 +115,10 @@ impl Indent {
     /// A radius that is not above 0, that the tip cannot have, or beyond 1024 thicknesses of the top layer; a flat punch, whose
     /// radius says nothing of its load; no state with a cohesive zone; a contact that is no disc.
     pub fn at_radius(&self, a: f64) -> Result<Point> {
-        if self.tip.fixed_radius().is_some() {
-            return Err(Error::Inconsistent(
-                "the contact of a flat punch has the radius of the punch at every load: give load or approach",
-            ));
-        }
+        refuse_if(
+            self.tip.fixed_radius().is_some(),
+            "the contact of a flat punch has the radius of the punch at every load: give load or approach",
+        )?;
         let point = self.state(a)?;
         point.check_disc()?;
         Ok(point)

@@ -174,14 +174,10 @@ impl Point {
     /// # Errors
     /// A distance that is negative or not finite.
     pub fn gap(&self, r: &[f64]) -> Result<Vec<f64>> {
-        let displacement = self.displacement(r)?;
-        let pairs = r.iter().zip(displacement);
-        Ok(pairs
-            .map(|(r, u)| match *r <= self.radius {
-                true => 0.0,
-                false => self.parts.tip.gap(*r) + u - self.approach,
-            })
-            .collect())
+        let gap = |(r, u): (&f64, f64)| {
+            if *r <= self.radius { 0.0 } else { self.parts.tip.gap(*r) + u - self.approach }
+        };
+        Ok(r.iter().zip(self.displacement(r)?).map(gap).collect())
     }
 
     /// Weights times M p̂ at the waves of a level that resolves J₀(αr) up to `far`; none of bare bodies.
@@ -251,10 +247,7 @@ impl IndentWarning {
             Some(a) => approach.abs() / a * std::f64::consts::FRAC_2_PI,
             None => tip.steepest(radius),
         };
-        match slope > STEEP {
-            true => vec![Self::Steep { slope }],
-            false => vec![],
-        }
+        if slope > STEEP { vec![Self::Steep { slope }] } else { vec![] }
     }
 
     /// Name of the kind of warning, without numbers.

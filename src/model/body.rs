@@ -1,6 +1,6 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
-use crate::error::{Error, Result, finite, positive, require};
+use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::model::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
@@ -131,11 +131,10 @@ impl HalfSpace {
     ) -> Result<Self> {
         let substrate = substrate.into();
         let layers: Vec<Layer> = layers.into_iter().collect();
-        if layers.is_empty() && substrate == Substrate::Rigid {
-            return Err(Error::Inconsistent(
-                "layers must hold at least one layer where the substrate is rigid",
-            ));
-        }
+        refuse_if(
+            layers.is_empty() && substrate == Substrate::Rigid,
+            "layers must hold at least one layer where the substrate is rigid",
+        )?;
         Ok(Self { substrate, layers, ends: [None; 2] })
     }
 
@@ -163,11 +162,10 @@ impl HalfSpace {
             let requirement = "in ascending order: the body lies between them";
             require("ends", high, low < high, requirement)?;
         }
-        if ends != [None; 2] && self.substrate == Substrate::Rigid {
-            return Err(Error::Inconsistent(
-                "ends must not be given for a body on a rigid substrate: its face is not free there",
-            ));
-        }
+        refuse_if(
+            ends != [None; 2] && self.substrate == Substrate::Rigid,
+            "ends must not be given for a body on a rigid substrate: its face is not free there",
+        )?;
         Ok(Self { ends: ends.map(|end| end.map(|x| x + 0.0)), ..self })
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ndarray::Array1;
 
-use crate::error::{Error, Result, finite, positive, require};
+use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::numerics::parallel::check_memory;
 
 /// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
@@ -86,12 +86,11 @@ impl Grid {
     /// # Errors
     /// On a grid for line contact.
     pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
-        if self.plane_strain && periodic != [false; 2] {
-            return Err(Error::Inconsistent(
-                "a grid for line contact must not be periodic: give a grid of two or more cells along x that is periodic \
+        refuse_if(
+            self.plane_strain && periodic != [false; 2],
+            "a grid for line contact must not be periodic: give a grid of two or more cells along x that is periodic \
                  along x",
-            ));
-        }
+        )?;
         Ok(Self { periodic, ..self })
     }
 

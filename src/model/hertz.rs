@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result, finite, positive, require};
+use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::model::material::Elastic;
 use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 
@@ -241,12 +241,11 @@ impl Ellipse {
         let peak_pressure = 1.5 * load / (PI * a * b);
         let approach = 0.75 * load / (contact_modulus * arithmetic_geometric_mean(1.0, k) * a);
         let made = [a, b, peak_pressure, approach];
-        if !made.iter().all(|value| value.is_finite() && *value > 0.0) {
-            return Err(Error::Inconsistent(
-                "radii, contact_modulus and load must be such that semi-axes, pressure and approach are \
+        refuse_if(
+            !made.iter().all(|value| value.is_finite() && *value > 0.0),
+            "radii, contact_modulus and load must be such that semi-axes, pressure and approach are \
                  numbers of the machine: they are too different in size",
-            ));
-        }
+        )?;
         Ok(Self {
             semi_axes: if radii[0] >= radii[1] { [a, b] } else { [b, a] },
             peak_pressure,

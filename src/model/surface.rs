@@ -12,7 +12,7 @@ use std::ops::Deref;
 
 use ndarray::{Array2, Axis};
 
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, refuse_if};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::each_row;
 
@@ -301,9 +301,7 @@ impl<S> Superposition<S> {
     /// Where there is no shape.
     pub fn new(shapes: impl IntoIterator<Item = S>) -> Result<Self> {
         let shapes: Vec<S> = shapes.into_iter().collect();
-        if shapes.is_empty() {
-            return Err(Error::Inconsistent("shapes must hold at least one shape to be added"));
-        }
+        refuse_if(shapes.is_empty(), "shapes must hold at least one shape to be added")?;
         Ok(Self(shapes))
     }
 

@@ -251,10 +251,7 @@ pub(crate) fn warnings(
             warnings.push(Warning::Coarse { axis, cells });
         }
         let half_width = 0.5 * (high - low + spacing);
-        let ratio = match grid.is_periodic()[axis] {
-            true => 0.0,
-            false => half_width / radii[axis],
-        };
+        let ratio = if grid.is_periodic()[axis] { 0.0 } else { half_width / radii[axis] };
         if ratio > LARGE_CONTACT {
             warnings.push(Warning::LargeContact { axis, ratio });
         }

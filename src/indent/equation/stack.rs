@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::super::tip::TipParameter;
 use super::basis::Waves;
 use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives};
-use crate::error::{Error, Result};
+use crate::error::{Result, refuse_if};
 use crate::model::body::BodyParameter;
 
 /// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
@@ -86,17 +86,15 @@ impl Stack {
 
     fn with_resolution(bodies: &[Body], finer: f64) -> Result<Self> {
         let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
-        if bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0) {
-            return Err(Error::Inconsistent(
-                "bodies must be at least one, elastic, and without a local compliance",
-            ));
-        }
+        refuse_if(
+            bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0),
+            "bodies must be at least one, elastic, and without a local compliance",
+        )?;
         let ends = |body: &Body| body.half_space().is_some_and(|body| body.ends() != [None; 2]);
-        if bodies.iter().any(ends) {
-            return Err(Error::Inconsistent(
-                "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
-            ));
-        }
+        refuse_if(
+            bodies.iter().any(ends),
+            "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
+        )?;
         let tops = bodies.iter().filter_map(|body| body.lengths()).map(|[top, _]| top);
         let (mut parameters, mut short_rates) = (Vec::new(), Vec::new());
         for (number, body) in bodies.iter().enumerate() {

@@ -173,10 +173,7 @@ impl Point {
             while start < end {
                 let length = self.parts.stack.thickness().unwrap_or(f64::INFINITY)
                     + 0.5 * (start - self.radius).max(0.0);
-                start = match end - start < 1.5 * length {
-                    true => end,
-                    false => start + length,
-                };
+                start = if end - start < 1.5 * length { end } else { start + length };
                 ends.push(start);
             }
         }
@@ -228,10 +225,7 @@ impl Point {
             let zone =
                 self.zone.as_ref().map_or(0.0, |zone| zone.inside(WHOLE, r) + zone.strength());
             let pressure = density.pressure_of(r, slopes) + zone;
-            Ok(match ends {
-                true => pressure / (1.0 - (r / a).powi(2)).sqrt(),
-                false => pressure,
-            })
+            Ok(if ends { pressure / (1.0 - (r / a).powi(2)).sqrt() } else { pressure })
         })?;
         let strength = self.zone.as_ref().map_or(0.0, |zone| zone.strength());
         Ok(most >= -TENSION * mean.max(strength))

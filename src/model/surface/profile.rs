@@ -516,10 +516,7 @@ impl LogarithmicProfile {
         let sum = if 1.0 - to >= 0.5 * width {
             gauss(from, to, |v| -(-v * v).ln_1p())
         } else {
-            let closed = |rest: f64| match rest > 0.0 {
-                true => rest * (1.0 - rest.ln()),
-                false => 0.0,
-            };
+            let closed = |rest: f64| if rest > 0.0 { rest * (1.0 - rest.ln()) } else { 0.0 };
             closed(1.0 - from) - closed(1.0 - to) - gauss(from, to, f64::ln_1p)
         };
         self.amplitude * crowned / root * sum
