@@ -88,7 +88,10 @@ pub fn solve_with<'a>(
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
-        hardness: options.hardness.as_ref().and_then(Hardness::uniform).cloned(),
+        hardness: options
+            .hardness
+            .clone()
+            .filter(|hardness| matches!(hardness, Hardness::Uniform(_))),
         indentation: None,
         ..options.clone()
     };

@@ -206,7 +206,7 @@ impl<'a> Steps<'a> {
         let (plan, rows, options) = (self.plan, self.rows(), self.options);
         // An approach that may be too large for a solution is looked at before.
         let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
-        let bounded = plan.datum.floats() && !self.freedoms.loaded[0] && !yields;
+        let bounded = plan.datum.floats && !self.freedoms.loaded[0] && !yields;
         let (finest, ahead) = rows.both(
             || -> Result<_> {
                 let sample = || checked_gaps(self.shape, &plan.grid, &rows);

@@ -239,8 +239,9 @@ pub(crate) struct Datum {
     width: f64,
     /// Datum from which on the operator is positive definite \[m\]; 0 where that of the grid does.
     least: f64,
-    /// Whether a uniform pressure displaces nothing, as on a grid that repeats in both directions on an elastic base.
-    floats: bool,
+    /// Whether a uniform pressure displaces nothing, as on a grid that repeats in both directions on an elastic base: a
+    /// prescribed approach is that of the mean plane of the deformed surface.
+    pub(super) floats: bool,
 }
 
 /// Mean of coefficients, relative to that of their magnitudes, which is rounding.
@@ -313,11 +314,6 @@ impl Datum {
         } else {
             0.0
         }
-    }
-
-    /// Whether an approach that is prescribed is that of the mean plane of the deformed surface.
-    pub(crate) fn floats(&self) -> bool {
-        self.floats
     }
 
     /// An error where an `approach` cannot be prescribed to a shape with these gaps, less the approach.

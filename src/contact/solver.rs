@@ -11,10 +11,11 @@ pub(super) use super::options::StopCriteria;
 use super::problem::Quality;
 
 /// How an iteration ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Termination {
     /// It has not ended: the report is one of a running solve.
+    #[default]
     Running,
     /// The tolerance was met.
     Converged,

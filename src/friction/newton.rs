@@ -330,13 +330,6 @@ impl Operator<'_> {
 /// Vectors between restarts.
 const RESTART: usize = 40;
 
-/// Columns C of the loaded degrees of freedom, within the range of Π, and M C.
-#[derive(Debug, Default)]
-pub(super) struct Constraints {
-    pub(super) columns: Vec<Vec<f64>>,
-    preconditioned: Vec<Vec<f64>>,
-}
-
 /// One linear system of Newton's method, solved by GMRES that keeps forces.
 ///
 /// ```text
@@ -347,9 +340,12 @@ pub(super) struct Constraints {
 /// G C = 0: GMRES on G A d = G b leaves C δ free and keeps Cᵀ d. Saad, Iterative Methods for Sparse Linear Systems,
 /// 2nd ed., SIAM (2003), §6.5 and §14; the preconditioner for rolling is derived here.
 pub(super) struct NewtonSystem<'a> {
-    pub(super) operator: Operator<'a>,
-    pub(super) states: &'a [CellState],
-    pub(super) constraints: Constraints,
+    operator: Operator<'a>,
+    states: &'a [CellState],
+    /// Columns C of the loaded degrees of freedom, within the range of Π.
+    columns: Vec<Vec<f64>>,
+    /// M C
+    preconditioned: Vec<Vec<f64>>,
     memory: Vec<f64>,
 }
 
@@ -358,17 +354,17 @@ impl<'a> NewtonSystem<'a> {
     pub(super) fn new(
         operator: Operator<'a>,
         states: &'a [CellState],
-        columns: Vec<Vec<f64>>,
+        given: Vec<Vec<f64>>,
     ) -> Self {
         let size = 2 * states.len();
-        let mut linear =
-            Self { operator, states, constraints: Constraints::default(), memory: vec![0.0; size] };
-        for mut column in columns {
+        let (memory, [columns, preconditioned]) = (vec![0.0; size], [Vec::new(), Vec::new()]);
+        let mut linear = Self { operator, states, columns, preconditioned, memory };
+        for mut column in given {
             restrict(states, &mut column);
             let mut z = vec![0.0; size];
             linear.precondition(&column, &mut z);
-            linear.constraints.columns.push(column);
-            linear.constraints.preconditioned.push(z);
+            linear.columns.push(column);
+            linear.preconditioned.push(z);
         }
         linear
     }
@@ -379,12 +375,12 @@ impl<'a> NewtonSystem<'a> {
 
     /// Coefficients y with S y = `right`; 0 for columns that are 0.
     fn small(&self, right: &[f64]) -> Vec<f64> {
-        small_system(&self.constraints.preconditioned, &self.constraints.columns, right)
+        small_system(&self.preconditioned, &self.columns, right)
     }
 
     /// Replaces z = M r by G r.
     fn project(&self, z: &mut [f64]) {
-        let Constraints { columns, preconditioned } = &self.constraints;
+        let (columns, preconditioned) = (&self.columns, &self.preconditioned);
         let forces: Vec<f64> = columns.iter().map(|c| dot(c, z)).collect();
         for (y, column) in self.small(&forces).into_iter().zip(preconditioned) {
             add(z, -y, column);
@@ -397,14 +393,14 @@ impl<'a> NewtonSystem<'a> {
         restrict(self.states, &mut restricted);
         let mut z = vec![0.0; r.len()];
         self.precondition(&restricted, &mut z);
-        let columns = self.constraints.columns.iter();
+        let columns = self.columns.iter();
         let forces: Vec<f64> = columns.map(|c| dot(c, &z)).collect();
         self.small(&forces)
     }
 
     /// M C, which weighs the residuals of cells.
     pub(super) fn into_weights(self) -> Vec<Vec<f64>> {
-        self.constraints.preconditioned
+        self.preconditioned
     }
 
     /// d for the right side `b`, restricted, and the forces `c`. It iterates until the residual, as M weighs it, has
@@ -419,7 +415,7 @@ impl<'a> NewtonSystem<'a> {
     ) -> (Vec<f64>, usize) {
         let size = b.len();
         let mut d = vec![0.0; size];
-        for (y, column) in self.small(c).into_iter().zip(&self.constraints.preconditioned) {
+        for (y, column) in self.small(c).into_iter().zip(&self.preconditioned) {
             add(&mut d, y, column);
         }
         let (mut r, mut z) = (vec![0.0; size], vec![0.0; size]);

@@ -31,7 +31,7 @@ pub enum TangentialMotion {
 
 /// Course and quality of a solve. All errors are computed afresh from the tractions, with the operator of the whole
 /// grid.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FrictionReport {
     /// How the iteration ended.
     pub termination: Termination,
@@ -60,19 +60,7 @@ pub struct FrictionReport {
 impl FrictionReport {
     /// The report of a step that begins.
     pub(super) fn running(coupled: bool, tolerance: f64) -> Self {
-        Self {
-            termination: Termination::Running,
-            convolutions: 0,
-            sweeps: 0,
-            violation: 0.0,
-            imbalance: 0.0,
-            excess: 0.0,
-            pressure_change: 0.0,
-            coupled,
-            full_slip: false,
-            tolerance,
-            seconds: 0.0,
-        }
+        Self { coupled, tolerance, ..Self::default() }
     }
 
     /// Whether the tolerance was met.

@@ -175,7 +175,7 @@ impl<'a> Linearisation<'a> {
     /// How the equations depend on `parameter`, also at `cells` outside of the window.
     fn slope(&self, parameter: &Parameter, cells: &[([usize; 2], f64)]) -> Result<Slope> {
         self.options.go_on()?;
-        let reach = offsets(self.state.tangent.window(), cells);
+        let reach = offsets(&self.state.tangent.window, cells);
         Slope::new(self.solution, self.shape, &self.state, parameter, reach)
     }
 
@@ -329,7 +329,7 @@ impl<'a> Linearisation<'a> {
     /// An array of the grid with `values` in the window, and 0 outside.
     fn spread(&self, values: &[f64]) -> Array2<f64> {
         let [nx, ny] = self.solution.grid().shape();
-        let [x, y] = self.state.tangent.window();
+        let [x, y] = &self.state.tangent.window;
         let mut array = Array2::zeros((nx, ny));
         for (i, row) in x.clone().zip(values.chunks_exact(y.len())) {
             for (j, value) in y.clone().zip(row) {

@@ -73,7 +73,7 @@ impl Seed {
                 let cells = bilinear(solution.grid(), *at)?;
                 let mut seed = Self::new(state, 0.0);
                 for (cell, weight) in cells {
-                    if let Some(k) = place(state.tangent.window(), cell)
+                    if let Some(k) = place(&state.tangent.window, cell)
                         && state.tangent.contact[k]
                     {
                         seed.pressure[k] = weight;
@@ -95,7 +95,7 @@ impl Seed {
             Output::Weighted(weights) => {
                 let name = "weights of the pressure";
                 same_shape(name, weights, solution.grid().shape())?;
-                let part = crate::contact::block(weights, state.tangent.window());
+                let part = crate::contact::block(weights, &state.tangent.window);
                 let part = state.masked(&part.iter().copied().collect::<Vec<_>>());
                 let value = part.iter().zip(p).map(|(w, p)| w * p).sum();
                 Self::linear(state, value, part)
@@ -165,7 +165,7 @@ impl Seed {
     fn located_peak(state: &Linearised) -> Self {
         let p = &state.pressure;
         let [(first, value), _] = largest(p);
-        let ny = state.tangent.window()[1].len();
+        let ny = state.tangent.window[1].len();
         let tied: Vec<usize> = (0..p.len()).filter(|&k| value - p[k] <= TIE * value).collect();
         let mut seed = Self::new(state, 0.0);
         let share = 1.0 / tied.len() as f64;
@@ -188,7 +188,7 @@ impl Seed {
     /// Peak of the parabolas around cell k; adds `share` of its weights to `weights`.
     fn add_peak(state: &Linearised, k: usize, share: f64, weights: &mut [f64]) -> f64 {
         let p = &state.pressure;
-        let ny = state.tangent.window()[1].len();
+        let ny = state.tangent.window[1].len();
         let (i, j, nx) = (k / ny, k % ny, p.len() / ny);
         let mut value = p[k];
         weights[k] += share;
@@ -217,10 +217,10 @@ impl Seed {
         cells: Vec<([usize; 2], f64)>,
         is_gap: bool,
     ) -> Result<Self> {
-        let [x0, y0] = [0, 1].map(|axis| state.tangent.window()[axis].start);
-        let ny = state.tangent.window()[1].len();
+        let [x0, y0] = [0, 1].map(|axis| state.tangent.window[axis].start);
+        let ny = state.tangent.window[1].len();
         let mut seed = Self::new(state, 0.0);
-        state.tangent.reach(offsets(state.tangent.window(), &cells))?;
+        state.tangent.reach(offsets(&state.tangent.window, &cells))?;
         for &(cell, weight) in &cells {
             let mut displaced = 0.0;
             for (k, slope) in seed.pressure.iter_mut().enumerate() {
@@ -307,7 +307,7 @@ const INWARDS: usize = 3;
 ///
 /// t is the mean of p² three cells from the edge, and is kept while differentiating. Derived here; not published elsewhere.
 pub(super) fn area_estimate(state: &Linearised, area: f64) -> Result<(f64, Vec<f64>)> {
-    let ny = state.tangent.window()[1].len();
+    let ny = state.tangent.window[1].len();
     let nx = state.pressure.len() / ny;
     let mut left = state.tangent.contact.clone();
     for _ in 1..INWARDS {

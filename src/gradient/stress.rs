@@ -130,7 +130,7 @@ impl StressSeed {
             let options = options(solution, output, output.friction, side);
             slopes += &plan.transposed(z, &plane.weights, &options)?;
         }
-        let window = block(&slopes, state.tangent.window());
+        let window = block(&slopes, &state.tangent.window);
         let window: Vec<f64> = window.iter().copied().collect();
         let mut seed = Seed::linear(state, value, state.masked(&window));
         seed.warning = warning;

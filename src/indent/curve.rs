@@ -238,7 +238,7 @@ impl Indent {
         let high = self.at_approach(high)?.radius;
         let mut ends = vec![low.ln() - 1e-9];
         let mut roots = vec![false];
-        for kink in self.tip().kinks() {
+        for kink in &self.tip().kinks {
             if *kink > low && *kink < high {
                 ends.push(kink.ln());
                 roots.push(true);

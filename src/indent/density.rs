@@ -223,7 +223,8 @@ pub(super) const WHOLE: Rate = [1.0, 0.0];
 pub(super) struct Zone {
     pub(super) inner: f64,
     pub(super) outer: f64,
-    strength: f64,
+    /// σ₀
+    pub(super) strength: f64,
     pub(super) answer: Answer,
 }
 
@@ -272,11 +273,6 @@ impl Zone {
         add(&mut hat, 1.0, &own);
         let edge = -system.couple_edge(&times(&level.excess, &hat));
         Answer { values, hat, edge }
-    }
-
-    /// σ₀
-    pub(super) fn strength(&self) -> f64 {
-        self.strength
     }
 
     /// √(c² − a²)

@@ -21,7 +21,7 @@ use term::ProfileTerm;
 pub struct Tip {
     form: Form,
     terms: Vec<ProfileTerm>,
-    kinks: Vec<f64>,
+    pub(super) kinks: Vec<f64>,
 }
 
 /// A number that the profile of a tip depends on.
@@ -93,21 +93,6 @@ impl Tip {
     /// Unless the slope is above 0 and at most [`STEEPEST`].
     pub fn cone(slope: f64) -> Result<Self> {
         Self::new(Form::Cone { slope })
-    }
-
-    /// A cone of this half angle between axis and flank \[rad\].
-    ///
-    /// ```
-    /// use nacre::indent::Tip;
-    /// let tip = Tip::cone_of_half_angle(70.3_f64.to_radians())?;
-    /// assert!((tip.gap(1.0) - 0.358).abs() < 1e-3);
-    /// # Ok::<(), nacre::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`slope_of`], and an angle whose slope is above [`STEEPEST`].
-    pub fn cone_of_half_angle(half_angle: f64) -> Result<Self> {
-        Self::cone(slope_of(half_angle)?)
     }
 
     /// A flat punch of this radius \[m\].
@@ -186,11 +171,6 @@ impl Tip {
             ProfileTerm::Power { factor, exponent, .. } => *factor >= 0.0 && *exponent >= 1.0,
             _ => true,
         })
-    }
-
-    /// Places \[m\] of kinks of the profile, ascending; none where there are many, which are as small as their distances.
-    pub(super) fn kinks(&self) -> &[f64] {
-        &self.kinks
     }
 
     /// Places \[m\] of the kinks of a sampled profile, ascending, which are too many for panels of a quadrature.

@@ -159,7 +159,15 @@ impl Line {
     /// # Errors
     /// Unless −1 < `poisson` ≤ 0.5.
     pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
-        below_line(self.half_width, self.peak_pressure, poisson)
+        // In plane strain, Johnson (1985), eq. (4.46), and σ_axial = ν (σ_y + σ_z).
+        let stresses = |z: f64| {
+            let t = (1.0 + z * z).sqrt();
+            // −[(1 + 2z²)/t − 2z], without cancellation.
+            let across = -1.0 / (t * (1.0 + 2.0 * z * (z + t)));
+            let down = -1.0 / t;
+            [poisson * (across + down), across, down]
+        };
+        largest(stresses, poisson, self.peak_pressure, self.half_width)
     }
 }
 
@@ -311,7 +319,7 @@ pub struct Shear {
 /// ```
 ///
 /// Derived for nacre; for a = b they are Johnson (1985), eqs (3.45).
-pub(super) fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<Shear> {
+fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<Shear> {
     let [a, b] = axes;
     // In units of the shorter axis.
     let scale = a.min(b);
@@ -333,19 +341,6 @@ pub(super) fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<S
         [lateral(jx, tx), lateral(jy, ty), -a * b / (tx * ty)]
     };
     largest(stresses, poisson, peak, scale)
-}
-
-/// Largest shear stress below the middle of a strip of pressure, in plane strain. Johnson (1985), eq.
-/// (4.46), and σ_axial = ν (σ_y + σ_z).
-pub(super) fn below_line(half_width: f64, peak: f64, poisson: f64) -> Result<Shear> {
-    let stresses = |z: f64| {
-        let t = (1.0 + z * z).sqrt();
-        // −[(1 + 2z²)/t − 2z], without cancellation.
-        let across = -1.0 / (t * (1.0 + 2.0 * z * (z + t)));
-        let down = -1.0 / t;
-        [poisson * (across + down), across, down]
-    };
-    largest(stresses, poisson, peak, half_width)
 }
 
 /// Points of the search for the depth, up to two half-widths, below which shear only falls.

@@ -176,11 +176,6 @@ impl Hardness {
             Self::Cells(values) => values.iter().any(|value| value.is_finite()),
         }
     }
-
-    /// The hardness, where it is the same everywhere: grids may be chosen with it.
-    pub(crate) fn uniform(&self) -> Option<&Self> {
-        matches!(self, Self::Uniform(_)).then_some(self)
-    }
 }
 
 /// An error unless an indentation to start with suits `grid`, and is finite and nowhere below 0.

@@ -26,14 +26,17 @@ const NOTHING: f64 = 1e-13;
 
 /// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
 pub(crate) struct Tangent {
-    window: Window,
-    convolution: Convolution,
+    /// The window of the grid's cells.
+    pub(crate) window: Window,
+    /// K on the whole window.
+    pub(crate) convolution: Convolution,
     inverse: Convolution,
     pub(crate) contact: Vec<bool>,
     pub(crate) coordinates: [Vec<f64>; 2],
-    pub(super) origin: [f64; 2],
-    pub(super) scale: [f64; 2],
-    pub(super) cell_area: f64,
+    /// (x0, y0)
+    pub(crate) origin: [f64; 2],
+    scale: [f64; 2],
+    cell_area: f64,
     /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
     pub(crate) raise: f64,
     /// Coefficients at the offsets of the window, and what the ends of bodies add to them.
@@ -106,12 +109,6 @@ impl Tangent {
         inside.map(|(at, &inside)| if inside { value(at) } else { 0.0 }).collect()
     }
 
-    /// Counts the columns of B from the origin instead of the middle of the window, as it must be where the approach is
-    /// prescribed and its column is not among them.
-    pub(crate) fn centre_at_origin(&mut self) {
-        self.origin = [0.0; 2];
-    }
-
     /// A⁻ᵀ `sums`, where (1, x, y) = (columns of B) A.
     pub(crate) fn to_scaled(&self, [one, x, y]: [f64; 3]) -> [f64; 3] {
         let ([x0, y0], [lx, ly]) = (self.origin, self.scale);
@@ -148,16 +145,6 @@ impl Tangent {
         let added = self.additions.iter();
         let added: f64 = added.map(|added| added.entry([one[0], other[0]], j)).sum();
         self.far.get().unwrap_or(&self.coefficients)[[i, j]] + added
-    }
-
-    /// The window of the grid's cells.
-    pub(crate) fn window(&self) -> &Window {
-        &self.window
-    }
-
-    /// K on the whole window.
-    pub(crate) fn convolution(&self) -> &Convolution {
-        &self.convolution
     }
 
     /// `out` = `operator` `input` on the contact, 0 elsewhere.

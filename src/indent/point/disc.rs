@@ -166,7 +166,7 @@ impl Point {
     /// Ends of panels, at most one thickness long within the contact and half of the distance from it more outside, that do not pass
     /// a kink of the tip.
     fn panels(&self, [low, high]: [f64; 2]) -> Vec<f64> {
-        let kinks = self.parts.tip.kinks().iter().copied();
+        let kinks = self.parts.tip.kinks.iter().copied();
         let mut ends = vec![low];
         let mut start = low;
         for end in kinks.filter(|b| *b > low && *b < high).chain([high]) {
@@ -222,12 +222,11 @@ impl Point {
         // Where it ends at the edge, the pressure does so as a root.
         let ends = density.edge.abs() <= 0.0 && self.zone.is_none();
         let most = least(&places, |r| {
-            let zone =
-                self.zone.as_ref().map_or(0.0, |zone| zone.inside(WHOLE, r) + zone.strength());
+            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.inside(WHOLE, r) + zone.strength);
             let pressure = density.pressure_of(r, slopes) + zone;
             Ok(if ends { pressure / (1.0 - (r / a).powi(2)).sqrt() } else { pressure })
         })?;
-        let strength = self.zone.as_ref().map_or(0.0, |zone| zone.strength());
+        let strength = self.zone.as_ref().map_or(0.0, |zone| zone.strength);
         Ok(most >= -TENSION * mean.max(strength))
     }
 
