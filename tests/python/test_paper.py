@@ -98,6 +98,21 @@ def test_roller_of_one_material_is_the_known_one(results: list[paper.Result]) ->
         assert result.solution.tilt[0] == pytest.approx(3.40e-5, rel=COARSE)
 
 
+def test_only_a_thick_soft_coating_lowers_the_riser(results: list[paper.Result]) -> None:
+    """What docs/theory/paper.md says of the paper's closing claim."""
+    thin, thick, thin_off_centre, thick_off_centre = (
+        {r.ratio: r.riser - 1 for r in paper.of_series(results, series)}
+        for series in cases.CENTRED + cases.ECCENTRIC
+    )
+    for series, bare, soft in (
+        (thin, 0.0625, 0.061),
+        (thick, 0.0625, 0.032),
+        (thin_off_centre, 0.29, 0.343),
+        (thick_off_centre, 0.29, 0.252),
+    ):
+        assert (series[1], series[0.25]) == pytest.approx((bare, soft), abs=COARSE)
+
+
 def test_no_contact_needs_a_warning(results: list[paper.Result]) -> None:
     assert [result.solution.report.warnings for result in results] == 25 * [[]]
 

@@ -39,7 +39,12 @@ pub(crate) fn solve(
     let workspace = &mut problem.convolution.workspace();
     let cells = fields.pressure.len();
     let mut g = vec![0.0; cells];
-    let mut search = Search { direction: vec![0.0; cells], conjugacy: Conjugacy::default() };
+    let mut search = Search {
+        direction: vec![0.0; cells],
+        response: vec![0.0; cells],
+        no_gap: vec![0.0; cells],
+        conjugacy: Conjugacy::default(),
+    };
     loop {
         let (found, now) = assess(problem, fields, criteria.tolerance, workspace, tally);
         let SolutionFields { pressure, displacement, .. } = fields;
@@ -113,9 +118,12 @@ fn contact(problem: &Problem, p: &[f64], g: &[f64]) -> Vec<bool> {
     (0..p.len()).map(|k| bounds.wrong(k, p[k], g[k]) > 0.0).collect()
 }
 
-/// Direction of the search, and its recurrence.
+/// Direction of the search, the displacement that it makes, and its recurrence.
 struct Search {
     direction: Vec<f64>,
+    response: Vec<f64>,
+    /// Zeros.
+    no_gap: Vec<f64>,
     conjugacy: Conjugacy,
 }
 
@@ -130,8 +138,7 @@ impl Search {
         workspace: &mut Workspace,
         tally: &mut Tally,
     ) -> Result<f64> {
-        let Self { direction, conjugacy } = self;
-        let (mut response, no_gap) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+        let Self { direction, response, no_gap, conjugacy } = self;
         let steepness: f64 =
             g.iter().zip(inside).map(|(g, inside)| if *inside { g * g } else { 0.0 }).sum();
         let mut beta = conjugacy.beta(steepness, 0.0);
@@ -143,12 +150,12 @@ impl Search {
                 size += t.abs();
             }
             if slope > 0.0 || beta <= 0.0 {
-                problem.apply(direction, &mut response, workspace);
+                problem.apply(direction, response, workspace);
                 tally.work += problem.convolution.work();
-                energy = dot(direction, &response);
-                let mean = problem.fit(p, &response, &no_gap);
+                energy = dot(direction, response);
+                let mean = problem.fit(p, response, no_gap);
                 problem.freedoms.for_each(mean, |k, b| response[k] -= b);
-                let curvature = dot(direction, &response);
+                let curvature = dot(direction, response);
                 if curvature > 0.0 {
                     return Ok(slope / curvature);
                 }
