@@ -281,6 +281,17 @@ pub enum Error {
 }
 
 impl Error {
+    /// A linear iteration that ended with this residual.
+    pub(crate) fn not_converged(
+        iterations: usize,
+        residual: f64,
+        tolerance: f64,
+        limit: &'static str,
+    ) -> Self {
+        let (overlap, balance) = (0.0, 0.0);
+        Self::NotConverged { iterations, residual, overlap, balance, tolerance, limit }
+    }
+
     /// The refusal of a derivative.
     pub(crate) fn no_derivative(what: impl Into<String>, reason: &'static str) -> Self {
         Self::NotDifferentiable { what: what.into(), reason }

@@ -217,14 +217,8 @@ impl EllipticContact {
             return Err(Error::Stopped);
         }
         if found.misfit.worst() > TOLERANCE {
-            return Err(Error::NotConverged {
-                iterations: found.convolutions,
-                residual: found.misfit.worst(),
-                overlap: 0.0,
-                balance: 0.0,
-                tolerance: TOLERANCE,
-                limit: "cells",
-            });
+            let (iterations, residual) = (found.convolutions, found.misfit.worst());
+            return Err(Error::not_converged(iterations, residual, TOLERANCE, "cells"));
         }
         let (qx, qy) = found.q.split_at(cells);
         let area = self.grid.cell_area();

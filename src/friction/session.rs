@@ -52,16 +52,7 @@ struct FrictionCourse<'a, 'b> {
     progress: &'a mut FrictionProgress<'b>,
 }
 
-impl<'a, 'b> FrictionCourse<'a, 'b> {
-    fn new(session: &Session, progress: &'a mut FrictionProgress<'b>) -> Self {
-        Self {
-            begun: Instant::now(),
-            report: FrictionReport::running(session.coupled, session.options.tolerance),
-            stopped: false,
-            progress,
-        }
-    }
-
+impl FrictionCourse<'_, '_> {
     fn tell(&mut self) -> ControlFlow<()> {
         self.report.seconds = self.begun.elapsed().as_secs_f64();
         let answer = (self.progress)(&self.report);
@@ -194,7 +185,16 @@ impl<'a> Session<'a> {
         progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
-        let mut course = FrictionCourse::new(self, progress);
+        let mut course = FrictionCourse {
+            begun: Instant::now(),
+            report: FrictionReport {
+                coupled: self.coupled,
+                tolerance,
+                ..FrictionReport::default()
+            },
+            stopped: false,
+            progress,
+        };
         let mut traction = task.before.traction.clone();
         let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
         let (normal, solved) = loop {

@@ -58,11 +58,6 @@ pub struct FrictionReport {
 }
 
 impl FrictionReport {
-    /// The report of a step that begins.
-    pub(super) fn running(coupled: bool, tolerance: f64) -> Self {
-        Self { coupled, tolerance, ..Self::default() }
-    }
-
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged

@@ -511,7 +511,7 @@ mod tests {
             let tip = Tip::new(form)?;
             for s in [0.3, 0.8, 1.4] {
                 let angle = |b: &f64| Break { at: (b / s).min(1.0).asin(), has_root: true };
-                let kinks: Vec<Break> = tip.kinks().iter().map(angle).collect();
+                let kinks: Vec<Break> = tip.kinks.iter().map(angle).collect();
                 let mut due = 0.0;
                 if k < 8 {
                     for panel in Panel::between(0.0, &kinks, std::f64::consts::FRAC_PI_2) {

@@ -290,20 +290,15 @@ impl HalfSpace {
             "parameter must be one that the body has, as parameters() lists them",
         );
         let mut body = self.clone();
+        let known = |place| self.material(place).ok_or(ABSENT);
         let (place, material) = match parameter {
             BodyParameter::Thickness(place) => {
                 let layer = body.layers.get_mut(place).ok_or(ABSENT)?;
                 layer.thickness = Layer::new(layer.material, value)?.thickness;
                 return Ok(body);
             }
-            BodyParameter::Young(place) => {
-                let material = self.material(place).ok_or(ABSENT)?;
-                (place, Elastic::new(value, material.poisson())?)
-            }
-            BodyParameter::Poisson(place) => {
-                let material = self.material(place).ok_or(ABSENT)?;
-                (place, Elastic::new(material.young(), value)?)
-            }
+            BodyParameter::Young(place) => (place, Elastic::new(value, known(place)?.poisson())?),
+            BodyParameter::Poisson(place) => (place, Elastic::new(known(place)?.young(), value)?),
         };
         match body.layers.get_mut(place) {
             Some(layer) => layer.material = material,

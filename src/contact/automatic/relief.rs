@@ -3,6 +3,7 @@
 use crate::compliance::influence::CellInfluence;
 use crate::compliance::response::Body;
 use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
+use crate::contact::plan::bodies;
 use crate::contact::problem::patch::block;
 use crate::contact::solution::Solution;
 use crate::error::Result;
@@ -341,8 +342,7 @@ impl Pressed {
         if self.blocks.is_empty() {
             return Ok(Vec::new());
         }
-        let bodies = [Some(task.body), task.setup.counterbody.as_ref()];
-        let bodies = bodies.into_iter().flatten().cloned();
+        let bodies = bodies(task.body, task.setup).into_iter().cloned();
         bodies.map(|body| CellInfluence::plan(body, self.sides, reach)).collect()
     }
 

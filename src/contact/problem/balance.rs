@@ -412,8 +412,10 @@ mod tests {
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
     use crate::model::grid::Grid;
+    use crate::numerics::parallel::{Lanes, Rows, Threads, ZERO};
 
     const CELLS: [usize; 2] = [13, 18];
+    const FIT_CELLS: [usize; 2] = [9, 14];
 
     /// Freedoms under a load of 2 with these eccentricities, on a grid 2 × 3.
     fn freedoms(eccentricity: [Option<f64>; 2]) -> Result<Freedoms> {
@@ -507,23 +509,11 @@ mod tests {
         }
         Ok(())
     }
-}
-
-#[cfg(test)]
-mod fit_tests {
-    use crate::contact::options::Motion;
-    use crate::contact::problem::bounds::Bounds;
-    use crate::contact::problem::freedoms::Freedoms;
-    use crate::error::Result;
-    use crate::model::grid::Grid;
-    use crate::numerics::parallel::{Lanes, Rows, Threads, ZERO};
-
-    const CELLS: [usize; 2] = [9, 14];
 
     /// Freedoms of a load that may tilt both ways, on a grid off the origin.
-    fn freedoms() -> Result<Freedoms> {
+    fn tilting() -> Result<Freedoms> {
         let motion = Motion { eccentricity: [Some(0.1), Some(0.2)], ..Motion::load(1.0) };
-        let grid = Grid::new(CELLS, [2.0, 3.0])?.centered_at([0.1, 0.2])?;
+        let grid = Grid::new(FIT_CELLS, [2.0, 3.0])?.centered_at([0.1, 0.2])?;
         Freedoms::new(&motion, &grid)
     }
 
@@ -531,7 +521,7 @@ mod fit_tests {
     fn fit(freedoms: &Freedoms, p: &[f64], values: &[f64]) -> Result<[f64; 3]> {
         let threads = Threads::new(Some(1))?;
         let rows = Rows::new(&freedoms.columns, &threads);
-        let bounds = Bounds::none(CELLS[1]);
+        let bounds = Bounds::none(FIT_CELLS[1]);
         let sums = rows.each([p, values, values], [], |row, fields, []| {
             let step = |[p, v, ..]: [Lanes; 5], []: [Lanes; 0]| ([], [p, v, ZERO]);
             freedoms.fit_row(row, bounds.row(row.number), fields, [], step)
@@ -543,9 +533,9 @@ mod fit_tests {
     /// of it: 1e-14 is the rounding of a hundred cells.
     #[test]
     fn a_plane_is_found() -> Result<()> {
-        let freedoms = freedoms()?;
+        let freedoms = tilting()?;
         let lambda = [0.7, -1.3, 0.4];
-        let cells = CELLS[0] * CELLS[1];
+        let cells = FIT_CELLS[0] * FIT_CELLS[1];
         let p: Vec<f64> = (0..cells).map(|k| (k * k % 11) as f64 - 2.0).collect();
         let mut values = vec![0.0; cells];
         freedoms.for_each(lambda, |k, b| {
@@ -559,7 +549,7 @@ mod fit_tests {
         for (value, p) in values.iter_mut().zip(&p) {
             *value = if *p > 0.0 { *value } else { 3.0 };
         }
-        let bounds = Bounds::none(CELLS[1]);
+        let bounds = Bounds::none(FIT_CELLS[1]);
         freedoms.project(&mut values, &member, &vec![0.0; cells], &bounds);
         assert!(values.iter().all(|v| v.abs() < 1e-14));
         Ok(())
@@ -568,14 +558,14 @@ mod fit_tests {
     /// Moments are those of plain sums, and the best plane through other values leaves a mismatch without them.
     #[test]
     fn the_mismatch_has_no_moments() -> Result<()> {
-        let freedoms = freedoms()?;
-        let cells = CELLS[0] * CELLS[1];
+        let freedoms = tilting()?;
+        let cells = FIT_CELLS[0] * FIT_CELLS[1];
         let p = vec![1.0; cells];
         let mut values: Vec<f64> = (0..cells).map(|k| (k * k % 23) as f64).collect();
         let [x, y] = &freedoms.columns;
         let mut sums = [0.0; 3];
         for (k, value) in values.iter().enumerate() {
-            let (x, y) = (x[k / CELLS[1]], y[k % CELLS[1]]);
+            let (x, y) = (x[k / FIT_CELLS[1]], y[k % FIT_CELLS[1]]);
             sums = [sums[0] + value, sums[1] + value * x, sums[2] + value * y];
         }
         for (found, sum) in freedoms.moments(&values).iter().zip(sums) {
@@ -583,7 +573,7 @@ mod fit_tests {
         }
         let lambda = fit(&freedoms, &p, &values)?;
         let mut projected = values.clone();
-        let bounds = Bounds::none(CELLS[1]);
+        let bounds = Bounds::none(FIT_CELLS[1]);
         freedoms.project(&mut projected, &p, &vec![0.0; cells], &bounds);
         freedoms.for_each(lambda, |k, b| values[k] -= b);
         for moment in freedoms.moments(&values) {
@@ -597,11 +587,12 @@ mod fit_tests {
     /// One cell has no tilt; two in a line have one along the line, and none across.
     #[test]
     fn few_cells_leave_tilts_alone() -> Result<()> {
-        let freedoms = freedoms()?;
+        let freedoms = tilting()?;
         let [x, y] = &freedoms.columns;
-        let [cell, along_x, along_y] = [4 * CELLS[1] + 3, 7 * CELLS[1] + 3, 4 * CELLS[1] + 8];
+        let [cell, along_x, along_y] =
+            [4 * FIT_CELLS[1] + 3, 7 * FIT_CELLS[1] + 3, 4 * FIT_CELLS[1] + 8];
         let with = |cells: &[(usize, f64)]| {
-            let (mut p, mut values) = (vec![0.0; CELLS[0] * CELLS[1]], Vec::new());
+            let (mut p, mut values) = (vec![0.0; FIT_CELLS[0] * FIT_CELLS[1]], Vec::new());
             values.resize(p.len(), 9.0);
             for &(k, value) in cells {
                 (p[k], values[k]) = (2.0, value);

@@ -58,14 +58,8 @@ pub(crate) fn solve(
             r[k] -= step * image[k];
         }
     }
-    Err(Error::NotConverged {
-        iterations: MAX_ITERATIONS,
-        residual: dot(&r, &r).sqrt() / size,
-        overlap: 0.0,
-        balance: 0.0,
-        tolerance,
-        limit: "max_iterations",
-    })
+    let residual = dot(&r, &r).sqrt() / size;
+    Err(Error::not_converged(MAX_ITERATIONS, residual, tolerance, "max_iterations"))
 }
 
 /// Memory of the last direction: d ← z + β d.

@@ -311,59 +311,47 @@ fn cases() -> Result<[ComparedProblem; 6]> {
     let hard = Layer::new(Elastic::new(4.0, 0.2)?, 0.4)?;
     let coated = HalfSpace::new(Elastic::new(1.0, 0.3)?, [hard])?;
     let (load, light) = (Motion::load(1e-3), Motion::load(1e-4));
+    // Bodies without layers, pressed everywhere.
+    let plain = |name, grid, motion, gap| ComparedProblem {
+        name,
+        body: bare.into(),
+        grid,
+        motion,
+        gap,
+        start: f64::INFINITY,
+    };
+    let tilting = Motion { eccentricity: [Some(0.31), Some(-0.02)], ..load };
+    let turned = Motion { moment: [Some(3e-5), Some(-5e-6)], ..light };
+    let tilted = Motion { tilt: [Some(2e-4), Some(-1e-4)], ..Motion::approach(5e-4) };
+    let off_centre = Motion { eccentricity: [None, Some(0.3)], ..light };
+    let rough_grid = Grid::new([60, 55], [3.0, 2.5])?.centered_at([0.3, -0.2])?;
     Ok([
+        plain("paraboloid", Grid::new([53, 64], [3.0, 4.2])?, load, |x, y| {
+            5e-4 * x * x + 4e-4 * y * y
+        }),
         ComparedProblem {
-            name: "paraboloid",
-            body: bare.into(),
-            grid: Grid::new([53, 64], [3.0, 4.2])?,
-            motion: load,
-            gap: |x, y| 5e-4 * x * x + 4e-4 * y * y,
-            start: f64::INFINITY,
-        },
-        ComparedProblem {
-            name: "coated",
             body: coated.into(),
-            grid: Grid::new([66, 49], [3.4, 3.1])?,
-            motion: load,
-            gap: |x, y| 5e-4 * ((x - 0.1).powi(2) + y * y),
-            start: f64::INFINITY,
+            ..plain("coated", Grid::new([66, 49], [3.4, 3.1])?, load, |x, y| {
+                5e-4 * ((x - 0.1).powi(2) + y * y)
+            })
         },
+        plain("crowned roller, both moments", Grid::new([71, 50], [6.0, 1.6])?, tilting, |x, y| {
+            1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2)
+        }),
         ComparedProblem {
-            name: "crowned roller, both moments",
-            body: bare.into(),
-            grid: Grid::new([71, 50], [6.0, 1.6])?,
-            motion: Motion { eccentricity: [Some(0.31), Some(-0.02)], ..load },
-            gap: |x, y| 1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2),
-            start: f64::INFINITY,
-        },
-        ComparedProblem {
-            name: "rough, of finite extent",
-            body: bare.into(),
-            grid: Grid::new([60, 55], [3.0, 2.5])?.centered_at([0.3, -0.2])?,
-            motion: Motion { moment: [Some(3e-5), Some(-5e-6)], ..light },
-            gap: |x, y| {
+            start: 0.4,
+            ..plain("rough, of finite extent", rough_grid, turned, |x, y| {
                 let height = ((127.1 * x + 311.7 * y).sin() * 43758.5).fract();
                 let smooth = 3e-4 * (x * x + y * y);
                 if x.hypot(y) > 1.3 { f64::INFINITY } else { smooth + 1e-4 * height }
-            },
-            start: 0.4,
+            })
         },
-        ComparedProblem {
-            name: "approach and tilt",
-            body: bare.into(),
-            grid: Grid::new([48, 57], [4.0, 3.6])?,
-            motion: Motion { tilt: [Some(2e-4), Some(-1e-4)], ..Motion::approach(5e-4) },
-            gap: |x, y| 5e-4 * x * x + 6e-4 * y * y,
-            start: f64::INFINITY,
-        },
-        ComparedProblem {
-            name: "line",
-            body: bare.into(),
-            grid: Grid::line(71, 3.3)?,
-            motion: Motion { eccentricity: [None, Some(0.3)], ..light },
-            gap: |_, y| 5e-4 * y * y + 2e-5 * (9.0 * y).cos(),
-            start: f64::INFINITY,
-        },
+        plain("approach and tilt", Grid::new([48, 57], [4.0, 3.6])?, tilted, |x, y| {
+            5e-4 * x * x + 6e-4 * y * y
+        }),
+        plain("line", Grid::line(71, 3.3)?, off_centre, |_, y| {
+            5e-4 * y * y + 2e-5 * (9.0 * y).cos()
+        }),
     ])
 }
 
