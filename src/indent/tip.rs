@@ -95,6 +95,21 @@ impl Tip {
         Self::new(Form::Cone { slope })
     }
 
+    /// A cone of this half angle between axis and flank \[rad\].
+    ///
+    /// ```
+    /// use nacre::indent::Tip;
+    /// let tip = Tip::cone_of_half_angle(70.3_f64.to_radians())?;
+    /// assert!((tip.gap(1.0) - 0.358).abs() < 1e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`slope_of`], and an angle whose slope is above [`STEEPEST`].
+    pub fn cone_of_half_angle(half_angle: f64) -> Result<Self> {
+        Self::cone(slope_of(half_angle)?)
+    }
+
     /// A flat punch of this radius \[m\].
     ///
     /// # Errors
