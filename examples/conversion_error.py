@@ -43,7 +43,8 @@ class Case:
 
     def errors(self, conversion: Conversion, refinement: int) -> tuple[float, float]:
         """Return the relative errors of peak pressure and approach."""
-        contact = nacre.Contact(BODY, self.grid, method=conversion, refinement=refinement)
+        converted = nacre.influence_coefficients(BODY, self.grid, conversion, refinement)
+        contact = nacre.Contact(BODY, self.grid, coefficients=converted)
         solution = contact.solve(self.shape, load=self.load, tolerance=TOLERANCE)
         return (
             abs(solution.peak_pressure / self.exact.peak_pressure - 1),

@@ -55,10 +55,10 @@ pub enum Error {
         /// Indices of the first such element.
         index: [usize; 2],
     },
-    /// Influence coefficients for which some pressure has an elastic energy below 0.
+    /// Influence coefficients with which some pressure has an elastic energy below 0.
     #[error(
         "the influence coefficients are not positive definite, so that the contact has no unique solution; \
-         take the method \"exact\", a larger refinement or a grid of more cells"
+         leave out coefficients that are given, or take a grid of more cells"
     )]
     Indefinite,
     /// Numbers that are too large or too small to be computed with.

@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, words, arguments, background,
-//! state, bodies, grid, shapes, coefficients, stress, solution, contact.
+//! data, state, bodies, grid, shapes, coefficients, stress, solution, contact.
 
 use pyo3::prelude::*;
 
@@ -10,6 +10,7 @@ mod background;
 mod bodies;
 mod coefficients;
 mod contact;
+mod data;
 mod errors;
 mod grid;
 mod shapes;
@@ -29,9 +30,10 @@ mod core {
     };
     #[pymodule_export]
     use super::contact::{
-        PyContact, PyCreepCoefficients, PyFrictionReport, PyFrictionSolution, creep_coefficients,
-        roll, slide, solve,
+        PyContact, PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide, solve,
     };
+    #[pymodule_export]
+    use super::data::checked;
     #[pymodule_export]
     use super::errors::{ConvergenceError, NacreWarning};
     #[pymodule_export]
@@ -72,6 +74,6 @@ mod core {
         module.setattr("IndentCurve", py.get_type::<indent::PyIndentCurve>())?;
         module.setattr("PullOff", py.get_type::<indent::PyPullOff>())?;
         module.setattr("slope_of", wrap_pyfunction!(indent::slope_of, module)?)?;
-        state::add_restorers(module)
+        Ok(())
     }
 }

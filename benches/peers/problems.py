@@ -40,8 +40,8 @@ SEED = 2026
 class Problem:
     """One problem on one grid.
 
-    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `method`. `opened`
-    is the same surface once, which nacre alone solves.
+    `periodic` is rough, and repeats; all programs take its waves alike, nacre by `coefficients`.
+    `opened` is the same surface once, which nacre alone solves.
     `coated` is `hertz` on a layer as thick as the contact radius, of four times the modulus;
     `roller` is that of Spinu et al., on 1024 × 128 cells, under a force at e/L = 0.3. nacre alone
     solves these two.
@@ -63,10 +63,11 @@ class Problem:
         """Whether the surface repeats along both sides."""
         return self.name == "periodic"
 
-    @property
-    def method(self) -> Literal["exact", "spectral"]:
-        """How nacre's influence coefficients are made."""
-        return "spectral" if self.repeats else "exact"
+    def coefficients(self) -> Array | None:
+        """Return the influence coefficients that nacre is given; its own where None."""
+        if not self.repeats:
+            return None
+        return nacre.influence_coefficients(self.body, self.grid, "spectral")
 
     @property
     def body(self) -> nacre.HalfSpace:

@@ -65,8 +65,8 @@ class Nacre:
 
     def plan(self) -> None:
         """Coefficients and their transform."""
-        method = self.problem.method
-        self.contact = nacre.Contact(self.body, self.grid, method=method, threads=self.threads)
+        given = self.problem.coefficients()
+        self.contact = nacre.Contact(self.body, self.grid, coefficients=given, threads=self.threads)
 
     def solve(self, tolerance: float) -> Callable[[], Answer]:
         """Residual and overlap below the tolerance."""

@@ -40,7 +40,6 @@ from nacre._core import (
     Solution,
     Sphere,
     __version__,
-    creep_coefficients,
     frequency_response,
     graded_layers,
     influence_coefficients,
@@ -51,6 +50,7 @@ from nacre._core import (
     surface_compliance,
 )
 from nacre.files import load
+from nacre.friction import creep_coefficients
 from nacre.studies import sweep
 from nacre.units import display_units
 

@@ -17,7 +17,6 @@ __all__ = [
     "Contact",
     "ConvergenceError",
     "Convolution",
-    "CreepCoefficients",
     "Cylinder",
     "Direction",
     "Elastic",
@@ -44,6 +43,7 @@ __all__ = [
     "StressPlan",
     "StressSummary",
     "__version__",
+    "checked",
     "creep_coefficients",
     "frequency_response",
     "graded_layers",
@@ -84,7 +84,7 @@ class _ManySolves(_keywords.Search, total=False):
     progress: Callable[[int, int], object] | None
     check: bool
 
-class _WholeSolve(_keywords.Plan, _SingleSolve, total=False):
+class _WholeSolve(_keywords.Threads, _SingleSolve, total=False):
     grid: Grid | None
 
 class _Tractions(_keywords.TractionSearch, total=False):
@@ -95,11 +95,11 @@ class _Tractions(_keywords.TractionSearch, total=False):
 class _Slide(_keywords.Slide, _Tractions, total=False): ...
 class _Roll(_keywords.Roll, _Tractions, total=False): ...
 
-class _WholeSlide(_keywords.Plan, _Slide, total=False):
+class _WholeSlide(_keywords.Threads, _Slide, total=False):
     grid: Grid | None
     steps: Iterable[Mapping[str, Any]] | None
 
-class _WholeRoll(_keywords.Plan, _Roll, total=False):
+class _WholeRoll(_keywords.Threads, _Roll, total=False):
     grid: Grid | None
 
 __version__: Final[str]
@@ -469,7 +469,7 @@ class Contact:
     @property
     def grid(self) -> Grid: ...
     @property
-    def method(self) -> _Method: ...
+    def coefficients(self) -> _Field | None: ...
     @property
     def threads(self) -> int: ...
     def solve(self, shape: Shape, **keywords: Unpack[_SingleSolve]) -> Solution: ...
@@ -581,28 +581,6 @@ class FrictionSolution:
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
-class CreepCoefficients:
-    __hash__: ClassVar[None]  # type: ignore[assignment]
-    @property
-    def c11(self) -> float: ...
-    @property
-    def c22(self) -> float: ...
-    @property
-    def c23(self) -> float: ...
-    @property
-    def c33(self) -> float: ...
-    @property
-    def errors(self) -> tuple[float, float, float, float]: ...
-    @property
-    def shear(self) -> float: ...
-    @property
-    def semi_axes(self) -> _Pair: ...
-    def to_dict(self) -> dict[str, Any]: ...
-    @staticmethod
-    def from_dict(data: Mapping[str, Any]) -> CreepCoefficients: ...
-    def __eq__(self, other: object, /) -> bool: ...
-
-@final
 class Report:
     __hash__: ClassVar[None]  # type: ignore[assignment]
     @property
@@ -636,10 +614,6 @@ class Report:
     @property
     def counterbody(self) -> HalfSpace | None: ...
     @property
-    def method(self) -> _Method: ...
-    @property
-    def refinement(self) -> int: ...
-    @property
     def motion(self) -> dict[str, Any]: ...
     @property
     def rolling_direction(self) -> _Pair | None: ...
@@ -667,6 +641,8 @@ class Solution:
     def hardness(self) -> float | _Field | None: ...
     @property
     def indentation(self) -> _Field: ...
+    @property
+    def coefficients(self) -> _Field | None: ...
     @property
     def plastic_work(self) -> float: ...
     @property
@@ -939,7 +915,8 @@ class Convolution:
         body: HalfSpace | Elastic,
         grid: Grid,
         counterbody: HalfSpace | Elastic | None = None,
-        **keywords: Unpack[_keywords.Plan],
+        *,
+        threads: int | None = None,
     ) -> Convolution: ...
     def apply(self, pressure: _Matrix) -> _Field: ...
     def as_linear_operator(self) -> Any: ...
@@ -1160,13 +1137,13 @@ def roll(
     counterbody: HalfSpace | Elastic | None = None,
     **keywords: Unpack[_WholeRoll],
 ) -> Any: ...
+def checked(kind: str, given: str) -> str: ...
 def creep_coefficients(
     body: HalfSpace | Elastic,
     counterbody: HalfSpace | Elastic | None,
     semi_axes: _Pair,
-    *,
-    cells: int = 64,
-) -> CreepCoefficients: ...
+    cells: int,
+) -> str: ...
 def stress(
     body: HalfSpace | Elastic,
     grid: Grid,

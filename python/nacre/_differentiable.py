@@ -30,7 +30,7 @@ ABSENT = {"initial", "progress", "check"}
 """Arguments of a solve that a function cannot have: its results depend on its numbers alone."""
 SECOND = "a contact has first derivatives only: they cannot be differentiated again"
 """What a derivative of a derivative says."""
-PLANNED = ("body", "counterbody", "grid", "method", "refinement", "threads")
+PLANNED = ("body", "counterbody", "grid", "threads")
 READ: dict[str, Callable[[core.Solution], float]] = {
     "approach": lambda solution: solution.approach,
     "tilt[0]": lambda solution: solution.tilt[0],

@@ -111,7 +111,7 @@ def line(solution: Solution) -> str:
     counterbody = "rigid" if report.counterbody is None else repr(report.counterbody)
     force = "N/m" if report.grid.is_line else "N"
     return (
-        f"<nacre.Solution on {nx} x {ny} cells, counterbody {counterbody}: "
+        f"<Solution on {nx} x {ny} cells, counterbody {counterbody}: "
         f"load {written(solution.load, force, 6)}, "
         f"peak pressure {written(solution.peak_pressure, 'Pa', 6)}, "
         f"approach {written(solution.approach, 'm', 6)}, "
@@ -123,14 +123,14 @@ def line(solution: Solution) -> str:
 def layer_line(layer: LayerStress) -> str:
     """Return the line that the ``repr`` of the extremes of a layer shows."""
     mises, tension = (written(value, "Pa") for value, _ in (layer.von_mises, layer.tension))
-    return f"<nacre.LayerStress of {_layer(layer)}: von Mises {mises}, tension {tension}>"
+    return f"<LayerStress of {_layer(layer)}: von Mises {mises}, tension {tension}>"
 
 
 def interface_line(face: InterfaceStress) -> str:
     """Return the line that the ``repr`` of the extremes at an interface shows."""
     shear, tension = (written(value, "Pa") for value, _ in (face.shear, face.tension))
     return (
-        f"<nacre.InterfaceStress of interfaces[{face.interface}] at {written(face.depth, 'm')}: "
+        f"<InterfaceStress of interfaces[{face.interface}] at {written(face.depth, 'm')}: "
         f"shear {shear}, tension {tension}>"
     )
 

@@ -72,7 +72,7 @@ def line(solution: core.FrictionSolution) -> str:
         else f"creepage ({(creepage or (0.0, 0.0))[0]:.4g}, {(creepage or (0.0, 0.0))[1]:.4g})"
     )
     return (
-        f"<nacre.FrictionSolution on {nx} x {ny} cells: force {_pair(solution.force, unit)}, "
+        f"<FrictionSolution on {nx} x {ny} cells: force {_pair(solution.force, unit)}, "
         f"{motion}, {'converged' if solution.report.converged else 'not converged'}>"
     )
 

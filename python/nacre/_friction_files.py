@@ -55,6 +55,10 @@ def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
         ),
         "stick": (plane, solution.stick.astype(np.int8), "1", "whether a cell sticks"),
     }
+    if normal.coefficients is not None:
+        words = "influence coefficients that the contact was given"
+        offsets = ("offset_x", "offset_y")
+        fields["coefficients"] = (offsets, normal.coefficients, symbol("m/Pa"), words)
     if isinstance(solution.friction, np.ndarray):
         fields["friction"] = (plane, solution.friction, "1", "coefficient of friction")
     dataset = xarray.Dataset(

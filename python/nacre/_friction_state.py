@@ -12,8 +12,8 @@ import nacre._core as core
 
 Array = npt.NDArray[np.float64]
 
-NORMAL = ("pressure", "gap", "displacement")
-"""Fields of the normal contact; the last is called normal_displacement in Datasets."""
+NORMAL = ("pressure", "gap", "displacement", "coefficients")
+"""Arrays of the normal contact; the displacement is called normal_displacement in Datasets."""
 VECTORS = ("traction", "displacement", "slip")
 """Fields with components along x and y."""
 

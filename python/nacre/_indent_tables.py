@@ -126,8 +126,12 @@ class IndentCase(Bodies):
     """Keys and tables of the case file of an indentation, for ``nacre indent``."""
 
     solved: ClassVar[tuple[str, ...]] = (
-        *("materials", "body", "counterbody"),
-        *("tip", "adhesion", "indent"),
+        "materials",
+        "body",
+        "counterbody",
+        "tip",
+        "adhesion",
+        "indent",
     )
 
     tip: AnyTip = Field(description="Tip of revolution that is pressed in.")

@@ -20,12 +20,16 @@ ByLayer = Mapping[int | str, float] | Sequence[float | None]
 """Values from the surface down; or by number or name of a layer, or "substrate"."""
 
 
-class Plan(TypedDict, total=False):
-    """Keywords that say how coefficients are planned."""
+class Threads(TypedDict, total=False):
+    """Number of threads."""
 
-    method: Literal["exact", "plain", "difference", "image", "spectral"]
-    refinement: int | None
     threads: int | None
+
+
+class Plan(Threads, total=False):
+    """Keywords of `Contact`."""
+
+    coefficients: Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
 
 
 class Motion(TypedDict, total=False):
@@ -75,12 +79,6 @@ class Strengths(Traction, total=False):
 
     yield_stress: ByLayer | None
     strength: ByLayer | None
-
-
-class Threads(TypedDict, total=False):
-    """Number of threads."""
-
-    threads: int | None
 
 
 class Stress(Section, Threads, total=False):

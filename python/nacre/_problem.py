@@ -149,13 +149,13 @@ class Problem:
     def solved(self, k: int, made: dict[str, Any], last: core.Solution | None) -> core.Solution:
         """Solve a case, with the plan of an equal body and from the last solution."""
         made = {"tolerance": ACCURATE, **made, "grid": self.grids[k]}
-        names = ("body", "counterbody", "grid", "method", "refinement", "threads")
+        names = ("body", "counterbody", "grid", "threads")
         planned = {name: made.pop(name) for name in names if name in made}
         told = repr(planned)
         plan = next((p for p, text in self.plans.values() if text == told), None)
         plan = plan or core.Contact(**planned)
         self.plans[k] = plan, told
-        return plan.solve(made.pop("shape"), **{"initial": last, **made})
+        return plan.solve(made.pop("shape"), **({"initial": last} | made))
 
     def changes(
         self, x: Array, case: Mapping[str, Any], grid: core.Grid

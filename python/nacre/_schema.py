@@ -138,7 +138,7 @@ def _checked(hint: Any) -> Any:
 
 def _solve() -> type[Table]:
     """Return the table of those keywords."""
-    groups = (_keywords.Motion, _keywords.Plan, _keywords.Search)
+    groups = (_keywords.Motion, _keywords.Threads, _keywords.Search)
     hints = {name: hint for group in groups for name, hint in get_type_hints(group).items()}
     signature = inspect.signature(nacre.solve).parameters
     fields: dict[str, Any] = {
@@ -281,8 +281,14 @@ class CaseTable(Bodies):
     """Keys and tables of the case file of a contact."""
 
     solved: ClassVar[tuple[str, ...]] = (
-        *("materials", "shape", "body", "counterbody"),
-        *("grid", "solve", "slide", "roll"),
+        "materials",
+        "shape",
+        "body",
+        "counterbody",
+        "grid",
+        "solve",
+        "slide",
+        "roll",
     )
 
     shape: AnyShape = Field(description="Shape that is pressed in.")

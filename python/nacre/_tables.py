@@ -19,6 +19,8 @@ FIELDS = ("pressure", "gap", "displacement")
 """Fields of every solution's state."""
 YIELDED = ("indentation", "hardness")
 """Further fields, of surfaces that have yielded or whose cells each have a hardness."""
+GIVEN = ("coefficients",)
+"""Further arrays, of contacts that were given them."""
 
 
 def shown(solution: core.Solution) -> tuple[str, ...]:

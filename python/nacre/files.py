@@ -14,7 +14,7 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._disk import STATE, read, replacing, write_dataset
 from nacre._extras import extra
-from nacre._tables import FIELDS, YIELDED, write_cells, write_sections
+from nacre._tables import FIELDS, GIVEN, YIELDED, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS, symbol, system
 from nacre.values import check_format, encode, refusing
@@ -50,7 +50,10 @@ NAMES = {
     "indentation": "permanent indentation",
     "hardness": "largest pressure that the surfaces bear",
     "line_load": "force per length along x",
+    "coefficients": "influence coefficients that the contact was given",
 }
+OFFSETS = {"coefficients": ("offset_x", "offset_y")}
+"""Dimensions of arrays whose elements are no cells."""
 FRICTION = ("traction", "slip", "normal_displacement", "friction")
 """Further variables of contacts with friction."""
 PICTURES = (".png", ".pdf", ".svg")
@@ -67,7 +70,7 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
 
     report = solution.report
     state, arrays = _split(solution)
-    fields = {name: (("x", "y"), values) for name, values in arrays.items()}
+    fields = {name: (OFFSETS.get(name, ("x", "y")), values) for name, values in arrays.items()}
     dataset = xarray.Dataset(
         {**fields, "line_load": (("x",), solution.line_load)},
         coords={"x": solution.x, "y": solution.y},
@@ -87,8 +90,6 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
             name: json.dumps(encode(getattr(report, name)))
             for name in ("body", "counterbody", "grid", "motion", "discretisation")
         },
-        "method": report.method,
-        "refinement": report.refinement,
         "tolerance": report.tolerance,
         "termination": report.termination,
         "solver": report.solver or "unknown",
@@ -179,7 +180,7 @@ def load(path: AnyPath) -> Any:
     if not path.is_file():
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     try:
-        return _solution(*read(path, (*FIELDS, *YIELDED, *FRICTION)))
+        return _solution(*read(path, (*FIELDS, *YIELDED, *GIVEN, *FRICTION)))
     except ValueError as error:
         raise ValueError(f"{str(path)!r} must be a solution that nacre saved: {error}") from error
 
@@ -187,7 +188,9 @@ def load(path: AnyPath) -> Any:
 def _split(solution: core.Solution) -> tuple[dict[str, Any], dict[str, Array]]:
     """Return the named state of a solution without its fields, and the fields."""
     state = solution.to_dict()
-    names = [name for name in (*FIELDS, *YIELDED) if isinstance(state.get(name), np.ndarray)]
+    names = [
+        name for name in (*FIELDS, *YIELDED, *GIVEN) if isinstance(state.get(name), np.ndarray)
+    ]
     fields = {name: state.pop(name) for name in names}
     return state, fields
 

@@ -1,11 +1,9 @@
-"""Studies of friction: histories and creep curves, to one Dataset.
-
-`nacre.slide` and `nacre.roll` make the solutions.
-"""
+"""Contacts with friction: creep coefficients; histories and creep curves, to one Dataset."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,15 +11,93 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
+from nacre._result import Result
 from nacre.units import symbol
 
 if TYPE_CHECKING:
     import xarray
 
-PLAN = ("method", "refinement", "threads")
-"""Keywords of a plan."""
 MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
 """Keywords of the motion along z."""
+
+
+@dataclass(frozen=True, repr=False)
+class CreepCoefficients(Result):
+    """Kalker's linear coefficients of an elliptic contact, with their estimated errors.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.25)
+    >>> creep = nacre.creep_coefficients(steel, steel, (1e-3, 1e-3))
+    >>> round(creep.c11, 1), round(creep.c22, 1), round(creep.c23, 1)
+    (4.1, 3.7, 1.5)
+    """
+
+    c11: float
+    """C11, of the longitudinal creepage: ``F_x = a b G C11 xi``."""
+    c22: float
+    """C22, of the lateral creepage: ``F_y = a b G C22 eta``."""
+    c23: float
+    """C23, of the spin in the lateral force: ``F_y = (a b)**1.5 G C23 phi``."""
+    c33: float
+    """C33, of the spin in the torque: ``M_z = (a b)**2 G C33 phi``."""
+    errors: tuple[float, float, float, float]
+    """Estimated errors of C11, C22, C23 and C33."""
+    shear: float
+    """Modulus G [Pa]: 1/G is the mean of 1/G of both substrates."""
+    semi_axes: tuple[float, float]
+    """Semi-axes ``(a, b)`` [m], a along the direction of rolling."""
+
+    def __repr__(self) -> str:
+        """Return the coefficients with their errors."""
+        coefficients = (self.c11, self.c22, self.c23, self.c33)
+        numbers = zip(("C11", "C22", "C23", "C33"), coefficients, self.errors, strict=True)
+        shown = ", ".join(f"{name} {c:.4f} ± {error:.4f}" for name, c, error in numbers)
+        return f"<CreepCoefficients: {shown}>"
+
+
+def creep_coefficients(
+    body: core.HalfSpace | core.Elastic,
+    counterbody: core.HalfSpace | core.Elastic | None,
+    semi_axes: tuple[float, float],
+    *,
+    cells: int = 64,
+) -> CreepCoefficients:
+    """Kalker's linear coefficients of two bodies with any layers, by one call.
+
+    Parameters
+    ----------
+    body, counterbody : HalfSpace, Elastic or None
+        Bodies; a counterbody that is `None` is rigid.
+    semi_axes : tuple of float
+        Semi-axes ``(a, b)`` of the contact [m], a along the direction of rolling.
+    cells : int, optional
+        Cells along each axis of the ellipse, at least 8. The coefficients are extrapolated from
+        these and from half as many.
+
+    Returns
+    -------
+    CreepCoefficients
+        C11, C22, C23 and C33, as Kalker (1990) defines them; those of coated bodies are derived
+        here.
+
+    Raises
+    ------
+    ValueError
+        If a semi-axis is not above 0, there are fewer cells, both substrates are rigid, or a body
+        has no response along its surface.
+    ConvergenceError
+        If the iteration did not converge.
+
+    Examples
+    --------
+    >>> steel = nacre.Elastic(young=210e9, poisson=0.25)
+    >>> rubber = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(50e9, 0.25), 0.5e-3)])
+    >>> coated = nacre.creep_coefficients(rubber, rubber, (1e-3, 1e-3))
+    >>> coated.c11 < 0.5 * nacre.creep_coefficients(steel, steel, (1e-3, 1e-3)).c11
+    True
+    """
+    return CreepCoefficients._made(core.creep_coefficients(body, counterbody, semi_axes, cells))
 
 
 def checked(solutions: object) -> list[core.FrictionSolution]:
@@ -172,7 +248,7 @@ def creep_curve(
     for name in ("creepage", "force", "cells", "initial"):
         if name in keywords:
             raise ValueError(f"{name} must not be given: creepages say what is asked")
-    plan = {name: keywords.pop(name) for name in PLAN if name in keywords}
+    plan = {"threads": keywords.pop("threads", None)}
     grid = keywords.pop("grid", None)
     if grid is None:
         motion = {name: keywords[name] for name in MOTION if name in keywords}

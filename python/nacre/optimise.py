@@ -225,8 +225,11 @@ def optimise(
                     ends |= {"ftol": factor * least} if constraints else {"gtol": factor * least}
                     found = minimize(
                         lambda x, factor=factor: problem.scaled(x, factor),
-                        *(x,),
-                        **{"jac": True, "bounds": box, "callback": keep, "options": ends},
+                        x,
+                        jac=True,
+                        bounds=box,
+                        callback=keep,
+                        options=ends,
                         **options,
                     )
                     x = problem.best().x

@@ -167,9 +167,7 @@ def load_curve(
     if grid is None and not isinstance(shape, core.HeightMap):
         raise ValueError("grid must be given for a shape that is not a map")
     cells = _grid(shape) if grid is None else grid
-    planned = {
-        name: keywords.pop(name) for name in ("method", "refinement", "threads") if name in keywords
-    }
+    planned = {name: keywords.pop(name) for name in ("coefficients", "threads") if name in keywords}
     contact = core.Contact(body, cells, counterbody, **planned)
     area = cells.size[0] * cells.size[1]
     columns: dict[str, list[float]] = {name: [] for name in CURVE}
@@ -223,7 +221,7 @@ def corrected_area(solution: core.Solution) -> float:
     pressed: the area of all is too large by some tenth of perimeter times cell. Yastrebov,
     Anciaux & Molinari (Tribol. Int. 114 (2017) 161, arXiv:1701.02727)
     subtract (π - 1 + ln 2)/24 of it, the perimeter S counted along the sides of cells. On round
-    contacts of nacre's own the error is 0.09 S, and 0.10 S with the method "spectral", where they
+    contacts of nacre's own the error is 0.09 S, and 0.10 S with "spectral" coefficients, where they
     subtract 0.118 S: a quarter of the correction is the uncertainty of the result.
 
     Raises

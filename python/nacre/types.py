@@ -1,7 +1,6 @@
 """Classes that a program names in annotations alone: nacre makes their instances."""
 
 from nacre._core import (
-    CreepCoefficients,
     Direction,
     FrictionReport,
     FrictionSolution,
@@ -14,6 +13,7 @@ from nacre._core import (
     StressPlan,
     StressSummary,
 )
+from nacre.friction import CreepCoefficients
 
 __all__ = [
     "CreepCoefficients",
@@ -29,7 +29,3 @@ __all__ = [
     "StressPlan",
     "StressSummary",
 ]
-
-# Pickles and the documentation find them here.
-for _name in __all__:
-    globals()[_name].__module__ = __name__

@@ -18,6 +18,7 @@ UNITS = {
     "hardness": "Pa",
     "plastic_work": "N m",
     "line_load": "N/m",
+    "coefficients": "m/Pa",
     "load": "N",
     "approach": "m",
     "moment": "N m",
@@ -40,14 +41,23 @@ UNITS = {
 }
 """SI units of a solution's quantities, and of the stresses that studies keep."""
 LINE_UNITS = UNITS | {
-    **{"load": "N/m", "force": "N/m", "moment": "N", "contact_area": "m"},
+    "load": "N/m",
+    "force": "N/m",
+    "moment": "N",
+    "contact_area": "m",
     "plastic_work": "N",
-    **{"torque": "N", "dissipated": "N", "tangential_energy": "N"},
+    "torque": "N",
+    "dissipated": "N",
+    "tangential_energy": "N",
 }
 """SI units of the same quantities of a line contact, whose loads and areas are per length."""
 INDENT_UNITS = UNITS | {
-    **{"radius": "m", "outer_radius": "m", "stiffness": "N/m"},
-    **{"pull_off_load": "N", "pull_off_approach": "m", "pull_off_radius": "m"},
+    "radius": "m",
+    "outer_radius": "m",
+    "stiffness": "N/m",
+    "pull_off_load": "N",
+    "pull_off_approach": "m",
+    "pull_off_radius": "m",
 }
 """SI units of the quantities of an indentation."""
 PARAMETERS = {
@@ -69,9 +79,12 @@ PARAMETERS = {
 """SI units of a study's parameters, by the name of the argument."""
 
 BASES = {
-    **{"N": ("N", 1.0), "lbf": ("N", 4.4482216152605)},
-    **{"m": ("m", 1.0), "in": ("m", 0.0254)},
-    **{"Pa": ("Pa", 1.0), "psi": ("Pa", 4.4482216152605 / 0.0254**2)},
+    "N": ("N", 1.0),
+    "lbf": ("N", 4.4482216152605),
+    "m": ("m", 1.0),
+    "in": ("m", 0.0254),
+    "Pa": ("Pa", 1.0),
+    "psi": ("Pa", 4.4482216152605 / 0.0254**2),
     "rad": ("rad", 1.0),
 }
 """Units that may be part of a unit: the SI unit of the quantity, and their size in it.

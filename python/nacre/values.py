@@ -66,17 +66,20 @@ LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends
 still read, and older studies found again. Versions that do not know them refuse them by name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
-RESULTS = (
-    core.Report
-    | core.Solution
-    | core.Stress
-    | core.StressSummary
-    | core.LayerStress
-    | core.InterfaceStress
-    | core.FrictionSolution
-    | core.FrictionReport
-    | core.CreepCoefficients
-)
+RESULTS: dict[str, Any] = {
+    kind.__name__: kind
+    for kind in (
+        core.Report,
+        core.Solution,
+        core.Stress,
+        core.StressSummary,
+        core.LayerStress,
+        core.InterfaceStress,
+        core.FrictionSolution,
+        core.FrictionReport,
+    )
+}
+"""Classes of results by their names: those of the compiled module, and each `Result`."""
 BEGUN = ("traction", "displacement", "friction", "motion")
 """Fields of a contact with friction on which a history depends that goes on from it."""
 
@@ -124,7 +127,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             begun = {name: of(state[name]) for name in BEGUN}
             begun |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
             return {"FrictionSolution": begun}
-        if isinstance(value, RESULTS):
+        if RESULTS.get(type(value).__name__) is type(value):
             return of(value.to_dict())
         if type(value) in FIELDS:
             fields = {name: getattr(value, name) for name in FIELDS[type(value)]}
@@ -144,19 +147,31 @@ def encode(value: Any, *, digest: bool = False) -> Any:
     return of(value)
 
 
+def heading(kind: str) -> dict[str, Any]:
+    """Return the head of the plain data of a result: format, version and kind."""
+    return {"format": FORMAT, "nacre": core.__version__, "kind": kind}
+
+
 def checked_state(data: Mapping[str, Any], kind: str, names: Collection[str]) -> dict[str, Any]:
     """Return the fields of a result's plain data, which must be of this kind and have these names.
 
     Raises `ValueError` where they are not, or where the format is unknown.
     """
+    if not isinstance(data, Mapping):
+        raise ValueError(f"{kind} must be a dict of named fields, got {data!r}")
     state = dict(data)
-    written, found = state.pop("format", None), state.pop("kind", None)
-    writer = state.pop("nacre", None)
-    if found != kind:
-        raise ValueError(f"the key 'kind' must be {kind!r}, got {found!r}")
-    check_format(written, writer, f"this {kind}")
-    if wrong := set(names) ^ state.keys():
-        raise ValueError(f"the keys {sorted(wrong)} are missing or unknown")
+    for key in ("format", "nacre", "kind"):
+        if key not in state:
+            raise ValueError(f'{kind}: the key "{key}" is missing')
+    check_format(state.pop("format"), state.pop("nacre"), f"this {kind}")
+    if (found := state.pop("kind")) != kind:
+        raise ValueError(f'the key "kind" must be "{kind}", got "{found}"')
+    for key in names:
+        if key not in state:
+            raise ValueError(f'{kind}: the key "{key}" is missing')
+    for key in state:
+        if key not in names:
+            raise ValueError(f"{kind}: the key {key!r} is unknown")
     return state
 
 
@@ -221,9 +236,8 @@ def _decoded(data: Any) -> Any:
 
 
 def _result(data: dict[str, Any]) -> Any:
-    for kind in RESULTS.__args__:
-        if kind.__name__ == data["kind"]:
-            return kind.from_dict(data)
+    if data["kind"] in RESULTS:
+        return RESULTS[data["kind"]].from_dict(data)
     raise ValueError(f"the key 'kind' must name a result of nacre, got {data['kind']!r}")
 
 

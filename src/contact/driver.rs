@@ -345,6 +345,7 @@ impl<'a> Steps<'a> {
             tilt,
             hardness: self.options.hardness.clone(),
             indentation,
+            coefficients: plan.setup.coefficients.clone(),
             report,
             gap: Gap::Computed {
                 undeformed,

@@ -1,9 +1,8 @@
 //! Options of a plan and of a solve, and what is asked of the rigid motion.
 
-use ndarray::Array2;
+use ndarray::{ArcArray2, Array2};
 
 use super::problem::bounds::Hardness;
-use crate::compliance::influence::Method;
 use crate::compliance::response::Body;
 use crate::error::{Result, fraction};
 
@@ -12,8 +11,10 @@ use crate::error::{Result, fraction};
 pub struct Setup {
     /// Body that carries the shape; `None` is rigid.
     pub counterbody: Option<Body>,
-    /// Method by which influence coefficients are computed. Default: [`Method::Exact`].
-    pub method: Method,
+    /// Influence coefficients (nx, ny) \[m/Pa\] of both bodies together, with which contacts are solved, such as those of
+    /// another [`Method`](crate::influence::Method). Default: the exact ones of the bodies, from which solves also start
+    /// on coarser grids where others are given.
+    pub coefficients: Option<ArcArray2<f64>>,
     /// Threads of the plan. Default: all of the machine's.
     pub threads: Option<usize>,
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayRef2};
 
 use crate::compliance::convolution::{Addition, Convolution};
 use crate::compliance::ends::Ends;
@@ -16,7 +16,7 @@ use crate::contact::cascade::discretisation::Unresolved;
 use crate::contact::options::Setup;
 use crate::contact::problem::LocalDisplacement;
 use crate::contact::solver::linear_cg;
-use crate::error::{Error, Result, refuse_if};
+use crate::error::{Error, Result, all_finite, refuse_if, same_shape};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::{Threads, check_memory};
 
@@ -58,7 +58,7 @@ impl Contact {
     /// Plans contacts of `body` on `grid`.
     ///
     /// # Errors
-    /// A method that does not suit the grid, no threads, or too little memory.
+    /// Given coefficients that do not suit the grid, no threads, or too little memory.
     pub fn plan(body: impl Into<Body>, grid: Grid, setup: Setup) -> Result<Self> {
         let body = body.into();
         check_memory(grid.shape(), Self::memory(&grid))?;
@@ -101,7 +101,7 @@ impl Contact {
         &self.body
     }
 
-    /// The setup that was planned: counterbody, method and threads.
+    /// The setup that was planned: counterbody, given coefficients and threads.
     pub fn setup(&self) -> &Setup {
         &self.setup
     }
@@ -184,28 +184,57 @@ pub(super) fn operator(
     additions: &[Addition],
     threads: &Arc<Threads>,
 ) -> Result<(Array2<f64>, Datum)> {
-    let coefficients = total_coefficients(body, setup, grid, threads)?;
+    let coefficients = match &setup.coefficients {
+        Some(given) => {
+            check_coefficients(given, grid)?;
+            given.to_owned()
+        }
+        None => total_coefficients(body, setup, grid, threads)?,
+    };
     let datum = Datum::find(&bodies(body, setup), grid, (&coefficients, additions), threads)?;
     let coefficients = datum.moved(coefficients, grid);
     // No coefficient of a positive definite operator is larger than that of the loaded cell.
     let own = coefficients[[0, 0]];
     let larger = |c: &f64| c.abs() > own;
-    if setup.method != Method::Exact && (own <= 0.0 || coefficients.iter().any(larger)) {
+    if setup.coefficients.is_some() && (own <= 0.0 || coefficients.iter().any(larger)) {
         return Err(Error::Indefinite);
     }
     Ok((coefficients, datum))
 }
 
-/// Influence coefficients of body and counterbody together.
+/// Largest difference between given coefficients that are the same on a grid that repeats, relative to that of the loaded
+/// cell: rounding.
+const UNEVEN: f64 = 1e-9;
+
+/// Checks given coefficients.
+///
+/// # Errors
+/// Another shape than the grid, a coefficient that is not finite, and coefficients that do not repeat where the grid does.
+pub(super) fn check_coefficients(coefficients: &ArrayRef2<f64>, grid: &Grid) -> Result<()> {
+    same_shape("coefficients", coefficients, grid.shape())?;
+    all_finite("coefficients", coefficients)?;
+    let ([nx, ny], [along_x, along_y]) = (grid.shape(), grid.is_periodic());
+    let image = |i: usize, n: usize, repeats: bool| if repeats { (n - i) % n } else { i };
+    let uneven = |((i, j), c): ((usize, usize), &f64)| {
+        let same = coefficients[[image(i, nx, along_x), image(j, ny, along_y)]];
+        (c - same).abs() > UNEVEN * coefficients[[0, 0]].abs()
+    };
+    refuse_if(
+        coefficients.indexed_iter().any(uneven),
+        "coefficients must be the same at the offsets d and n - d along a direction in which a grid of n cells repeats",
+    )
+}
+
+/// Exact influence coefficients of body and counterbody together.
 fn total_coefficients(
     body: &Body,
     setup: &Setup,
     grid: &Grid,
     threads: &Threads,
 ) -> Result<Array2<f64>> {
-    let mut coefficients = coefficients_on(&**body, grid, setup.method, threads)?;
+    let mut coefficients = coefficients_on(&**body, grid, Method::Exact, threads)?;
     if let Some(counterbody) = &setup.counterbody {
-        coefficients += &coefficients_on(&**counterbody, grid, setup.method, threads)?;
+        coefficients += &coefficients_on(&**counterbody, grid, Method::Exact, threads)?;
     }
     Ok(coefficients)
 }

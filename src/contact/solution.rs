@@ -6,14 +6,13 @@ pub(super) mod warnings;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use ndarray::{Array1, Array2};
+use ndarray::{ArcArray2, Array1, Array2};
 
 use crate::compliance::ends::{Ends, FreeEnds};
-use crate::compliance::influence::Method;
 use crate::compliance::response::Body;
 use crate::contact::cascade::discretisation::Discretisation;
 use crate::contact::options::Motion;
-use crate::contact::plan::Contact;
+use crate::contact::plan::{Contact, check_coefficients};
 use crate::contact::problem::bounds::{Hardness, check_indentation};
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{bounds, rows};
@@ -41,6 +40,8 @@ pub struct Solution {
     /// Permanent indentation \[m\], ≥ 0, with that of the solves before; `None` where no cell has one. The gap
     /// contains it.
     pub indentation: Option<Array2<f64>>,
+    /// Influence coefficients that were given ([`Setup`](super::Setup)); `None` where they are those of the bodies.
+    pub coefficients: Option<ArcArray2<f64>>,
     /// Course of the solve and quality of the solution.
     pub report: Report,
     pub(super) gap: Gap,
@@ -55,6 +56,7 @@ impl PartialEq for Solution {
             && self.displacement == other.displacement
             && self.hardness == other.hardness
             && self.indentation == other.indentation
+            && self.coefficients == other.coefficients
             && self.gap() == other.gap()
     }
 }
@@ -108,6 +110,7 @@ impl Solution {
             tilt,
             hardness: None,
             indentation: None,
+            coefficients: None,
             report,
             gap: Gap::Known(gap),
         })
@@ -130,6 +133,15 @@ impl Solution {
             check_indentation(indentation, self.grid())?;
         }
         Ok(Self { hardness, indentation, ..self })
+    }
+
+    /// The solution with the influence coefficients that were given.
+    ///
+    /// # Errors
+    /// Coefficients that do not suit the grid.
+    pub fn with_coefficients(self, coefficients: Array2<f64>) -> Result<Self> {
+        check_coefficients(&coefficients, self.grid())?;
+        Ok(Self { coefficients: Some(coefficients.into_shared()), ..self })
     }
 
     /// The solution itself, if the tolerance was met.
@@ -371,7 +383,7 @@ pub struct Report {
     /// How the iteration ended.
     pub termination: Termination,
     /// Solver that produced the solution, also where the algorithm that was asked for fell back to another.
-    /// `None` where it is not known: in the reports of a running solve, and in files of format 0.
+    /// `None` where it is not known: in the reports of a running solve.
     pub solver: Option<Solver>,
     /// Iterations done.
     pub iterations: usize,
@@ -398,8 +410,6 @@ pub struct Report {
     pub body: Body,
     /// The body that carries the shape; rigid where `None`.
     pub counterbody: Option<Body>,
-    /// How the influence coefficients were computed.
-    pub method: Method,
     /// Load or approach and tilts that were asked for.
     pub motion: Motion,
     /// Unit vector along which the shape rolls, and friction acts where no other direction is given: y in
@@ -457,7 +467,6 @@ impl Report {
             grid: plan.grid,
             body: plan.body.clone(),
             counterbody: plan.setup.counterbody.clone(),
-            method: plan.setup.method,
             motion: *motion,
             rolling_direction: plan.grid.rolling_direction().or_else(|| shape.rolling_direction()),
             tolerance,

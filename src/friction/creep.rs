@@ -23,6 +23,11 @@ use crate::numerics::parallel::Threads;
 /// Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990), §2.2.3 and table E3,
 /// doi:10.1007/978-94-015-7889-9; those of coated bodies are derived here; not published elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct CreepCoefficients {
     /// C11, of the longitudinal creepage.
     pub c11: f64,

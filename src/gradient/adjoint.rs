@@ -116,7 +116,7 @@ impl<'a> Linearisation<'a> {
                 // Only stresses depend on friction, each by itself.
                 let slides = outputs.iter().any(|one| matches!(one, Output::Stress(_)));
                 let others = paths.iter().filter(|path| !(slides && **path == "friction"));
-                named(&self.parameters, &others.copied().collect::<Vec<_>>())?
+                named(self.solution, &self.parameters, &others.copied().collect::<Vec<_>>())?
             }
         };
         let mut seeds = Vec::new();
@@ -261,7 +261,7 @@ impl<'a> Linearisation<'a> {
             }
         };
         let paths: Vec<&str> = direction.iter().map(|(path, _)| *path).collect();
-        let parameters = named(&self.parameters, &paths)?;
+        let parameters = named(self.solution, &self.parameters, &paths)?;
         for (parameter, (_, rate)) in parameters.iter().zip(direction) {
             let slope = self.slope(parameter, &[])?;
             add(&slope, *rate);

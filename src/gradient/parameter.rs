@@ -5,7 +5,7 @@ use std::fmt;
 use ndarray::Array2;
 
 use super::state::Linearised;
-use crate::compliance::influence::unchecked_coefficients;
+use crate::compliance::influence::{Method, unchecked_coefficients};
 use crate::compliance::response::{Body, ResponseSlope};
 use crate::contact::{Solution, block};
 use crate::error::{Error, Result};
@@ -77,6 +77,7 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
         [(Member::Body, Some(&report.body)), (Member::Counterbody, report.counterbody.as_ref())];
     let mut parameters = Vec::new();
     for (member, body) in bodies {
+        let body = body.filter(|_| solution.coefficients.is_none());
         let Some(Ok(body)) = body.map(|body| layered(body, "")) else {
             continue;
         };
@@ -106,17 +107,22 @@ pub(super) fn all(solution: &Solution, shape: Option<&dyn Surface>) -> Vec<Param
     parameters
 }
 
-/// The parameters among `known` with these paths.
-pub(super) fn named(known: &[Parameter], paths: &[&str]) -> Result<Vec<Parameter>> {
+/// The parameters of `solution` among `known` with these paths.
+pub(super) fn named(
+    solution: &Solution,
+    known: &[Parameter],
+    paths: &[&str],
+) -> Result<Vec<Parameter>> {
     let find = |path: &&str| {
         let found = known.iter().find(|one| one.to_string() == **path);
-        found.cloned().ok_or_else(|| refusal(path, known))
+        found.cloned().ok_or_else(|| refusal(solution, path, known))
     };
     paths.iter().map(find).collect()
 }
 
 /// The error for a path without a derivative.
-fn refusal(path: &str, known: &[Parameter]) -> Error {
+fn refusal(solution: &Solution, path: &str, known: &[Parameter]) -> Error {
+    let of_body = path.starts_with("body.") || path.starts_with("counterbody.");
     let reason = match path {
         "shape.length" | "shape.profile.length" => {
             "cells join and leave where a shape is cut off, one by one; take the drop of its profile near the end"
@@ -127,9 +133,10 @@ fn refusal(path: &str, known: &[Parameter]) -> Error {
             "the shape is not given, or has no number on which the gap depends smoothly (a flat punch's radius moves \
              whole cells); give `shape`, or use the derivative with respect to the gap itself, gradient.gap"
         }
-        _ if path.starts_with("body.") || path.starts_with("counterbody.") => {
-            "it is not a number of a stack of layers without free ends"
+        _ if of_body && solution.coefficients.is_some() => {
+            "the contact was given influence coefficients, which do not change with its bodies; leave out `coefficients`"
         }
+        _ if of_body => "it is not a number of a stack of layers without free ends",
         _ => "it is not a number of this contact",
     };
     Error::no_derivative(path, reason)
@@ -210,13 +217,9 @@ impl Slope {
     ) -> Result<Self> {
         let (grid, window) = (solution.grid(), &state.tangent.window);
         let convolution = &state.tangent.convolution;
-        let method = solution.report.method;
-        let coefficients = unchecked_coefficients(
-            slope,
-            &grid.of_offsets(reach),
-            method,
-            convolution.own_threads(),
-        )?;
+        let threads = convolution.own_threads();
+        let coefficients =
+            unchecked_coefficients(slope, &grid.of_offsets(reach), Method::Exact, threads)?;
         let shape = [window[0].len(), window[1].len()];
         let corner = block(&coefficients, &full_window(shape)).to_owned();
         let companion = convolution.companion(&corner, repeating(grid, window));

@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::arguments::keywords::{
-    self, Keywords, motion_docs, motion_signature, plan_docs, search_docs, search_signature,
-    single_docs, single_signature,
+    self, Keywords, motion_docs, motion_signature, search_docs, search_signature, single_docs,
+    single_signature,
 };
-use super::arguments::remade;
+use super::arguments::{array_repr, read_only, real_matrix, remade};
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
 use super::solution::PySolution;
-use super::words::method_words;
 use crate::contact::Contact;
 use crate::model::body::HalfSpace;
 
@@ -22,9 +22,7 @@ mod batch;
 mod friction;
 mod single;
 
-pub(super) use friction::{
-    PyCreepCoefficients, PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide,
-};
+pub(super) use friction::{PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide};
 use friction::{
     found_docs, found_signature, roll_docs, roll_signature, rolled_docs, slid_docs, slide_docs,
     slide_signature,
@@ -42,7 +40,11 @@ use single::{Call, setup};
 ///     Cells of the pressure.
 /// counterbody : HalfSpace or Elastic, optional
 ///     Body that carries the shape; rigid where there is none.
-#[doc = plan_docs!()]
+/// coefficients : array_like, optional
+///     Influence coefficients ``(nx, ny)`` [m/Pa] of both bodies together, such as those of another method of
+///     `influence_coefficients`; by default the exact ones of the bodies.
+/// threads : int, optional
+///     Number of threads; all of the machine's by default.
 ///
 /// Raises
 /// ------
@@ -68,7 +70,7 @@ impl PyContact {
     #[new]
     #[pyo3(
         signature = (body, grid, counterbody=None, **keywords),
-        text_signature = "(body, grid, counterbody=None, *, method='exact', refinement=None, threads=None)"
+        text_signature = "(body, grid, counterbody=None, *, coefficients=None, threads=None)"
     )]
     fn new<'py>(
         py: Python<'py>,
@@ -78,7 +80,10 @@ impl PyContact {
         keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
         let keywords = Keywords::new(py, keywords)?;
-        let setup = setup(counterbody, &keywords)?;
+        let mut setup = setup(counterbody, &keywords)?;
+        if let Some(given) = keywords.given("coefficients")? {
+            setup.coefficients = Some(real_matrix("coefficients", &given)?.into_shared());
+        }
         keywords.finish("keywords of Contact")?;
         let contact = background::run(py, None, move |_: &mut Caller<()>| {
             Contact::plan(&body, grid.0, setup)
@@ -104,10 +109,11 @@ impl PyContact {
         PyGrid(*self.contact.grid())
     }
 
-    /// Method by which influence coefficients are computed.
+    /// Influence coefficients ``(nx, ny)`` [m/Pa] that were given; None where they are those of the bodies.
     #[getter]
-    fn method(&self) -> &'static str {
-        method_words(self.contact.setup().method).0
+    fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let given = self.contact.setup().coefficients.as_ref();
+        given.map(|given| read_only(py, given.to_owned())).transpose()
     }
 
     /// Number of threads of the plan.
@@ -296,16 +302,19 @@ impl PyContact {
         (a.grid(), a.body(), a.setup()) == (b.grid(), b.body(), b.setup())
     }
 
-    fn __repr__(&self) -> String {
-        let (method, refinement) = method_words(self.contact.setup().method);
-        let none = || "None".to_owned();
-        format!(
-            "Contact({}, {}, counterbody={}, method='{method}', refinement={refinement}, threads={})",
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (setup, none) = (self.contact.setup(), || "None".to_owned());
+        let coefficients = setup.coefficients.as_ref();
+        let coefficients =
+            coefficients.map(|given| array_repr(py, given.to_owned())).transpose()?;
+        Ok(format!(
+            "Contact({}, {}, counterbody={}, coefficients={}, threads={})",
             self.body().__repr__(),
             self.grid().__repr__(),
             self.counterbody().map_or_else(none, |body| body.__repr__()),
-            self.contact.setup().threads.map_or_else(none, |threads| threads.to_string()),
-        )
+            coefficients.unwrap_or_else(none),
+            setup.threads.map_or_else(none, |threads| threads.to_string()),
+        ))
     }
 
     /// Callable and arguments that make the plan again.
@@ -314,10 +323,8 @@ impl PyContact {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let setup = self.contact.setup();
-        let (method, refinement) = method_words(setup.method);
         let keywords = PyDict::new(py);
-        keywords.set_item("method", method)?;
-        keywords.set_item("refinement", refinement)?;
+        keywords.set_item("coefficients", self.coefficients(py)?)?;
         keywords.set_item("threads", setup.threads)?;
         let arguments = (self.body(), self.grid(), self.counterbody());
         remade(py.get_type::<Self>(), arguments, keywords)

@@ -165,6 +165,13 @@ impl PySolution {
         })
     }
 
+    /// Influence coefficients ``(nx, ny)`` [m/Pa] that the contact was given; None where they are those of the bodies.
+    #[getter]
+    fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let given = self.solution.coefficients.as_ref();
+        given.map(|given| read_only(py, given.to_owned())).transpose()
+    }
+
     /// Energy that the permanent indentation has taken [N m], ``sum H w dA``; 0 without hardness.
     #[getter]
     fn plastic_work(&self) -> f64 {

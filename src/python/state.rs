@@ -8,12 +8,11 @@ use ndarray::{Array, Dimension};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCFunction, PyDict, PyList, PyTuple};
+use pyo3::types::{PyDict, PyList};
 
 use super::arguments::{Repr, read_only, real_array};
 
-/// Number of the format. Files that were written before there was one have format 0; the Python package
-/// reads them (`_format0.py`).
+/// Number of the format.
 pub(super) const FORMAT: u64 = 1;
 
 /// A result that has a named state.
@@ -71,29 +70,6 @@ pub(super) type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyDict>,));
 pub(super) fn reduce<'py, S: State>(py: Python<'py>, value: &S) -> PyResult<Reduced<'py>> {
     let class = py.import("nacre._core")?.getattr(S::KIND)?;
     Ok((class.getattr("from_dict")?, (to_dict(py, value)?,)))
-}
-
-/// Functions that pickles of format 0 call. `_format0.py` has them under the same names.
-const RESTORERS: [&str; 6] = [
-    "_restore_report",
-    "_restore_solution",
-    "_restore_stress",
-    "_restore_stress_summary",
-    "_restore_layer_stress",
-    "_restore_interface_stress",
-];
-
-/// Adds the functions of [`RESTORERS`] to the module, outside of its public names.
-pub(super) fn add_restorers(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    for name in RESTORERS {
-        let restore = move |arguments: &Bound<'_, PyTuple>, _: Option<&Bound<'_, PyDict>>| {
-            let format = arguments.py().import("nacre._format0")?;
-            format.call_method1(name, arguments).map(Bound::unbind)
-        };
-        let restore = PyCFunction::new_closure(module.py(), None, None, restore)?;
-        module.setattr(name, restore)?;
-    }
-    Ok(())
 }
 
 /// Fields of a state by their names, to be written or read. Each is read once.

@@ -116,7 +116,7 @@ pub(super) fn stress<'py>(
 /// ... ]
 /// >>> peaks[0] < peaks[1]
 /// True
-#[pyclass(name = "StressPlan", module = "nacre", frozen)]
+#[pyclass(name = "StressPlan", module = "nacre.types", frozen)]
 pub(super) struct PyStressPlan {
     plan: Arc<StressPlan>,
     member: Member,
@@ -249,7 +249,7 @@ impl PyStressPlan {
     }
 
     fn __repr__(&self) -> String {
-        format!("<nacre.StressPlan of the {}>", self.member.word())
+        format!("<StressPlan of the {}>", self.member.word())
     }
 
     /// Method and arguments that make the plan again.

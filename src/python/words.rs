@@ -132,17 +132,6 @@ pub(super) fn method(word: &str, refinement: usize) -> PyResult<Method> {
     })
 }
 
-/// Name and refinement of a method.
-pub(super) fn method_words(method: Method) -> (&'static str, usize) {
-    match method {
-        Method::Exact => ("exact", REFINEMENT),
-        Method::Spectral => ("spectral", REFINEMENT),
-        Method::Plain { refinement } => ("plain", refinement),
-        Method::Difference { refinement } => ("difference", refinement),
-        Method::Image { refinement } => ("image", refinement),
-    }
-}
-
 /// Kind, axis and figure of a warning; 0 where it has none.
 pub(super) fn warning_words(warning: &Warning) -> (&'static str, usize, f64) {
     let (axis, figure) = match *warning {

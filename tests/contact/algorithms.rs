@@ -111,8 +111,8 @@ fn no_pressure_is_below_zero() -> Result<()> {
 #[test]
 fn conversions_on_too_few_cells_are_named() -> Result<()> {
     let body = stack(Elastic::new(35425.0, 0.3)?, [[5.0, 0.3, 4e-4]])?;
-    let setup = converted(Method::Difference { refinement: 4 });
-    let planned = Contact::plan(body, Grid::new([2, 2], [2e-3, 8e-7])?, setup);
+    let grid = Grid::new([2, 2], [2e-3, 8e-7])?;
+    let planned = converted(body, grid, Method::Difference { refinement: 4 });
     let text = planned.map_or_else(|error| error.to_string(), |_| "planned".into());
     let begins = "the influence coefficients are not positive definite, so that";
     assert!(text.starts_with(begins), "{text}");

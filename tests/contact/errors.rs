@@ -9,7 +9,7 @@ use nacre::{
 use ndarray::Array2;
 
 use crate::messages::message;
-use crate::support::settings::{Controls, converted, plan, steel, threads, tolerance};
+use crate::support::settings::{Controls, plan, steel, threads, tolerance};
 
 const NAN: f64 = f64::NAN;
 const INFINITY: f64 = f64::INFINITY;
@@ -104,9 +104,23 @@ fn plans_and_options() -> Result<()> {
     let plan = |setup: Setup| Contact::plan(&body, grid, setup);
     refused! {
         plan(threads(0)) => "threads must be at least 1, got 0";
-        plan(converted(Method::Image { refinement: 0 })) => "refinement must be at least 1, got 0";
-        Contact::plan(&body, Grid::line(64, 1.0)?, converted(Method::Image { refinement: 4 }))
+        influence_coefficients(&body, &grid, Method::Image { refinement: 0 })
+            => "refinement must be at least 1, got 0";
+        influence_coefficients(&body, &Grid::line(64, 1.0)?, Method::Image { refinement: 4 })
             => "method must be \"exact\" on the grid of a line contact";
+    }
+    let given = |coefficients: Array2<f64>, grid: Grid| {
+        let coefficients = Some(coefficients.into_shared());
+        Contact::plan(&body, grid, Setup { coefficients, ..Setup::default() })
+    };
+    let exact = influence_coefficients(&body, &grid, Method::Exact)?;
+    let mut infinite = exact.clone();
+    infinite[[3, 4]] = INFINITY;
+    refused! {
+        given(Array2::ones([12, 16]), grid) => "coefficients: expected shape [16, 12], got [12, 16]";
+        given(infinite, grid) => "coefficients is not finite at [3, 4]";
+        given(exact, grid.periodic([true, false])?)
+            => "coefficients must be the same at the offsets d and n - d along a direction in which a grid of n cells repeats";
     }
     let refined = Method::Plain { refinement: usize::MAX / 8 };
     let text = message(influence_coefficients(&body, &grid, refined));

@@ -103,7 +103,7 @@ fn full_contact_of_crossed_waves() -> Result<()> {
         let error = |n: usize, method: Method| -> Result<f64> {
             let grid = Grid::new([n, n], [10.0, 10.0])?.periodic([true; 2])?;
             let shape = map(&grid, |x, y| height * (k * x).cos() * (k * y).cos())?;
-            let contact = Contact::plan(body, grid, converted(method))?;
+            let contact = converted(body, grid, method)?;
             let solution = contact.solve(&shape, &Motion::load(150.0 * amplitude), &tight())?;
             let (x, y) = (grid.x(), grid.y());
             let wrong = solution.pressure.indexed_iter().map(|((i, j), p)| {
@@ -240,7 +240,7 @@ fn random_stacks_in_full_contact() -> Result<()> {
             let wave = |x: f64, y: f64| (qx * x).cos() * (qy * y).cos();
             let alpha = qx.hypot(qy);
             let amplitude = 1e-3 / frequency_response(&body, alpha)?;
-            let contact = Contact::plan(&body, grid, converted(Method::Spectral))?;
+            let contact = converted(&body, grid, Method::Spectral)?;
             let shape = map(&grid, |x, y| 1e-3 * wave(x, y))?;
             let found = contact.solve(&shape, &Motion::load(1.2 * amplitude * 4.8), &tight())?;
             let (x, y) = (grid.x(), grid.y());

@@ -1,12 +1,13 @@
 //! A contact next to one of other cells is told, others are not; what has no derivative is refused with a reason.
 
 use nacre::gradient::{LinearOptions, Linearisation, Output};
+use nacre::influence::Method;
 use nacre::{Elastic, FlatPunch, Grid, Hardness, Motion, Options, Paraboloid, Result, Solution};
 
 use super::cases::Case;
 
 use crate::support::contacts::Random;
-use crate::support::settings::{plan, tolerance};
+use crate::support::settings::{converted, plan, tolerance};
 
 const OPTIONS: LinearOptions = LinearOptions { tolerance: 1e-9, watch: None };
 
@@ -92,6 +93,22 @@ fn refusals_name_the_smooth_alternative() -> Result<()> {
     ] {
         refused(plan.gradients(&[Output::Approach], Some(&[path])), words);
     }
+    // Coefficients that are given do not follow from the body; other derivatives are those of the same contact.
+    let (body, grid) = (Elastic::new(1.0, 0.3)?, *solution.grid());
+    let given = converted(body, grid, Method::Exact)?;
+    let given = given.solve(&ball, &load, &Options::default())?;
+    let given = Linearisation::plan(&given, Some(&ball), &OPTIONS)?;
+    let of_body = Some(&["body.substrate.young"][..]);
+    refused(
+        given.gradients(&[Output::Approach], of_body),
+        "body.substrate.young has no derivative: the contact was given influence coefficients",
+    );
+    let slopes = |plan: &Linearisation<'_>| -> Result<f64> {
+        let gradient = &plan.gradients(&[Output::Approach], Some(&["load"]))?[0];
+        Ok(gradient.get("load").unwrap_or(f64::NAN))
+    };
+    near!(slopes(&given)?, slopes(&round)?, 1e-9 * slopes(&round)?.abs());
+
     // The contact of a flat punch is fixed: dδ/dW is exact, and δ is in proportion to W.
     let gradient = &flat.gradients(&[Output::Approach], None)?[0];
     let slope = gradient.get("load").unwrap_or(f64::NAN);

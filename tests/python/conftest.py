@@ -14,7 +14,7 @@ docs examples functions fuzz fuzz_contacts fuzz_ends fuzz_files fuzz_fits fuzz_i
 indent_extremes indent_fit indent_residuals notebook optimise paper peers rough stress_ends
 studies typing
 """.split()
-"""Files that `make quick` leaves out: random cases, programs of the documentation, long fits."""
+"""Files that `make quick` leaves out, as tests with the mark: random cases, examples, long fits."""
 CLAIMS = Path(__file__).parents[2] / "docs" / "claims.json"
 
 

@@ -44,9 +44,9 @@ NORMAL: dict[str, Callable[[], nacre.Solution]] = {
     "not converged": lambda: nacre.solve(
         BALL, LAYERED, grid=GRID, load=10.0, max_iterations=2, check=False
     ),
-    "converted": lambda: nacre.solve(
-        BALL, LAYERED, grid=GRID, approach=1e-7, method="image", refinement=8, tolerance=1e-5
-    ),
+    "given coefficients": lambda: nacre.Contact(
+        LAYERED, GRID, coefficients=nacre.influence_coefficients(LAYERED, GRID, "image", 8)
+    ).solve(BALL, approach=1e-7, tolerance=1e-5),
 }
 FRICTIONS = np.linspace(0.1, 0.5, 40 * 36).reshape(40, 36)
 FRICTION: dict[str, Callable[[], nacre.types.FrictionSolution]] = {
@@ -55,6 +55,9 @@ FRICTION: dict[str, Callable[[], nacre.types.FrictionSolution]] = {
         BALL, load=10.0, friction=FRICTIONS, shift=(1e-7, None)
     ),
     "rolled": lambda: CONTACT.roll(BALL, **HELD, creepage=(1e-3, 2e-4), spin=3.0, direction="-x"),
+    "given coefficients, slid": lambda: nacre.Contact(
+        COATED, CELLS, coefficients=nacre.influence_coefficients(COATED, CELLS, "image")
+    ).slide(BALL, load=10.0, friction=0.3, force=(1.0, None)),
     "line slid": lambda: LINE.slide(ROD, load=1e4, friction=0.3, force=(None, 1e3)),
     "line rolled": lambda: LINE.roll(ROD, load=1e4, friction=0.3, creepage=(1e-4, None)),
     "apart": lambda: CONTACT.slide(BALL, approach=-1e-6, friction=0.3),

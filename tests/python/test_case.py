@@ -217,6 +217,7 @@ STRESSED = (
 )
 
 
+@pytest.mark.slow
 def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -240,6 +241,7 @@ def test_stresses_that_a_case_asks_for_are_those_of_the_summary(
     assert found["interfaces"][0]["shear"]["value"] == summary.interfaces[0].shear[0]
 
 
+@pytest.mark.slow
 def test_stresses_of_a_study_have_the_friction_of_the_case(tmp_path: Path) -> None:
     outputs = 'outputs = ["peak_pressure", "tilt"]'
     path = written(tmp_path, STRESSED.replace(outputs, 'outputs = ["interface_shear"]'))
@@ -675,6 +677,7 @@ def test_the_case_in_the_documentation_is_one(tmp_path: Path) -> None:
     assert len(case.study()["parameters"]["solve.load"]) == 10
 
 
+@pytest.mark.slow
 def test_the_case_of_the_page_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     page = (Path(__file__).parents[2] / "docs" / "cases.md").read_text(encoding="utf-8")
     text = page.partition(":caption: ball.toml\n")[2].partition("```")[0]

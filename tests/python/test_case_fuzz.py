@@ -52,8 +52,6 @@ CASE: dict[str, Any] = {
         "load": 10.0,
         "eccentricity": {"x": 1e-6},
         "tilt": [0.0, 0.0],
-        "method": "exact",
-        "refinement": 4,
         "threads": 1,
         "tolerance": 1e-8,
         "max_iterations": 10,
@@ -115,6 +113,7 @@ def cases() -> Iterator[tuple[dict[str, Any], tuple[Any, ...]]]:
                 yield changed(whole, (*path[:-1], f"{path[-1]}s"), 1), path
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::nacre.NacreWarning")
 def test_an_error_is_one_line_that_names_file_and_key(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.random.default_rng(1).normal(size=(8, 8)))

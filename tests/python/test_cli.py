@@ -180,6 +180,7 @@ def test_a_radius_beyond_all_contacts_is_refused(tmp_path: Path, capsys: Capture
     assert "no minimum within the radii" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process")
 @pytest.mark.parametrize("name", LONG)
 def test_a_long_solve_of_a_case_shows_that_it_goes_on_and_ends_at_ctrl_c(
@@ -200,6 +201,7 @@ def test_a_long_solve_of_a_case_shows_that_it_goes_on_and_ends_at_ctrl_c(
     assert ended.waited < 5
 
 
+@pytest.mark.slow
 def test_store_of_a_case_stays_in_its_folder(tmp_path: Path) -> None:
     folder = tmp_path / "cases"
     folder.mkdir()

@@ -177,10 +177,10 @@ def test_results_are_lines_with_prefixes() -> None:
     assert f"peak pressure {solution.peak_pressure / 1e9:.6g} GPa" in repr(solution)
     value = written(summary.layers[0].von_mises[0], "Pa")
     assert repr(summary.layers[0]).startswith(
-        f"<nacre.LayerStress of layers[0]: von Mises {value}, tension "
+        f"<LayerStress of layers[0]: von Mises {value}, tension "
     )
     assert repr(summary.interfaces[0]).startswith(
-        "<nacre.InterfaceStress of interfaces[0] at 2 µm: shear "
+        "<InterfaceStress of interfaces[0] at 2 µm: shear "
     )
 
 

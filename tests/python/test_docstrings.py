@@ -1,7 +1,10 @@
 """Every public name has a NumPy-style docstring, whose examples are true."""
 
+import ast
+import dataclasses
 import doctest
 import inspect
+import itertools
 import re
 from types import ModuleType
 from typing import Any
@@ -13,6 +16,7 @@ import nacre
 import nacre.design
 import nacre.plot.sections
 import nacre.units
+from nacre._result import Result
 
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -32,7 +36,9 @@ def public_objects() -> dict[str, Any]:
 
 
 def parameters(thing: Any) -> list[inspect.Parameter]:
-    """Return what a caller gives; nothing where nothing can be called."""
+    """Return what a caller gives: nothing for results, which nacre makes."""
+    if isinstance(thing, type) and issubclass(thing, Result):
+        return []
     try:
         signature = inspect.signature(thing)
     except (TypeError, ValueError):
@@ -70,6 +76,22 @@ def test_it_says_what_it_is_in_one_line(name: str) -> None:
     assert rest == "" or rest.startswith("\n")
 
 
+@pytest.mark.parametrize(
+    "name", [name for name, thing in CLASSES.items() if issubclass(thing, Result)]
+)
+def test_every_field_of_a_result_is_documented(name: str) -> None:
+    kind: Any = CLASSES[name]
+    module: Any = ast.parse(inspect.getsource(kind))
+    body: list[Any] = module.body[0].body
+    told = {
+        field.target.id: text.value.value
+        for field, text in itertools.pairwise(body)
+        if (type(field), type(text)) == (ast.AnnAssign, ast.Expr)
+    }
+    for field in dataclasses.fields(kind):
+        assert told[field.name].split("\n")[0].endswith((".", ":"))
+
+
 @pytest.mark.parametrize("name", CALLED)
 def test_parameters_errors_and_what_is_returned_are_documented(name: str) -> None:
     thing = OBJECTS[name]
@@ -90,6 +112,7 @@ def with_examples() -> list[str]:
     return [name for name, thing in everything.items() if ">>> " in (thing.__doc__ or "")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", with_examples())
 def test_its_examples_are_true(name: str) -> None:
     docstring = nacre.__doc__ if name == "nacre" else OBJECTS[name].__doc__
@@ -103,6 +126,7 @@ def test_its_examples_are_true(name: str) -> None:
     assert result.failed == 0, "".join(said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [nacre.units, nacre.design, nacre.plot.sections])
 def test_the_examples_of_a_module_are_true(module: ModuleType) -> None:
     result = doctest.testmod(module, globs={**vars(module), "nacre": nacre}, optionflags=FLAGS)

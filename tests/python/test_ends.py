@@ -17,7 +17,7 @@ import nacre
 from bodies import BALL, STEEL
 from nacre import values
 from nacre.case import Case
-from support import DATA
+from support import DATA, Capture, command
 
 LAYERS = [nacre.Layer(nacre.Elastic(420e9, 0.25), 2e-6)]
 COATED = nacre.HalfSpace(STEEL, LAYERS)
@@ -116,6 +116,7 @@ def test_a_sharp_roller_on_a_wide_race_is_near_the_reference() -> None:
     assert solution.report.counterbody == roller
 
 
+@pytest.mark.slow
 def test_both_bodies_free_are_softer_and_warn_of_no_edge() -> None:
     roller = nacre.HalfSpace(UNIT, ends=STRAIGHT.ends)
     whole, one, both = (
@@ -144,6 +145,7 @@ def test_a_plan_has_the_ends_of_its_bodies() -> None:
     assert not solution.pressure[solution.x < -1e-4].any()
 
 
+@pytest.mark.slow
 def test_a_grid_is_found_that_fits_the_ends() -> None:
     roller = nacre.Roller(5e-3, flat_length=8e-3, crown_radius=0.5, length=10e-3)
     free = nacre.solve(roller, STEEL, nacre.HalfSpace(STEEL, ends=roller.ends), load=1e3)
@@ -262,10 +264,9 @@ def test_the_ends_of_a_case_can_be_swept(tmp_path: Path) -> None:
     assert single.approach.values.tolist() == [both, one]
 
 
-def test_the_reference_of_case_files_has_the_ends() -> None:
-    from nacre import _reference
-
-    told = " ".join(_reference.text().split())
+def test_the_reference_of_case_files_has_the_ends(capsys: Capture) -> None:
+    assert command("schema") == 0
+    told = " ".join(capsys.readouterr().out.split())
     assert "`ends`: pair of numbers, or of -inf and inf where the body goes on [m]" in told
 
 

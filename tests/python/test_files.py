@@ -297,6 +297,7 @@ except OSError as error:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of a file")
 def test_a_full_disk_is_an_error_and_the_process_goes_on(tmp_path: Path) -> None:
     done = python("-c", FULL, folder=tmp_path)
@@ -322,6 +323,7 @@ def rewritten(path: Path, **changes: Any) -> Path:
     return path.with_name("changed.nc")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "fields"),
     [
@@ -461,6 +463,7 @@ def test_what_is_no_value_is_refused() -> None:
         values.encode(object())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("missing", "extra", "call"),
     [

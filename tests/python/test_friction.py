@@ -375,6 +375,7 @@ def test_an_exception_of_progress_carries_the_finished_steps(error: BaseExceptio
     assert [s.traction.tobytes() for s in found] == [s.traction.tobytes() for s in whole]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="sends a signal to a process")
 @pytest.mark.parametrize(
     "solve",

@@ -14,7 +14,6 @@ import xarray
 
 import nacre
 from bodies import BALL, HELD, STEEL
-from nacre import _reference
 from nacre.case import Case, CaseError
 from support import Capture, command, python, written
 
@@ -142,8 +141,9 @@ def test_a_wrong_key_is_named(name: str) -> None:
         Case(BASE | data).arguments()
 
 
-def test_the_reference_has_every_key() -> None:
-    told = _reference.text()
+def test_the_reference_has_every_key(capsys: Capture) -> None:
+    assert command("schema") == 0
+    told = capsys.readouterr().out
     for head in ("## `[slide]`\n", "## `[[slide.steps]]`\n", "## `[roll]`\n"):
         assert head in told
     for key in ("friction", "shift", "force", "twist", "torque", "coupling", "creepage", "spin"):
@@ -207,6 +207,7 @@ def test_what_fails_is_one_line_and_its_exit_code(line: str, tmp_path: Path) -> 
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_what_does_not_converge_is_exit_code_1(tmp_path: Path, capsys: Capture) -> None:
     text = SLIDE.replace("load = 10.0", "load = 10.0\ntolerance = 1e-16")
     out = tmp_path / "out.nc"

@@ -42,6 +42,7 @@ def test_the_dataset_has_units_and_the_numbers(kind: str) -> None:
         **{"x": "m", "y": "m", "pressure": "Pa", "gap": "m", "normal_displacement": "m"},
         **{"traction": "Pa", "displacement": "m", "slip": "1" if rolls else "m", "stick": "1"},
         **({"friction": "1"} if "cells" in kind else {}),
+        **({"coefficients": "m/Pa"} if "given" in kind else {}),
     }
     assert dataset.traction.dims == ("component", "x", "y")
     for component, name in enumerate(dataset.component.values):
@@ -144,7 +145,7 @@ def test_every_row_of_the_text_has_its_own_name_and_is_in_the_html(kind: str) ->
         assert f">{name}</th>" in markup
     nx, ny = solution.grid.shape
     state = "not converged" if kind.startswith("not converged") else "converged"
-    pattern = rf"<nacre\.FrictionSolution on {nx} x {ny} cells: force \(.*, {state}>"
+    pattern = rf"<FrictionSolution on {nx} x {ny} cells: force \(.*, {state}>"
     assert re.fullmatch(pattern, repr(solution))
     assert repr(solution.report).startswith(
         f"<FrictionReport: {solution.report.termination}, {solution.report.convolutions} conv"

@@ -168,7 +168,7 @@ def test_wrong_arguments_are_refused_or_answered(data: st.DataObject) -> None:
     bodies,
     st.dictionaries(
         st.sampled_from(
-            ["load", "approach", "eccentricity", "moment", "tilt", "tolerance", "grid", "method"]
+            ["load", "approach", "eccentricity", "moment", "tilt", "tolerance", "grid", "threads"]
         ),
         wrong,
         max_size=3,

@@ -214,6 +214,7 @@ test.{call}
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("adhesion", "call"),
     [
@@ -319,6 +320,7 @@ def body_of(case: dict[str, Any]) -> nacre.HalfSpace:
     return nacre.HalfSpace(nacre.RIGID if base == "rigid" else material(base), layers)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:the contact is not small")  # both take half-spaces
 @pytest.mark.parametrize("case", ROUND, ids=[case["name"] for case in ROUND])
 def test_contacts_on_grids_agree_within_the_errors_that_they_state(case: dict[str, Any]) -> None:

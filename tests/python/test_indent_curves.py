@@ -659,6 +659,7 @@ def test_the_contact_point_of_exact_data_is_exact(baseline: str, exponent: float
     assert found.force == pytest.approx(0.0 if baseline == "none" else 2e-5, abs=1e-11)
 
 
+@pytest.mark.slow
 def test_its_uncertainty_is_that_of_the_noise() -> None:
     # Over 300 curves the ratio of error to uncertainty has a standard deviation of 1 ± 0.04; the
     # law is linearised, which costs some more.

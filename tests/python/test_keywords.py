@@ -13,7 +13,7 @@ from nacre import _indent_tables, _keywords, _schema, _shape_tables, studies, va
 
 GRID = nacre.Grid((16, 16), (2e-4, 2e-4))
 SOLUTION = nacre.solve(BALL, STEEL, grid=GRID, load=10.0)
-SOLVE = (_keywords.Motion, _keywords.Plan, _keywords.Search)
+SOLVE = (_keywords.Motion, _keywords.Threads, _keywords.Search)
 PLAN = SOLUTION.stress_plan()
 
 # What is no number and no word: types of it are in the stub.
@@ -30,11 +30,6 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], tuple[type, ...], Callable[..., A
         nacre.Contact.solve_many,
         (_keywords.Search,),
         lambda **k: nacre.Contact(STEEL, GRID).solve_many([], **k),
-    ),
-    "Convolution.of_bodies": (
-        nacre.Convolution.of_bodies,
-        (_keywords.Plan,),
-        lambda **k: nacre.Convolution.of_bodies(STEEL, GRID, **k),
     ),
     "stress": (
         nacre.stress,

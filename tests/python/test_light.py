@@ -39,6 +39,7 @@ def test_the_parts_that_plot_and_talk_wait_until_they_are_used() -> None:
     assert {f"nacre.{name}" for name in later} & set(imported()) == set()
 
 
+@pytest.mark.slow
 def test_modules_are_attributes_that_are_imported_when_they_are_used() -> None:
     script = SCRIPT.replace("nacre.solve", "nacre.design.coating_chart; nacre.solve")
     assert "nacre.design" in imported(script)

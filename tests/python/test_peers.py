@@ -22,7 +22,7 @@ ROUNDING = 1e-13
 
 def solve(problem: Problem) -> nacre.Solution:
     """Return nacre's solution."""
-    contact = nacre.Contact(problem.body, problem.grid, method=problem.method)
+    contact = nacre.Contact(problem.body, problem.grid, coefficients=problem.coefficients())
     return contact.solve(problem.shape(), load=problem.load)
 
 

@@ -58,7 +58,8 @@ def test_the_map_says_once_that_it_repeats() -> None:
 
 
 def test_the_spectral_method_has_waves_exactly() -> None:
-    contact = nacre.Contact(BODY, GRID, method="spectral")
+    waves = nacre.influence_coefficients(BODY, GRID, "spectral")
+    contact = nacre.Contact(BODY, GRID, coefficients=waves)
     full = contact.solve(MAP, load=0.006, tolerance=1e-12)
     wave = np.pi * 1e-3 * np.cos(2 * np.pi * X) + np.pi * 5e-4 / 0.75 * np.cos(2 * np.pi * Y / 0.75)
     np.testing.assert_allclose(full.pressure, 0.008 + wave, rtol=1e-11)
@@ -154,13 +155,15 @@ def test_other_programs_find_the_same_pressure(
         elastic = nacre.Elastic(layer["young"], layer["poisson"])
         body = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(elastic, layer["thickness"])])
     grid = nacre.Grid((cells, cells), (side, side), periodic=(True, True))
-    contact = nacre.Contact(body, grid, method="spectral")
+    waves = nacre.influence_coefficients(body, grid, "spectral")
+    contact = nacre.Contact(body, grid, coefficients=waves)
     found = contact.solve(shape, load=data["mean_pressure"] * side**2, tolerance=1e-12)
     theirs = np.array(data[name])
     assert 0.02 < (theirs > 0).mean() < 0.9
     claim("periodic-peers", float(np.abs(found.pressure - theirs).max() / theirs.max()))
 
 
+@pytest.mark.slow
 def test_stresses_repeat_and_bear_the_load() -> None:
     """A wave on a bare body has σ_zz = −p (1 + qz) e^{−qz} and σ_xx = −p (1 − qz) e^{−qz}.
 
@@ -188,6 +191,7 @@ def test_stresses_repeat_and_bear_the_load() -> None:
     assert summary.layers[0].von_mises[0] == pytest.approx(largest.max(), rel=1e-2)
 
 
+@pytest.mark.slow
 def test_plans_sections_and_files_know_that_stresses_repeat(tmp_path: Path) -> None:
     solution = nacre.solve(MAP, BODY, load=2e-3)
     plan = solution.stress_plan()

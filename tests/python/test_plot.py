@@ -188,6 +188,7 @@ def chart() -> Any:
     return design.coating_chart(BALL, STEEL, load=10.0, tolerance=1e-4, **lists)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["peak_pressure", "coating_tension", "interface_shear"])
 def test_a_chart_has_units_and_levels_within_its_frame(chart: Any, quantity: str) -> None:
     axes = plot.chart(chart, quantity)

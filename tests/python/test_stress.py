@@ -223,6 +223,7 @@ def test_invariants_are_those_of_the_components(solution: nacre.Solution) -> Non
     assert y == 0.0
 
 
+@pytest.mark.slow
 def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     summary = solution.stress_summary(
         yield_stress={"substrate": 2e9},
@@ -275,6 +276,7 @@ def test_the_summary_holds_the_extremes(solution: nacre.Solution) -> None:
     assert summary.finished
 
 
+@pytest.mark.slow
 def test_names_of_layers_are_keys_and_are_shown() -> None:
     hard, soft = nacre.Elastic(420e9, 0.3), nacre.Elastic(250e9, 0.3)
     layers = [
@@ -307,7 +309,7 @@ def test_fields_are_values(solution: nacre.Solution) -> None:
         [0.0, 30e-6], y=0.0, friction=0.1, direction=(1.0, 0.0), displacement=True
     )
     assert field != solution.stress([0.0, 30e-6], y=0.0)
-    assert repr(field).startswith("<nacre.Stress: depths 2 from 0")
+    assert repr(field).startswith("<Stress: depths 2 from 0")
     assert not field.xx.flags.writeable
 
 

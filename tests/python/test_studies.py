@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
@@ -26,8 +27,8 @@ import xarray
 import nacre
 from nacre import _progress, design
 from nacre._journal import Journal
-from nacre._outputs import Output
 
+Output = str | Callable[[Any], Any]
 STEEL = nacre.Elastic(210e9, 0.3)
 GRID = nacre.Grid((24, 20), (2e-4, 2e-4))
 

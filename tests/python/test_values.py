@@ -19,6 +19,7 @@ FLOATING = nacre.HalfSpace(
     nacre.RIGID, layers=[nacre.Layer(DLC, 1e-6, "frictionless"), nacre.Layer(STEEL, 1e-3)]
 )
 GRID = nacre.Grid(shape=(48, 50), size=(4e-4, 4.1e-4))
+SMALL = nacre.Grid(shape=(16, 12), size=(4e-4, 4.1e-4))
 THIRDS = np.arange(12).reshape(3, 4) / 3e6  # no finite number of decimals gives them
 LOGARITHMIC = nacre.LogarithmicProfile(1e-5 / 3, 20e-3, flat_length=5e-3, end_factor=0.9)
 SAMPLED = nacre.SampledProfile(x=[-1e-2, 1e-3 / 3, 1e-2], drop=[1e-5 / 3, 0.0, 1e-6 / 7])
@@ -70,7 +71,11 @@ MADE_BY_A_CALL: dict[str, Any] = {
     "sum of shifted": BALL.shifted(1e-3, 0.0) + nacre.FlatPunch(1e-3).shifted(0.0, 1e-3),
     "contact": nacre.Contact(STEEL, GRID),
     "contact with everything": nacre.Contact(
-        COATED, GRID, FLOATING, method="image", refinement=2, threads=1
+        COATED,
+        SMALL,
+        FLOATING,
+        coefficients=nacre.influence_coefficients(COATED, SMALL, "image", 2),
+        threads=1,
     ),
 }
 VALUES = MADE_BY_A_CALL | {
@@ -210,6 +215,7 @@ print(hash(some) == hash(functools.reduce(operator.add, [part] * 5000)))
 """
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_shapes_can_be_added() -> None:
     # In a process of its own: without lists, recursion ends the process.
     run = python("-c", SUMS)

@@ -1,6 +1,6 @@
 //! Bodies, settings and solves that differ from the defaults in one or two things.
 
-use nacre::influence::Method;
+use nacre::influence::{Method, influence_coefficients};
 use nacre::{
     Algorithm, Body, Contact, Elastic, Grid, HalfSpace, Layer, Motion, Options, Result, Setup,
     Solution, Substrate, Surface,
@@ -41,9 +41,14 @@ pub(crate) fn threads(threads: usize) -> Setup {
     Setup { threads: Some(threads), ..Setup::default() }
 }
 
-/// A plan whose coefficients are made by this method.
-pub(crate) fn converted(method: Method) -> Setup {
-    Setup { method, ..Setup::default() }
+/// A contact of one body whose coefficients are made by this method.
+pub(crate) fn converted(
+    body: impl Into<Body> + Clone,
+    grid: Grid,
+    method: Method,
+) -> Result<Contact> {
+    let coefficients = influence_coefficients(body.clone(), &grid, method)?.into_shared();
+    Contact::plan(body, grid, Setup { coefficients: Some(coefficients), ..Setup::default() })
 }
 
 /// A plan against another body.

@@ -1,10 +1,8 @@
 //! A paraboloid on a coated body, in the scales of the Hertzian contact of a reference material.
 
-use nacre::{
-    Contact, Grid, HalfSpace, Method, Motion, Options, Paraboloid, Result, Solution, hertz,
-};
+use nacre::{Grid, HalfSpace, Method, Motion, Options, Paraboloid, Result, Solution, hertz};
 
-use crate::support::settings::{converged, converted};
+use crate::support::settings::{converged, converted, plan};
 
 /// Peak pressure, approach and contact radius, each divided by its Hertzian scale.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +37,11 @@ impl Measures {
 /// A solved contact on n² cells over a side of 6, in units in which the Hertzian contact of the reference
 /// material (`modulus` E*) has a radius of 1.
 pub(crate) fn solve(body: &HalfSpace, modulus: f64, n: usize, method: Method) -> Result<Solution> {
-    let contact = Contact::plan(body, Grid::new([n; 2], [6.0; 2])?, converted(method))?;
+    let grid = Grid::new([n; 2], [6.0; 2])?;
+    let contact = match method {
+        Method::Exact => plan(body, grid)?,
+        _ => converted(body, grid, method)?,
+    };
     let (shape, motion) = (Paraboloid::new(RADIUS, RADIUS)?, Motion::load(load(modulus)));
     converged(&contact, &shape, &motion, &Options::default())
 }

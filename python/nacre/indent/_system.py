@@ -16,8 +16,12 @@ Array = npt.NDArray[np.float64]
 
 
 UNITS = PARAMETERS | {
-    **{"work": "N/m", "flat": "m", "strength": "Pa"},
-    **{"contact_point": "m", "drift": "m/s", "compliance": "m/N"},
+    "work": "N/m",
+    "flat": "m",
+    "strength": "Pa",
+    "contact_point": "m",
+    "drift": "m/s",
+    "compliance": "m/N",
 }
 """SI units of parameters by the last part of their names."""
 

@@ -7,7 +7,7 @@ use ndarray::Array2;
 
 use crate::compliance::convolution::{Addition, Convolution, Workspace};
 use crate::compliance::ends::Ends;
-use crate::compliance::influence::{Method, memory};
+use crate::compliance::influence::memory;
 use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
@@ -61,11 +61,14 @@ impl Tangent {
             2 * memory(grid) + 2 * Convolution::memory(shape) + (shape[0] * shape[1] * 80) as u64,
         )?;
         let threads = Arc::new(Threads::new(None)?);
-        let setup =
-            Setup { counterbody: report.counterbody.clone(), method: report.method, threads: None };
-        let near = match report.method {
-            Method::Exact => grid.of_offsets(shape),
-            _ => *grid,
+        let setup = Setup {
+            counterbody: report.counterbody.clone(),
+            coefficients: solution.coefficients.clone(),
+            threads: None,
+        };
+        let near = match &setup.coefficients {
+            None => grid.of_offsets(shape),
+            Some(_) => *grid,
         };
         let additions = Ends::of(&bodies(&report.body, &setup)).additions(grid, grid, &threads)?;
         let (coefficients, datum) = operator(&report.body, &setup, &near, &additions, &threads)?;

@@ -11,29 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
 use super::{Real, Repr, count, number, pair, real_array, real_matrix};
-use crate::compliance::influence::Method;
 use crate::contact::{Hardness, Motion, Options};
-use crate::python::words::{REFINEMENT, Word, method};
-
-/// Signature of the keywords that say how coefficients are planned.
-macro_rules! plan_signature {
-    () => {
-        "method='exact', refinement=None, threads=None"
-    };
-}
-
-/// Documentation of the keywords of `plan_signature`.
-macro_rules! plan_docs {
-    () => {
-        "\
-method : {\"exact\", \"plain\", \"difference\", \"image\"}, optional
-    How influence coefficients are computed; see `influence_coefficients`.
-refinement : int, optional
-    Refinement of the spectral mesh of the conversions, 4 by default.
-threads : int, optional
-    Number of threads; all of the machine's by default."
-    };
-}
+use crate::python::words::Word;
 
 /// Signature of the keywords that say what is asked of the rigid motion.
 macro_rules! motion_signature {
@@ -117,16 +96,8 @@ check : bool, optional
 }
 
 pub(in crate::python) use {
-    motion_docs, motion_signature, plan_docs, plan_signature, search_docs, search_signature,
-    single_docs, single_signature,
+    motion_docs, motion_signature, search_docs, search_signature, single_docs, single_signature,
 };
-
-/// Method and threads of a plan.
-pub(in crate::python) fn plan(keywords: &Keywords) -> PyResult<(Method, Option<usize>)> {
-    let word = keywords.text("method", "exact")?;
-    let refinement = keywords.count("refinement", 1)?.unwrap_or(REFINEMENT);
-    Ok((method(&word, refinement)?, keywords.count("threads", 1)?))
-}
 
 /// Rigid motion that is asked.
 pub(in crate::python) fn motion(keywords: &Keywords) -> PyResult<Motion> {

@@ -8,11 +8,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::compliance::convolution::Convolution;
-use crate::compliance::influence::coefficients_on;
+use crate::compliance::influence::{Method, coefficients_on};
 use crate::compliance::response::Body;
 use crate::model::body::HalfSpace;
 use crate::numerics::parallel::Threads;
-use crate::python::arguments::keywords::{self, Keywords, plan_docs, plan_signature};
 use crate::python::arguments::{count, read_only, real_matrix, remade};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
@@ -81,8 +80,7 @@ impl PyConvolution {
         })??)
     }
 
-    #[doc = concat!("of_bodies(body, grid, counterbody=None, *, ", plan_signature!(), ")\n--\n")]
-    /// Convolution with the influence coefficients of one or two bodies.
+    /// Convolution with the exact influence coefficients of one or two bodies.
     ///
     /// Parameters
     /// ----------
@@ -92,7 +90,8 @@ impl PyConvolution {
     ///     Cells of the pressure.
     /// counterbody : HalfSpace or Elastic, optional
     ///     Second body under the same pressure; rigid where there is none.
-    #[doc = plan_docs!()]
+    /// threads : int, optional
+    ///     Number of threads; all of the machine's by default.
     ///
     /// Returns
     /// -------
@@ -113,17 +112,15 @@ impl PyConvolution {
     /// >>> nacre.Convolution.of_bodies(steel, grid).shape
     /// (8, 6)
     #[staticmethod]
-    #[pyo3(signature = (body, grid, counterbody=None, **keywords), text_signature = None)]
-    fn of_bodies<'py>(
-        py: Python<'py>,
+    #[pyo3(signature = (body, grid, counterbody=None, *, threads=None))]
+    fn of_bodies(
+        py: Python<'_>,
         #[pyo3(from_py_with = body)] body: HalfSpace,
         grid: PyGrid,
-        counterbody: Option<&Bound<'py, PyAny>>,
-        keywords: Option<&Bound<'py, PyDict>>,
+        counterbody: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let keywords = Keywords::new(py, keywords)?;
-        let (method, threads) = keywords::plan(&keywords)?;
-        keywords.finish("keywords of Convolution.of_bodies")?;
+        let threads = threads.map(|n| count("threads", 1, n)).transpose()?;
         let counterbody = counterbody.map(self::body).transpose()?;
         Ok(background::run(py, None, move |_: &mut Caller<()>| {
             let grid = grid.0;
@@ -132,10 +129,11 @@ impl PyConvolution {
                 Convolution::memory(grid.shape()),
             )?;
             let shared = Arc::new(Threads::new(threads)?);
-            let mut coefficients = coefficients_on(&*Body::from(body), &grid, method, &shared)?;
+            let mut coefficients =
+                coefficients_on(&*Body::from(body), &grid, Method::Exact, &shared)?;
             if let Some(counterbody) = counterbody {
                 let body = Body::from(counterbody);
-                coefficients += &coefficients_on(&*body, &grid, method, &shared)?;
+                coefficients += &coefficients_on(&*body, &grid, Method::Exact, &shared)?;
             }
             Self::plan(coefficients, threads, shared)
         })??)
@@ -230,7 +228,7 @@ impl PyConvolution {
 
     fn __repr__(&self) -> String {
         let [nx, ny] = self.convolution.shape();
-        format!("<nacre.Convolution on {nx} x {ny} cells, {} threads>", self.convolution.threads())
+        format!("<Convolution on {nx} x {ny} cells, {} threads>", self.convolution.threads())
     }
 
     /// Callable and arguments that make the convolution again.

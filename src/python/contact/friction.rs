@@ -7,7 +7,7 @@ mod rolling;
 mod sliding;
 mod solution;
 
-pub(in crate::python) use creep::{PyCreepCoefficients, creep_coefficients};
+pub(in crate::python) use creep::creep_coefficients;
 pub(super) use keywords::{
     found_docs, found_signature, roll_docs, roll_signature, rolled_docs, slid_docs, slide_docs,
     slide_signature,

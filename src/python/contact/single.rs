@@ -9,8 +9,8 @@ use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::python::arguments::keywords::{
-    self, Keywords, Single, motion_docs, motion_signature, plan_docs, plan_signature, search_docs,
-    search_signature, single_docs, single_signature,
+    self, Keywords, Single, motion_docs, motion_signature, search_docs, search_signature,
+    single_docs, single_signature,
 };
 use crate::python::background;
 use crate::python::bodies::body;
@@ -18,16 +18,19 @@ use crate::python::grid::PyGrid;
 use crate::python::shapes::{Shape, shape};
 use crate::python::solution::{PyReport, PySolution};
 
-/// Setup of a plan.
+/// Setup of a plan with the coefficients of the bodies.
 pub(super) fn setup(
     counterbody: Option<&Bound<'_, PyAny>>,
     keywords: &Keywords,
 ) -> PyResult<Setup> {
-    let (method, threads) = keywords::plan(keywords)?;
-    Ok(Setup { counterbody: counterbody.map(body).transpose()?.map(Body::from), method, threads })
+    Ok(Setup {
+        counterbody: counterbody.map(body).transpose()?.map(Body::from),
+        coefficients: None,
+        threads: keywords.count("threads", 1)?,
+    })
 }
 
-#[doc = concat!("solve(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
+#[doc = concat!("solve(shape, body, counterbody=None, *, grid=None, threads=None, ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
 /// Presses a shape into a body, in one call: chooses a grid where none is given, plans, solves.
 ///
 /// By default the grid of a height map is its own. Any other shape gets a grid that holds the whole
@@ -48,7 +51,8 @@ pub(super) fn setup(
 /// grid : Grid, optional
 ///     Cells of the pressure; by default those of an `initial` solution whose surfaces have a permanent indentation.
 ///     An endless shape, such as a cylinder, needs a grid.
-#[doc = plan_docs!()]
+/// threads : int, optional
+///     Number of threads; all of the machine's by default.
 #[doc = motion_docs!()]
 #[doc = search_docs!()]
 #[doc = single_docs!()]

@@ -241,7 +241,7 @@ impl Shape {
 /// --------
 /// >>> nacre.Sphere(5e-3) + nacre.HeightMap([[0.0, 1e-9], [1e-9, 0.0]], spacing=1e-6)
 /// Sphere(radius=0.005) + HeightMap(heights=[[0.0, 1e-09], [1e-09, 0.0]], spacing=(1e-06, 1e-06), center=(0.0, 0.0))
-#[pyclass(name = "Shape", module = "nacre", frozen, eq, subclass)]
+#[pyclass(name = "Shape", module = "nacre.types", frozen, eq, subclass)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyShape(pub(in crate::python) Shape);
 

@@ -19,7 +19,7 @@ use crate::python::arguments::{read_only, real_matrix};
 /// >>> change = solution.jvp({"load": 1.0})
 /// >>> round(change.approach * 10.0 / solution.approach, 2)
 /// 0.67
-#[pyclass(name = "Direction", module = "nacre", frozen)]
+#[pyclass(name = "Direction", module = "nacre.types", frozen)]
 pub(in crate::python) struct PyDirection {
     direction: Direction,
     made: Made,

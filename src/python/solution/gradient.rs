@@ -25,7 +25,7 @@ use crate::python::arguments::{read_only, real_matrix};
 /// 0.67
 /// >>> list(gradient)[:2]
 /// ['body.substrate.young', 'body.substrate.poisson']
-#[pyclass(name = "Gradient", module = "nacre", frozen, mapping)]
+#[pyclass(name = "Gradient", module = "nacre.types", frozen, mapping)]
 pub(in crate::python) struct PyGradient {
     gradient: Gradient,
     linear: Linear,

@@ -28,6 +28,9 @@ impl State for PySolution {
         if let Some(indentation) = &solution.indentation {
             fields.set_array("indentation", indentation)?;
         }
+        if let Some(coefficients) = &solution.coefficients {
+            fields.set_array("coefficients", &coefficients.to_owned())?;
+        }
         fields.set_fields("report", |report| self.report().write(report))
     }
 
@@ -48,7 +51,10 @@ impl State for PySolution {
             .transpose()
             .map_err(|error| PyValueError::new_err(format!("hardness: {error}")))?;
         let indentation = fields.get_newer_array("indentation")?;
-        let solution = Solution::from_fields(arrays, approach, tilt, report.0)?;
+        let mut solution = Solution::from_fields(arrays, approach, tilt, report.0)?;
+        if let Some(coefficients) = fields.get_newer_array("coefficients")? {
+            solution = solution.with_coefficients(coefficients)?;
+        }
         Ok(solution.yielding(hardness, indentation)?.into())
     }
 }

@@ -9,7 +9,7 @@ use crate::contact::{Balance, Discretisation, Motion, Report, Warning};
 use crate::python::bodies::PyHalfSpace;
 use crate::python::grid::PyGrid;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
-use crate::python::words::{Word, method, method_words, warning, warning_words};
+use crate::python::words::{Word, warning, warning_words};
 
 /// Report of a solve: how the solution came about and how good it is, computed afresh at the end.
 ///
@@ -19,7 +19,7 @@ use crate::python::words::{Word, method, method_words, warning, warning_words};
 /// >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
 /// >>> report.termination, report.residual < 1e-8, report.warnings
 /// ('converged', True, [])
-#[pyclass(name = "Report", module = "nacre", frozen, eq, from_py_object)]
+#[pyclass(name = "Report", module = "nacre.types", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyReport(pub(in crate::python) Report);
 
@@ -30,7 +30,6 @@ impl State for PyReport {
 
     fn write(&self, fields: &Fields) -> PyResult<()> {
         let report = &self.0;
-        let (method, refinement) = method_words(report.method);
         fields.set("termination", report.termination.word())?;
         fields.set("solver", report.solver.map(Word::word))?;
         fields.set("iterations", report.iterations)?;
@@ -58,8 +57,6 @@ impl State for PyReport {
         fields.set_part("grid", PyGrid(report.grid))?;
         fields.set_part("body", PyHalfSpace::of(&report.body))?;
         fields.set_part("counterbody", self.counterbody())?;
-        fields.set("method", method)?;
-        fields.set("refinement", refinement)?;
         fields.set_fields("motion", |motion| {
             motion.set("load", report.motion.load)?;
             motion.set("approach", report.motion.approach)?;
@@ -75,7 +72,6 @@ impl State for PyReport {
     fn read(fields: &Fields) -> PyResult<Self> {
         let termination: String = fields.get("termination")?;
         let solver: Option<String> = fields.get("solver")?;
-        let word: String = fields.get("method")?;
         let counterbody: Option<PyHalfSpace> = fields.get_part("counterbody")?;
         checked(Report {
             termination: Word::from_word(&termination)?,
@@ -104,7 +100,6 @@ impl State for PyReport {
             grid: fields.get_part::<PyGrid>("grid")?.0,
             body: fields.get_part::<PyHalfSpace>("body")?.0.into(),
             counterbody: counterbody.map(|body| body.0.into()),
-            method: method(&word, fields.get("refinement")?)?,
             motion: fields.get_fields("motion")?.read(|motion| {
                 Ok(Motion {
                     load: motion.get("load")?,
@@ -171,7 +166,7 @@ impl PyReport {
     /// Iteration that produced the solution: "preconditioned", "active-set" or "polonsky-keer".
     ///
     /// The algorithm "cascade" starts with the first and falls back to the others. `None` where it is not
-    /// known: before the end, and in files of format 0.
+    /// known: before the end.
     #[getter]
     fn solver(&self) -> Option<&'static str> {
         self.0.solver.map(Word::word)
@@ -282,18 +277,6 @@ impl PyReport {
         self.0.counterbody.as_ref().map(PyHalfSpace::of)
     }
 
-    /// Method by which the influence coefficients were computed.
-    #[getter]
-    fn method(&self) -> &'static str {
-        method_words(self.0.method).0
-    }
-
-    /// Refinement of the spectral mesh of the conversions; 4 with exact coefficients, which do not use it.
-    #[getter]
-    fn refinement(&self) -> usize {
-        method_words(self.0.method).1
-    }
-
     /// Motion that was asked, as keywords of `Contact.solve`: load or approach, and the tilts.
     #[getter]
     fn motion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -339,7 +322,7 @@ impl PyReport {
 
     fn __repr__(&self) -> String {
         format!(
-            "<nacre.Report: {} after {} iterations, {:.1} convolutions, {:.3} s; residual {:.1e}, \
+            "<Report: {} after {} iterations, {:.1} convolutions, {:.3} s; residual {:.1e}, \
              overlap {:.1e}; {} warnings>",
             self.termination(),
             self.0.iterations,
@@ -363,7 +346,7 @@ impl PyReport {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> report = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0).report
-    /// >>> nacre.Report.from_dict(report.to_dict()) == report
+    /// >>> nacre.types.Report.from_dict(report.to_dict()) == report
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

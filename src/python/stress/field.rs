@@ -42,7 +42,7 @@ const AXES: [&str; 3] = ["z", "x", "y"];
 /// >>> value, (x, y, z) = field.peak("max_shear")
 /// >>> round(value / solution.peak_pressure, 2), round(z / radius, 1)
 /// (0.31, 0.5)
-#[pyclass(name = "Stress", module = "nacre", frozen)]
+#[pyclass(name = "Stress", module = "nacre.types", frozen)]
 pub(in crate::python) struct PyStress {
     stress: Arc<Stress>,
     /// Whether depth, x and y were given as numbers; fields have no axis for those.
@@ -292,7 +292,7 @@ impl PyStress {
             _ => "none".into(),
         };
         format!(
-            "<nacre.Stress: depths {}, x {}, y {}, side '{}'{}>",
+            "<Stress: depths {}, x {}, y {}, side '{}'{}>",
             range(&s.z),
             range(&s.x),
             range(&s.y),
@@ -317,7 +317,7 @@ impl PyStress {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> field = nacre.stress(steel, nacre.Grid((2, 2), (2.0, 2.0)), np.ones((2, 2)), 1.0)
-    /// >>> nacre.Stress.from_dict(field.to_dict()) == field
+    /// >>> nacre.types.Stress.from_dict(field.to_dict()) == field
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

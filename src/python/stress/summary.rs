@@ -34,7 +34,7 @@ fn displayed<'py>(result: &Bound<'py, impl PyClass>, form: &str) -> PyResult<Bou
 /// >>> coating, substrate = summary.layers
 /// >>> bool(coating.tension[0] > 0.0 and substrate.yield_safety_factor > 1.0)
 /// True
-#[pyclass(name = "StressSummary", module = "nacre", frozen, eq)]
+#[pyclass(name = "StressSummary", module = "nacre.types", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyStressSummary(pub(in crate::python) StressSummary);
 
@@ -89,7 +89,7 @@ impl PyStressSummary {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
     /// >>> summary = solution.stress_summary()
-    /// >>> nacre.StressSummary.from_dict(summary.to_dict()) == summary
+    /// >>> nacre.types.StressSummary.from_dict(summary.to_dict()) == summary
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -102,7 +102,7 @@ impl PyStressSummary {
 
     fn __repr__(&self) -> String {
         format!(
-            "<nacre.StressSummary of {} layers and {} interfaces>",
+            "<StressSummary of {} layers and {} interfaces>",
             self.0.layers.len(),
             self.0.interfaces.len()
         )
@@ -120,7 +120,7 @@ impl PyStressSummary {
 /// >>> value, (x, y, z) = substrate.von_mises
 /// >>> round(value / solution.peak_pressure, 1), substrate.yield_safety_factor
 /// (0.6, None)
-#[pyclass(name = "LayerStress", module = "nacre", frozen, eq)]
+#[pyclass(name = "LayerStress", module = "nacre.types", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyLayerStress(LayerSummary);
 
@@ -204,7 +204,7 @@ impl PyLayerStress {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
     /// >>> (layer,) = solution.stress_summary().layers
-    /// >>> nacre.LayerStress.from_dict(layer.to_dict()) == layer
+    /// >>> nacre.types.LayerStress.from_dict(layer.to_dict()) == layer
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -231,7 +231,7 @@ impl PyLayerStress {
 /// >>> (interface,) = solution.stress_summary().interfaces
 /// >>> interface.depth, bool(interface.shear[0] > 0.0)
 /// (2e-05, True)
-#[pyclass(name = "InterfaceStress", module = "nacre", frozen, eq)]
+#[pyclass(name = "InterfaceStress", module = "nacre.types", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyInterfaceStress(InterfaceSummary);
 
@@ -306,7 +306,7 @@ impl PyInterfaceStress {
     /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
     /// >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0, grid=grid)
     /// >>> (interface,) = solution.stress_summary().interfaces
-    /// >>> nacre.InterfaceStress.from_dict(interface.to_dict()) == interface
+    /// >>> nacre.types.InterfaceStress.from_dict(interface.to_dict()) == interface
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -17,7 +17,7 @@ use crate::python::words::Word;
 /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
 /// >>> ball.report.termination, ball.report.violation < 1e-8, ball.report.full_slip
 /// ('converged', True, False)
-#[pyclass(name = "FrictionReport", module = "nacre", frozen, eq, from_py_object)]
+#[pyclass(name = "FrictionReport", module = "nacre.types", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub(in crate::python) struct PyFrictionReport(pub(in crate::python) FrictionReport);
 
@@ -154,7 +154,7 @@ impl PyFrictionReport {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> nacre.FrictionReport.from_dict(ball.report.to_dict()) == ball.report
+    /// >>> nacre.types.FrictionReport.from_dict(ball.report.to_dict()) == ball.report
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -15,9 +15,7 @@ use crate::contact::Contact;
 use crate::friction::{FrictionProgress, Last, Move, Rolling, RollingDirection};
 use crate::model::body::HalfSpace;
 use crate::model::surface::Surface;
-use crate::python::arguments::keywords::{
-    self, Keywords, motion_signature, plan_docs, plan_signature,
-};
+use crate::python::arguments::keywords::{self, Keywords, motion_signature};
 use crate::python::arguments::pair;
 use crate::python::bodies::body;
 use crate::python::contact::single::setup;
@@ -57,7 +55,7 @@ impl Rolled {
         };
         let cells = keywords.count("cells", 1)?;
         let initial: Option<Py<PyFrictionSolution>> =
-            keywords.object("initial", "a nacre.FrictionSolution")?;
+            keywords.object("initial", "a nacre.types.FrictionSolution")?;
         if initial.is_some() && cells.is_none() {
             return Err(PyValueError::new_err(
                 "initial must be given with cells: the steady state does not depend on it",
@@ -101,7 +99,7 @@ impl Rolled {
     }
 }
 
-#[doc = concat!("roll(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", ", motion_signature!(), ", ", roll_signature!(), ", ", found_signature!(), ")\n--\n")]
+#[doc = concat!("roll(shape, body, counterbody=None, *, grid=None, threads=None, ", motion_signature!(), ", ", roll_signature!(), ", ", found_signature!(), ")\n--\n")]
 /// Presses a shape into a body, which rolls, in one call.
 ///
 /// It chooses a grid where none is given, plans, and solves.
@@ -116,7 +114,8 @@ impl Rolled {
 ///     Body that carries the shape; rigid where there is none.
 /// grid : Grid, optional
 ///     Cells of pressure and traction; by default that of `solve`.
-#[doc = plan_docs!()]
+/// threads : int, optional
+///     Number of threads; all of the machine's by default.
 #[doc = roll_docs!()]
 #[doc = found_docs!()]
 #[doc = rolled_docs!()]

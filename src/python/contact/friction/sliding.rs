@@ -15,9 +15,7 @@ use crate::contact::{Contact, Motion, Options, choose_grid};
 use crate::friction::{FrictionProgress, FrictionReport, FrictionSolution, Last, Move, Step};
 use crate::model::body::HalfSpace;
 use crate::python::arguments::Repr;
-use crate::python::arguments::keywords::{
-    self, Keywords, motion_signature, plan_docs, plan_signature,
-};
+use crate::python::arguments::keywords::{self, Keywords, motion_signature};
 use crate::python::arguments::{number, pair};
 use crate::python::background::{self, Caller};
 use crate::python::bodies::body;
@@ -59,7 +57,7 @@ impl Sliding {
     ) -> PyResult<Self> {
         let first = step(keywords)?;
         let initial: Option<Py<PyFrictionSolution>> =
-            keywords.object("initial", "a nacre.FrictionSolution")?;
+            keywords.object("initial", "a nacre.types.FrictionSolution")?;
         let found = found(keywords)?;
         let shape = shape(given)?.get().0.clone();
         let Some(given) = steps else {
@@ -189,7 +187,7 @@ where
     }
 }
 
-#[doc = concat!("slide(shape, body, counterbody=None, *, grid=None, ", plan_signature!(), ", steps=None, ", motion_signature!(), ", ", slide_signature!(), ", ", found_signature!(), ")\n--\n")]
+#[doc = concat!("slide(shape, body, counterbody=None, *, grid=None, threads=None, steps=None, ", motion_signature!(), ", ", slide_signature!(), ", ", found_signature!(), ")\n--\n")]
 /// Presses a shape into a body and moves it tangentially, with friction, in one call.
 ///
 /// It chooses a grid where none is given, plans, and solves.
@@ -204,7 +202,8 @@ where
 ///     Body that carries the shape and moves over the body; rigid where there is none.
 /// grid : Grid, optional
 ///     Cells of pressure and traction; by default that of `solve` for the largest load.
-#[doc = plan_docs!()]
+/// threads : int, optional
+///     Number of threads; all of the machine's by default.
 #[doc = slide_docs!()]
 #[doc = found_docs!()]
 #[doc = slid_docs!()]

@@ -38,7 +38,7 @@ use crate::stress::{Member, StressOptions};
 /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
 /// >>> ball.traction.shape == (2, *ball.pressure.shape), bool(ball.stick.any())
 /// (True, True)
-#[pyclass(name = "FrictionSolution", module = "nacre", frozen, eq)]
+#[pyclass(name = "FrictionSolution", module = "nacre.types", frozen, eq)]
 pub(in crate::python) struct PyFrictionSolution {
     solution: Arc<FrictionSolution>,
     normal: PyOnceLock<Py<PySolution>>,
@@ -591,7 +591,7 @@ impl PyFrictionSolution {
     #[doc = from_dict_docs!()]
     /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
     /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> nacre.FrictionSolution.from_dict(ball.to_dict()) == ball
+    /// >>> nacre.types.FrictionSolution.from_dict(ball.to_dict()) == ball
     /// True
     #[staticmethod]
     fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {

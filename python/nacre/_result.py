@@ -1,0 +1,87 @@
+"""What all results have in common: plain data, equality, pickles.
+
+A result is a frozen dataclass. The compiled module hands it over as JSON text, with bodies, grids
+and arrays apart, and checks it again where it is read from a file.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from typing import Any, Self
+
+import nacre._core as core
+from nacre import values
+
+
+def _tuples(value: Any) -> Any:
+    """Return plain data with tuples in place of lists."""
+    if isinstance(value, list):
+        return tuple(_tuples(item) for item in value)
+    if isinstance(value, dict):
+        return {key: _tuples(item) for key, item in value.items()}
+    return value
+
+
+class Result:
+    """Base of results: each is a dataclass whose fields are its state."""
+
+    def __init_subclass__(cls) -> None:
+        """Make the class known to files and studies by its name."""
+        values.RESULTS[cls.__name__] = cls
+
+    @classmethod
+    def _made(cls, text: str) -> Self:
+        """Return the result that JSON text of the compiled module describes."""
+        return cls(**_tuples(json.loads(text)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
+
+        Returns
+        -------
+        dict
+            Fields by name. ``format`` is the number of the format, ``nacre`` the version that
+            wrote it and ``kind`` the class. Bodies and grids stand in it as the calls that make
+            them.
+        """
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]
+        state = {field.name: values.encode(getattr(self, field.name)) for field in fields}
+        return values.heading(type(self).__name__) | state
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Value whose named state `to_dict` returned, to the bit.
+
+        Parameters
+        ----------
+        data : dict
+            Named state; lists may stand for arrays, as in JSON.
+
+        Returns
+        -------
+        object
+            Value of this class.
+
+        Raises
+        ------
+        ValueError
+            If the format is newer than this version, or a key is missing, unknown or holds a
+            wrong value.
+        """
+        names = [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
+        return cls._restored(values.checked_state(data, cls.__name__, names))
+
+    @classmethod
+    def _restored(cls, state: dict[str, Any]) -> Self:
+        """Return the result with these fields, which the compiled module checks."""
+        try:
+            text = json.dumps(state)
+        except TypeError as error:
+            raise ValueError(f"{cls.__name__}: {error}: {state}") from error
+        return cls._made(core.checked(cls.__name__, text))
+
+    def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
+        """Return the function and the state that make the result again."""
+        return type(self).from_dict, (self.to_dict(),)

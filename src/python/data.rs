@@ -1,0 +1,33 @@
+//! Results as JSON text, in which they cross to Python and back. `src/data.rs` says which fields they have.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::friction::CreepCoefficients;
+
+/// JSON text of `value`.
+pub(super) fn text(value: &impl Serialize) -> PyResult<String> {
+    serde_json::to_string(value).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// Value that the JSON `text` describes; `kind` names it in the error.
+///
+/// # Errors
+/// A `ValueError` if a field is missing, unknown, or holds a value that does not fit.
+pub(super) fn read<T: DeserializeOwned>(kind: &str, text: &str) -> PyResult<T> {
+    serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))
+}
+
+/// JSON text of the result of a `kind` that `given` describes, read and written again: checked.
+#[pyfunction]
+pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
+    fn again<T: Serialize + DeserializeOwned>(kind: &str, given: &str) -> PyResult<String> {
+        text(&read::<T>(kind, given)?)
+    }
+    match kind {
+        "CreepCoefficients" => again::<CreepCoefficients>(kind, given),
+        _ => Err(PyValueError::new_err(format!("no result of nacre is a {kind:?}"))),
+    }
+}
