@@ -33,9 +33,8 @@ pub(super) fn evaluated<'py>(
     let [x, y] = section(keywords, &mut options)?;
     let progress = keywords.callable("progress")?;
     keywords.finish("keywords of a stress")?;
-    let stress = watched(z.py(), progress, move |progress| {
-        evaluate(&depths, options.watched(progress))
-    })?;
+    let stress =
+        watched(z.py(), progress, move |progress| evaluate(&depths, options.watched(progress)))?;
     field::fields(z.py(), stress, [one, x, y])
 }
 
@@ -51,9 +50,8 @@ pub(super) fn summarised(
     options.threads = keywords.count("threads", 1)?;
     let progress = keywords.callable("progress")?;
     keywords.finish("keywords of a summary")?;
-    let summary = watched(py, progress, move |progress| {
-        evaluate(&strengths, options.watched(progress))
-    })?;
+    let summary =
+        watched(py, progress, move |progress| evaluate(&strengths, options.watched(progress)))?;
     summary_text(&summary)
 }
 

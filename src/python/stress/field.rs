@@ -109,10 +109,7 @@ impl StressState<'_> {
 }
 
 /// Array of a number of dimensions.
-fn array<D: Dimension>(
-    name: &str,
-    field: &Bound<'_, PyAny>,
-) -> PyResult<ndarray::Array<f64, D>> {
+fn array<D: Dimension>(name: &str, field: &Bound<'_, PyAny>) -> PyResult<ndarray::Array<f64, D>> {
     let array = real_array(name, field)?;
     let shape = array.shape().to_vec();
     array.into_dimensionality().map_err(|_| {

@@ -11,10 +11,7 @@ use crate::python::background;
 use crate::stress::{Section, Strengths, StressOptions, StressProgress};
 
 /// Puts section, side and displacement into the options; returns whether x and y were given.
-pub(super) fn section(
-    keywords: &Keywords,
-    options: &mut StressOptions,
-) -> PyResult<[bool; 2]> {
+pub(super) fn section(keywords: &Keywords, options: &mut StressOptions) -> PyResult<[bool; 2]> {
     options.side = keywords.word("below")?;
     let (x, y) = (keywords.optional_real("x")?, keywords.optional_real("y")?);
     options.section = match (x, y) {
