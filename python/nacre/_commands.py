@@ -13,11 +13,12 @@ import typer
 
 import nacre
 from nacre import _reference
+from nacre._disk import PICTURES
 from nacre._friction_display import shown
-from nacre._outputs import ERROR, FRICTION, check_direction
+from nacre._outputs import ERROR, FRICTION, check_direction, summed
 from nacre._progress import alive
 from nacre.case import Case, CaseError
-from nacre.files import FIGURES, PICTURES
+from nacre.files import FIGURES
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.units import system, written
@@ -127,7 +128,7 @@ def _solve(
         # Of a history, the last step is printed and saved.
         solution = solved[-1] if isinstance(solved, list) else solved
         try:
-            stress = None if asked is None else solution.stress_summary(**asked)
+            stress = None if asked is None else summed(solution, asked)
         except (ArithmeticError, TypeError, ValueError) as error:
             raise CaseError(f"{case}: stress: {error}") from error
     for path in save:

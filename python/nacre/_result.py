@@ -15,12 +15,12 @@ import nacre._core as core
 from nacre import values
 
 
-def _tuples(value: Any) -> Any:
+def tuples(value: Any) -> Any:
     """Return plain data with tuples in place of lists."""
     if isinstance(value, list):
-        return tuple(_tuples(item) for item in value)
+        return tuple(tuples(item) for item in value)
     if isinstance(value, dict):
-        return {key: _tuples(item) for key, item in value.items()}
+        return {key: tuples(item) for key, item in value.items()}
     return value
 
 
@@ -34,7 +34,7 @@ class Result:
     @classmethod
     def _made(cls, text: str) -> Self:
         """Return the result that JSON text of the compiled module describes."""
-        return cls(**_tuples(json.loads(text)))
+        return cls(**tuples(json.loads(text)))
 
     def to_dict(self) -> dict[str, Any]:
         """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
@@ -46,9 +46,7 @@ class Result:
             wrote it and ``kind`` the class. Bodies and grids stand in it as the calls that make
             them.
         """
-        fields = dataclasses.fields(self)  # type: ignore[arg-type]
-        state = {field.name: values.encode(getattr(self, field.name)) for field in fields}
-        return values.heading(type(self).__name__) | state
+        return values.heading(type(self).__name__) | self._state()
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -70,8 +68,16 @@ class Result:
             If the format is newer than this version, or a key is missing, unknown or holds a
             wrong value.
         """
-        names = [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
-        return cls._restored(values.checked_state(data, cls.__name__, names))
+        return cls._restored(values.checked_state(data, cls.__name__, cls._names()))
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        """Return the names in the state."""
+        return [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
+
+    def _state(self) -> dict[str, Any]:
+        """Return the state as plain data."""
+        return {name: values.encode(getattr(self, name)) for name in self._names()}
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:

@@ -2,8 +2,6 @@
 
 from nacre._core import (
     Direction,
-    FrictionReport,
-    FrictionSolution,
     Gradient,
     InterfaceStress,
     LayerStress,
@@ -13,6 +11,7 @@ from nacre._core import (
     StressPlan,
     StressSummary,
 )
+from nacre._friction_result import FrictionReport, FrictionSolution
 from nacre.friction import CreepCoefficients
 
 __all__ = [

@@ -13,12 +13,18 @@ use super::problem::Quality;
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Termination {
     /// It has not ended: the report is one of a running solve.
     Running,
     /// The tolerance was met.
     Converged,
     /// The tolerance was not met within the iterations allowed.
+    #[cfg_attr(feature = "serde", serde(rename = "iteration limit"))]
     IterationLimit,
     /// The caller asked to stop.
     Stopped,

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::friction::CreepCoefficients;
+use crate::friction::{CreepCoefficients, FrictionReport};
 
 /// JSON text of `value`.
 pub(super) fn text(value: &impl Serialize) -> PyResult<String> {
@@ -28,6 +28,7 @@ pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
     }
     match kind {
         "CreepCoefficients" => again::<CreepCoefficients>(kind, given),
+        "FrictionReport" => again::<FrictionReport>(kind, given),
         _ => Err(PyValueError::new_err(format!("no result of nacre is a {kind:?}"))),
     }
 }
