@@ -20,7 +20,7 @@ from nacre import values
 from nacre._friction_display import line, markup, text
 from nacre._friction_files import VECTORS, save, to_xarray
 from nacre._keywords import ByLayer, Member, Side
-from nacre._result import Result, tuples
+from nacre._result import Result, as_text, tuples
 
 if TYPE_CHECKING:
     import xarray
@@ -469,5 +469,6 @@ class FrictionSolution(Result):
         with values.refusing(cls.__name__):
             normal = core.Solution.from_dict(values.heading("Solution") | state["normal"])
             fields = {name: state[name] for name in ("friction", *VECTORS)}
-            rest = json.dumps({name: state[name] for name in ("motion", "report")})
-            return cls._of(core.FrictionSolved(normal, rest=rest, **fields))
+            rest = {name: state[name] for name in ("motion", "report")}
+            told = as_text(cls.__name__, rest)
+            return cls._of(core.FrictionSolved(normal, rest=told, **fields))

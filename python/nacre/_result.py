@@ -24,6 +24,14 @@ def tuples(value: Any) -> Any:
     return value
 
 
+def as_text(kind: str, state: dict[str, Any]) -> str:
+    """Return the state of a kind of result as JSON text, or raise a `ValueError`."""
+    try:
+        return json.dumps(state)
+    except TypeError as error:
+        raise ValueError(f"{kind}: {error}: {state}") from error
+
+
 class Result:
     """Base of results: each is a dataclass whose fields are its state."""
 
@@ -82,11 +90,7 @@ class Result:
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         """Return the result with these fields, which the compiled module checks."""
-        try:
-            text = json.dumps(state)
-        except TypeError as error:
-            raise ValueError(f"{cls.__name__}: {error}: {state}") from error
-        return cls._made(core.checked(cls.__name__, text))
+        return cls._made(core.checked(cls.__name__, as_text(cls.__name__, state)))
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
         """Return the function and the state that make the result again."""

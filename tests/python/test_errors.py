@@ -345,7 +345,7 @@ FRICTION_VALUES = {
     "coefficients(SLIPPING, STEEL, (1.0, 1.0))": r"without frictionless interfaces",
     # results
     "LAST.save('a.txt')": r"path must end in \.nc, \.vtr, \.csv.*got 'a\.txt'",
-    "LAST.stress_plan().stress(0.0, friction=0.1)": r"friction must be 0: the tractions .* are known",
+    "LAST.stress_plan().stress(0.0, friction=0.1)": r"friction must be 0: the tractions",
     "LAST.stress(-1.0)": r"z must be .*at least 0",
     "friction.history([])": r"solutions must hold at least one solution, got none",
     "curve(creepages=[[1e-3]])": r"creepages must be a sequence of numbers, got shape \(1, 1\)",

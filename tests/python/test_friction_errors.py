@@ -103,7 +103,7 @@ VALUE_ERRORS = {
     "coefficients(LOOSE, STEEL, (1.0, 1.0))": r"without frictionless interfaces",
     # results
     "LAST.save('a.txt')": r"path must end in \.nc, \.vtr, \.csv.*got 'a\.txt'",
-    "LAST.stress_plan().stress(0.0, friction=0.1)": r"friction must be 0: the tractions .* are known",
+    "LAST.stress_plan().stress(0.0, friction=0.1)": r"friction must be 0: the tractions",
     "LAST.stress(-1.0)": r"z must be .*at least 0",
     "nacre.friction.history([])": r"solutions must hold at least one solution, got none",
     "curve(creepages=[[1e-3]])": r"creepages must be a sequence of numbers, got shape \(1, 1\)",
@@ -148,7 +148,7 @@ TYPE_ERRORS = {
     "nacre.slide(BALL, STEEL, grid=3, **HELD)": r"grid must be a nacre\.Grid, got 3",
     "nacre.slide(BALL, nacre.RIGID, STEEL, **HELD)": r"body.*must be a HalfSpace.*got RIGID",
     "nacre.slide(BALL, STEEL, weight=1, **HELD)": r"unexpected keyword argument 'weight'",
-    "nacre.roll(BALL, STEEL, weight=1, direction='+x', **HELD)": r"unexpected keyword argument 'weight'",
+    "nacre.roll(BALL, STEEL, weight=1, direction='+x', **HELD)": r"keyword argument 'weight'",
     "coefficients('steel', STEEL, (1.0, 1.0))": r"must be a HalfSpace or an Elastic, got 'steel'",
     "coefficients(STEEL, 3, (1.0, 1.0))": r"must be a HalfSpace or an Elastic, got 3",
     "coefficients(STEEL, STEEL, ('a', 1.0))": r"(?s)pair of numbers, got \('a', 1.0\).*semi_axes",
