@@ -41,8 +41,7 @@ class FrictionReport(Result):
     Examples
     --------
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
     >>> ball.report.termination, ball.report.violation < 1e-8, ball.report.full_slip
     ('converged', True, False)
     """
@@ -96,8 +95,7 @@ class FrictionSolution(Result):
     Examples
     --------
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
     >>> ball.traction.shape == (2, *ball.pressure.shape), bool(ball.stick.any())
     (True, True)
     """
@@ -225,21 +223,8 @@ class FrictionSolution(Result):
             Depths into the body, at least 0 [m].
         body : {"body", "counterbody"}, optional
             Body in which stress is evaluated.
-        side : {"below", "above"}, optional
-            Side of an interface, for a depth that lies on one.
-        x, y : float, optional
-            Place of a vertical section. With one of them, the fields are kept on the line
-            ``x = const`` or ``y = const`` at every depth, by linear interpolation between cell
-            centres and free ends; with both, at a point.
-        displacement : bool, optional
-            Whether displacements are evaluated too.
-        residual : dict or sequence, optional
-            Residual stress of layers [Pa], as in `Solution.stress`.
-        threads : int, optional
-            Number of threads; all of the machine's by default.
-        progress : callable, optional
-            Function that is called with the part of the work that is done, from 0 to 1; returning
-            False stops, and gives the depths that are done.
+        side, x, y, displacement, residual, threads, progress : optional
+            Place, extent and course of the evaluation, as `Solution.stress` explains.
 
         Returns
         -------
@@ -258,8 +243,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
         >>> bool(np.allclose(ball.stress(0.0).xz, -ball.traction[0], atol=1.0))
         True
         """
@@ -284,19 +268,8 @@ class FrictionSolution(Result):
         ----------
         body : {"body", "counterbody"}, optional
             Body in which stress is evaluated.
-        yield_stress : dict or sequence, optional
-            Yield stress [Pa] of layers. A dict maps layers to it, by number (0 at the surface) or
-            name, and ``"substrate"``; a sequence holds it from the surface down, with None where
-            it is not known.
-        strength : dict or sequence, optional
-            Tensile strength [Pa] of layers, likewise.
-        residual : dict or sequence, optional
-            Residual stress of layers [Pa], as in `Solution.stress`.
-        threads : int, optional
-            Number of threads; all of the machine's by default.
-        progress : callable, optional
-            Function that is called with the part of the work that is done, from 0 to 1; returning
-            False stops, and gives the depths that are done.
+        yield_stress, strength, residual, threads, progress : optional
+            Limits of layers and course of the evaluation, as `Solution.stress_summary` explains.
 
         Returns
         -------
@@ -311,8 +284,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
         >>> pressed = ball.normal.stress_summary().layers[0]
         >>> ball.stress_summary().layers[0].von_mises[0] > 0.9 * pressed.von_mises[0]
         True
@@ -343,8 +315,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
         >>> ball.stress_plan().stress(10e-6) == ball.stress(10e-6)
         True
         """
@@ -371,8 +342,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
         >>> ball.plot().get_xlabel()
         'x [µm]'
         """
@@ -391,8 +361,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
         >>> dataset = ball.to_xarray()
         >>> dataset.traction.dims, dataset.traction.units
         (('component', 'x', 'y'), 'Pa')
@@ -426,8 +395,7 @@ class FrictionSolution(Result):
         --------
         >>> import tempfile
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> pull = {"load": 10.0, "friction": 0.3, "force": (1.5, None)}
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, **pull)
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     nacre.load(ball.save(f"{folder}/ball.nc")) == ball
         True
