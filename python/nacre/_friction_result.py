@@ -41,7 +41,7 @@ class FrictionReport(Result):
     Examples
     --------
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
     >>> ball.report.termination, ball.report.violation < 1e-8, ball.report.full_slip
     ('converged', True, False)
     """
@@ -95,7 +95,7 @@ class FrictionSolution(Result):
     Examples
     --------
     >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+    >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
     >>> ball.traction.shape == (2, *ball.pressure.shape), bool(ball.stick.any())
     (True, True)
     """
@@ -243,7 +243,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
         >>> bool(np.allclose(ball.stress(0.0).xz, -ball.traction[0], atol=1.0))
         True
         """
@@ -284,7 +284,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
         >>> pressed = ball.normal.stress_summary().layers[0]
         >>> ball.stress_summary().layers[0].von_mises[0] > 0.9 * pressed.von_mises[0]
         True
@@ -315,7 +315,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
         >>> ball.stress_plan().stress(10e-6) == ball.stress(10e-6)
         True
         """
@@ -342,7 +342,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
         >>> ball.plot().get_xlabel()
         'x [µm]'
         """
@@ -361,7 +361,7 @@ class FrictionSolution(Result):
         Examples
         --------
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
         >>> dataset = ball.to_xarray()
         >>> dataset.traction.dims, dataset.traction.units
         (('component', 'x', 'y'), 'Pa')
@@ -395,7 +395,7 @@ class FrictionSolution(Result):
         --------
         >>> import tempfile
         >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10, friction=0.3, force=(1, 0))
+        >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=9, friction=0.3, force=(1, 0))
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     nacre.load(ball.save(f"{folder}/ball.nc")) == ball
         True

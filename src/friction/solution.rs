@@ -4,7 +4,7 @@ use ndarray::Array2;
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
-use crate::error::{Error, Result, same_shape};
+use crate::error::{Error, Result, all_finite, same_shape};
 use crate::model::grid::Grid;
 use crate::stress::{Member, Stress, StressPlan, WatchedStress};
 
@@ -36,7 +36,7 @@ pub enum TangentialMotion {
 
 /// Course and quality of a solve. All errors are computed afresh from the tractions, with the operator of the whole
 /// grid.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -68,23 +68,6 @@ pub struct FrictionReport {
 }
 
 impl FrictionReport {
-    /// The report of a step that begins.
-    pub(super) fn running(coupled: bool, tolerance: f64) -> Self {
-        Self {
-            termination: Termination::Running,
-            convolutions: 0,
-            sweeps: 0,
-            violation: 0.0,
-            imbalance: 0.0,
-            excess: 0.0,
-            pressure_change: 0.0,
-            coupled,
-            full_slip: false,
-            tolerance,
-            seconds: 0.0,
-        }
-    }
-
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged
@@ -186,9 +169,7 @@ impl FrictionSolution {
         ];
         for (name, field) in named.into_iter().flat_map(|(name, [x, y])| [(name, x), (name, y)]) {
             same_shape(name, field, expected)?;
-            if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
-                return Err(Error::NonFinite { name, index: index.into() });
-            }
+            all_finite(name, field)?;
         }
         Ok(self)
     }

@@ -164,7 +164,7 @@ impl PyContact {
         self.contact.grid().check_initial(call.initial.as_ref())?;
         let contact = Arc::clone(&self.contact);
         call.run(py, move |shape, motion, options, progress| {
-            contact.solve_watched(shape, motion, options, progress)
+            contact.solve(shape, motion, options.watched(progress))
         })
     }
 

@@ -287,9 +287,9 @@ impl PySolution {
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let solution = Arc::clone(&self.solution);
         let stiffness = background::run(py, None, move |caller: &mut Caller<()>| {
-            solution.stiffness_watched(&mut || caller.go_on())
+            solution.stiffness(Some(&mut || caller.go_on()))
         })??;
-        Ok(PyArray2::from_owned_array(py, Array2::from(stiffness.unwrap_or_default().to_vec())))
+        Ok(PyArray2::from_owned_array(py, Array2::from(stiffness.to_vec())))
     }
 
     /// Derivatives of an output with respect to all parameters of the contact.

@@ -133,9 +133,8 @@ impl<'a> PressureSource<'a> {
     /// [`PressureSource::plan`], of which a stop is an error.
     pub(super) fn planned(&self, mut asked: WatchedStress) -> Result<StressPlan> {
         let threads = asked.options().threads;
-        let stopped = Error::Inconsistent("the stress plan was stopped before it was complete");
         let plan = self.plan(threads, &mut |part| asked.tell(part))?;
-        plan.ok_or(stopped)
+        plan.ok_or(Error::Stopped)
     }
 
     /// What `evaluate`, which takes so many bytes, makes of a plan for this call; none where planning is stopped.

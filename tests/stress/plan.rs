@@ -206,7 +206,7 @@ fn planning_stops_when_told() -> Result<()> {
     };
     let options = StressOptions::default();
     let stopped = solution()?.stress_plan(Member::Body, options.watched(&mut stop));
-    assert!(stopped.is_err());
+    assert!(matches!(stopped, Err(nacre::Error::Stopped)));
     Ok(())
 }
 

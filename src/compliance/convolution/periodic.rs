@@ -5,9 +5,11 @@
 //! M of the periodic convolution P obeys M_CC ≥ (P_CC)⁻¹ (Schur complement), and is a good preconditioner where P_CC is
 //! close to the exact convolution. On a mesh as large as the window, the images of cells near one edge are neighbours of
 //! those near the other; on a mesh that is an eighth longer they are not, and contacts that fill the window take half as
-//! many iterations. A longer mesh saves none. The images bend the kernel at half a period. Under a hard coating on a soft body the displacement is so smooth, and its
-//! response to short waves so small, that the bend is larger: entries of the spectrum become negative. There
-//! the coefficients C are tapered and wrapped around,
+//! many iterations. A longer mesh saves none.
+//!
+//! The images bend the kernel at half a period. Under a hard coating on a soft body the displacement is so smooth, and
+//! its response to short waves so small, that the bend is larger: entries of the spectrum become negative. There the
+//! coefficients C are tapered and wrapped around,
 //!
 //! ```text
 //! c[d] = w[d] C[d] + w[P − d] C[P − d]      w[d] = Σ t[i] t[i + d] / Σ t[i]²      t[i] = sin(π (i + ½)/n)
@@ -16,7 +18,7 @@
 //! along each direction of n cells and period P. Each entry of the spectrum is then a Rayleigh quotient of
 //! the convolution, for a wave with the envelope t: it lies between the smallest and the largest eigenvalue.
 //! T. Chan, SIAM J. Sci. Stat. Comput. 9 (1988) 766, doi:10.1137/0909051, has t = 1, with which more of the
-//! response to long waves gets into the entries of short ones. The envelope is nacre's own choice.
+//! response to long waves gets into the entries of short ones. The envelope was chosen here.
 
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use pyo3::types::PyDict;
 
 use super::friction::solved;
 use crate::compliance::response::Body;
-use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
+use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_with};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::python::arguments::keywords::{
@@ -104,10 +104,10 @@ pub(in crate::python) fn solve<'py>(
     call.run(py, move |shape, motion, options, progress| match grid {
         Some(grid) => {
             grid.check_initial(initial.as_ref())?;
-            Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
+            Contact::plan(&body, grid, setup)?.solve(shape, motion, options.watched(progress))
         }
         None => {
-            let solution = solve_watched(shape, &body, &setup, motion, options, progress)?;
+            let solution = solve_with(shape, &body, &setup, motion, options.watched(progress))?;
             solution.grid().check_initial(initial.as_ref())?;
             Ok(solution)
         }

@@ -209,9 +209,10 @@ fn planned(
     let contact = background::run(py, None, move |caller: &mut Caller<()>| {
         let grid = match grid {
             Some(PyGrid(grid)) => grid,
-            None => choose_grid(&shape, &body, &setup, &motion, &Options::default(), &mut |_| {
-                caller.ask(|| ())
-            })?,
+            None => {
+                let (options, ask) = (Options::default(), &mut |_: &_| caller.ask(|| ()));
+                choose_grid(&shape, &body, &setup, &motion, options.watched(ask))?
+            }
         };
         Contact::plan(&body, grid, setup)
     })??;
