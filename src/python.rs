@@ -30,7 +30,7 @@ mod core {
     };
     #[pymodule_export]
     use super::contact::{
-        PyContact, PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide, solve,
+        PyContact, PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide, solve,
     };
     #[pymodule_export]
     use super::data::checked;

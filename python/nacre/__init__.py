@@ -43,13 +43,11 @@ from nacre._core import (
     frequency_response,
     graded_layers,
     influence_coefficients,
-    roll,
-    slide,
     solve,
     surface_compliance,
 )
 from nacre.files import load
-from nacre.friction import creep_coefficients
+from nacre.friction import creep_coefficients, roll, slide
 from nacre.stresses import stress
 from nacre.studies import sweep
 from nacre.units import display_units

@@ -13,11 +13,12 @@ import typer
 
 import nacre
 from nacre import _reference
+from nacre._disk import PICTURES
 from nacre._friction_display import shown
 from nacre._outputs import ERROR, FRICTION, check_direction
 from nacre._progress import alive
 from nacre.case import Case, CaseError
-from nacre.files import FIGURES, PICTURES
+from nacre.files import FIGURES
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.units import system, written

@@ -49,32 +49,3 @@ class Search(TypedDict, total=False):
     tolerance: float
     max_iterations: int | None
     algorithm: Literal["cascade", "polonsky-keer"]
-
-
-class TractionSearch(TypedDict, total=False):
-    """Keywords that say how tractions are found."""
-
-    tolerance: float
-    max_convolutions: int
-    coupling: bool
-
-
-class Slide(Motion, total=False):
-    """Keywords of a step of sliding."""
-
-    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
-    shift: Along | None
-    force: Along | None
-    twist: float | None
-    torque: float | None
-
-
-class Roll(Motion, total=False):
-    """Keywords of rolling."""
-
-    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
-    creepage: Along | None
-    force: Along | None
-    spin: float
-    direction: Literal["+x", "-x", "+y", "-y"] | None
-    cells: int | None

@@ -18,12 +18,12 @@ import nacre._core as core
 from nacre import values
 
 
-def _tuples(value: Any) -> Any:
+def tuples(value: Any) -> Any:
     """Return plain data with tuples in place of lists."""
     if isinstance(value, list):
-        return tuple(_tuples(item) for item in value)
+        return tuple(tuples(item) for item in value)
     if isinstance(value, dict):
-        return {key: _tuples(item) for key, item in value.items()}
+        return {key: tuples(item) for key, item in value.items()}
     return value
 
 
@@ -40,6 +40,15 @@ def _plain(value: Any) -> Any:
     return values.encode(value)
 
 
+def same(one: Any, other: Any) -> bool:
+    """Return whether plain data are equal; in arrays, NaN is equal to NaN."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    return type(one) is type(other) and bool(one == other)
+
+
 def _finite(value: Any) -> Any:
     """Return plain data with None in place of infinite numbers, of which JSON has none."""
     if isinstance(value, dict):
@@ -49,13 +58,12 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def same(one: Any, other: Any) -> bool:
-    """Return whether plain data are equal; in arrays, NaN is equal to NaN."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
-    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
-        return np.array_equal(one, other, equal_nan=True)
-    return type(one) is type(other) and bool(one == other)
+def as_text(kind: str, state: dict[str, Any]) -> str:
+    """Return the state of a kind of result as JSON text, or raise a `ValueError`."""
+    try:
+        return json.dumps(_finite(state))
+    except TypeError as error:
+        raise ValueError(f"{kind}: {error}: {state}") from error
 
 
 class Result:
@@ -80,7 +88,7 @@ class Result:
     @classmethod
     def _made(cls, text: str) -> Self:
         """Return the result that JSON text of the compiled module describes."""
-        return cls(**_tuples(json.loads(text)))
+        return cls(**tuples(json.loads(text)))
 
     def to_dict(self) -> dict[str, Any]:
         """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
@@ -123,11 +131,7 @@ class Result:
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         """Return the result with these fields, which the compiled module checks."""
-        try:
-            text = json.dumps(_finite(state))
-        except TypeError as error:
-            raise ValueError(f"{cls.__name__}: {error}: {state}") from error
-        return cls._made(core.checked(cls.__name__, text))
+        return cls._made(core.checked(cls.__name__, as_text(cls.__name__, state)))
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
         """Return the function and the state that make the result again."""

@@ -541,9 +541,19 @@ class StressPlan:
 class Stressed:
     """Stresses below a solved contact, with or without friction."""
 
-    _stress: Callable[[Depths, dict[str, Any]], dict[str, Any]]
-    _stress_summary: Callable[[dict[str, Any]], str]
-    _stress_plan: Callable[[Member, int | None], core.StressPlan]
+    _solved: Any
+
+    def _stress(self, z: Depths, asked: dict[str, Any]) -> dict[str, Any]:
+        fields: dict[str, Any] = self._solved.stress(z, asked)
+        return fields
+
+    def _stress_summary(self, asked: dict[str, Any]) -> str:
+        text: str = self._solved.stress_summary(asked)
+        return text
+
+    def _stress_plan(self, body: Member, threads: int | None) -> core.StressPlan:
+        plan: core.StressPlan = self._solved.stress_plan(body, threads)
+        return plan
 
     def stress(
         self,
@@ -801,7 +811,6 @@ def _warned(result: Told) -> Told:
     return result
 
 
-# These classes are of the compiled module, and take their methods here.
-for _kind in (core.Solution, core.FrictionSolution):
-    for _name in ("stress", "stress_summary", "stress_plan"):
-        setattr(_kind, _name, vars(Stressed)[_name])
+# A class of the compiled module takes its methods here; it has its own ones in place of `_solved`.
+for _name in ("stress", "stress_summary", "stress_plan"):
+    setattr(core.Solution, _name, vars(Stressed)[_name])

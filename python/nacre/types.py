@@ -2,12 +2,11 @@
 
 from nacre._core import (
     Direction,
-    FrictionReport,
-    FrictionSolution,
     Gradient,
     Report,
     Shape,
 )
+from nacre._friction_result import FrictionReport, FrictionSolution
 from nacre.friction import CreepCoefficients
 from nacre.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 

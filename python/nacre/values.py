@@ -71,8 +71,6 @@ RESULTS: dict[str, Any] = {
     for kind in (
         core.Report,
         core.Solution,
-        core.FrictionSolution,
-        core.FrictionReport,
     )
 }
 """Classes of results by their names: those of the compiled module, and each `Result`."""
@@ -118,7 +116,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"Grid": of(made)}
         if digest and isinstance(value, core.Solution):
             return {"Solution": of(value.pressure)}
-        if digest and isinstance(value, core.FrictionSolution):
+        if digest and type(value) is RESULTS.get("FrictionSolution"):
             state, normal = value.to_dict(), value.normal
             begun = {name: of(state[name]) for name in BEGUN}
             begun |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
@@ -162,8 +160,7 @@ def checked_state(
     for key in ("format", "nacre", "kind"):
         if key not in state:
             raise ValueError(f'{kind}: the key "{key}" is missing')
-    written, writer = state.pop("format"), state.pop("nacre")
-    check_format(written, writer, f"this {kind}")
+    check_format(state.pop("format"), writer := state.pop("nacre"), f"this {kind}")
     if not isinstance(writer, str):
         raise ValueError(f'the key "nacre" must hold a version, got {writer!r}')
     if (found := state.pop("kind")) != kind:

@@ -13,6 +13,11 @@ use super::problem::Quality;
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Termination {
     /// It has not ended: the report is one of a running solve.
     #[default]
@@ -20,6 +25,7 @@ pub enum Termination {
     /// The tolerance was met.
     Converged,
     /// The tolerance was not met within the iterations allowed.
+    #[cfg_attr(feature = "serde", serde(rename = "iteration limit"))]
     IterationLimit,
     /// The caller asked to stop.
     Stopped,

@@ -10,6 +10,11 @@ use crate::stress::{Member, Strengths, Stress, StressPlan, StressSummary, Watche
 
 /// Tangential motion of the counterbody over the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(untagged, deny_unknown_fields)
+)]
 pub enum TangentialMotion {
     /// Sliding, counted from the first touch.
     Slide {
@@ -32,6 +37,11 @@ pub enum TangentialMotion {
 /// Course and quality of a solve. All errors are computed afresh from the tractions, with the operator of the whole
 /// grid.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct FrictionReport {
     /// How the iteration ended.
     pub termination: Termination,

@@ -158,14 +158,19 @@ impl Freedom {
 
 /// Direction in which the contact moves over the bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RollingDirection {
     /// Towards +x.
+    #[cfg_attr(feature = "serde", serde(rename = "+x"))]
     PlusX,
     /// Towards −x.
+    #[cfg_attr(feature = "serde", serde(rename = "-x"))]
     MinusX,
     /// Towards +y, as rollers with their axis along x do.
+    #[cfg_attr(feature = "serde", serde(rename = "+y"))]
     PlusY,
     /// Towards −y.
+    #[cfg_attr(feature = "serde", serde(rename = "-y"))]
     MinusY,
 }
 

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::friction::CreepCoefficients;
+use crate::friction::{CreepCoefficients, FrictionReport};
 use crate::stress::{InterfaceSummary, LayerSummary, StressSummary};
 
 /// JSON text of `value`.
@@ -43,6 +43,7 @@ pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
         "StressSummary" => summary_text(&read(kind, given)?),
         "LayerStress" => again::<LayerSummary>(kind, given),
         "InterfaceStress" => again::<InterfaceSummary>(kind, given),
+        "FrictionReport" => again::<FrictionReport>(kind, given),
         _ => Err(PyValueError::new_err(format!("no result of nacre is a {kind:?}"))),
     }
 }

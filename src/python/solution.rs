@@ -72,11 +72,6 @@ impl PySolution {
         &self.solution
     }
 
-    /// The solution itself.
-    pub(super) fn inner(self) -> Solution {
-        Arc::unwrap_or_clone(self.solution)
-    }
-
     /// Solution for a `shape`, whose warnings were issued.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::friction::PyFrictionSolution;
+use super::friction::solved;
 use crate::compliance::response::Body;
 use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_with};
 use crate::model::body::HalfSpace;
@@ -135,8 +135,8 @@ impl Call {
                 let before = before.get().solution();
                 options.indentation.clone_from(&before.indentation);
                 grid = Some(*before.grid());
-            } else if let Ok(before) = before.cast::<PyFrictionSolution>() {
-                grid = Some(*before.get().inner().grid());
+            } else if let Some(before) = solved(&before) {
+                grid = Some(*before.grid());
             }
         }
         Ok(Self {
