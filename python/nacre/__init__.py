@@ -46,11 +46,11 @@ from nacre._core import (
     roll,
     slide,
     solve,
-    stress,
     surface_compliance,
 )
 from nacre.files import load
 from nacre.friction import creep_coefficients
+from nacre.stresses import stress
 from nacre.studies import sweep
 from nacre.units import display_units
 

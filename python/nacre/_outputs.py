@@ -12,6 +12,7 @@ import nacre._core as core
 
 if TYPE_CHECKING:
     from nacre.indent.solution import IndentSolution
+    from nacre.stresses import StressSummary
 
 Output = str | Callable[[Any], Any]
 
@@ -51,7 +52,7 @@ INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
 INDENT = (*INDENTED, "outer_radius", "pull_off_load", "pull_off_approach", "pull_off_radius")
 """Attributes of an `IndentSolution` that are numbers."""
 
-STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
+STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
     "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
     "max_shear": lambda summary: [layer.max_shear[0] for layer in summary.layers],

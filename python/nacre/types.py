@@ -5,15 +5,11 @@ from nacre._core import (
     FrictionReport,
     FrictionSolution,
     Gradient,
-    InterfaceStress,
-    LayerStress,
     Report,
     Shape,
-    Stress,
-    StressPlan,
-    StressSummary,
 )
 from nacre.friction import CreepCoefficients
+from nacre.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 
 __all__ = [
     "CreepCoefficients",

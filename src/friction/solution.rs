@@ -6,7 +6,7 @@ use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
 use crate::error::{Error, Result, all_finite, same_shape};
 use crate::model::grid::Grid;
-use crate::stress::{Member, Stress, StressPlan, WatchedStress};
+use crate::stress::{Member, Strengths, Stress, StressPlan, StressSummary, WatchedStress};
 
 /// Tangential motion of the counterbody over the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,6 +128,23 @@ impl FrictionSolution {
         let mut progress = |part| asked.tell(part);
         let plan = self.stress_plan(member, options.watched(&mut progress))?;
         plan.stress(depths, options.watched(&mut progress))
+    }
+
+    /// Peaks of this stress in each layer, and tractions at each interface.
+    ///
+    /// # Errors
+    /// As [`FrictionSolution::stress`], and bad strengths.
+    pub fn stress_summary<'a>(
+        &self,
+        member: Member,
+        strengths: &Strengths,
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<StressSummary> {
+        let mut asked = options.into();
+        let options = asked.options();
+        let mut progress = |part| asked.tell(part);
+        let plan = self.stress_plan(member, options.watched(&mut progress))?;
+        plan.summary(strengths, options.watched(&mut progress))
     }
 
     /// A plan of the stress in one of the bodies under the pressure and the tractions, evaluated any number of times,

@@ -19,13 +19,9 @@ use crate::python::errors::{ConvergenceError, NacreWarning};
 use crate::python::grid::PyGrid;
 use crate::python::solution::PySolution;
 use crate::python::state::{self, Fields, Reduced, State, from_dict_docs, to_dict_docs};
-use crate::python::stress::keywords::{
-    depths, issue_warnings, options, progress_docs, section, section_docs, section_signature,
-    strength_docs, strength_signature, strengths, threads_docs, watched,
-};
-use crate::python::stress::{PyStress, PyStressPlan, PyStressSummary};
+use crate::python::stress::{PyStressPlan, evaluated, planned, summarised};
 use crate::python::words::Word;
-use crate::stress::{Member, StressOptions};
+use crate::stress::Member;
 
 /// A contact with friction: one step of a history, or rolling. Fields are at cell centres, and read-only.
 ///
@@ -334,155 +330,38 @@ impl PyFrictionSolution {
         PyFrictionReport(self.solution.report.clone())
     }
 
-    #[doc = concat!("stress($self, z, *, body='body', ", section_signature!(), ", residual=None, threads=None, progress=None)\n--\n")]
-    /// Stress below the surface under the pressure and the tractions, at any depth of either body.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Depths into the body, at least 0 [m].
-    /// body : {"body", "counterbody"}, optional
-    ///     Body in which stress is evaluated.
-    #[doc = section_docs!()]
-    /// residual : dict or sequence, optional
-    ///     Residual stress of layers [Pa], as in `Solution.stress`.
-    #[doc = threads_docs!()]
-    #[doc = progress_docs!()]
-    ///
-    /// Returns
-    /// -------
-    /// Stress
-    ///     Components, invariants and displacement.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is out of range, or the counterbody is rigid.
-    ///
-    /// Notes
-    /// -----
-    /// The pressure varies within cells, as in `Solution.stress`; tractions are uniform over cells.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> bool(np.allclose(ball.stress(0.0).xz, -ball.traction[0], atol=1.0))
-    /// True
-    #[pyo3(signature = (z, **keywords), text_signature = None)]
-    fn stress<'py>(
+    fn _stress<'py>(
         &self,
-        py: Python<'py>,
         z: &Bound<'py, PyAny>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<PyStress> {
-        let keywords = Keywords::new(py, keywords)?;
-        let member: Member = keywords.word("body")?;
-        let (depths, one) = depths(z)?;
-        let mut options = options(&keywords, self.solution.normal.member(member)?)?;
-        options.threads = keywords.count("threads", 1)?;
-        let lines = section(&keywords, &mut options)?;
-        let progress = keywords.callable("progress")?;
-        keywords.finish("keywords of FrictionSolution.stress")?;
+        asked: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let keywords = Keywords::new(z.py(), Some(asked))?;
+        let member = keywords.word("body")?;
         let solution = Arc::clone(&self.solution);
-        let evaluated = watched(py, progress, move |progress| {
-            solution.stress(&depths, member, options.watched(progress))
-        })?;
-        issue_warnings(py, evaluated.warnings())?;
-        Ok(PyStress::new(evaluated, one, lines))
+        evaluated(z, &keywords, self.solution.normal.member(member)?, move |depths, options| {
+            solution.stress(depths, member, options)
+        })
     }
 
-    #[doc = concat!("stress_summary($self, *, body='body', ", strength_signature!(), ", residual=None, threads=None, progress=None)\n--\n")]
-    /// Extremes of the stress in each layer and at each interface, and safety factors.
-    ///
-    /// Parameters
-    /// ----------
-    /// body : {"body", "counterbody"}, optional
-    ///     Body in which stress is evaluated.
-    #[doc = strength_docs!()]
-    /// residual : dict or sequence, optional
-    ///     Residual stress of layers [Pa], as in `Solution.stress`.
-    #[doc = threads_docs!()]
-    #[doc = progress_docs!()]
-    ///
-    /// Returns
-    /// -------
-    /// StressSummary
-    ///     Peaks and their points; printing it shows a table.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is out of range, or the counterbody is rigid.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> pressed = ball.normal.stress_summary().layers[0]
-    /// >>> ball.stress_summary().layers[0].von_mises[0] > 0.9 * pressed.von_mises[0]
-    /// True
-    #[pyo3(signature = (**keywords), text_signature = None)]
-    fn stress_summary<'py>(
+    fn _stress_summary(&self, asked: &Bound<'_, PyDict>) -> PyResult<String> {
+        let keywords = Keywords::new(asked.py(), Some(asked))?;
+        let member = keywords.word("body")?;
+        let solution = Arc::clone(&self.solution);
+        let body = self.solution.normal.member(member)?;
+        summarised(asked.py(), &keywords, body, move |strengths, options| {
+            solution.stress_summary(member, strengths, options)
+        })
+    }
+
+    fn _stress_plan(
         &self,
-        py: Python<'py>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<PyStressSummary> {
-        let keywords = Keywords::new(py, keywords)?;
-        let member: Member = keywords.word("body")?;
-        let layers = self.solution.normal.member(member)?;
-        let strengths = strengths(&keywords, layers)?;
-        let mut options = options(&keywords, layers)?;
-        options.threads = keywords.count("threads", 1)?;
-        let progress = keywords.callable("progress")?;
-        keywords.finish("keywords of FrictionSolution.stress_summary")?;
-        let solution = Arc::clone(&self.solution);
-        let summary = watched(py, progress, move |progress| {
-            let plan = solution.stress_plan(member, options.watched(progress))?;
-            plan.summary(&strengths, options.watched(progress))
-        })?;
-        Ok(PyStressSummary(summary))
-    }
-
-    /// Plan of the stress in one of the bodies, evaluated any number of times without planning again.
-    ///
-    /// Parameters
-    /// ----------
-    /// body : {"body", "counterbody"}, optional
-    ///     Body in which stress is evaluated.
-    /// threads : int, optional
-    ///     Number of threads; all of the machine's by default.
-    ///
-    /// Returns
-    /// -------
-    /// StressPlan
-    ///     Plan, whose `stress` and `summary` take no friction: the tractions are those of this solution.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is out of range, or the counterbody is rigid.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> ball = nacre.slide(nacre.Sphere(5e-3), steel, steel, load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> ball.stress_plan().stress(10e-6) == ball.stress(10e-6)
-    /// True
-    #[pyo3(signature = (body="body", threads=None))]
-    fn stress_plan(
-        slf: &Bound<'_, Self>,
+        py: Python<'_>,
         body: &str,
-        threads: Option<usize>,
+        threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyStressPlan> {
         let member = Member::from_word(body)?;
-        let solution = Arc::clone(&slf.get().solution);
-        let plan = watched(slf.py(), None, move |progress| {
-            let options = StressOptions::with_threads(threads);
-            solution.stress_plan(member, options.watched(progress))
-        })?;
-        let solution = slf.clone().into_any().unbind();
-        Ok(PyStressPlan::new(plan, member, threads, solution))
+        let solution = Arc::clone(&self.solution);
+        planned(py, threads, move |options| solution.stress_plan(member, options))
     }
 
     /// Draws stick and slip, with arrows of the traction; needs ``nacre-contact[plot]``.

@@ -16,7 +16,7 @@ use crate::compliance::response::Body;
 use crate::indent::{
     Adhesion, Branch, Control, Held, Indent, IndentParameter, Stack, TipParameter,
 };
-use crate::python::stress::keywords::issue_warnings;
+use crate::python::errors::issue_warnings;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
 ///

@@ -9,7 +9,7 @@ use super::super::super::arguments::{Real, real_array};
 use super::super::super::background::{self, Caller};
 use crate::Result;
 use crate::indent::{Held, IndentParameter, IndentWarning, InteriorStress, Point, Variable};
-use crate::python::stress::keywords::issue_warnings;
+use crate::python::errors::issue_warnings;
 
 /// One number of a state of stress.
 type Component = fn(&InteriorStress) -> f64;
