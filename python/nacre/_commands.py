@@ -254,6 +254,14 @@ def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[st
     state["units"] = system().name
     state.pop("kind")
     numbers = {name: getattr(solution, name) for name in FIGURES}
+    if solution.hardness is not None:
+        hardness = np.unique(solution.hardness)
+        numbers["hardness"] = hardness.item() if hardness.size == 1 else hardness[[0, -1]].tolist()
+    if solution.indentation.any():
+        numbers |= {
+            "indentation": float(solution.indentation.max()),
+            "plastic_work": solution.plastic_work,
+        }
     return state | numbers | {"warnings": solution.report.warnings}
 
 

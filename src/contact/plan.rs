@@ -301,7 +301,7 @@ impl Datum {
         let near =
             Self { compliance: compliance / period, distance: width, width, ..Self::default() };
         let homogeneous = bodies.iter().all(|body| body.lengths().is_none());
-        if homogeneous || near.compliance <= 0.0 {
+        if (homogeneous && additions.is_empty()) || near.compliance <= 0.0 {
             return Ok(near);
         }
         for trial in 0..TRIALS {

@@ -221,14 +221,15 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Lower and upper sides of a grid that the `contact` touches although the shape goes on there.
+/// Lower and upper sides of a grid that the `contact` touches although the shape goes on there, by more than rounding.
 pub(super) fn touched_sides(contact: &Window, grid: &Grid, extent: [Extent; 2]) -> [[bool; 2]; 2] {
     let frame = frame_of(grid);
     [0, 1].map(|k| {
         let [low, high] = extent[k].range();
+        let beyond = 1e-9 * grid.size()[k];
         [
-            contact[k].start == 0 && frame[k][0] > low,
-            contact[k].end == grid.shape()[k] && frame[k][1] < high,
+            contact[k].start == 0 && frame[k][0] > low + beyond,
+            contact[k].end == grid.shape()[k] && frame[k][1] < high - beyond,
         ]
     })
 }
