@@ -46,6 +46,7 @@ from nacre._core import (
     solve,
     surface_compliance,
 )
+from nacre._profiles import read_profile
 from nacre.files import load
 from nacre.friction import creep_coefficients, roll, slide
 from nacre.stresses import stress
@@ -96,6 +97,10 @@ __all__ = [
     "surface_compliance",
     "sweep",
 ]
+
+
+# Of the compiled class, whose files are read in Python.
+SampledProfile.read = staticmethod(read_profile)  # type: ignore[method-assign]
 
 _LAZY = ("case", "design", "friction", "hertz", "indent", "jax", "plot", "rough", "torch")
 """Modules that are imported when they are first used, as `nacre.plot`."""

@@ -191,7 +191,7 @@ def indent(
     if not described.is_indentation:
         raise CaseError(f"{case}: this case is a contact, without [tip] and [indent]: nacre solve")
     for path in save or []:
-        if path.suffix not in (".nc", ".csv"):
+        if path.suffix.lower() not in (".nc", ".csv"):
             raise CaseError(f"--save must end in .nc or .csv, got {str(path)!r}")
     arguments = described.arguments()
     with nacre.display_units(described.units), warnings.catch_warnings():
@@ -289,7 +289,7 @@ def _plain(data: Any) -> Any:
 
 def _check_ending(path: Path) -> None:
     endings = {".nc", ".vtr", ".csv", *PICTURES}
-    if path.suffix not in endings:
+    if path.suffix.lower() not in endings:
         message = f"must end in {', '.join(sorted(endings))}, got {str(path)!r}"
         raise typer.BadParameter(message, param_hint="'--save'")
 

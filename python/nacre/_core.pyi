@@ -310,6 +310,15 @@ class LogarithmicProfile:
 class SampledProfile:
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def __new__(cls, x: _Vector, drop: _Vector) -> Self: ...
+    @staticmethod
+    def read(
+        path: str | os.PathLike[str],
+        *,
+        unit: str | tuple[str, str] | None = None,
+        x: str | int | None = None,
+        drop: str | int | None = None,
+        height: str | int | None = None,
+    ) -> SampledProfile: ...
     @overload
     def drop_at(self, x: float) -> float: ...
     @overload

@@ -40,7 +40,7 @@ def replacing(path: Path) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{str(path.parent)!r} is not a folder")
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
-        temporary = Path(folder) / path.name
+        temporary = Path(folder) / path.with_suffix(path.suffix.lower()).name
         yield temporary
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())

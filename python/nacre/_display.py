@@ -18,7 +18,7 @@ from nacre._core import (
     Rigid,
     Solution,
 )
-from nacre.units import rounded, written
+from nacre.units import printable, rounded, written
 
 if TYPE_CHECKING:
     from nacre.stresses import InterfaceStress, LayerStress, StressSummary
@@ -110,7 +110,7 @@ def line(solution: Solution) -> str:
     nx, ny = report.grid.shape
     counterbody = "rigid" if report.counterbody is None else repr(report.counterbody)
     force = "N/m" if report.grid.is_line else "N"
-    return (
+    return printable(
         f"<Solution on {nx} x {ny} cells, counterbody {counterbody}: "
         f"load {written(solution.load, force, 6)}, "
         f"peak pressure {written(solution.peak_pressure, 'Pa', 6)}, "
@@ -141,7 +141,7 @@ def text(solution: Solution) -> str:
     width = max(len(name) for name, _ in rows)
     lines = [f"{name:{width}}  {value}" for name, value in rows]
     lines += [f"warning: {warning}" for warning in solution.report.warnings]
-    return "\n".join(lines)
+    return printable("\n".join(lines))
 
 
 def stresses(summary: StressSummary) -> str:
@@ -153,7 +153,7 @@ def stresses(summary: StressSummary) -> str:
         for row in rows
     ]
     lines += [f"warning: {warning}" for warning in summary.warnings]
-    return "\n".join(lines if summary.finished else [*lines, UNFINISHED])
+    return printable("\n".join(lines if summary.finished else [*lines, UNFINISHED]))
 
 
 def stresses_markup(summary: StressSummary) -> str:

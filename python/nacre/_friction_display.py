@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from nacre import values
 from nacre._display import numbers as normal_numbers
-from nacre.units import symbol, written
+from nacre.units import printable, symbol, written
 
 if TYPE_CHECKING:
     from nacre._friction_result import FrictionSolution
@@ -103,7 +103,7 @@ def line(solution: FrictionSolution) -> str:
         if shift is not None
         else f"creepage ({(creepage or (0.0, 0.0))[0]:.4g}, {(creepage or (0.0, 0.0))[1]:.4g})"
     )
-    return (
+    return printable(
         f"<FrictionSolution on {nx} x {ny} cells: force {_pair(solution.force, unit)}, "
         f"{motion}, {'converged' if solution.report.converged else 'not converged'}>"
     )
@@ -115,7 +115,7 @@ def text(solution: FrictionSolution) -> str:
     width = max(len(name) for name, _ in rows)
     lines = [f"{name:{width}}  {value}" for name, value in rows]
     lines += [f"warning: {warning}" for warning in solution.normal.report.warnings]
-    return "\n".join(lines)
+    return printable("\n".join(lines))
 
 
 def _rows(solution: FrictionSolution) -> list[tuple[str, str]]:

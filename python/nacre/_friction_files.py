@@ -129,14 +129,15 @@ def save(solution: FrictionSolution, path: AnyPath) -> Path:
 
     path = Path(path)
     kinds = (".nc", ".vtr", ".csv", *PICTURES)
-    if path.suffix not in kinds:
+    ending = path.suffix.lower()
+    if ending not in kinds:
         raise ValueError(f"path must end in {', '.join(kinds)}, got {str(path)!r}")
     with replacing(path) as temporary:
-        if path.suffix == ".nc":
+        if ending == ".nc":
             write_dataset(to_xarray(solution), temporary)
-        elif path.suffix == ".vtr":
+        elif ending == ".vtr":
             _write_vtk(solution, temporary)
-        elif path.suffix == ".csv":
+        elif ending == ".csv":
             _write_cells(solution, temporary)
         else:
             _write_picture(solution, temporary)

@@ -141,7 +141,8 @@ def text() -> str:
     """Return the reference as Markdown that can be read as it is."""
     lines = textwrap.wrap(INTRODUCTION, WIDTH)
     for title, table in sections():
-        summary = " ".join(table["description"].split("\n\n")[0].split()).replace("``", "`")
+        told = table.get("description", "")  # without docstrings there is none
+        summary = " ".join(told.split("\n\n")[0].split()).replace("``", "`")
         lines += ["", f"## {title}", "", *textwrap.wrap(summary, WIDTH), ""]
         required = table.get("required", [])
         keys = [(name, node) for name, node in table["properties"].items() if name != "kind"]

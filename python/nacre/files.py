@@ -121,7 +121,7 @@ def save(
         ".csv": write_cells if whole else write_sections,
         **dict.fromkeys(PICTURES, _write_picture),
     }
-    ending = path.suffix
+    ending = path.suffix.lower()
     if ending not in writers:
         raise ValueError(f"path must end in {', '.join(writers)}, got {str(path)!r}")
     if depths is None and options:

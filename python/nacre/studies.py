@@ -158,7 +158,7 @@ def sweep(
     if not (callable(case) or isinstance(case, Mapping)):
         raise TypeError(f"case must be callable or a mapping of arguments, got {case!r}")
     path = None if store is None else Path(store)
-    if path is not None and path.suffix != ".nc":
+    if path is not None and path.suffix.lower() != ".nc":
         raise ValueError(f"store must end in .nc, got {str(store)!r}")
     _check_store(path)
     coordinates, points = laid_out(parameters)

@@ -1,4 +1,4 @@
-"""Measured surfaces from files, and from SurfaceTopography."""
+"""Measured surfaces and profiles from files, and from SurfaceTopography."""
 
 from __future__ import annotations
 
@@ -11,14 +11,20 @@ import numpy as np
 import numpy.typing as npt
 
 from nacre import _core as core
-from nacre._heights import LEAST_MEASURED, METRES, Heights, named
+from nacre import _heights
+from nacre._heights import LEAST_MEASURED, METRES, Heights, without_sentinels
 from nacre._instruments import instrument, of_topography
+from nacre._profiles import read_profile as read_profile
 
 Array = npt.NDArray[np.float64]
 
 TRENDS = ("none", "mean", "plane", "quadratic")
 TALLEST = 10.0
 """Largest ratio of height to side of a map; surfaces have less than 1, and a wrong unit 1e3."""
+STEEPEST = 50.0
+"""Largest median slope between neighbours along x and y; surfaces have less than 5."""
+FLATTEST, WIDEST = 1e-6, 0.5
+"""Least ratio of height to side of a map that is wider than this [m]."""
 
 
 def read(
@@ -38,18 +44,19 @@ def read(
         raise ValueError(f"unit must be one of {', '.join(METRES)}, got {unit!r}")
     if channel is not None and (isinstance(channel, bool) or not isinstance(channel, str | int)):
         raise TypeError(f"channel must be a name or a number, got {channel!r}")
-    name, found, is_metric = _found(path, channel)
+    name, found = _found(path, channel)
     heights, sides = found.heights, found.spacing
     if transpose:
         heights, sides = heights.T, None if sides is None else (sides[1], sides[0])
-    factor = _metres(name, found, unit, is_metric)
+    factor = _metres(name, found, unit)
     heights = heights * factor
+    given = spacing
     if spacing is None:
         if sides is None:
-            raise ValueError(f"spacing must be given: {name} does not have it")
+            raise ValueError(f"spacing must be given: {name}{found.note} does not have it")
         spacing = sides[0] * factor, sides[1] * factor
-    if unit is None and found.unit is None:
-        _check_size(name, heights, spacing)
+    is_known = unit is not None or found.unit is not None
+    _check_size(name, heights, spacing, is_known, given is not None)
     heights = _filled(name, heights)
     try:
         return core.HeightMap(_without_trend(heights, detrend), spacing, periodic=periodic)
@@ -57,54 +64,74 @@ def read(
         raise ValueError(f"{name}: {error}") from error
 
 
-def _found(path: Any, channel: str | int | None) -> tuple[str, Heights, bool]:
-    """Return a name for messages, the heights, and whether they are in metres without a unit."""
+def _found(path: Any, channel: str | int | None) -> tuple[str, Heights]:
+    """Return a name for messages, and the heights."""
     if not isinstance(path, str | os.PathLike):
         if not hasattr(path, "heights"):
             raise TypeError(f"path must be a path or a topography, got {path!r}")
         if channel is not None:
             raise ValueError(f"channel must be left out: a topography has none, got {channel!r}")
-        return "the topography", of_topography(path), False
+        return "the topography", of_topography(path)
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"{str(path)!r} is not a file")
-    reader = named(path)
-    if reader is None:
-        return repr(str(path)), instrument(path, channel), False
-    if channel is not None:
-        raise ValueError(f"channel must be left out: {path.suffix} has none, got {channel!r}")
-    return repr(str(path)), reader(path), path.suffix.lower() != ".xyz"
+    ending = path.suffix.lower()
+    if ending == ".npy":
+        if channel is not None:
+            raise ValueError(f"channel must be left out: .npy has none, got {channel!r}")
+        found = _heights.npy(path)
+    elif ending in (".csv", ".xyz"):
+        found = _heights.text(path, channel)
+    else:
+        found = instrument(path, channel)
+    return repr(str(path)), found._replace(heights=without_sentinels(found.heights))
 
 
-def _metres(name: str, found: Heights, unit: str | None, is_metric: bool) -> float:
+def _metres(name: str, found: Heights, unit: str | None) -> float:
     """Return the length of the unit [m]."""
     said = unit or found.unit
-    if said is None and not is_metric:
+    if said is None and not found.is_metric:
         sizes = f"its heights span {_span(found.heights):.4g}"
         if found.spacing is not None:
             nx, ny = found.heights.shape
             dx, dy = found.spacing
             sizes += f" and its sides {(nx - 1) * dx:.4g} x {(ny - 1) * dy:.4g}"
         raise ValueError(f"unit must be given: {name} names none; {sizes}")
-    if said is not None and said not in METRES:
+    length = _heights.metres(said or "m")
+    if length is None:
         raise ValueError(
             f"unit must be given: {name} has {said!r}, which is none of {', '.join(METRES)}"
         )
-    return METRES[said or "m"]
+    return length
 
 
-def _check_size(name: str, heights: Array, spacing: float | tuple[float, float]) -> None:
-    """Refuse heights that nothing says to be metres, and that are far larger than the map."""
+def _check_size(
+    name: str, heights: Array, spacing: float | tuple[float, float], is_known: bool, is_given: bool
+) -> None:
+    """Refuse heights that do not go with the sides of the map, as where a unit is wrong."""
     try:
         dx, dy = (float(d) for d in np.broadcast_to(np.asarray(spacing, dtype=np.float64), 2))
     except (TypeError, ValueError):
         return  # HeightMap refuses it
     lx, ly, span = heights.shape[0] * dx, heights.shape[1] * dy, _span(heights)
-    if 0 < TALLEST * max(lx, ly) < span:
-        raise ValueError(
-            f"unit must be given: {name} names none, and in metres its heights would span "
-            f"{span:.4g} m on a map of {lx:.4g} m x {ly:.4g} m"
+    side = max(lx, ly)
+    if not (side > 0 and span > 0):
+        return
+    sizes = f"heights would span {span:.4g} m on a map of {lx:.4g} m x {ly:.4g} m"
+    if not is_known and span > TALLEST * side:
+        raise ValueError(f"unit must be given: {name} names none, and in metres its {sizes}")
+    steps = [np.diff(heights, axis=0) / dx, np.diff(heights, axis=1) / dy]
+    slopes = [np.abs(step[np.isfinite(step)]) for step in steps]
+    slope = min(float(np.median(one)) if one.size else 0.0 for one in slopes)
+    is_flat = side > WIDEST and span < FLATTEST * side
+    if span > TALLEST * side or slope > STEEPEST or is_flat:
+        remedy = (
+            "check spacing=, in metres, and unit="
+            if is_given
+            else "x, y and z seem to have different units: give spacing=, in metres, and unit= of "
+            "the heights"
         )
+        raise ValueError(f"spacing must go with the heights: in {name} {sizes}; {remedy}")
 
 
 def _span(heights: Array) -> float:

@@ -6,6 +6,7 @@ Quantities are plain numbers in consistent units; `display_units` says which uni
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from types import TracebackType
 
@@ -125,6 +126,34 @@ def size_of(unit: str) -> tuple[str, float] | None:
             size = one[1] / other[1] if mark == "/" else one[1] * other[1]
             return f"{one[0]}{mark}{other[0]}", size
     return _simple(unit)
+
+
+PLAIN = {
+    "ν": "nu", "µ": "u", "μ": "u", "±": "+-", "×": "x", "²": "^2", "³": "^3", "·": "*", "°": "deg",
+    "−": "-", "–": "-", "…": "...", "σ": "sigma", "δ": "delta", "χ": "chi",
+}  # fmt: skip
+"""What is printed for a letter where the encoding of the output lacks it."""
+
+
+def printable(text: str) -> str:
+    """Return a text with letters that the encoding of `sys.stdout` has, as on Windows."""
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        # Other letters, as in names of layers, become question marks.
+        text = "".join(one if _has(encoding, one) else PLAIN.get(one, "?") for one in text)
+    except LookupError:
+        pass
+    return text
+
+
+def _has(encoding: str, letter: str) -> bool:
+    try:
+        letter.encode(encoding)
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 class System:

@@ -115,10 +115,10 @@ def save(
 ) -> Path:
     """Write a file, whole or not at all; its ending chooses the kind. Tables have these rows."""
     path = Path(path)
-    if path.suffix not in (".nc", ".csv"):
+    if path.suffix.lower() not in (".nc", ".csv"):
         raise ValueError(f"path must end in .nc or .csv, got {str(path)!r}")
     with replacing(path) as temporary:
-        if path.suffix == ".nc":
+        if path.suffix.lower() == ".nc":
             write_dataset(found.to_xarray(), temporary)
             return path
         with temporary.open("w", newline="", encoding="utf-8") as file:

@@ -17,7 +17,9 @@ from nacre.indent.curves import Curve
 Array = npt.NDArray[np.float64]
 Noise = Literal["relative", "absolute", "mixed"]
 
-NUISANCES = ("contact_point", "drift", "compliance")
+OF_FORCE = ("force_offset", "force_slope")
+"""Nuisances of the force: its zero [N], and the slope of its baseline over the depth [N/m]."""
+NUISANCES = ("contact_point", "drift", "compliance", *OF_FORCE)
 """Nuisances of a curve: depth of its zero [m], drift [m/s], compliance of the machine [m/N]."""
 RANGES: dict[str, float | tuple[float, float]] = {
     "young": 100.0,
@@ -95,7 +97,8 @@ def uniform(force: Array, floor: Array) -> tuple[Array, Array]:
 class Model:
     """Weighted residuals of curves and their Jacobian.
 
-    The true depth is d − d0 − v t − C F. Residuals are ln P − ln F over the relative noise, P − F
+    The true depth is d − d0 − v t − C F, and the load P that of the body plus F0 + s (d − d1), the
+    baseline from the first depth d1. Residuals are ln P − ln F over the relative noise, P − F
     over the absolute noise, or arsinh P/c − arsinh F/c over the share where noise is of both kinds;
     a prior adds one residual.
     """
@@ -175,14 +178,16 @@ class Model:
         """Return the true depth of each point."""
         depth = self.depth.copy()
         for k, unknown in enumerate(self.unknowns):
-            if unknown.kind:
+            if unknown.kind and unknown.kind not in OF_FORCE:
                 part = self.parts[unknown.curve]
                 depth[part] -= unknown.value(float(x[k])) * self._lever(unknown)
         return depth
 
     def _lever(self, unknown: Unknown) -> Array | float:
-        """Return the derivative of the measured depth with respect to a nuisance."""
+        """Return the derivative of the measured depth, or force, with respect to a nuisance."""
         curve = self.curves[unknown.curve]
+        if unknown.kind == "force_slope":
+            return np.asarray(curve.depth - curve.depth[0])
         if unknown.kind == "drift":
             assert curve.time is not None
             return np.asarray(curve.time - curve.time[0])
@@ -215,6 +220,10 @@ class Model:
         for k, unknown in enumerate(self.unknowns):
             if unknown.kind:
                 part = self.parts[unknown.curve]
+                if unknown.kind in OF_FORCE:
+                    load[part] += unknown.value(float(x[k])) * self._lever(unknown)
+                    columns[part, k] = unknown.scale * self._lever(unknown)
+                    continue
                 rate = wider * curve.slope[part] * self._lever(unknown)
                 columns[part, k] = -unknown.scale * rate
                 continue
@@ -341,6 +350,8 @@ def _unknowns(
                 scale = reach / float(np.ptp(curve.time))
             elif kind == "compliance":
                 scale = reach / most
+            elif kind in OF_FORCE:
+                scale = most if kind == "force_offset" else most / reach
             name = kind if len(curves) == 1 else f"curves[{number}].{kind}"
             low, high = bounds.get(name, bounds.get(kind, (-FARTHEST * scale, FARTHEST * scale)))
             if not low < 0 < high:

@@ -15,12 +15,12 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._display import aligned, table
-from nacre.indent._model import NUISANCES
+from nacre.indent._model import NUISANCES, OF_FORCE
 from nacre.indent._residuals import ROUNDING
 from nacre.indent._system import System, unit_of
 from nacre.indent.classical import Classical, classical
 from nacre.indent.curves import Curve
-from nacre.units import written
+from nacre.units import printable, written
 from nacre.values import FORMAT, checked_state, decode, encode, refusing
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ Array = npt.NDArray[np.float64]
 UNFIT = "the model does not fit the data"
 """Reason why no parameter is identifiable where the residuals are no noise."""
 
-GIVEN = 4
+GIVEN = 6
 """Most numbers on which a table says that an estimate depends."""
 
 
@@ -148,7 +148,7 @@ class Fit:
     def __str__(self) -> str:
         """Return the table."""
         head, rows, notes = self._table()
-        return "\n".join([*aligned([head, *rows], "<"), *notes])
+        return printable("\n".join([*aligned([head, *rows], "<"), *notes]))
 
     def _repr_html_(self) -> str:
         return table(*self._table())
@@ -315,6 +315,8 @@ def _step(held: str) -> str:
     """Return in words what a hundredth of the unit of a sensitivity is."""
     if held.endswith(".poisson"):
         return f"0.01 of {held}"
+    if held.rpartition(".")[2] in OF_FORCE:
+        return f"{held} of 1 % of the force"
     if held.rpartition(".")[2] in NUISANCES:
         return f"{held} of 1 % of the depth"
     return f"1 % of {held}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -22,6 +23,8 @@ UNITS = PARAMETERS | {
     "contact_point": "m",
     "drift": "m/s",
     "compliance": "m/N",
+    "force_offset": "N",
+    "force_slope": "N/m",
 }
 """SI units of parameters by the last part of their names."""
 
@@ -120,6 +123,22 @@ class System:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", core.NacreWarning)  # of places on the way to a fit
             return made.curve(approach=approach, wrt=wrt)
+
+
+def _again(
+    body: core.HalfSpace,
+    tip: core.Tip,
+    counterbody: core.HalfSpace | None,
+    adhesion: core.Adhesion | None,
+) -> core.Indentation:
+    return core.Indentation(body, tip, counterbody, adhesion=adhesion)
+
+
+# The compiled class has no `__reduce__`: workers of a pool get its arguments.
+copyreg.pickle(
+    core.Indentation,
+    lambda one: (_again, (one.body, one.tip, one.counterbody, one.adhesion)),
+)
 
 
 def _changed_body(

@@ -6,17 +6,14 @@ follow each other become a table, and the lines above a table name its columns.
 
 from __future__ import annotations
 
-import codecs
-import csv
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
-from nacre._heights import MISSING
-from nacre.units import SIZES, size_of
+from nacre._text import MISSING, Column, column_of, decoded, fields_of
+from nacre._text import unit_of as unit_of
+from nacre.units import size_of
 
 DELIMITERS = ("\t", ";", ",", " ")
 """Marks between fields, the likeliest first; a blank stands for any white space."""
@@ -28,9 +25,8 @@ HEAD = 6
 """Lines above a table in which the names of its columns are looked for: names, units, a rule, and
 what instruments write between, such as the number of points."""
 
-LONGEST_LINE, LONGEST_HEADING = 4000, 200
-"""Most characters of a line with headings, and of a heading with a unit: the time that they take
-grows with a power of their length."""
+LONGEST_LINE = 4000
+"""Most characters of a line with headings: the time that they take grows with a power of it."""
 
 
 def _grammar(decimal: str, thousands: str) -> re.Pattern[str]:
@@ -44,29 +40,8 @@ NUMBERS = {".": _grammar(".", ","), ",": _grammar(",", ".")}
 WORDS = frozenset({"nan", "inf", "+inf", "-inf", "+nan", "-nan"})
 """Words, in small letters, that stand in a row of numbers where one is missing or infinite."""
 
-SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s"}
-LENGTHS = {"Å": 1e-10, "micron": 1e-6, "microns": 1e-6}
-FORCES = {"gf": 9.80665e-3, "mgf": 9.80665e-6, "kgf": 9.80665}
-"""Grams-force in newtons: the gram times the standard acceleration of free fall, 9.80665 m/s²."""
 OTHERS = frozenset({"v", "mv", "hz", "khz", "deg", "°", "%", "none", "-", "#", "a.u.", "1"})
 """What a row of units may hold, in small letters, beside units that can be computed with."""
-UNIT_LAST = (
-    re.compile(r"(.*?)\s*[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]"),
-    re.compile(r"(.+?)\s*/\s*(\S+)"),
-    re.compile(r"(.+?)(?:\s*,\s*|\s+in\s+|[_\s]+)(\S+)"),
-)
-"""Names that end in a unit: ``Depth (nm)``, ``h/µm``, and ``h_nm``, ``Load, mN``, ``h in µm``."""
-
-
-class Column(NamedTuple):
-    """A column's heading as the file writes it, and what it says."""
-
-    heading: str
-    """Heading as written, with the unit; empty where the file has none."""
-    name: str
-    """Name without the unit."""
-    unit: str | None
-    """Unit: in a name one of length, force or time, in a row of units any."""
 
 
 @dataclass
@@ -85,6 +60,10 @@ class Table:
     """Decimal mark."""
     above: str = ""
     """The nearest line above the table."""
+    title: str = ""
+    """The line above those that name the columns."""
+    head: str = ""
+    """All lines above the table."""
 
     def number(self, row: int, column: int) -> float | None:
         """Return a number of the table; None where the field holds another text or none."""
@@ -100,34 +79,11 @@ class Table:
         )
 
 
-def unit_of(text: str) -> tuple[str, float] | None:
-    """Return "m", "N" or "s" and the size in it of a unit such as "nm" or "uN", if it is known.
-
-    >>> unit_of("nm"), unit_of("uN"), unit_of("V")
-    (('m', 1e-09), ('N', 1e-06), None)
-    """
-    # A text in UTF-8 that was once read as Latin-1 has "Âµ".
-    text = text.strip().replace("μ", "µ").replace("Âµ", "µ")
-    text = SECONDS.get(text.lower(), text)
-    if len(text) > 1 and text.startswith("u"):
-        text = "µ" + text[1:]
-    if text == "min":
-        return "s", 60.0
-    if text.endswith("s") and text[:-1] in {"", "m", "µ"}:
-        return "s", SIZES[text[:-1]]
-    if text in LENGTHS:
-        return "m", LENGTHS[text]
-    if text in FORCES:
-        return "N", FORCES[text]
-    known = size_of(text)
-    return known if known is not None and known[0] in ("m", "N") else None
-
-
 def tables(
     path: Path, delimiter: str | None, decimal: str | None, encoding: str | None
 ) -> list[Table]:
     """Return the tables of a text file, in order."""
-    lines = _decoded(path, encoding).replace("\u2212", "-").splitlines()
+    lines = decoded(path, encoding).replace("\u2212", "-").splitlines()
     if delimiter is None:
         delimiter = _delimiter(lines, decimal)
     found = list(_runs(path, lines, delimiter))
@@ -139,47 +95,10 @@ def tables(
     for table, above in found:
         table.decimal = decimal or _decimal(path, table)
         table.above = above[0] if above else ""
-        table.columns = _columns(table, above, delimiter)
+        table.columns, used = _columns(table, above, delimiter)
+        table.title = above[used] if 0 < used < len(above) else ""
+        table.head = "\n".join(reversed(above))
     return [table for table, _ in found]
-
-
-def _decoded(path: Path, encoding: str | None) -> str:
-    """Return the text of a file in UTF-8, UTF-16 or else Windows' extension of Latin-1."""
-    content = path.read_bytes()
-    if encoding is not None:
-        try:
-            return content.decode(encoding)
-        except (LookupError, UnicodeError) as error:
-            raise ValueError(
-                f"encoding must suit {str(path)!r}, got {encoding!r}: {error}"
-            ) from None
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return content.decode("utf-16", errors="replace")
-    # Every second byte of numbers and English in UTF-16 is zero.
-    start = content[:1000]
-    for name, zeros in (("utf-16-le", start[1::2]), ("utf-16-be", start[::2])):
-        if zeros.count(0) > 0.5 * len(zeros) > 0 and start.count(0) <= 0.5 * len(start):
-            return content.decode(name, errors="replace")
-    if 0 in start:
-        raise ValueError(
-            f"{str(path)!r} must be text, got binary data; export it as text or CSV from the "
-            f"instrument's program"
-        )
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace")
-
-
-def _fields(line: str, delimiter: str) -> list[str]:
-    """Return the fields of a line, without quotes and blanks around them."""
-    if delimiter == " ":
-        return [text.strip("\"'") for text in line.split()]
-    if '"' in line:
-        with suppress(csv.Error):  # of a field that is longer than numbers and names are
-            texts = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-            return [text.strip() for text in texts]
-    return [text.strip(" \t\xa0'") for text in line.split(delimiter)]
 
 
 def _is_number(text: str, decimals: Sequence[str] = (".", ",")) -> bool:
@@ -205,7 +124,7 @@ def _delimiter(lines: Sequence[str], decimal: str | None) -> str:
 
     def rows(mark: str) -> int:
         used = [line for line in sample if mark == " " or mark in line]
-        return sum(_is_row(_fields(line, mark), mark, decimals) for line in used)
+        return sum(_is_row(fields_of(line, mark), mark, decimals) for line in used)
 
     return max(DELIMITERS, key=rows)  # the first of equals
 
@@ -218,8 +137,10 @@ def _runs(path: Path, lines: Sequence[str], delimiter: str) -> Iterator[tuple[Ta
         line = line.strip(" \r\n\f\v\0\x1a")
         if not line.strip():
             continue
-        fields = [] if line.startswith(("#", "%")) else _fields(line, delimiter)
+        fields = [] if line.startswith(("#", "%")) else fields_of(line, delimiter)
         if _is_row(fields, delimiter):
+            if run is not None and delimiter != " " and len(run.rows) >= LEAST_ROWS:
+                fields += [""] * (run.width - len(fields))  # a test beside it that is longer
             if run is not None and len(fields) != run.width and len(run.rows) >= LEAST_ROWS:
                 raise ValueError(
                     f"{str(path)!r} must have as many fields in each row, line {number} has "
@@ -272,8 +193,8 @@ def _decimal(path: Path, table: Table) -> str:
     return "," if commas else "."
 
 
-def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]:
-    """Return the columns of a table by the lines above it, the nearest first."""
+def _columns(table: Table, above: Sequence[str], delimiter: str) -> tuple[list[Column], int]:
+    """Return the columns of a table, and how many of the lines above, the nearest first, say it."""
     empty = [Column("", "", None)] * table.width
     said = [
         line
@@ -284,7 +205,7 @@ def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]
         headings = _headings(line, delimiter, table.width)
         if headings is None or _are_units(headings):
             continue
-        columns = [_column(heading) for heading in headings]
+        columns = [column_of(heading) for heading in headings]
         beneath = _headings(after, delimiter, table.width)
         if beneath is not None and _are_units(beneath):
             columns = [
@@ -293,13 +214,13 @@ def _columns(table: Table, above: Sequence[str], delimiter: str) -> list[Column]
                 else column
                 for heading, text, column in zip(headings, beneath, columns, strict=True)
             ]
-        return columns
-    return empty
+        return columns, above.index(line) + 1
+    return empty, 0
 
 
 def _headings(line: str, delimiter: str, width: int) -> list[str] | None:
     """Return the texts of a line that are as many as columns, or None; numbers are not texts."""
-    ways = [_fields(line, delimiter)]
+    ways = [fields_of(line, delimiter)]
     if delimiter == " ":
         in_quotes = re.findall(r'"([^"]*)"', line)
         wide = [text.strip() for text in re.split(r"\t|\s{2,}", line.strip())]
@@ -326,11 +247,3 @@ def _are_units(texts: Sequence[str]) -> bool:
         if unit_of(text) or size_of(text.replace("u", "µ")) or text.lower() in OTHERS
     ]
     return 2 * len(known) > len(some)
-
-
-def _column(heading: str) -> Column:
-    for pattern in UNIT_LAST if len(heading) <= LONGEST_HEADING else ():
-        match = pattern.fullmatch(heading)
-        if match and unit_of(match[2]):
-            return Column(heading, match[1].strip(" _,"), match[2])
-    return Column(heading, heading, None)

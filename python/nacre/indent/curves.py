@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,12 +13,15 @@ from typing import Any, ClassVar, Literal, TypedDict, Unpack, overload
 import numpy as np
 import numpy.typing as npt
 
-from nacre.indent._columns import checked_units, chosen_tables, quantities
+from nacre._arrays import plain
+from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
 from nacre.indent._text import tables
 from nacre.units import written
 
 Array = npt.NDArray[np.float64]
 
+SPRING_CONSTANT = re.compile(r'"spring constant"\s*:\s*([0-9.eE+-]+)')
+"""Spring constant [N/m] in the head of a table that afmformats wrote, in SI units."""
 LEAST_POINTS = 3
 """Fewest points of a curve: with less, no law of two parameters could be tested."""
 ROUNDING = 4 * float(np.finfo(np.float64).eps)
@@ -223,7 +227,7 @@ def _curve(depth: Array, force: Array, time: Array | None, name: str) -> Curve:
 
 def _checked(name: str, values: npt.ArrayLike) -> Array:
     """Return values as an array that cannot be written to."""
-    array = np.asarray(values)
+    array = np.asarray(plain(name, values))
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name} must be real numbers, got {array.dtype}")
     if array.ndim != 1:
@@ -248,6 +252,7 @@ class _Options(TypedDict, total=False):
     decimal: str | None
     delimiter: str | None
     encoding: str | None
+    spring_constant: float | None
 
 
 @overload
@@ -269,6 +274,7 @@ def read(
     delimiter: str | None = None,
     segment: int | Literal["all"] | None = None,
     encoding: str | None = None,
+    spring_constant: float | None = None,
 ) -> Curve | list[Curve]:
     r"""Read an indentation curve from a text file, such as instruments export, in SI units.
 
@@ -282,7 +288,7 @@ def read(
         Text file.
     depth, force, time : str or int, optional
         Column of the quantity: its name, with or without the unit, or its number from 0. A minus
-        before a name changes the sign. Time is optional.
+        before a name or a number, such as "-3", changes the sign. Time is optional.
     units : dict of str, optional
         Units of "depth", "force" and "time" where the file names none or wrong ones, such as
         ``{"depth": "nm", "force": "mN"}``. A time without a unit is in seconds.
@@ -291,9 +297,14 @@ def read(
     delimiter : str, optional
         Mark between fields; " " is any white space.
     segment : int or "all", optional
-        Table to read where the file holds several: its number from 0, or all of them.
+        Table to read where the file holds several, or part of a table with a column of segments:
+        its number from 0, or all that have a depth and a force. By default the only table that has
+        them, or the whole of a table.
     encoding : str, optional
         Encoding, by a name that Python knows.
+    spring_constant : float, optional
+        Spring constant of a cantilever [N/m], where the file gives the height of its base: the
+        depth is -(height + force / spring_constant). By default that of afmformats' head.
 
     Returns
     -------
@@ -342,9 +353,19 @@ def read(
         raise FileNotFoundError(f"{str(path)!r} is not a file")
     where = repr(str(path))
     found = tables(path, delimiter, decimal, encoding)
+    head = found[0].head
+    if "afmformats" in head:  # all in SI units
+        units = {"depth": "m", "force": "N", **units}
+        said = SPRING_CONSTANT.search(head)
+        if said is not None and depth is None and spring_constant is None:
+            spring_constant = float(said[1])
+    if spring_constant is not None and not 0 < spring_constant < math.inf:
+        raise ValueError(f"spring_constant must be positive and finite, got {spring_constant}")
+    is_spring = spring_constant is not None
     curves = []
-    for number, table in chosen_tables(where, found, segment).items():
-        depths, forces, times = quantities(where, table, asked, units)
+    chosen = chosen_tables(where, found, segment, lambda one: has_curve(one, asked, is_spring))
+    for number, table in chosen.items():
+        depths, forces, times = quantities(where, table, asked, units, spring_constant)
         name = path.stem if len(found) == 1 else f"{path.stem} {number}"
         try:
             curves.append(Curve(depths, forces, time=times, name=name))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre.indent._model import Model, Noise
+from nacre.indent._model import OF_FORCE, Model, Noise
 from nacre.indent._profile import Estimate, estimated, interval, minimum, others, reasons
 from nacre.indent._residuals import Examined, examined, likeliest
 from nacre.indent._result import UNFIT, Fit
@@ -48,7 +48,8 @@ def fit(
     """Fit indentation curves by least squares; needs ``nacre-contact[fit]``.
 
     The true depth is d − d0 − v t − C F, with the nuisances contact point d0, drift v and
-    compliance C of the machine.
+    compliance C of the machine. The force is that of the body plus F0 + s (d − d1), with the
+    nuisances zero of the force F0 and slope s of the baseline from the first depth d1.
 
     Parameters
     ----------
@@ -68,7 +69,8 @@ def fit(
     adhesion : Adhesion, optional
         Adhesion within the contact (JKR) or outside (DMT).
     nuisance : sequence of str
-        Any of "contact_point", "drift" (curves with a time) and "compliance".
+        Any of "contact_point", "drift" (curves with a time), "compliance", "force_offset" and
+        "force_slope". The last two need points before contact.
     noise : {"auto", "relative", "absolute"}
         Noise of the force: a share of each force, or the same at each point. By default the
         likelier of these by what varies from point to point, or both where that is likelier.
@@ -252,13 +254,21 @@ def _start(model: Model) -> Array:
     """Return where the fit starts: the given values, with moduli scaled to the forces."""
     x = np.zeros(len(model.unknowns))
     guessed = x.copy()
+    kinds = {unknown.kind for unknown in model.unknowns}
+    baseline: Literal["none", "constant", "linear"] = "none"
+    if kinds & set(OF_FORCE):
+        baseline = "linear" if "force_slope" in kinds else "constant"
     for k, unknown in enumerate(model.unknowns):
-        if unknown.kind == "contact_point":
+        if unknown.kind in ("contact_point", "force_offset"):
             curve = model.curves[unknown.curve]
             try:
-                found = contact_point(curve, baseline="none").depth
+                zero = contact_point(curve, baseline=baseline)
             except ValueError:
                 continue
+            if unknown.kind == "force_offset":
+                guessed[k] = unknown.place(min(max(zero.force, unknown.low), unknown.high))
+                continue
+            found = zero.depth
             if model.noise == "relative":
                 found = min(found, float(curve.depth.min()) - 1e-3 * unknown.scale)
             guessed[k] = unknown.place(min(max(found, unknown.low), unknown.high))

@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
+from nacre._arrays import plain
 from nacre._display import aligned, table
 from nacre.indent._system import System
-from nacre.units import INDENT_UNITS, written
+from nacre.units import INDENT_UNITS, printable, written
 from nacre.values import FORMAT, checked_state, decode, encode, refusing
 
 if TYPE_CHECKING:
@@ -200,7 +201,7 @@ class IndentSolution:
     def __str__(self) -> str:
         """Return the table."""
         head, rows, notes = self._table()
-        return "\n".join([*aligned([head, *rows]), *notes])
+        return printable("\n".join([*aligned([head, *rows]), *notes]))
 
     def _repr_html_(self) -> str:
         return table(*self._table())
@@ -289,6 +290,7 @@ def solve(
         raise ValueError(f"control must be 'load' or 'approach', got {control!r}")
     test = core.Indentation(body, tip, counterbody, adhesion=adhesion)
     asked: dict[str, Any] = {"load": load, "approach": approach, "radius": radius}
+    asked = {name: plain(name, value) for name, value in asked.items()}
     state = test.at(**asked, branch=branch)
     # What was given is the value that is not None, as `at` has checked.
     given: Any = next(name for name, value in asked.items() if value is not None)
