@@ -8,8 +8,8 @@ use nacre::{
 use crate::support::settings::{Controls, converged, plan, stack, tolerance};
 
 /// Step of the differences: so small that no cell joins or leaves the contact, and large compared with
-/// the error of the solutions, 1e-13/1e-6.
-const STEP: f64 = 1e-6;
+/// the error of the solutions, 1e-13/2e-6.
+const STEP: f64 = 2e-6;
 const SYMMETRY: f64 = 1e-10;
 const DIFFERENCES: f64 = 1e-6;
 

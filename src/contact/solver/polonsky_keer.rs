@@ -145,7 +145,12 @@ impl Search {
         loop {
             let (mut slope, mut size, mut energy) = (0.0, 0.0_f64, 0.0);
             for ((t, &inside), &g) in direction.iter_mut().zip(inside).zip(g) {
-                *t = if inside { g + beta * *t } else { 0.0 };
+                // Outside the contact the gap may be infinite.
+                if !inside {
+                    *t = 0.0;
+                    continue;
+                }
+                *t = g + beta * *t;
                 slope += g * *t;
                 size += t.abs();
             }
