@@ -158,6 +158,7 @@ mod tests {
     use crate::model::body::{HalfSpace, Layer};
     use crate::model::grid::Grid;
     use crate::model::material::Elastic;
+    use crate::numerics::fft::PaddedTransform;
 
     /// The formula of the weights is the sum that defines them, to the rounding of some tens of terms.
     #[test]
