@@ -84,6 +84,8 @@ class Heights(NamedTuple):
     """Unit that the file names."""
     is_metric: bool = True
     """Whether the numbers are metres where no unit is named."""
+    named: tuple[str, ...] = ()
+    """Units of columns, in which the numbers are no more."""
     note: str = ""
     """What a message adds to the name of the file."""
 
@@ -295,7 +297,9 @@ class Text:
         ]
         x, y, z = (metres(unit or "") for unit in units)
         if x and y and z:
-            return Heights(heights, (steps[0] * (x / z), steps[1] * (y / z)), units[2], False)
+            named = tuple(str(unit) for unit in units)
+            steps = steps[0] * (x / z), steps[1] * (y / z)
+            return Heights(heights, steps, units[2], False, named)
         return Heights(heights, steps, self.unit(), False)
 
     def matrix(self, table: Table) -> Heights:

@@ -89,7 +89,7 @@ def _found(path: Any, channel: str | int | None) -> tuple[str, Heights]:
 
 def _metres(name: str, found: Heights, unit: str | None) -> float:
     """Return the length of the unit [m]."""
-    said = unit or found.unit
+    said = found.unit if unit is None or unit in found.named else unit
     if said is None and not found.is_metric:
         sizes = f"its heights span {_span(found.heights):.4g}"
         if found.spacing is not None:

@@ -240,6 +240,17 @@ def test_no_keywords_make_a_map_of_what_is_none(
             nacre.HeightMap.read(path, **options)
 
 
+@pytest.mark.parametrize("unit", [None, "mm", "µm"])
+def test_a_unit_of_a_column_is_not_applied_again(unit: str | None, tmp_path: Path) -> None:
+    x, heights = np.linspace(0, 1, 6), np.random.default_rng(0).uniform(0, 1, (6, 6))
+    rows = [f"{x[i]},{x[j]},{heights[i, j]}" for i in range(6) for j in range(6)]
+    path = tmp_path / "scan.csv"
+    path.write_text("\n".join(["x [mm],y [mm],z [µm]", *rows]), encoding="utf-8")
+    found = nacre.HeightMap.read(path, unit=unit)
+    assert found.spacing == pytest.approx((2e-4, 2e-4))
+    assert found.heights == pytest.approx(1e-6 * heights)
+
+
 def test_matrices_of_few_columns_stay_readable(tmp_path: Path) -> None:
     random = np.random.default_rng(1)
     for shape in ((50, 2), (50, 3), (3, 50), (4, 4)):
