@@ -3,7 +3,7 @@
 //! Inputs are fixed, and results are asserted once before timing. All run on one thread.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use nacre::indent::{Indent, Parameter, Stack, Tip};
+use nacre::indent::{Indent, IndentParameter, Stack, Tip};
 use nacre::{Body, BodyParameter, Elastic, HalfSpace, Layer, Result};
 use std::hint::black_box;
 
@@ -19,9 +19,9 @@ fn indent() -> Result<Indent> {
 /// A curve of 60 points up to a contact radius of 3 layers, with three derivatives.
 fn curve(indent: &Indent, approaches: &[f64]) -> Result<f64> {
     let parameters = [
-        Parameter::Body(0, BodyParameter::Young(0)),
-        Parameter::Body(0, BodyParameter::Young(1)),
-        Parameter::Body(0, BodyParameter::Thickness(0)),
+        IndentParameter::Body(0, BodyParameter::Young(0)),
+        IndentParameter::Body(0, BodyParameter::Young(1)),
+        IndentParameter::Body(0, BodyParameter::Thickness(0)),
     ];
     let curve = indent.curve(approaches, &parameters)?;
     Ok(curve.load[approaches.len() - 1])

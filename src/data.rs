@@ -212,6 +212,14 @@ value! {
     }
 }
 
+/// Depths of two faces, of which the lower one is infinite where it is null, as JSON has it.
+pub(crate) fn depths<'de, D: Deserializer<'de>>(
+    data: D,
+) -> std::result::Result<[f64; 2], D::Error> {
+    let (top, bottom) = <(f64, Option<f64>)>::deserialize(data)?;
+    Ok([top, bottom.unwrap_or(f64::INFINITY)])
+}
+
 #[cfg(test)]
 mod tests {
     use std::fmt::Debug;

@@ -55,6 +55,17 @@ pub enum Error {
         /// Indices of the first such element.
         index: [usize; 2],
     },
+    /// Influence coefficients with which some pressure has an elastic energy below 0.
+    #[error(
+        "the influence coefficients are not positive definite, so that the contact has no unique solution; \
+         leave out coefficients that are given, or take a grid of more cells"
+    )]
+    Indefinite,
+    /// Numbers that are too large or too small to be computed with.
+    #[error(
+        "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish"
+    )]
+    Overflow,
     /// Arguments that contradict each other or do not suffice.
     #[error("{0}")]
     Inconsistent(&'static str),
@@ -270,6 +281,17 @@ pub enum Error {
 }
 
 impl Error {
+    /// A linear iteration that ended with this residual.
+    pub(crate) fn not_converged(
+        iterations: usize,
+        residual: f64,
+        tolerance: f64,
+        limit: &'static str,
+    ) -> Self {
+        let (overlap, balance) = (0.0, 0.0);
+        Self::NotConverged { iterations, residual, overlap, balance, tolerance, limit }
+    }
+
     /// The refusal of a derivative.
     pub(crate) fn no_derivative(what: impl Into<String>, reason: &'static str) -> Self {
         Self::NotDifferentiable { what: what.into(), reason }
@@ -302,6 +324,11 @@ fn missed([residual, overlap, balance]: [f64; 3], tolerance: f64) -> String {
     missed.join(", ")
 }
 
+/// An error with this `message`, of arguments that contradict each other, where they are `wrong`.
+pub(crate) fn refuse_if(wrong: bool, message: &'static str) -> Result<()> {
+    if wrong { Err(Error::Inconsistent(message)) } else { Ok(()) }
+}
+
 /// Returns `value`, or an error with the `requirement` unless it `holds`.
 pub(crate) fn require(
     name: &'static str,
@@ -332,6 +359,11 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
     require(name, value, value.is_finite(), "finite")
 }
 
+/// Returns `value`, or an error unless it is above 0 and below 1.
+pub(crate) fn fraction(name: &'static str, value: f64) -> Result<f64> {
+    require(name, value, value > 0.0 && value < 1.0, "above 0 and below 1")
+}
+
 /// An error unless an array has the shape of its grid.
 pub(crate) fn same_shape<T>(
     name: &'static str,
@@ -348,6 +380,15 @@ pub(crate) fn same_shape<T>(
 pub(crate) fn all_finite(name: &'static str, array: &ndarray::ArrayRef2<f64>) -> Result<()> {
     match array.indexed_iter().find(|(_, value)| !value.is_finite()) {
         Some((index, _)) => Err(Error::NonFinite { name, index: index.into() }),
+        None => Ok(()),
+    }
+}
+
+/// An error unless all elements of an array are finite and at least 0.
+pub(crate) fn none_negative(name: &'static str, array: &ndarray::ArrayRef2<f64>) -> Result<()> {
+    all_finite(name, array)?;
+    match array.iter().find(|value| **value < 0.0) {
+        Some(&value) => Err(Error::Parameter { name, requirement: "at least 0 everywhere", value }),
         None => Ok(()),
     }
 }

@@ -20,9 +20,7 @@
 //! | file | what |
 //! |---|---|
 //! | `step` | what is asked for |
-//! | `law` | Coulomb's law in cells |
-//! | `linear` | the operators of sliding and of rolling, and Newton's linear systems |
-//! | `newton` | tractions for a pressure |
+//! | `newton` | tractions for a pressure: Coulomb's law in cells, the operators of sliding and of rolling, Newton's linear systems |
 //! | `task` | sliding in one step, rolling; fields of the whole grid, and their errors |
 //! | `session` | pressure and tractions in turn |
 //! | `solution` | what comes out |
@@ -35,8 +33,6 @@ use crate::error::Result;
 use crate::model::surface::Surface;
 
 mod creep;
-mod law;
-mod linear;
 mod newton;
 mod session;
 mod solution;

@@ -42,12 +42,11 @@
 //! [`Solution::gradient`]: crate::Solution::gradient
 
 mod adjoint;
-mod output;
 mod parameter;
 mod seed;
 mod state;
 mod stress;
 
 pub use adjoint::{LinearOptions, Linearisation};
-pub use output::{Direction, Gradient, Measure, Output, StressOutput, StressPlace};
 pub use parameter::Parameter;
+pub use seed::{Direction, Gradient, Measure, Output, StressOutput, StressPlace};

@@ -15,16 +15,15 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `tip` | profiles, and their F |
-//! | `equation` | M of the bodies at the nodes of a quadrature, functions on the contact, their linear system and its two solutions |
-//! | `point`, `density` | states, pressure, displacement |
-//! | `adhesion`, `zone`, `cohesion` | kinds of adhesion, the zone of Maugis and Dugdale |
+//! | `equation` | linear system and its two solutions; M of the bodies at the nodes of a quadrature, functions on the contact |
+//! | `point`, `density` | states; pressure and displacement of a contact and of the cohesive zone around it |
+//! | `adhesion` | kinds of adhesion |
 //! | `change` | derivatives |
 //! | `curve` | whole curves by interpolation |
 //! | `indenter`, `pull_off` | states by radius, load and approach; pull-off and jump into contact |
 
 mod adhesion;
 mod change;
-mod cohesion;
 mod curve;
 mod density;
 mod equation;
@@ -32,13 +31,11 @@ mod indenter;
 mod point;
 mod pull_off;
 mod tip;
-mod zone;
 
 pub use adhesion::{Adhesion, Branch, Control};
 pub use change::{Change, Held, Variable};
-pub use cohesion::Apart;
 pub use curve::Curve;
-pub use equation::stack::{Parameter, Stack};
-pub use indenter::Indent;
-pub use point::{InteriorStress, Point, PullOff, Warning};
+pub use equation::stack::{IndentParameter, Stack};
+pub use indenter::{Apart, Indent};
+pub use point::{IndentWarning, InteriorStress, Point, PullOff};
 pub use tip::{Form, STEEPEST, Tip, TipParameter, slope_of};

@@ -30,7 +30,7 @@ mod core {
     };
     #[pymodule_export]
     use super::contact::{
-        PyContact, PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide, solve,
+        PyContact, PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide, solve,
     };
     #[pymodule_export]
     use super::data::checked;
@@ -44,9 +44,7 @@ mod core {
     #[pymodule_export]
     use super::solution::{PyDirection, PyGradient, PyReport, PySolution};
     #[pymodule_export]
-    use super::stress::{
-        PyInterfaceStress, PyLayerStress, PyStress, PyStressPlan, PyStressSummary, stress,
-    };
+    use super::stress::{PyStressPlan, checked_stress, stress, stress_invariants};
     use super::{bodies::PyRigid, shapes, shapes::indent, state};
     use pyo3::prelude::*;
 

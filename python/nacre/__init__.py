@@ -43,15 +43,13 @@ from nacre._core import (
     frequency_response,
     graded_layers,
     influence_coefficients,
-    roll,
-    slide,
     solve,
-    stress,
     surface_compliance,
 )
 from nacre._profiles import read_profile
 from nacre.files import load
-from nacre.friction import creep_coefficients
+from nacre.friction import creep_coefficients, roll, slide
+from nacre.stresses import stress
 from nacre.studies import sweep
 from nacre.units import display_units
 

@@ -13,11 +13,12 @@ import typer
 
 import nacre
 from nacre import _reference
+from nacre._disk import PICTURES
 from nacre._friction_display import shown
 from nacre._outputs import ERROR, FRICTION, check_direction
 from nacre._progress import alive
 from nacre.case import Case, CaseError
-from nacre.files import FIGURES, PICTURES
+from nacre.files import FIGURES
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
 from nacre.units import system, written
@@ -253,6 +254,14 @@ def _numbers(solution: nacre.Solution | nacre.types.FrictionSolution) -> dict[st
     state["units"] = system().name
     state.pop("kind")
     numbers = {name: getattr(solution, name) for name in FIGURES}
+    if solution.hardness is not None:
+        hardness = np.unique(solution.hardness)
+        numbers["hardness"] = hardness.item() if hardness.size == 1 else hardness[[0, -1]].tolist()
+    if solution.indentation.any():
+        numbers |= {
+            "indentation": float(solution.indentation.max()),
+            "plastic_work": solution.plastic_work,
+        }
     return state | numbers | {"warnings": solution.report.warnings}
 
 

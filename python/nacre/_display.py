@@ -6,7 +6,7 @@ import base64
 import html
 import io
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,14 +14,14 @@ import numpy.typing as npt
 from nacre._core import (
     Elastic,
     HalfSpace,
-    InterfaceStress,
-    LayerStress,
     Report,
     Rigid,
     Solution,
-    StressSummary,
 )
 from nacre.units import printable, rounded, written
+
+if TYPE_CHECKING:
+    from nacre.stresses import InterfaceStress, LayerStress, StressSummary
 
 Peak = tuple[float, tuple[float, float, float]]
 

@@ -3,16 +3,48 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
-import nacre._core as core
+from nacre import values
 from nacre._display import numbers as normal_numbers
 from nacre.units import printable, symbol, written
+
+if TYPE_CHECKING:
+    from nacre._friction_result import FrictionSolution
 
 NOISE = 1e-8
 """Share of a vector below which a component is printed as 0."""
 
 
-def numbers(solution: core.FrictionSolution) -> list[tuple[str, str]]:
+def has_friction(solution: object) -> bool:
+    """Return whether this is a contact with friction."""
+    return type(solution) is values.RESULTS.get("FrictionSolution")
+
+
+def checked(solutions: object) -> list[FrictionSolution]:
+    """Return solutions as a list, with one of them at least, and all of one kind.
+
+    Raises
+    ------
+    TypeError
+        If they are no sequence of FrictionSolution.
+    ValueError
+        If there is none, or some slide and some roll, or some are line contacts.
+    """
+    found: list[Any] = list(solutions) if isinstance(solutions, Iterable) else [None]
+    if not all(map(has_friction, found)):
+        raise TypeError(f"solutions must be a sequence of FrictionSolution, got {solutions!r}")
+    if not found:
+        raise ValueError("solutions must hold at least one solution, got none")
+    if len({(s.shift is None, s.grid.is_line) for s in found}) > 1:
+        raise ValueError(
+            "solutions must all slide or all roll, in line contact or not, got some of each"
+        )
+    return found
+
+
+def numbers(solution: FrictionSolution) -> list[tuple[str, str]]:
     """Return names and values of the main numbers, with units."""
     line = solution.grid.is_line
     force = "N/m" if line else "N"
@@ -61,7 +93,7 @@ def _pair(values: tuple[float, float], unit: str) -> str:
     return f"({written(first, unit)}, {written(second, unit)})"
 
 
-def line(solution: core.FrictionSolution) -> str:
+def line(solution: FrictionSolution) -> str:
     """Return the line that ``repr(solution)`` shows."""
     nx, ny = solution.grid.shape
     unit = "N/m" if solution.grid.is_line else "N"
@@ -77,7 +109,7 @@ def line(solution: core.FrictionSolution) -> str:
     )
 
 
-def text(solution: core.FrictionSolution) -> str:
+def text(solution: FrictionSolution) -> str:
     """Return the table that ``print(solution)`` shows."""
     rows = _rows(solution)
     width = max(len(name) for name, _ in rows)
@@ -86,13 +118,13 @@ def text(solution: core.FrictionSolution) -> str:
     return printable("\n".join(lines))
 
 
-def _rows(solution: core.FrictionSolution) -> list[tuple[str, str]]:
+def _rows(solution: FrictionSolution) -> list[tuple[str, str]]:
     """Return the numbers of the normal contact, and those of friction."""
     normal = [row for row in normal_numbers(solution.normal) if row[0] != "ended"]
     return [*normal, *numbers(solution)]
 
 
-def markup(solution: core.FrictionSolution) -> str:
+def markup(solution: FrictionSolution) -> str:
     """Return the HTML that a notebook shows."""
     rows = "".join(
         f"<tr><th style='text-align:left'>{html.escape(name)}</th>"

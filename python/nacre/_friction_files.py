@@ -4,24 +4,32 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 import nacre._core as core
+from nacre import values
 from nacre._extras import extra
 from nacre._friction_display import numbers
-from nacre._friction_state import NORMAL, VECTORS
 from nacre.units import symbol
 
 if TYPE_CHECKING:
     import xarray
 
+    from nacre._friction_result import FrictionSolution
     from nacre.files import AnyPath
 
+NORMAL = ("pressure", "gap", "displacement", "coefficients")
+"""Arrays of the normal contact; the displacement is called normal_displacement in Datasets."""
+VECTORS = ("traction", "displacement", "slip")
+"""Fields with components along x and y."""
 
-def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
+
+def to_xarray(solution: FrictionSolution) -> xarray.Dataset:
     """Return the fields with coordinates, units and the whole problem."""
     with extra("files"):
         import xarray
@@ -93,7 +101,7 @@ def to_xarray(solution: core.FrictionSolution) -> xarray.Dataset:
     return dataset
 
 
-def _state(solution: core.FrictionSolution) -> dict[str, Any]:
+def _state(solution: FrictionSolution) -> dict[str, Any]:
     """Return the named state without what the Dataset holds as arrays."""
     state = solution.to_dict()
     arrays = {*VECTORS} | ({"friction"} if isinstance(solution.friction, np.ndarray) else set())
@@ -101,10 +109,23 @@ def _state(solution: core.FrictionSolution) -> dict[str, Any]:
     return {name: value for name, value in state.items() if name not in arrays} | {"normal": normal}
 
 
-def save(solution: core.FrictionSolution, path: AnyPath) -> Path:
+def restored(
+    state: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[np.float64]]
+) -> FrictionSolution:
+    """Return the solution of a file: its state, and its arrays by their names there."""
+    whole = {**state, **{name: arrays[name] for name in VECTORS if name in arrays}}
+    places = {name: "normal_displacement" if name == "displacement" else name for name in NORMAL}
+    found = {name: arrays[place] for name, place in places.items() if place in arrays}
+    whole["normal"] = {**state["normal"], **found}
+    if "friction" in arrays:
+        whole["friction"] = arrays["friction"]
+    solution: FrictionSolution = values.RESULTS["FrictionSolution"].from_dict(whole)
+    return solution
+
+
+def save(solution: FrictionSolution, path: AnyPath) -> Path:
     """Write a file, whole or not at all; its ending chooses the kind."""
-    from nacre._disk import replacing, write_dataset
-    from nacre.files import PICTURES
+    from nacre._disk import PICTURES, replacing, write_dataset
 
     path = Path(path)
     kinds = (".nc", ".vtr", ".csv", *PICTURES)
@@ -123,7 +144,7 @@ def save(solution: core.FrictionSolution, path: AnyPath) -> Path:
     return path
 
 
-def _write_cells(solution: core.FrictionSolution, path: Path) -> None:
+def _write_cells(solution: FrictionSolution, path: Path) -> None:
     """Write every cell, after a block of comments with the main numbers."""
     slip = "slip {} [1]" if solution.shift is None else f"slip {{}} [{symbol('m')}]"
     heads = [
@@ -145,7 +166,7 @@ def _write_cells(solution: core.FrictionSolution, path: Path) -> None:
         writer.writerows(zip(*columns, strict=True))
 
 
-def _write_vtk(solution: core.FrictionSolution, path: Path) -> None:
+def _write_vtk(solution: FrictionSolution, path: Path) -> None:
     """Write the fields as the cells of a plane, for ParaView."""
     with extra("files"):
         from pyevtk.hl import gridToVTK
@@ -166,7 +187,7 @@ def _write_vtk(solution: core.FrictionSolution, path: Path) -> None:
     gridToVTK(str(path.with_suffix("")), *edges, np.zeros(1), cellData=cells)
 
 
-def _write_picture(solution: core.FrictionSolution, path: Path) -> None:
+def _write_picture(solution: FrictionSolution, path: Path) -> None:
     """Write the picture that `FrictionSolution.plot` draws."""
     axes: Any = solution.plot()
     try:

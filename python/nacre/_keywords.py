@@ -5,7 +5,7 @@ The compiled module has the signatures with the defaults; a test compares the tw
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, TypedDict
 
 import numpy as np
@@ -49,96 +49,3 @@ class Search(TypedDict, total=False):
     tolerance: float
     max_iterations: int | None
     algorithm: Literal["cascade", "polonsky-keer"]
-
-
-class Residual(TypedDict, total=False):
-    """Keywords of all stresses."""
-
-    residual: ByLayer | None
-    progress: Callable[[float], object] | None
-
-
-class Traction(Residual, total=False):
-    """Keywords that say what acts on a body beside the pressure."""
-
-    friction: float
-    direction: Direction | None
-
-
-class Section(Traction, total=False):
-    """Keywords of `StressPlan.stress`."""
-
-    side: Side
-    x: float | None
-    y: float | None
-    displacement: bool
-
-
-class Strengths(Traction, total=False):
-    """Keywords of `StressPlan.summary`."""
-
-    yield_stress: ByLayer | None
-    strength: ByLayer | None
-
-
-class Stress(Section, Threads, total=False):
-    """Keywords of `nacre.stress`."""
-
-
-class SolutionStress(Stress, total=False):
-    """Keywords of `Solution.stress`."""
-
-    body: Member
-
-
-class SolutionSummary(Strengths, Threads, total=False):
-    """Keywords of `Solution.stress_summary`."""
-
-    body: Member
-
-
-class FrictionStress(Residual, Threads, total=False):
-    """Keywords of `FrictionSolution.stress`."""
-
-    body: Member
-    side: Side
-    x: float | None
-    y: float | None
-    displacement: bool
-
-
-class FrictionSummary(Residual, Threads, total=False):
-    """Keywords of `FrictionSolution.stress_summary`."""
-
-    body: Member
-    yield_stress: ByLayer | None
-    strength: ByLayer | None
-
-
-class TractionSearch(TypedDict, total=False):
-    """Keywords that say how tractions are found."""
-
-    tolerance: float
-    max_convolutions: int
-    coupling: bool
-
-
-class Slide(Motion, total=False):
-    """Keywords of a step of sliding."""
-
-    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
-    shift: Along | None
-    force: Along | None
-    twist: float | None
-    torque: float | None
-
-
-class Roll(Motion, total=False):
-    """Keywords of rolling."""
-
-    friction: float | Sequence[Sequence[float]] | npt.NDArray[np.floating | np.integer] | None
-    creepage: Along | None
-    force: Along | None
-    spin: float
-    direction: Literal["+x", "-x", "+y", "-y"] | None
-    cells: int | None

@@ -11,7 +11,9 @@ import numpy as np
 import nacre._core as core
 
 if TYPE_CHECKING:
+    from nacre._friction_result import FrictionSolution
     from nacre.indent.solution import IndentSolution
+    from nacre.stresses import StressSummary
 
 Output = str | Callable[[Any], Any]
 
@@ -51,7 +53,7 @@ INDENTED = ("load", "approach", "radius", "stiffness", "central_pressure")
 INDENT = (*INDENTED, "outer_radius", "pull_off_load", "pull_off_approach", "pull_off_radius")
 """Attributes of an `IndentSolution` that are numbers."""
 
-STRESSES: dict[str, Callable[[core.StressSummary], list[float]]] = {
+STRESSES: dict[str, Callable[[StressSummary], list[float]]] = {
     "von_mises": lambda summary: [layer.von_mises[0] for layer in summary.layers],
     "tension": lambda summary: [layer.tension[0] for layer in summary.layers],
     "max_shear": lambda summary: [layer.max_shear[0] for layer in summary.layers],
@@ -120,7 +122,7 @@ def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str
 
 
 def evaluated(
-    solution: core.Solution | core.FrictionSolution,
+    solution: core.Solution | FrictionSolution,
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],
     unresolved: list[str],
@@ -143,7 +145,7 @@ def evaluated(
         else:
             value = _number(solution, output)
         found[name] = np.asarray(value, dtype=np.float64).tolist()
-    normal = solution.normal if isinstance(solution, core.FrictionSolution) else solution
+    normal = solution if isinstance(solution, core.Solution) else solution.normal
     estimates = normal.report.discretisation or {}
     for name, quantity in errors(outputs, outputs).items():
         estimate = estimates.get(quantity)
@@ -151,11 +153,11 @@ def evaluated(
     return found
 
 
-def _number(solution: core.Solution | core.FrictionSolution, name: str) -> Any:
+def _number(solution: core.Solution | FrictionSolution, name: str) -> Any:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
     if name in INDENT and name not in NUMBERS:
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")
-    if not isinstance(solution, core.FrictionSolution):
+    if isinstance(solution, core.Solution):
         if name in FRICTION:
             raise ValueError(f"the output {name} needs friction in the case")
         return getattr(solution, name)
@@ -169,7 +171,7 @@ def _number(solution: core.Solution | core.FrictionSolution, name: str) -> Any:
     return value
 
 
-def rolls(solution: core.FrictionSolution) -> bool:
+def rolls(solution: FrictionSolution) -> bool:
     """Return whether a solution is one of rolling."""
     return solution.shift is None
 

@@ -8,33 +8,87 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Any, ClassVar, Self
+
+import numpy as np
 
 import nacre._core as core
 from nacre import values
 
 
-def _tuples(value: Any) -> Any:
+def tuples(value: Any) -> Any:
     """Return plain data with tuples in place of lists."""
     if isinstance(value, list):
-        return tuple(_tuples(item) for item in value)
+        return tuple(tuples(item) for item in value)
     if isinstance(value, dict):
-        return {key: _tuples(item) for key, item in value.items()}
+        return {key: tuples(item) for key, item in value.items()}
     return value
+
+
+def _plain(value: Any) -> Any:
+    """Return a field as plain data: arrays stay, and a result in it is its fields."""
+    if isinstance(value, np.ndarray):
+        return value
+    if isinstance(value, Result):
+        return value._state()
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return values.encode(value)
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether plain data are equal; in arrays, NaN is equal to NaN."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    return type(one) is type(other) and bool(one == other)
+
+
+def _finite(value: Any) -> Any:
+    """Return plain data with None in place of infinite numbers, of which JSON has none."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def as_text(kind: str, state: dict[str, Any]) -> str:
+    """Return the state of a kind of result as JSON text, or raise a `ValueError`."""
+    try:
+        return json.dumps(_finite(state))
+    except TypeError as error:
+        raise ValueError(f"{kind}: {error}: {state}") from error
 
 
 class Result:
     """Base of results: each is a dataclass whose fields are its state."""
 
+    _TOLD: ClassVar[tuple[str, ...]] = ()
+    """Fields that are no part of the state, but follow from it."""
+    _LATER: ClassVar[tuple[str, ...]] = ()
+    """Fields that states of format 1 did not have at first; without them they are None."""
+
     def __init_subclass__(cls) -> None:
         """Make the class known to files and studies by its name."""
-        values.RESULTS[cls.__name__] = cls
+        if not cls.__name__.startswith("_"):
+            values.RESULTS[cls.__name__] = cls
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        """Return the names in the state."""
+        fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+        return [field.name for field in fields if field.name not in cls._TOLD]
 
     @classmethod
     def _made(cls, text: str) -> Self:
         """Return the result that JSON text of the compiled module describes."""
-        return cls(**_tuples(json.loads(text)))
+        return cls(**tuples(json.loads(text)))
 
     def to_dict(self) -> dict[str, Any]:
         """Named state, as plain data: numbers, text, lists, dictionaries and NumPy arrays.
@@ -46,9 +100,11 @@ class Result:
             wrote it and ``kind`` the class. Bodies and grids stand in it as the calls that make
             them.
         """
-        fields = dataclasses.fields(self)  # type: ignore[arg-type]
-        state = {field.name: values.encode(getattr(self, field.name)) for field in fields}
-        return values.heading(type(self).__name__) | state
+        return values.heading(type(self).__name__) | self._state()
+
+    def _state(self) -> dict[str, Any]:
+        """Return the state as plain data."""
+        return {name: _plain(getattr(self, name)) for name in self._names()}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -70,17 +126,12 @@ class Result:
             If the format is newer than this version, or a key is missing, unknown or holds a
             wrong value.
         """
-        names = [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
-        return cls._restored(values.checked_state(data, cls.__name__, names))
+        return cls._restored(values.checked_state(data, cls.__name__, cls._names(), cls._LATER))
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         """Return the result with these fields, which the compiled module checks."""
-        try:
-            text = json.dumps(state)
-        except TypeError as error:
-            raise ValueError(f"{cls.__name__}: {error}: {state}") from error
-        return cls._made(core.checked(cls.__name__, text))
+        return cls._made(core.checked(cls.__name__, as_text(cls.__name__, state)))
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
         """Return the function and the state that make the result again."""

@@ -35,7 +35,7 @@ LAYER = described(nacre.Layer)
 GRID = described(nacre.Grid)
 LINE = described(nacre.Grid.line)
 SOLVE = described(nacre.solve)
-STRESS = described(nacre.Solution.stress_summary)
+STRESS = described(nacre.Solution.stress)
 
 
 class Material(Table):

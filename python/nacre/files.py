@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._disk import STATE, read, replacing, write_dataset
+from nacre._disk import PICTURES, STATE, read, replacing, write_dataset
 from nacre._extras import extra
 from nacre._tables import FIELDS, GIVEN, YIELDED, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
@@ -22,6 +22,7 @@ from nacre.values import check_format, encode, refusing
 if TYPE_CHECKING:
     import xarray
 
+    from nacre._friction_result import FrictionSolution
     from nacre.indent._result import Fit
     from nacre.indent.solution import IndentSolution
 
@@ -56,7 +57,6 @@ OFFSETS = {"coefficients": ("offset_x", "offset_y")}
 """Dimensions of arrays whose elements are no cells."""
 FRICTION = ("traction", "slip", "normal_displacement", "friction")
 """Further variables of contacts with friction."""
-PICTURES = (".png", ".pdf", ".svg")
 
 
 def to_xarray(solution: core.Solution) -> xarray.Dataset:
@@ -197,7 +197,7 @@ def _split(solution: core.Solution) -> tuple[dict[str, Any], dict[str, Array]]:
 
 def _solution(
     text: str, arrays: Mapping[str, Array]
-) -> core.Solution | core.FrictionSolution | IndentSolution | Fit:
+) -> core.Solution | FrictionSolution | IndentSolution | Fit:
     try:
         state = json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -206,7 +206,7 @@ def _solution(
         raise ValueError(f"the attribute {STATE} must hold named fields, got {text!r:.60}")
     check_format(state.get("format"), state.get("nacre"), "it")
     if state.get("kind") == "FrictionSolution":
-        from nacre._friction_state import restored
+        from nacre._friction_files import restored
 
         with refusing("FrictionSolution"):
             return restored(state, arrays)

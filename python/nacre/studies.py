@@ -32,15 +32,18 @@ from nacre._outputs import (
 )
 from nacre._parameters import put
 from nacre._progress import shown
+from nacre.friction import roll, slide
 
 if TYPE_CHECKING:
     import xarray
 
+    from nacre._friction_result import FrictionSolution
+
 Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 
 ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
-SLIDE = frozenset(inspect.signature(core.slide).parameters) - ARGUMENTS
-ROLL = frozenset(inspect.signature(core.roll).parameters) - ARGUMENTS
+SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
+ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
 INDENT = frozenset({"control"}).union(
     inspect.signature(core.Indentation).parameters,
@@ -361,7 +364,7 @@ def _solve(
             told = {"warnings": list(found.warnings), "kinds": ["steep"] * len(found.warnings)}
             return {"values": indented(found, outputs), "indents": True} | told
         solution = _solution(arguments)
-        normal = solution.normal if isinstance(solution, core.FrictionSolution) else solution
+        normal = solution if isinstance(solution, core.Solution) else solution.normal
         unresolved: list[str] = []
         threads = {"threads": arguments["threads"]}
         values = evaluated(solution, outputs, threads | stress, unresolved)
@@ -371,20 +374,20 @@ def _solve(
             "warnings": normal.report.warnings + unresolved,
             "kinds": kinds + ["unresolved stress"] * len(unresolved),
         }
-        rolling = isinstance(solution, core.FrictionSolution) and rolls(solution)
+        rolling = not isinstance(solution, core.Solution) and rolls(solution)
         marks = {"line": normal.report.grid.is_line, "rolls": rolling}
         return record | {name: True for name, holds in marks.items() if holds}
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
 
 
-def _solution(arguments: dict[str, Any]) -> core.Solution | core.FrictionSolution:
+def _solution(arguments: dict[str, Any]) -> core.Solution | FrictionSolution:
     """Return the solution of a case: with friction where it has any, and the last of a history."""
     own = set(arguments) - ARGUMENTS
     if not own:
         return core.solve(**arguments)
-    solved = core.slide(**arguments) if own <= SLIDE else core.roll(**arguments)
-    found: core.FrictionSolution = solved[-1] if isinstance(solved, list) else solved
+    solved = slide(**arguments) if own <= SLIDE else roll(**arguments)
+    found: FrictionSolution = solved[-1] if isinstance(solved, list) else solved
     return found
 
 

@@ -2,18 +2,13 @@
 
 from nacre._core import (
     Direction,
-    FrictionReport,
-    FrictionSolution,
     Gradient,
-    InterfaceStress,
-    LayerStress,
     Report,
     Shape,
-    Stress,
-    StressPlan,
-    StressSummary,
 )
+from nacre._friction_result import FrictionReport, FrictionSolution
 from nacre.friction import CreepCoefficients
+from nacre.stresses import InterfaceStress, LayerStress, Stress, StressPlan, StressSummary
 
 __all__ = [
     "CreepCoefficients",

@@ -71,12 +71,6 @@ RESULTS: dict[str, Any] = {
     for kind in (
         core.Report,
         core.Solution,
-        core.Stress,
-        core.StressSummary,
-        core.LayerStress,
-        core.InterfaceStress,
-        core.FrictionSolution,
-        core.FrictionReport,
     )
 }
 """Classes of results by their names: those of the compiled module, and each `Result`."""
@@ -122,7 +116,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             return {"Grid": of(made)}
         if digest and isinstance(value, core.Solution):
             return {"Solution": of(value.pressure)}
-        if digest and isinstance(value, core.FrictionSolution):
+        if digest and type(value) is RESULTS.get("FrictionSolution"):
             state, normal = value.to_dict(), value.normal
             begun = {name: of(state[name]) for name in BEGUN}
             begun |= {"pressure": of(normal.pressure), "pressed": of(normal.report.motion)}
@@ -152,18 +146,23 @@ def heading(kind: str) -> dict[str, Any]:
     return {"format": FORMAT, "nacre": core.__version__, "kind": kind}
 
 
-def checked_state(data: Mapping[str, Any], kind: str, names: Collection[str]) -> dict[str, Any]:
+def checked_state(
+    data: Mapping[str, Any], kind: str, names: Collection[str], later: Collection[str] = ()
+) -> dict[str, Any]:
     """Return the fields of a result's plain data, which must be of this kind and have these names.
 
-    Raises `ValueError` where they are not, or where the format is unknown.
+    Those of `later` may be missing, and are None then. Raises `ValueError` where the data are
+    otherwise, or the format is unknown.
     """
     if not isinstance(data, Mapping):
         raise ValueError(f"{kind} must be a dict of named fields, got {data!r}")
-    state = dict(data)
+    state = dict.fromkeys(later) | dict(data)
     for key in ("format", "nacre", "kind"):
         if key not in state:
             raise ValueError(f'{kind}: the key "{key}" is missing')
-    check_format(state.pop("format"), state.pop("nacre"), f"this {kind}")
+    check_format(state.pop("format"), writer := state.pop("nacre"), f"this {kind}")
+    if not isinstance(writer, str):
+        raise ValueError(f'the key "nacre" must hold a version, got {writer!r}')
     if (found := state.pop("kind")) != kind:
         raise ValueError(f'the key "kind" must be "{kind}", got "{found}"')
     for key in names:

@@ -4,31 +4,27 @@
 //! elsewhere shows whether the shape, which is looked at as a whole, overlaps there too; then the grid must hold
 //! that place as well. Cells are divided until the estimated error of the peak pressure is at most 1 %.
 
-mod outside;
-mod refinement;
 mod relief;
 mod search;
 mod task;
 
 use std::ops::ControlFlow;
 
-use super::hardness::Hardness;
-use super::options::Motion;
-use super::options::{Algorithm, Options, Setup};
-use super::plan::bodies;
-use super::solution::Solution;
-use super::solution::report::{Progress, Report};
-use super::solution::warnings::Warning;
-use super::solver::Termination;
 use crate::compliance::ends::{Ends, check_carried};
 use crate::compliance::response::Body;
+use crate::contact::automatic::relief::overlap;
+use crate::contact::automatic::search::{Search, moved_out, touched_sides};
+use crate::contact::automatic::task::{Task, frame_of};
+use crate::contact::driver::WatchedSolve;
+use crate::contact::options::{Algorithm, Motion, Options, Setup};
+use crate::contact::plan::bodies;
+use crate::contact::problem::bounds::Hardness;
+use crate::contact::solution::warnings::Warning;
+use crate::contact::solution::{Progress, Report, Solution};
+use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;
-use outside::overlap;
-use refinement::{LARGEST_GRID, Next, Refinement, peak_error};
-use search::{Search, moved_out, touched_sides};
-use task::{Task, cells_in_contact, frame_of};
 
 /// Enlargements of a grid on which the contact reached the edge, or the shape overlaps outside.
 const ENLARGEMENTS: usize = 10;
@@ -49,26 +45,24 @@ const ENLARGEMENTS: usize = 10;
 /// ```
 pub fn solve(shape: &dyn Surface, body: impl Into<Body>, motion: &Motion) -> Result<Solution> {
     let (setup, options) = (Setup::default(), Options::default());
-    let mut go_on = |_: &_| ControlFlow::Continue(());
-    let solution = solve_watched(shape, &body.into(), &setup, motion, &options, &mut go_on)?;
+    let solution = solve_with(shape, &body.into(), &setup, motion, &options)?;
     solution.require_converged(options.tolerance)
 }
 
-/// [`solve`] with a setup and options, that calls `progress` with each iteration on each grid; its break ends
-/// the solve with [`Termination::Stopped`]. The solution says whether it converged.
+/// [`solve`] with a setup and options; a callback of [`Options::watched`] is told of each iteration on each grid. The
+/// solution says whether it converged.
 ///
 /// The grid is chosen as [`choose_grid`] says, with the default algorithm and no pressure to start from. Other
 /// options then solve once more on this grid.
 ///
 /// # Errors
 /// Bad input; a shape without end in a direction; [`Error::NoGrid`].
-pub fn solve_watched(
+pub fn solve_with<'a>(
     shape: &dyn Surface,
     body: &Body,
     setup: &Setup,
     motion: &Motion,
-    options: &Options,
-    progress: &mut Progress,
+    options: impl Into<WatchedSolve<'a>>,
 ) -> Result<Solution> {
     check_carried(setup.counterbody.as_ref(), shape)?;
     let ends = Ends::of(&bodies(body, setup));
@@ -80,19 +74,24 @@ pub fn solve_watched(
         motion,
         ends: ends.range(),
     };
-    if let Some(grid) = shape.grid() {
-        return task.solve(grid, options, progress);
-    }
+    let mut asked = options.into();
+    let options = asked.options;
     // A break ends all solves that follow.
     let mut stopped = false;
     let mut watched = |report: &Report| {
-        stopped = stopped || progress(report).is_break();
+        stopped = stopped || asked.tell(report).is_break();
         if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
+    if let Some(grid) = shape.grid() {
+        return task.solve(grid, options, &mut watched);
+    }
     let plain = Options {
         algorithm: Algorithm::default(),
         initial: None,
-        hardness: options.hardness.as_ref().and_then(Hardness::uniform).cloned(),
+        hardness: options
+            .hardness
+            .clone()
+            .filter(|hardness| matches!(hardness, Hardness::Uniform(_))),
         indentation: None,
         ..options.clone()
     };
@@ -121,24 +120,20 @@ pub fn solve_watched(
 /// of the peak pressure ([`Report::discretisation`]) is at most 1 %. Where this needs more than 2²² cells, or
 /// where dividing the cells does not lower the estimate, the solution has the warning [`Warning::PeakError`].
 ///
-/// To choose the grid takes a solution on it, which [`solve`] and [`solve_watched`] return.
+/// To choose the grid takes a solution on it, which [`solve`] and [`solve_with`] return.
 ///
 /// # Errors
 /// Bad input; a shape without end in a direction; [`Error::NoGrid`].
-pub fn choose_grid(
+pub fn choose_grid<'a>(
     shape: &dyn Surface,
     body: &Body,
     setup: &Setup,
     motion: &Motion,
-    options: &Options,
-    progress: &mut Progress,
+    options: impl Into<WatchedSolve<'a>>,
 ) -> Result<Grid> {
     match shape.grid() {
         Some(grid) => Ok(grid),
-        None => {
-            let solution = solve_watched(shape, body, setup, motion, options, progress)?;
-            Ok(*solution.grid())
-        }
+        None => Ok(*solve_with(shape, body, setup, motion, options)?.grid()),
     }
 }
 
@@ -158,7 +153,8 @@ fn solve_on_fit_grid(
         }
         let frame = frame_of(&grid);
         let missed = overlap(&task, &solution, frame)?;
-        let touched = cells_in_contact(&solution)
+        let touched = solution
+            .cells_in_contact()
             .map(|contact| touched_sides(&contact, &grid, task.shape.extent()))
             .unwrap_or_default();
         let warning;
@@ -204,4 +200,204 @@ fn enlarged(task: &Task, grid: &Grid, sides: [[bool; 2]; 2]) -> Result<Grid> {
     let most = cells[0].saturating_mul(cells[1]);
     let larger = (most as f64 / LARGEST_GRID as f64).sqrt().max(1.0);
     task.grid_over(wider, cells.map(|n| (n as f64 / larger) as usize))
+}
+
+/// Estimated error of the peak pressure, relative to the peak, above which cells are divided.
+const PEAK_ERROR: f64 = 0.01;
+
+/// Largest number of cells of a grid that is chosen: 2²², which take 0.7 GB.
+const LARGEST_GRID: usize = 1 << 22;
+
+/// Cells in contact on the line through the peak below which they are divided whatever the estimate says.
+const NARROW: usize = 8;
+
+/// Cells on either side of the peak whose pressure says along which axis it bends; chosen by trial.
+const AROUND_PEAK: usize = 3;
+
+/// Second difference of the pressure along one axis, relative to the other, above which cells are divided along
+/// this axis too; chosen by trial.
+const BENDS_TOO: f64 = 0.25;
+
+/// Error after a division, relative to the smallest before, above which the division was of no use. Halving the
+/// cells halves the error of a finite peak at least; the peak at a sharp edge has no error that falls.
+const NO_USE: f64 = 0.75;
+
+/// Divisions without use in a row after which the peak is given up: the estimate remembers the changes from
+/// three grids.
+const GIVEN_UP: usize = 3;
+
+/// What follows a solution on a grid that holds the contact.
+enum Next {
+    /// Nothing: the peak pressure is accurate, or nobody can tell.
+    Enough,
+    /// A solution on finer cells.
+    Finer(Grid),
+    /// A warning that the peak pressure is not accurate.
+    TooFine(Warning),
+}
+
+/// The divisions of one grid.
+#[derive(Debug, Default)]
+struct Refinement {
+    /// Smallest relative error so far; `None` before the first division.
+    least: Option<f64>,
+    /// Divisions without use, in a row.
+    in_vain: usize,
+}
+
+impl Refinement {
+    /// The next step after `solution` for `shape`, which has converged.
+    fn next(&mut self, solution: &Solution, shape: &dyn Surface) -> Result<Next> {
+        let edges = edges(solution, shape);
+        if edges.contains(&Edge::Reached) {
+            return Ok(Next::Enough);
+        }
+        let short_of_edge = edges.map(|edge| edge == Edge::OutOfReach);
+        if short_of_edge.contains(&true) {
+            let finer = divided(solution.grid(), short_of_edge, &[4, 2])?;
+            return Ok(finer.map_or(Next::Enough, Next::Finer));
+        }
+        let Some(error) = peak_error(solution) else {
+            return Ok(Next::Enough);
+        };
+        let (bends, narrow) = around_peak(solution);
+        if error <= PEAK_ERROR && narrow == [false; 2] {
+            return Ok(Next::Enough);
+        }
+        let useless = self.least.is_some_and(|least| error > NO_USE * least);
+        self.in_vain = if useless { self.in_vain + 1 } else { 0 };
+        self.least = Some(self.least.map_or(error, |least| least.min(error)));
+        if self.in_vain == GIVEN_UP {
+            return Ok(Next::TooFine(Warning::PeakError { error }));
+        }
+        // Where division along one axis was of no use twice, the other axis may need it.
+        let both = self.in_vain + 1 == GIVEN_UP;
+        let axes = [0, 1].map(|k| both || narrow[k] || (bends[k] && error > PEAK_ERROR));
+        let far = error > 4.0 * PEAK_ERROR && axes != [true; 2];
+        let parts: &[usize] = if far { &[4, 2] } else { &[2] };
+        let finer = divided(solution.grid(), axes, parts)?;
+        Ok(finer.map_or(Next::TooFine(Warning::PeakError { error }), Next::Finer))
+    }
+}
+
+/// The grid whose cells are divided along `axes`, into the first of these numbers of `parts` with which there are
+/// not too many; `None` where there always are.
+fn divided(grid: &Grid, axes: [bool; 2], parts: &[usize]) -> Result<Option<Grid>> {
+    for parts in parts {
+        let shape = [0, 1].map(|k| grid.shape()[k] * if axes[k] { *parts } else { 1 });
+        if shape[0].saturating_mul(shape[1]) <= LARGEST_GRID {
+            let finer = Grid::new(shape, grid.size())?.centered_at(grid.center())?;
+            return Ok(Some(finer));
+        }
+    }
+    Ok(None)
+}
+
+/// How a contact meets the edges of a shape along one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Edge {
+    /// The contact stays away from them.
+    Away,
+    /// The contact reaches the cell at an edge, but the gap at the edge itself is too large to touch, as at the
+    /// end of a logarithmic profile: cells are too long.
+    OutOfReach,
+    /// The contact reaches an edge, where the pressure is singular.
+    Reached,
+}
+
+/// How the contact meets the edges of `shape` along both axes; it does where the solution has a warning of them.
+fn edges(solution: &Solution, shape: &dyn Surface) -> [Edge; 2] {
+    let warned = |warning: &Warning| {
+        matches!(warning, Warning::SharpEnd { .. } | Warning::FreeEnd | Warning::SharpEdge)
+    };
+    let mut edges = [Edge::Away; 2];
+    if !solution.report.warnings.iter().any(warned) {
+        return edges;
+    }
+    let (grid, pressure) = (solution.grid(), &solution.pressure);
+    let (x, y, spacing) = (grid.x(), grid.y(), grid.spacing());
+    for ((i, j), _) in pressure.indexed_iter().filter(|(_, p)| **p > 0.0) {
+        for (axis, side) in [(0, -1_isize), (0, 1), (1, -1), (1, 1)] {
+            let beside = if axis == 0 {
+                [i.checked_add_signed(side), Some(j)]
+            } else {
+                [Some(i), j.checked_add_signed(side)]
+            };
+            let in_contact = match beside {
+                [Some(i), Some(j)] => pressure.get([i, j]).is_some_and(|p| *p > 0.0),
+                _ => false,
+            };
+            if in_contact {
+                continue;
+            }
+            let mut step = [0.0; 2];
+            step[axis] = side as f64 * spacing[axis];
+            match touches_edge(solution, shape, [x[i], y[j]], step) {
+                Some(true) => return [Edge::Reached; 2],
+                Some(false) => edges[axis] = Edge::OutOfReach,
+                None => {}
+            }
+        }
+    }
+    edges
+}
+
+/// Whether the edge of `shape` between `[x, y]` and the place a `step` further can touch the surface; `None` where
+/// there is no edge between them.
+fn touches_edge(
+    solution: &Solution,
+    shape: &dyn Surface,
+    [x, y]: [f64; 2],
+    step: [f64; 2],
+) -> Option<bool> {
+    // Halvings of a cell's length, to the rounding of coordinates.
+    const HALVINGS: usize = 50;
+    let at = |part: f64| [x + part * step[0], y + part * step[1]];
+    let gap = |[x, y]: [f64; 2]| shape.gap(x, y);
+    if gap(at(1.0)).is_finite() {
+        return None;
+    }
+    let (mut inside, mut outside) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (inside + outside);
+        if gap(at(middle)).is_finite() {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    let edge @ [x, y] = at(inside);
+    Some(gap(edge) < solution.approach + solution.tilt[0] * x + solution.tilt[1] * y)
+}
+
+/// The estimated error of the peak pressure, relative to the peak; `None` where there is no estimate.
+fn peak_error(solution: &Solution) -> Option<f64> {
+    let (peak, errors) = (solution.peak_pressure(), solution.report.discretisation?);
+    errors.peak_pressure.filter(|_| peak > 0.0).map(|error| error / peak)
+}
+
+/// Along each axis: whether the pressure bends about as much as along the other, and whether few cells are in
+/// contact, both on the line through the peak.
+fn around_peak(solution: &Solution) -> ([bool; 2], [bool; 2]) {
+    let (pressure, peak) = (&solution.pressure, solution.peak_pressure());
+    let found = pressure.indexed_iter().find(|(_, p)| **p >= peak);
+    let (row, column) = found.map_or((0, 0), |(at, _)| at);
+    let lines = [(pressure.column(column), row), (pressure.row(row), column)];
+    let bends = lines.map(|(line, at)| {
+        let value = |k: usize| line.get(k).copied().unwrap_or(0.0);
+        let near = at.saturating_sub(AROUND_PEAK)..=at + AROUND_PEAK;
+        let second = |k: usize| {
+            let before = if k == 0 { 0.0 } else { value(k - 1) };
+            (before - 2.0 * value(k) + value(k + 1)).abs()
+        };
+        near.map(second).fold(0.0, f64::max)
+    });
+    let narrow = lines.map(|(line, at)| {
+        let free = |k: &usize| line.get(*k).is_some_and(|p| *p > 0.0);
+        let above = (at..line.len()).take_while(free).count();
+        let below = (0..at).rev().take_while(free).count();
+        above + below < NARROW
+    });
+    let most = bends[0].max(bends[1]);
+    (bends.map(|bend| bend >= BENDS_TOO * most), narrow)
 }

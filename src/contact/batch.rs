@@ -7,12 +7,11 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::options::Motion;
-use super::options::Options;
-use super::plan::Plan;
-use super::solution::Solution;
-use super::solver::Termination;
-use super::start::Sampled;
+use crate::contact::options::{Motion, Options};
+use crate::contact::plan::Contact;
+use crate::contact::solution::Solution;
+use crate::contact::solver::Termination;
+use crate::contact::start::Sampled;
 use crate::error::Result;
 use crate::model::surface::Surface;
 use crate::numerics::parallel::{SetOnDrop, Threads, check_memory};
@@ -30,97 +29,151 @@ pub struct Case<'a> {
 /// interrupt must act.
 const ASKING_INTERVAL: Duration = Duration::from_millis(20);
 
-/// Solves all cases and keeps the solutions; see [`Contact::solve_many`](super::Contact::solve_many).
-pub(super) fn solve_many(
-    plan: &Plan,
-    cases: &[Case],
-    options: &Options,
-    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
-) -> Result<Vec<Option<Result<Solution>>>> {
-    check_memory_for(plan, cases)?;
-    let solutions: Vec<Option<Result<Solution>>> = cases.iter().map(|_| None).collect();
-    let (solutions, done) = (Mutex::new(solutions), AtomicUsize::new(0));
-    let keep = |number: usize, solved| {
-        let mut solutions = solutions.lock().unwrap_or_else(PoisonError::into_inner);
-        solutions[number] = Some(solved);
-        done.fetch_add(1, Ordering::Relaxed);
-    };
-    solve_each(plan, cases, options, &keep, &mut || progress(done.load(Ordering::Relaxed)))?;
-    Ok(solutions.into_inner().unwrap_or_else(PoisonError::into_inner))
-}
-
-/// Solves all cases and hands over each solution; see
-/// [`Contact::solve_each`](super::Contact::solve_each).
-pub(super) fn solve_each(
-    plan: &Plan,
-    cases: &[Case],
-    options: &Options,
-    take: &(dyn Fn(usize, Result<Solution>) + Sync),
-    ask: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Result<()> {
-    let workers = workers(plan, cases);
-    if workers == 0 {
-        return Ok(());
+impl Contact {
+    /// Solves many cases side by side, each on one of the plan's threads, or on several where there
+    /// are fewer cases than threads. Solutions come in the order of the cases, and equal those of
+    /// [`Contact::solve`] to the bit. Under a load, successive cases of one shape (at one address) share
+    /// its undeformed gap.
+    ///
+    /// `progress` gets the number of finished cases, on the calling thread, every 20 ms and at the
+    /// end. Its break stops the rest: cases that are not finished are `None`.
+    ///
+    /// # Errors
+    /// Too little memory. An error of one case is that case's own result.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use nacre::{Case, Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
+    ///
+    /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let shape = Paraboloid::new(1e3, 1e3)?;
+    /// let cases = [1e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
+    /// let solved = contact.solve_many(&cases, &Options::default(), &mut |_| ControlFlow::Continue(()))?;
+    /// // Hertz: δ grows as W^{2/3}
+    /// let approach: Vec<f64> = solved.into_iter().flatten().map(|s| Ok(s?.approach)).collect::<nacre::Result<_>>()?;
+    /// assert!((approach[1] / approach[0] / 4.0 - 1.0).abs() < 1e-3);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn solve_many(
+        &self,
+        cases: &[Case],
+        options: &Options,
+        progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    ) -> Result<Vec<Option<Result<Solution>>>> {
+        self.check_memory_for(cases)?;
+        let solutions: Vec<Option<Result<Solution>>> = cases.iter().map(|_| None).collect();
+        let (solutions, done) = (Mutex::new(solutions), AtomicUsize::new(0));
+        let keep = |number: usize, solved| {
+            let mut solutions = solutions.lock().unwrap_or_else(PoisonError::into_inner);
+            solutions[number] = Some(solved);
+            done.fetch_add(1, Ordering::Relaxed);
+        };
+        self.solve_each(cases, options, &keep, &mut || progress(done.load(Ordering::Relaxed)))?;
+        Ok(solutions.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
-    check_memory(plan.grid.shape(), workers as u64 * Plan::memory(&plan.grid))?;
-    let threads = plan.convolution.threads();
-    let plan = plan.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
-    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-    // Nothing is ever sent: the channel closes with the last worker.
-    let (alive, ended) = mpsc::channel::<Infallible>();
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            let alive = alive.clone();
-            let (plan, next, stopped) = (&plan, &next, &stopped);
-            scope.spawn(move || {
-                let (_alive, mut sampled) = (alive, Sampled::default());
-                let asked = || match stopped.load(Ordering::Relaxed) {
-                    true => ControlFlow::Break(()),
-                    false => ControlFlow::Continue(()),
-                };
-                while asked().is_continue() {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(Case { shape, motion }) = cases.get(number) else {
-                        break;
+
+    /// [`Contact::solve_many`] that hands over each solution, so that not all of them need be kept.
+    ///
+    /// `take` gets the number of a case and its solution as soon as it is finished, on the thread
+    /// that solved it. `ask` is called on the calling thread, every 20 ms and at the end; its break
+    /// stops the rest, which are not handed over.
+    ///
+    /// # Errors
+    /// Too little memory for the cases that are solved at once. An error of one case is that case's own
+    /// result.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use std::sync::Mutex;
+    /// use nacre::{Case, Contact, Elastic, Grid, Motion, Options, Paraboloid, Setup};
+    ///
+    /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [4.0, 4.0])?, Setup::default())?;
+    /// let shape = Paraboloid::new(1e3, 1e3)?;
+    /// let cases = [1e-3, 2e-3, 8e-3].map(|load| Case { shape: &shape, motion: Motion::load(load) });
+    /// let peak = Mutex::new(0.0_f64);
+    /// let take = |_, solved: nacre::Result<nacre::Solution>| {
+    ///     if let (Ok(solution), Ok(mut peak)) = (solved, peak.lock()) {
+    ///         *peak = peak.max(solution.peak_pressure());
+    ///     }
+    /// };
+    /// contact.solve_each(&cases, &Options::default(), &take, &mut || ControlFlow::Continue(()))?;
+    /// // Hertz: p0 = (6 W E*² / π³ R²)^{1/3}
+    /// let hertz = (6.0 * 8e-3 / std::f64::consts::PI.powi(3) / 1e6).powf(1.0 / 3.0);
+    /// assert!((peak.into_inner().unwrap_or(0.0) / hertz - 1.0).abs() < 0.01);
+    /// # Ok::<(), nacre::Error>(())
+    /// ```
+    pub fn solve_each(
+        &self,
+        cases: &[Case],
+        options: &Options,
+        take: &(dyn Fn(usize, Result<Solution>) + Sync),
+        ask: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<()> {
+        let workers = self.workers(cases);
+        if workers == 0 {
+            return Ok(());
+        }
+        check_memory(self.grid.shape(), workers as u64 * Self::memory(&self.grid))?;
+        let threads = self.convolution.threads();
+        let plan = self.on_threads(&Arc::new(Threads::new(Some(threads / workers))?));
+        let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+        // Nothing is ever sent: the channel closes with the last worker.
+        let (alive, ended) = mpsc::channel::<Infallible>();
+        std::thread::scope(|scope| {
+            for _ in 0..workers {
+                let alive = alive.clone();
+                let (plan, next, stopped) = (&plan, &next, &stopped);
+                scope.spawn(move || {
+                    let (_alive, mut sampled) = (alive, Sampled::default());
+                    let asked = || match stopped.load(Ordering::Relaxed) {
+                        true => ControlFlow::Break(()),
+                        false => ControlFlow::Continue(()),
                     };
-                    let (sampled, progress) = (&mut sampled, &mut |_: &_| asked());
-                    let solved =
-                        plan.run(|| plan.solve(*shape, sampled, motion, options, progress));
-                    let unfinished = matches!(&solved, Ok(solution)
+                    while asked().is_continue() {
+                        let number = next.fetch_add(1, Ordering::Relaxed);
+                        let Some(Case { shape, motion }) = cases.get(number) else {
+                            break;
+                        };
+                        let (sampled, progress) = (&mut sampled, &mut |_: &_| asked());
+                        let solved = plan
+                            .run(|| plan.solve_sampled(*shape, sampled, motion, options, progress));
+                        let unfinished = matches!(&solved, Ok(solution)
                         if solution.report.termination == Termination::Stopped);
-                    if !unfinished {
-                        take(number, solved);
+                        if !unfinished {
+                            take(number, solved);
+                        }
                     }
-                }
-            });
-        }
-        drop(alive);
-        // The workers also end where `ask` panics.
-        let stop = SetOnDrop(&stopped);
-        // A wake-up for each solution would take a core from the workers each time.
-        let mut working = true;
-        while working {
-            working = ended.recv_timeout(ASKING_INTERVAL) != Err(RecvTimeoutError::Disconnected);
-            if ask().is_break() {
-                stopped.store(true, Ordering::Relaxed);
+                });
             }
-        }
-        drop(stop);
-    });
-    Ok(())
-}
+            drop(alive);
+            // The workers also end where `ask` panics.
+            let stop = SetOnDrop(&stopped);
+            // A wake-up for each solution would take a core from the workers each time.
+            let mut working = true;
+            while working {
+                working =
+                    ended.recv_timeout(ASKING_INTERVAL) != Err(RecvTimeoutError::Disconnected);
+                if ask().is_break() {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+            }
+            drop(stop);
+        });
+        Ok(())
+    }
 
-/// An error where there is too little memory to solve `cases` and to keep all solutions.
-pub(super) fn check_memory_for(plan: &Plan, cases: &[Case]) -> Result<()> {
-    let [nx, ny] = plan.grid.shape();
-    // Pressure, displacement, undeformed gap.
-    let solution = nx as u64 * ny as u64 * 24;
-    let solutions = cases.len() as u64 * solution;
-    let workers = workers(plan, cases) as u64;
-    check_memory([nx, ny], workers * Plan::memory(&plan.grid) + solutions)
-}
+    /// An error where there is too little memory to solve `cases` and to keep all solutions.
+    pub(crate) fn check_memory_for(&self, cases: &[Case]) -> Result<()> {
+        let [nx, ny] = self.grid.shape();
+        // Pressure, displacement, undeformed gap.
+        let solution = nx as u64 * ny as u64 * 24;
+        let solutions = cases.len() as u64 * solution;
+        let workers = self.workers(cases) as u64;
+        check_memory([nx, ny], workers * Self::memory(&self.grid) + solutions)
+    }
 
-/// Number of cases that are solved at once.
-fn workers(plan: &Plan, cases: &[Case]) -> usize {
-    plan.convolution.threads().min(cases.len())
+    /// Number of cases that are solved at once.
+    fn workers(&self, cases: &[Case]) -> usize {
+        self.convolution.threads().min(cases.len())
+    }
 }

@@ -1,38 +1,87 @@
 //! One solve, as named steps in order.
 
 use std::f64::consts::PI;
+use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
 use ndarray::Array2;
 
-use super::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
-use super::cascade::{Cascade, Coarser};
-use super::hardness::{Hardness, check_indentation};
-use super::options::{Algorithm, Motion, Options};
-use super::plan::{Plan, bodies};
-use super::problem::bounds::Bounds;
-use super::problem::fields::{Fields, slice};
-use super::problem::freedoms::{Freedoms, OVERFLOW};
-use super::problem::{Problem, Quality};
-use super::solution::Solution;
-use super::solution::gap::Gap;
-use super::solution::report::{Carried, Progress, Report};
-use super::solution::warnings::{Warning, warnings};
-use super::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
-use super::start::{
+use crate::compliance::ends::check_carried;
+use crate::contact::cascade::discretisation::{Discretisation, GridResult, corner_error, estimate};
+use crate::contact::cascade::{Cascade, Coarser};
+use crate::contact::options::{Algorithm, Motion, Options};
+use crate::contact::plan::{Contact, bodies};
+use crate::contact::problem::bounds::{Bounds, Hardness, check_indentation};
+use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::problem::{Problem, Quality, SolutionFields, slice};
+use crate::contact::solution::warnings::{Warning, warnings};
+use crate::contact::solution::{Carried, Gap, Progress, Report, Solution};
+use crate::contact::solver::{Outcome, StopCriteria, Tally, Termination, polonsky_keer};
+use crate::contact::start::{
     Sampled, check_seam, checked_gaps, given_pressure, uniform_pressure, yielding_pressure,
 };
-use crate::compliance::ends::check_carried;
 use crate::error::{Error, Result};
 use crate::model::surface::{Lifted, Surface};
 use crate::numerics::parallel::Rows;
 
-impl Plan {
+/// Options of a solve, and the callback that watches it, if there is one: [`Options::watched`].
+pub struct WatchedSolve<'a> {
+    pub(super) options: &'a Options,
+    progress: Option<&'a mut Progress<'a>>,
+}
+
+impl Options {
+    /// These options, with a callback that is told of each iteration; its break ends the solve with
+    /// [`Termination::Stopped`].
+    pub fn watched<'a>(&'a self, progress: &'a mut Progress<'a>) -> WatchedSolve<'a> {
+        WatchedSolve { options: self, progress: Some(progress) }
+    }
+}
+
+impl WatchedSolve<'_> {
+    /// Tells the callback of an iteration.
+    pub(super) fn tell(&mut self, report: &Report) -> ControlFlow<()> {
+        match &mut self.progress {
+            Some(progress) => progress(report),
+            None => ControlFlow::Continue(()),
+        }
+    }
+}
+
+impl<'a> From<&'a Options> for WatchedSolve<'a> {
+    fn from(options: &'a Options) -> Self {
+        Self { options, progress: None }
+    }
+}
+
+impl fmt::Debug for WatchedSolve<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.options.fmt(f)
+    }
+}
+
+impl Contact {
+    /// Presses `shape` into the body. The solution says whether it converged.
+    ///
+    /// # Errors
+    /// Bad input only.
+    pub fn solve<'a>(
+        &self,
+        shape: &dyn Surface,
+        motion: &Motion,
+        options: impl Into<WatchedSolve<'a>>,
+    ) -> Result<Solution> {
+        let (mut asked, sampled) = (options.into(), &mut Sampled::default());
+        let options = asked.options;
+        let progress = &mut |report: &Report| asked.tell(report);
+        self.run(|| self.solve_sampled(shape, sampled, motion, options, progress))
+    }
+
     /// Presses `shape` into the body, on this thread and on threads of the plan that are free. Where `shape`
     /// was sampled last, its gaps are not computed again.
-    pub(super) fn solve<'a>(
+    pub(super) fn solve_sampled<'a>(
         &self,
         shape: &'a dyn Surface,
         sampled: &mut Sampled<'a>,
@@ -126,7 +175,7 @@ impl Plan {
 
 /// What the steps of one solve share.
 struct Steps<'a> {
-    plan: &'a Plan,
+    plan: &'a Contact,
     /// The shape between the free ends of the bodies.
     shape: &'a dyn Surface,
     motion: &'a Motion,
@@ -153,11 +202,11 @@ impl<'a> Steps<'a> {
         given: &'s dyn Surface,
         sampled: &mut Sampled<'s>,
         tally: &mut Tally,
-    ) -> Result<(Arc<Array2<f64>>, Fields, Option<Coarser>)> {
+    ) -> Result<(Arc<Array2<f64>>, SolutionFields, Option<Coarser>)> {
         let (plan, rows, options) = (self.plan, self.rows(), self.options);
         // An approach that may be too large for a solution is looked at before.
         let yields = (options.hardness.as_ref()).is_some_and(Hardness::is_limited);
-        let bounded = plan.datum.floats() && !self.freedoms.loaded[0] && !yields;
+        let bounded = plan.datum.floats && !self.freedoms.loaded[0] && !yields;
         let (finest, ahead) = rows.both(
             || -> Result<_> {
                 let sample = || checked_gaps(self.shape, &plan.grid, &rows);
@@ -166,7 +215,7 @@ impl<'a> Steps<'a> {
                 if self.freedoms.any_prescribed() {
                     self.freedoms.prescribe(Arc::make_mut(&mut gap));
                 }
-                Ok((gap, Fields::new(plan.grid.shape(), &rows)))
+                Ok((gap, SolutionFields::new(plan.grid.shape(), &rows)))
             },
             || {
                 let ahead = self.cascades() && options.initial.is_none() && !bounded;
@@ -194,7 +243,7 @@ impl<'a> Steps<'a> {
         problem: &Problem,
         gap: &Array2<f64>,
         ahead: Option<Coarser>,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<(Outcome, Vec<GridResult>)> {
         let levels = &self.plan.levels;
@@ -221,7 +270,7 @@ impl<'a> Steps<'a> {
         start: Array2<f64>,
         problem: &Problem,
         gap: &Array2<f64>,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<Outcome> {
         if self.cascades() {
@@ -237,7 +286,7 @@ impl<'a> Steps<'a> {
         &self,
         problem: &Problem,
         gap: &Array2<f64>,
-        fields: &mut Fields,
+        fields: &mut SolutionFields,
         tally: &mut Tally,
     ) -> Result<Outcome> {
         let g = fields.gap(problem);
@@ -251,13 +300,13 @@ impl<'a> Steps<'a> {
         &self,
         problem: &Problem,
         gap: &Arc<Array2<f64>>,
-        mut fields: Fields,
+        mut fields: SolutionFields,
         (outcome, quality): (Outcome, Quality),
         results: Vec<GridResult>,
         mut report: Report,
     ) -> Result<Solution> {
         if quality.overflows() {
-            return Err(OVERFLOW);
+            return Err(Error::Overflow);
         }
         let (plan, grid) = (self.plan, &self.plan.grid);
         let indentation = (problem.bounds.is_limited()).then(|| fields.indentation(problem));
@@ -311,7 +360,7 @@ impl<'a> Steps<'a> {
         &self,
         mut results: Vec<GridResult>,
         finest: GridResult,
-        fields: &Fields,
+        fields: &SolutionFields,
         warnings: &[Warning],
     ) -> Option<Discretisation> {
         results.push(finest);
@@ -414,7 +463,7 @@ mod tests {
                     work = report.convolutions;
                     if calls == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 };
-                let solution = contact.solve_watched(&shape, &motion, &options, &mut progress)?;
+                let solution = contact.solve(&shape, &motion, options.watched(&mut progress))?;
                 let report = &solution.report;
                 let expected = match algorithm {
                     Algorithm::Cascade => Solver::Preconditioned,

@@ -2,9 +2,9 @@
 
 use ndarray::{ArcArray2, Array2};
 
-use super::hardness::Hardness;
+use super::problem::bounds::Hardness;
 use crate::compliance::response::Body;
-use crate::error::{Error, Result};
+use crate::error::{Result, fraction};
 
 /// Options of a plan, beside body and grid.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -69,15 +69,8 @@ const MAX_ITERATIONS: usize = 10_000;
 impl Options {
     /// The criteria that end an iteration, checked.
     pub(super) fn stop_criteria(&self) -> Result<StopCriteria> {
-        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
-            return Err(Error::Parameter {
-                name: "tolerance",
-                requirement: "above 0 and below 1",
-                value: self.tolerance,
-            });
-        }
         Ok(StopCriteria {
-            tolerance: self.tolerance,
+            tolerance: fraction("tolerance", self.tolerance)?,
             max_iterations: self.max_iterations.unwrap_or(MAX_ITERATIONS),
         })
     }

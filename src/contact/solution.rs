@@ -1,19 +1,28 @@
 //! The solution of a contact.
 
-pub(super) mod gap;
-mod outline;
-pub(super) mod report;
 pub(super) mod tangent;
 pub(super) mod warnings;
 
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
 use ndarray::{ArcArray2, Array1, Array2};
 
-use super::hardness::{Hardness, check_indentation};
-use super::plan::check_coefficients;
-use crate::error::{Error, Result, finite};
-use crate::model::grid::Grid;
-use gap::Gap;
-use report::Report;
+use crate::compliance::ends::{Ends, FreeEnds};
+use crate::compliance::response::Body;
+use crate::contact::cascade::discretisation::Discretisation;
+use crate::contact::options::Motion;
+use crate::contact::plan::{Contact, check_coefficients};
+use crate::contact::problem::bounds::{Hardness, check_indentation};
+use crate::contact::problem::freedoms::Freedoms;
+use crate::contact::problem::patch::{bounds, rows};
+use crate::contact::problem::{Multipliers, Quality};
+use crate::contact::solution::warnings::Warning;
+use crate::contact::solver::{Solver, Termination};
+use crate::error::{Error, Result, all_finite, finite, same_shape};
+use crate::model::grid::{Grid, Window, full_window};
+use crate::model::surface::Surface;
+use crate::numerics::parallel::{Row, update_with_largest};
 
 /// A solved contact. Arrays are (nx, ny), at cell centres.
 #[derive(Debug, Clone)]
@@ -78,16 +87,10 @@ impl Solution {
         let expected = report.grid.shape();
         let fields = [&pressure, &gap, &displacement];
         for (name, field) in ["pressure", "gap", "displacement"].into_iter().zip(fields) {
-            let found = [field.nrows(), field.ncols()];
-            if found != expected {
-                return Err(Error::Shape { name, expected, found });
-            }
+            same_shape(name, field, expected)?;
         }
-        for (name, field) in [("pressure", &pressure), ("displacement", &displacement)] {
-            if let Some((index, _)) = field.indexed_iter().find(|(_, v)| !v.is_finite()) {
-                return Err(Error::NonFinite { name, index: index.into() });
-            }
-        }
+        all_finite("pressure", &pressure)?;
+        all_finite("displacement", &displacement)?;
         for (name, requirement, field, smallest) in [
             ("pressure", "at least 0", &pressure, 0.0),
             ("gap", "a number or +inf", &gap, f64::MIN),
@@ -217,10 +220,8 @@ impl Solution {
         let mut highest = self.pressure.indexed_iter().filter(|(_, p)| **p >= peak);
         let depth = |at: (usize, usize)| self.indentation.as_ref().map_or(0.0, |w| w[at]);
         let first = highest.next().map_or((0, 0), |(at, _)| at);
-        let deepest = highest.fold(first, |best, (at, _)| match depth(at) > depth(best) {
-            true => at,
-            false => best,
-        });
+        let deepest =
+            highest.fold(first, |best, (at, _)| if depth(at) > depth(best) { at } else { best });
         [self.grid().x()[deepest.0], self.grid().y()[deepest.1]]
     }
 
@@ -260,6 +261,11 @@ impl Solution {
                 (t + 1.0) * t * (t - 1.0) / 6.0,
             ],
         ))
+    }
+
+    /// The smallest window that holds all cells in contact; `None` where nothing touches.
+    pub(crate) fn cells_in_contact(&self) -> Option<Window> {
+        bounds(&full_window(self.grid().shape()), |i, j| self.pressure[[i, j]] > 0.0)
     }
 
     /// Force per length along x, Σ p dy (nx,) \[N/m\].
@@ -329,4 +335,208 @@ fn edge_beyond(square: impl Fn(usize) -> f64, width: usize) -> f64 {
     let zero = -2.0 * constant / (slope + discriminant.sqrt());
     let beyond = -(zero + half + FIRST as f64);
     if (-1.0..=1.0).contains(&beyond) { beyond } else { OUTER_CELL }
+}
+
+/// The gap of a solution, or what it is computed from.
+#[derive(Debug, Clone)]
+pub(crate) enum Gap {
+    /// g = h + u − Bλ, with the displacement u of the solution.
+    Computed {
+        /// h, less the prescribed motion; solutions of one shape may share it.
+        undeformed: Arc<Array2<f64>>,
+        /// B
+        freedoms: Box<Freedoms>,
+        /// λ
+        multipliers: Multipliers,
+    },
+    /// g
+    Known(Array2<f64>),
+}
+
+impl Gap {
+    /// The gap of the solution, for its `displacement`.
+    pub(crate) fn field(&self, displacement: &Array2<f64>) -> Array2<f64> {
+        let (undeformed, freedoms, multipliers) = match self {
+            Self::Computed { undeformed, freedoms, multipliers } => {
+                (undeformed, freedoms, multipliers)
+            }
+            Self::Known(gap) => return gap.clone(),
+        };
+        let mut gap = Array2::zeros(undeformed.dim());
+        // A user may have replaced the displacement.
+        let displacement = displacement.as_standard_layout();
+        let fields = gap.rows_mut().into_iter().zip(displacement.rows());
+        let rows = fields.zip(undeformed.rows()).enumerate();
+        let [x, y] = &freedoms.columns;
+        for ((number, ((g, u), h)), &x) in rows.zip(x) {
+            if let (Some(g), Some(u), Some(h)) = (g.into_slice(), u.to_slice(), h.to_slice()) {
+                multipliers.gap(Row { number, x, y }, [u, h], g);
+            }
+        }
+        gap
+    }
+}
+
+/// Course of a solve and quality of its solution. All numbers are computed afresh at the end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// How the iteration ended.
+    pub termination: Termination,
+    /// Solver that produced the solution, also where the algorithm that was asked for fell back to another.
+    /// `None` where it is not known: in the reports of a running solve.
+    pub solver: Option<Solver>,
+    /// Iterations done.
+    pub iterations: usize,
+    /// Work done, in convolutions of the whole grid. Convolutions of coarser grids, of windows and of the
+    /// preconditioner count by the points P of their meshes, as P log P.
+    pub convolutions: f64,
+    /// Complementarity: Σ p|g| / Σ p u over the cells that can touch; 0 when p = 0. Where Σ p u contains a far
+    /// displacement that moves the whole contact, as that of a soft substrate below a hard coat, Σ p u₀
+    /// takes its place: u₀ is 10 times the displacement that a wave of the mean pressure, 2πa long, causes,
+    /// where πa² is the contact area (2a the width of a line contact).
+    pub residual: f64,
+    /// max(−g, 0) / max u over the cells that can touch; relative to u₀ as above where that is less.
+    pub overlap: f64,
+    /// Errors of force and moments.
+    pub balance: Balance,
+    /// Discretisation errors, estimated from coarser grids. `None` where no coarser grid was solved: on
+    /// small grids, from a given pressure, by another algorithm, where surfaces yield, or without convergence.
+    pub discretisation: Option<Discretisation>,
+    /// Warnings: what the user should know.
+    pub warnings: Vec<Warning>,
+    /// The grid.
+    pub grid: Grid,
+    /// The body that the shape was pressed into.
+    pub body: Body,
+    /// The body that carries the shape; rigid where `None`.
+    pub counterbody: Option<Body>,
+    /// Load or approach and tilts that were asked for.
+    pub motion: Motion,
+    /// Unit vector along which the shape rolls, and friction acts where no other direction is given: y in
+    /// line contact. `None` where the shape has no such direction, or it is not known, as in files of
+    /// earlier versions.
+    pub rolling_direction: Option<[f64; 2]>,
+    /// The tolerance that was asked for.
+    pub tolerance: f64,
+    /// Seconds that the solve took, without planning.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// Whether the tolerance was met.
+    pub fn converged(&self) -> bool {
+        self.termination == Termination::Converged
+    }
+
+    /// How free ends of the bodies are counted; `None` where there are none.
+    pub fn free_ends(&self) -> Option<FreeEnds> {
+        let bodies = std::iter::once(&self.body).chain(&self.counterbody);
+        Ends::of(&bodies.collect::<Vec<_>>()).form(self.grid.size()[1])
+    }
+
+    /// The error that says which conditions of convergence were not met; the message quotes `tolerance`.
+    pub(crate) fn not_converged(&self, tolerance: f64) -> Error {
+        let Balance { force, moment: [x, y] } = self.balance;
+        Error::NotConverged {
+            iterations: self.iterations,
+            residual: self.residual,
+            overlap: self.overlap,
+            balance: force.max(x).max(y),
+            tolerance,
+            limit: "max_iterations",
+        }
+    }
+
+    /// A report with nothing iterated yet.
+    pub(in crate::contact) fn planned(
+        plan: &Contact,
+        shape: &dyn Surface,
+        motion: &Motion,
+        tolerance: f64,
+    ) -> Self {
+        Self {
+            termination: Termination::Running,
+            solver: None,
+            iterations: 0,
+            convolutions: 0.0,
+            residual: 0.0,
+            overlap: 0.0,
+            balance: Balance::default(),
+            discretisation: None,
+            warnings: Vec::new(),
+            grid: plan.grid,
+            body: plan.body.clone(),
+            counterbody: plan.setup.counterbody.clone(),
+            motion: *motion,
+            rolling_direction: plan.grid.rolling_direction().or_else(|| shape.rolling_direction()),
+            tolerance,
+            seconds: 0.0,
+        }
+    }
+
+    /// Counts work and quality so far.
+    pub(in crate::contact) fn count(
+        &mut self,
+        iterations: usize,
+        convolutions: f64,
+        quality: Quality,
+    ) {
+        self.iterations = iterations;
+        self.convolutions = convolutions;
+        self.residual = quality.residual;
+        self.overlap = quality.overlap;
+    }
+}
+
+/// Callback that gets the report of each iteration and breaks to stop. It may be called on one of the
+/// plan's threads.
+pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
+
+/// Errors of force and moments, relative to what was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Balance {
+    /// |Σ p dA − W| / W; 0 where the force is not given.
+    pub force: f64,
+    /// |Σ p x dA − M_x| / (W × half side), along y alike; 0 where the moment is not given.
+    pub moment: [f64; 2],
+}
+
+/// Force, moments and peak of a pressure.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Carried {
+    pub(crate) force: f64,
+    moment: [f64; 2],
+    pub(crate) peak: f64,
+}
+
+impl Carried {
+    /// Force, moments and peak of `pressure`, which is zero outside `window`.
+    pub(crate) fn by(pressure: &Array2<f64>, window: &Window, grid: &Grid) -> Self {
+        let [x, y] = [0, 1].map(|k| grid.coordinates(k).to_vec()[window[k].clone()].to_vec());
+        let mut carried = Self::default();
+        for (row, x) in rows(pressure, window).zip(x) {
+            let ([peak], [force, moment]) =
+                update_with_largest([row, &y], [], |[p, y], []| ([], [p], [p, p * y]));
+            carried.force += force;
+            carried.moment[0] += force * x;
+            carried.moment[1] += moment;
+            carried.peak = carried.peak.max(peak);
+        }
+        let area = grid.cell_area();
+        Self { force: carried.force * area, moment: carried.moment.map(|m| m * area), ..carried }
+    }
+
+    /// Errors of force and moments against those that `motion` asks for.
+    pub(crate) fn balance(&self, grid: &Grid, motion: &Motion) -> Balance {
+        let scale = motion.load.unwrap_or(self.force);
+        let relative = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a / b } else { 0.0 };
+        let half = grid.size().map(|length| 0.5 * length);
+        let moment = [0, 1].map(|k| {
+            let eccentricity = || Some(motion.eccentricity[k]? * motion.load.unwrap_or(0.0));
+            let asked = motion.moment[k].or_else(eccentricity);
+            asked.map_or(0.0, |m| relative((self.moment[k] - m).abs(), scale * half[k]))
+        });
+        let force = motion.load;
+        Balance { force: force.map_or(0.0, |w| relative((self.force - w).abs(), w)), moment }
+    }
 }

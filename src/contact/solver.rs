@@ -11,14 +11,21 @@ pub(super) use super::options::StopCriteria;
 use super::problem::Quality;
 
 /// How an iteration ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Termination {
     /// It has not ended: the report is one of a running solve.
+    #[default]
     Running,
     /// The tolerance was met.
     Converged,
     /// The tolerance was not met within the iterations allowed.
+    #[cfg_attr(feature = "serde", serde(rename = "iteration limit"))]
     IterationLimit,
     /// The caller asked to stop.
     Stopped,
@@ -52,15 +59,15 @@ pub(super) struct Tally<'a> {
     pub(super) iterations: usize,
     /// Work on all grids, in the unit of `Convolution::work`.
     pub(super) work: f64,
-    caller: &'a mut Caller<'a>,
+    caller: &'a mut Listener<'a>,
 }
 
 /// Callback that gets the iterations, the work and the quality, and breaks to stop.
-type Caller<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
+type Listener<'a> = dyn FnMut(usize, f64, Quality) -> ControlFlow<()> + Send + 'a;
 
 impl<'a> Tally<'a> {
     /// Nothing is done yet.
-    pub(super) fn new(caller: &'a mut Caller<'a>) -> Self {
+    pub(super) fn new(caller: &'a mut Listener<'a>) -> Self {
         Self { iterations: 0, work: 0.0, caller }
     }
 

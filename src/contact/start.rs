@@ -4,9 +4,8 @@ use std::sync::{Arc, Weak};
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::problem::Problem;
-use super::problem::fields::{array, slice};
-use crate::error::{Error, Result};
+use crate::contact::problem::{Problem, array, slice};
+use crate::error::{Error, Result, none_negative, same_shape};
 use crate::model::grid::Grid;
 use crate::model::surface::Surface;
 use crate::numerics::parallel::{ONE, Rows, all, sum};
@@ -37,10 +36,7 @@ impl<'a> Sampled<'a> {
 /// Gaps of `shape` on `grid`, finite or +∞.
 pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Result<Array2<f64>> {
     let gaps = shape.gaps(grid)?;
-    let found = [gaps.nrows(), gaps.ncols()];
-    if found != grid.shape() {
-        return Err(Error::Shape { name: "shape", expected: grid.shape(), found });
-    }
+    same_shape("shape", &gaps, grid.shape())?;
     let gaps =
         if gaps.is_standard_layout() { gaps } else { gaps.as_standard_layout().into_owned() };
     let lowest = f64::NEG_INFINITY;
@@ -48,9 +44,10 @@ pub(super) fn checked_gaps(shape: &dyn Surface, grid: &Grid, rows: &Rows) -> Res
         .each([slice(&gaps)], [], |_, gaps, []| sum(gaps, |[h]| [h.simd_gt(all(lowest)) & ONE]));
     // Counts of cells are exact in f64.
     if good < gaps.len() as f64 {
+        let columns = grid.shape()[1];
         let bad = |h: &f64| h.is_nan() || *h <= lowest;
         let cell = slice(&gaps).iter().position(bad).unwrap_or(0);
-        return Err(Error::NonFinite { name: "shape", index: [cell / found[1], cell % found[1]] });
+        return Err(Error::NonFinite { name: "shape", index: [cell / columns, cell % columns] });
     }
     Ok(gaps)
 }
@@ -95,21 +92,13 @@ pub(super) fn given_pressure(
     let Some(initial) = initial else {
         return Ok(None);
     };
-    let (name, expected) = ("initial", problem.convolution.shape());
-    let found = [initial.nrows(), initial.ncols()];
-    if found != expected {
-        return Err(Error::Shape { name, expected, found });
-    }
-    if let Some(((i, j), _)) = initial.indexed_iter().find(|(_, p)| !p.is_finite()) {
-        return Err(Error::NonFinite { name, index: [i, j] });
-    }
-    if let Some(&value) = initial.iter().find(|p| **p < 0.0) {
-        return Err(Error::Parameter { name, requirement: "at least 0 everywhere", value });
-    }
+    let shape = problem.convolution.shape();
+    same_shape("initial", initial, shape)?;
+    none_negative("initial", initial)?;
     let cells = initial.iter().zip(problem.gap);
     let mut p: Vec<f64> = cells.map(|(&p, h)| if h.is_finite() { p } else { 0.0 }).collect();
     let balanced = problem.freedoms.balance(&mut p, problem.bounds);
-    Ok(balanced.then(|| array(expected, p)))
+    Ok(balanced.then(|| array(shape, p)))
 }
 
 /// A balanced pressure on all cells that can touch.

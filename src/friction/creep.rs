@@ -4,13 +4,11 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::law::Law;
-use super::linear::Operator;
-use super::newton::{Effort, TractionProblem};
+use super::newton::{Effort, Law, Operator, TractionProblem};
 use super::step::RollingDirection;
 use crate::compliance::response::Body;
 use crate::compliance::traction::Tangential;
-use crate::error::{Error, Result, positive, require};
+use crate::error::{Error, Result, positive, refuse_if, require};
 use crate::model::body::{HalfSpace, Substrate};
 use crate::model::grid::Grid;
 use crate::numerics::parallel::Threads;
@@ -93,9 +91,10 @@ pub fn creep_coefficients(
     }
     require("cells", cells as f64, cells >= 8, "at least 8")?;
     for body in std::iter::once(&body).chain(&counterbody) {
-        if body.half_space().is_some_and(|layers| layers.ends() != [None; 2]) {
-            return Err(Error::Inconsistent(crate::compliance::traction::GO_ON));
-        }
+        refuse_if(
+            body.half_space().is_some_and(|layers| layers.ends() != [None; 2]),
+            crate::compliance::traction::GO_ON,
+        )?;
     }
     let shear = shear(&body, counterbody.as_ref())?;
     let threads = Arc::new(Threads::new(None)?);
@@ -223,14 +222,8 @@ impl EllipticContact {
             return Err(Error::Stopped);
         }
         if found.misfit.worst() > TOLERANCE {
-            return Err(Error::NotConverged {
-                iterations: found.convolutions,
-                residual: found.misfit.worst(),
-                overlap: 0.0,
-                balance: 0.0,
-                tolerance: TOLERANCE,
-                limit: "cells",
-            });
+            let (iterations, residual) = (found.convolutions, found.misfit.worst());
+            return Err(Error::not_converged(iterations, residual, TOLERANCE, "cells"));
         }
         let (qx, qy) = found.q.split_at(cells);
         let area = self.grid.cell_area();

@@ -15,8 +15,8 @@ use super::solution::{FrictionReport, FrictionSolution, TangentialMotion};
 use super::step::{Freedom, Friction, FrictionOptions, Move, Rolling, Step};
 use super::task::{Before, PressedCells, SolvedTask, TractionTask, bounds, zeros};
 use crate::compliance::traction::Tangential;
-use crate::contact::{Contact, Motion, OVERFLOW, Options, Solution, Termination, Warning};
-use crate::error::{Error, Result, require};
+use crate::contact::{Contact, Motion, Options, Solution, Termination, Warning};
+use crate::error::{Error, Result, fraction};
 use crate::model::grid::Grid;
 use crate::model::surface::{Lifted, Surface};
 
@@ -52,16 +52,7 @@ struct FrictionCourse<'a, 'b> {
     progress: &'a mut FrictionProgress<'b>,
 }
 
-impl<'a, 'b> FrictionCourse<'a, 'b> {
-    fn new(session: &Session, progress: &'a mut FrictionProgress<'b>) -> Self {
-        Self {
-            begun: Instant::now(),
-            report: FrictionReport::running(session.coupled, session.options.tolerance),
-            stopped: false,
-            progress,
-        }
-    }
-
+impl FrictionCourse<'_, '_> {
     fn tell(&mut self) -> ControlFlow<()> {
         self.report.seconds = self.begun.elapsed().as_secs_f64();
         let answer = (self.progress)(&self.report);
@@ -85,9 +76,7 @@ impl<'a> Session<'a> {
         shape: &'a dyn Surface,
         options: FrictionOptions,
     ) -> Result<Self> {
-        let tolerance = options.tolerance;
-        let holds = tolerance > 0.0 && tolerance < 1.0;
-        require("tolerance", tolerance, holds, "above 0 and below 1")?;
+        fraction("tolerance", options.tolerance)?;
         let tangential = contact.tangential()?;
         Ok(Self {
             contact,
@@ -116,17 +105,14 @@ impl<'a> Session<'a> {
             }
         };
         let earlier = solution.map(|last| &last.normal);
-        let start = Start {
-            // The pressure of bodies whose tractions do not act on it is known for the same motion.
-            known: earlier.filter(|normal| {
-                last.is_some_and(|last| last.is_own)
-                    && !self.coupled
-                    && normal.report.converged()
-                    && normal.report.motion == motion
-            }),
-            pressure: earlier.map(|normal| &normal.pressure),
-        };
-        self.settle(&task, &motion, friction, start, progress)
+        // The pressure of bodies whose tractions do not act on it is known for the same motion.
+        let known = earlier.filter(|normal| {
+            last.is_some_and(|last| last.is_own)
+                && !self.coupled
+                && normal.report.converged()
+                && normal.report.motion == motion
+        });
+        self.settle(&task, &motion, friction, [earlier, known], progress)
     }
 
     /// Motion, friction and problem of a step of sliding.
@@ -188,31 +174,38 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Pressure and tractions in turn until neither changes the other.
+    /// Pressure and tractions in turn until neither changes the other, from the pressure of the `earlier` solution, or with
+    /// the `known` one.
     fn settle(
         &self,
         task: &TractionTask,
         motion: &Motion,
         friction: &Friction,
-        start: Start,
+        [earlier, known]: [Option<&Solution>; 2],
         progress: &mut FrictionProgress,
     ) -> Result<FrictionSolution> {
         let (grid, tolerance) = (self.contact.grid(), self.options.tolerance);
-        let mut course = FrictionCourse::new(self, progress);
+        let mut course = FrictionCourse {
+            begun: Instant::now(),
+            report: FrictionReport {
+                coupled: self.coupled,
+                tolerance,
+                ..FrictionReport::default()
+            },
+            stopped: false,
+            progress,
+        };
         let mut traction = task.before.traction.clone();
-        let mut pressure: Option<Array2<f64>> = start.pressure.cloned();
+        let mut pressure: Option<Array2<f64>> = earlier.map(|normal| normal.pressure.clone());
         let (normal, solved) = loop {
-            let normal = match start.known {
+            let normal = match known {
                 Some(known) => known.clone(),
                 None => self.press(motion, &traction, pressure.as_ref(), &mut course)?,
             };
             course.report.sweeps += 1;
             let is_first = course.report.sweeps == 1;
             let change = change(&normal, pressure.as_ref());
-            course.report.pressure_change = match self.coupled && !is_first {
-                true => change,
-                false => 0.0,
-            };
+            course.report.pressure_change = if self.coupled && !is_first { change } else { 0.0 };
             let bound = bounds(&normal.pressure, friction)?;
             if course.stopped {
                 break (normal, None);
@@ -220,10 +213,7 @@ impl<'a> Session<'a> {
             task.check(grid, &bound, tolerance)?;
             let is_settled = !self.coupled || !is_first && change <= tolerance;
             // While the pressure still changes, tractions need not be exact.
-            let goal = match is_settled {
-                true => tolerance,
-                false => tolerance.max(LOOSE * change.min(1.0)),
-            };
+            let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };
             let [x, y, _] = task.increments.map(Freedom::force);
             let starts = match is_first && x.hypot(y) > 0.0 && task.slides() {
                 true => self.starts(motion, &normal, [x, y], friction, &traction)?,
@@ -287,7 +277,7 @@ impl<'a> Session<'a> {
         };
         let mut fields = task.fields(&self.tangential, pressed, solved.as_ref());
         if !fields.are_finite() {
-            return Err(OVERFLOW);
+            return Err(Error::Overflow);
         }
         if course.stopped {
             fields.restore(task);
@@ -343,14 +333,14 @@ impl<'a> Session<'a> {
         let mut watch = |_: &crate::contact::Report| course.tell();
         let (contact, grid) = (self.contact, self.contact.grid());
         if !self.coupled {
-            return contact.solve_watched(self.shape, motion, &options, &mut watch);
+            return contact.solve(self.shape, motion, options.watched(&mut watch));
         }
         options.initial = pressure.filter(|p| p.iter().any(|p| *p > 0.0)).cloned();
         let q: Vec<f64> = traction.iter().flatten().copied().collect();
         let lift = self.tangential.window(grid.shape()).lift(&q);
         let lift = Array2::from_shape_fn(grid.shape(), |(i, j)| lift[i * grid.shape()[1] + j]);
         let lifted = Lifted::new(self.shape, grid, lift);
-        contact.solve_watched(&lifted, motion, &options, &mut watch)
+        contact.solve(&lifted, motion, options.watched(&mut watch))
     }
 
     /// Tractions to start from: those before; for the whole force by superposition, as if there had been no history;
@@ -413,14 +403,6 @@ impl<'a> Session<'a> {
     }
 }
 
-/// From what the pressure is found.
-struct Start<'a> {
-    /// The pressure's solution, where it is known.
-    known: Option<&'a Solution>,
-    /// The pressure before.
-    pressure: Option<&'a Array2<f64>>,
-}
-
 /// Largest change of the pressure over its peak; infinite where there was none before.
 fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
     let Some(before) = before else {
@@ -428,10 +410,7 @@ fn change(normal: &Solution, before: Option<&Array2<f64>>) -> f64 {
     };
     let pairs = normal.pressure.iter().zip(before);
     let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    match moved > 0.0 {
-        true => moved / normal.peak_pressure(),
-        false => 0.0,
-    }
+    if moved > 0.0 { moved / normal.peak_pressure() } else { 0.0 }
 }
 
 /// The state that a solution leaves, or that of bodies that have not touched.

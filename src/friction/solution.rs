@@ -4,12 +4,17 @@ use ndarray::Array2;
 
 use super::step::{Friction, RollingDirection};
 use crate::contact::{Solution, Termination};
-use crate::error::{Error, Result, same_shape};
+use crate::error::{Error, Result, all_finite, same_shape};
 use crate::model::grid::Grid;
-use crate::stress::{Member, Stress, StressPlan, WatchedStress};
+use crate::stress::{Member, Strengths, Stress, StressPlan, StressSummary, WatchedStress};
 
 /// Tangential motion of the counterbody over the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(untagged, deny_unknown_fields)
+)]
 pub enum TangentialMotion {
     /// Sliding, counted from the first touch.
     Slide {
@@ -31,7 +36,12 @@ pub enum TangentialMotion {
 
 /// Course and quality of a solve. All errors are computed afresh from the tractions, with the operator of the whole
 /// grid.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct FrictionReport {
     /// How the iteration ended.
     pub termination: Termination,
@@ -58,23 +68,6 @@ pub struct FrictionReport {
 }
 
 impl FrictionReport {
-    /// The report of a step that begins.
-    pub(super) fn running(coupled: bool, tolerance: f64) -> Self {
-        Self {
-            termination: Termination::Running,
-            convolutions: 0,
-            sweeps: 0,
-            violation: 0.0,
-            imbalance: 0.0,
-            excess: 0.0,
-            pressure_change: 0.0,
-            coupled,
-            full_slip: false,
-            tolerance,
-            seconds: 0.0,
-        }
-    }
-
     /// Whether the tolerance was met.
     pub fn converged(&self) -> bool {
         self.termination == Termination::Converged
@@ -147,6 +140,23 @@ impl FrictionSolution {
         plan.stress(depths, options.watched(&mut progress))
     }
 
+    /// Peaks of this stress in each layer, and tractions at each interface.
+    ///
+    /// # Errors
+    /// As [`FrictionSolution::stress`], and bad strengths.
+    pub fn stress_summary<'a>(
+        &self,
+        member: Member,
+        strengths: &Strengths,
+        options: impl Into<WatchedStress<'a>>,
+    ) -> Result<StressSummary> {
+        let mut asked = options.into();
+        let options = asked.options();
+        let mut progress = |part| asked.tell(part);
+        let plan = self.stress_plan(member, options.watched(&mut progress))?;
+        plan.summary(strengths, options.watched(&mut progress))
+    }
+
     /// A plan of the stress in one of the bodies under the pressure and the tractions, evaluated any number of times,
     /// also for a [`StressPlan::summary`]. Of the options, only `threads` is used. A callback of
     /// [`StressOptions::watched`](crate::StressOptions::watched) is told 0 while planning.
@@ -176,9 +186,7 @@ impl FrictionSolution {
         ];
         for (name, field) in named.into_iter().flat_map(|(name, [x, y])| [(name, x), (name, y)]) {
             same_shape(name, field, expected)?;
-            if let Some((index, _)) = field.indexed_iter().find(|(_, value)| !value.is_finite()) {
-                return Err(Error::NonFinite { name, index: index.into() });
-            }
+            all_finite(name, field)?;
         }
         Ok(self)
     }

@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use crate::contact::Motion;
-use crate::error::{Error, Result, finite, require, same_shape};
+use crate::error::{Error, Result, finite, not_negative, refuse_if, require, same_shape};
 use crate::model::grid::Grid;
 
 /// Coefficient of friction μ ≥ 0.
@@ -45,10 +45,7 @@ impl Friction {
     }
 
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
-        let check = |value: f64| {
-            let holds = value >= 0.0 && value.is_finite();
-            require("friction", value, holds, "finite and at least 0").map(|_| ())
-        };
+        let check = |value: f64| not_negative("friction", value).map(|_| ());
         match self {
             Self::Uniform(coefficient) => check(*coefficient),
             Self::Cells(coefficients) => {
@@ -122,15 +119,15 @@ impl Step {
             if let Some(value) = load {
                 finite(of_load, value)?;
             }
-            if motion.is_some() && load.is_some() {
-                return Err(Error::Inconsistent(
-                    "of shift and force along one axis, and of twist and torque, one must be given, not both",
-                ));
-            }
+            refuse_if(
+                motion.is_some() && load.is_some(),
+                "of shift and force along one axis, and of twist and torque, one must be given, not both",
+            )?;
         }
-        if grid.is_line() && (self.twist.is_some() || self.torque.is_some()) {
-            return Err(Error::Inconsistent("twist and torque must not be given in line contact"));
-        }
+        refuse_if(
+            grid.is_line() && (self.twist.is_some() || self.torque.is_some()),
+            "twist and torque must not be given in line contact",
+        )?;
         Ok(given.map(|(motion, load)| match (motion, load) {
             (_, Some(force)) => Freedom::Loaded(force),
             (Some(value), None) => Freedom::Prescribed(value),
@@ -161,14 +158,19 @@ impl Freedom {
 
 /// Direction in which the contact moves over the bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RollingDirection {
     /// Towards +x.
+    #[cfg_attr(feature = "serde", serde(rename = "+x"))]
     PlusX,
     /// Towards −x.
+    #[cfg_attr(feature = "serde", serde(rename = "-x"))]
     MinusX,
     /// Towards +y, as rollers with their axis along x do.
+    #[cfg_attr(feature = "serde", serde(rename = "+y"))]
     PlusY,
     /// Towards −y.
+    #[cfg_attr(feature = "serde", serde(rename = "-y"))]
     MinusY,
 }
 
@@ -228,11 +230,10 @@ impl Rolling {
     pub(super) fn freedoms(&self, grid: &Grid) -> Result<[Freedom; 2]> {
         finite("spin", self.spin)?;
         let axis_is_x = self.direction.vector()[0].abs() > 0.5;
-        if grid.is_line() && (axis_is_x || self.spin != 0.0) {
-            return Err(Error::Inconsistent(
-                "in line contact, the direction of rolling must be +y or -y, and the spin 0",
-            ));
-        }
+        refuse_if(
+            grid.is_line() && (axis_is_x || self.spin != 0.0),
+            "in line contact, the direction of rolling must be +y or -y, and the spin 0",
+        )?;
         let [lx, ly] = grid.size();
         bounded("spin", self.spin, 1.0 / lx.hypot(ly))?;
         let mut freedoms = [Freedom::Prescribed(0.0); 2];

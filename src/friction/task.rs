@@ -1,19 +1,20 @@
 //! One tangential problem on the window of a contact: sliding in one step, rolling at constant speed, or rolling by one
 //! cell. Its fields on the whole grid, and how well the laws hold there.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use ndarray::{Array2, Axis};
 
-use super::law::{CellState, Law};
-use super::linear::Operator;
-use super::newton::{ConvolutionWatch, Effort, TractionProblem, TractionResult};
+use super::newton::{
+    CellState, ConvolutionWatch, Effort, Law, Operator, TractionProblem, TractionResult,
+};
 use super::solution::TangentialMotion;
 use super::step::{Freedom, Friction, Rolling, RollingDirection};
 use crate::compliance::traction::{Tangential, TangentialWindow};
-use crate::contact::Warning;
+use crate::contact::{self, Warning};
 use crate::error::{Error, Result, require};
-use crate::model::grid::{Grid, Window};
+use crate::model::grid::{Grid, Window, full_window};
 
 /// What is asked of the tangential motion.
 #[derive(Debug)]
@@ -105,16 +106,10 @@ impl TractionTask<'_> {
         }
         let leaves = |direction: RollingDirection| {
             let axis = Axis(direction.axis());
-            let edge = match direction.is_forward() {
-                true => bound.len_of(axis) - 1,
-                false => 0,
-            };
+            let edge = if direction.is_forward() { bound.len_of(axis) - 1 } else { 0 };
             bound.index_axis(axis, edge).iter().any(|bound| *bound > 0.0)
         };
-        match self.direction().is_some_and(leaves) {
-            false => Ok(()),
-            true => Err(Error::RollsOffGrid),
-        }
+        if self.direction().is_some_and(leaves) { Err(Error::RollsOffGrid) } else { Ok(()) }
     }
 
     /// The smallest window that holds all cells with friction or pressure, and in steady rolling a cell more on both sides;
@@ -125,17 +120,12 @@ impl TractionTask<'_> {
             return None;
         }
         // Pressure spreads the surfaces also where there is no friction.
-        let used = |(i, j): (usize, usize)| bound[[i, j]] > 0.0 || spreading[[i, j]] > 0.0;
-        let cells = bound.indexed_iter().map(|(cell, _)| cell);
-        let mut cells = cells.filter(|cell| used(*cell));
-        let (i, j) = cells.next()?;
-        let [rows, columns] = cells.fold([[i, i], [j, j]], |[[x0, x1], [y0, y1]], (i, j)| {
-            [[x0.min(i), x1.max(i)], [y0.min(j), y1.max(j)]]
-        });
-        let wider = |axis: usize, [first, last]: [usize; 2]| {
+        let used = |i: usize, j: usize| bound[[i, j]] > 0.0 || spreading[[i, j]] > 0.0;
+        let [rows, columns] = contact::bounds(&full_window([bound.nrows(), bound.ncols()]), used)?;
+        let wider = |axis: usize, cells: Range<usize>| {
             let margin = usize::from(self.steady().is_some_and(|d| d.axis() == axis));
             let most = bound.len_of(Axis(axis));
-            first.saturating_sub(margin)..(last + 1 + margin).min(most)
+            cells.start.saturating_sub(margin)..(cells.end + margin).min(most)
         };
         Some([wider(0, rows), wider(1, columns)])
     }
@@ -432,12 +422,8 @@ impl FrictionFields {
 pub(super) fn bounds(pressure: &Array2<f64>, friction: &Friction) -> Result<Array2<f64>> {
     let bound = friction.times(pressure);
     let most = bound.iter().fold(0.0_f64, |most, bound| most.max(*bound));
-    require(
-        "friction times the largest pressure",
-        most,
-        most <= 0.0 || (1e-150..=1e150).contains(&most),
-        "0, or between 1e-150 and 1e150",
-    )?;
+    let (name, counts) = ("friction times the largest pressure", (1e-150..=1e150).contains(&most));
+    require(name, most, most <= 0.0 || counts, "0, or between 1e-150 and 1e150")?;
     Ok(bound)
 }
 

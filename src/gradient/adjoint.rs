@@ -4,13 +4,12 @@ use std::ops::ControlFlow;
 
 use ndarray::{Array2, ArrayRef2};
 
-use super::output::{Direction, Gradient, Output};
 use super::parameter::{Parameter, Slope, all, named};
-use super::seed::{Seed, offsets};
+use super::seed::{Direction, Gradient, Output, Seed, offsets};
 use super::state::{Linearised, Saddle};
 use super::stress::StressSeed;
 use crate::contact::Solution;
-use crate::error::{Error, Result, require, same_shape};
+use crate::error::{Error, Result, fraction, same_shape};
 use crate::model::surface::Surface;
 use crate::numerics::parallel::dot;
 
@@ -84,9 +83,7 @@ impl<'a> Linearisation<'a> {
         shape: Option<&'a dyn Surface>,
         options: &LinearOptions<'a>,
     ) -> Result<Self> {
-        let tolerance = options.tolerance;
-        let holds = tolerance > 0.0 && tolerance < 1.0;
-        require("tolerance", tolerance, holds, "above 0 and below 1")?;
+        fraction("tolerance", options.tolerance)?;
         let state = Linearised::new(solution, options.watch)?;
         Ok(Self {
             parameters: all(solution, shape),
@@ -178,7 +175,7 @@ impl<'a> Linearisation<'a> {
     /// How the equations depend on `parameter`, also at `cells` outside of the window.
     fn slope(&self, parameter: &Parameter, cells: &[([usize; 2], f64)]) -> Result<Slope> {
         self.options.go_on()?;
-        let reach = offsets(self.state.tangent.window(), cells);
+        let reach = offsets(&self.state.tangent.window, cells);
         Slope::new(self.solution, self.shape, &self.state, parameter, reach)
     }
 
@@ -332,7 +329,7 @@ impl<'a> Linearisation<'a> {
     /// An array of the grid with `values` in the window, and 0 outside.
     fn spread(&self, values: &[f64]) -> Array2<f64> {
         let [nx, ny] = self.solution.grid().shape();
-        let [x, y] = self.state.tangent.window();
+        let [x, y] = &self.state.tangent.window;
         let mut array = Array2::zeros((nx, ny));
         for (i, row) in x.clone().zip(values.chunks_exact(y.len())) {
             for (j, value) in y.clone().zip(row) {

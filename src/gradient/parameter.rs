@@ -215,8 +215,8 @@ impl Slope {
         slope: &ResponseSlope,
         reach: [usize; 2],
     ) -> Result<Self> {
-        let (grid, window) = (solution.grid(), state.tangent.window());
-        let convolution = state.tangent.convolution();
+        let (grid, window) = (solution.grid(), &state.tangent.window);
+        let convolution = &state.tangent.convolution;
         let threads = convolution.own_threads();
         let coefficients =
             unchecked_coefficients(slope, &grid.of_offsets(reach), Method::Exact, threads)?;
@@ -243,7 +243,7 @@ impl Slope {
 
     /// b of a parameter that moves the gap by `slopes` (nx, ny) per unit.
     pub(super) fn of_gap(state: &Linearised, slopes: Array2<f64>) -> Self {
-        let field = block(&slopes, state.tangent.window());
+        let field = block(&slopes, &state.tangent.window);
         Self {
             field: field.iter().copied().collect(),
             target: [0.0; 3],

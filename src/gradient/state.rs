@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use crate::contact::{Solution, Tangent, block, bounds};
+use crate::contact::{Solution, Tangent, block};
 use crate::error::{Error, Result};
-use crate::model::grid::{Window, full_window};
+use crate::model::grid::Window;
 use crate::numerics::parallel::dot;
 
 /// Cells around the contact that the window holds, which may join it first.
@@ -68,8 +68,7 @@ impl Linearised {
         check(solution)?;
         let grid = solution.grid();
         let shape = grid.shape();
-        let touching = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
-        let Some(inner) = bounds(&full_window(shape), touching) else {
+        let Some(inner) = solution.cells_in_contact() else {
             return Err(refused("nothing touches, so that every derivative is 0 or undefined"));
         };
         let window: Window = [0, 1].map(|axis| {
@@ -89,19 +88,18 @@ impl Linearised {
         }
         let gap = solution.gap();
         let outside = (gap.indexed_iter())
-            .filter(|((i, j), _)| {
-                !(tangent.window()[0].contains(i) && tangent.window()[1].contains(j))
-            })
+            .filter(|((i, j), _)| !(tangent.window[0].contains(i) && tangent.window[1].contains(j)))
             .fold(f64::INFINITY, |least, (_, g)| least.min(*g));
         let flat = |field: &ndarray::Array2<f64>| -> Vec<f64> {
-            block(field, tangent.window()).iter().copied().collect()
+            block(field, &tangent.window).iter().copied().collect()
         };
         let (gap, displacement) = (flat(&gap), flat(&solution.displacement));
         let pressure = flat(&solution.pressure);
         let mut state =
             Self { pressure, gap, motion, loaded, target, columns: Vec::new(), outside, tangent };
         if !loaded[0] {
-            state.tangent.centre_at_origin();
+            // Without a column of 1, the others must be counted from the origin, not from the middle of the window.
+            state.tangent.origin = [0.0; 2];
         }
         let undeformed: Vec<f64> = (state.gap.iter().zip(&displacement))
             .zip(state.moved(motion))
@@ -128,7 +126,7 @@ impl Linearised {
 
     /// K `pressure` in all cells of the window.
     pub(super) fn displaced(&self, pressure: &[f64]) -> Vec<f64> {
-        let convolution = self.tangent.convolution();
+        let convolution = &self.tangent.convolution;
         let mut out = vec![0.0; pressure.len()];
         convolution.apply_slices(pressure, &mut out, &mut convolution.workspace());
         let raised = self.tangent.raise * pressure.iter().sum::<f64>();
@@ -220,7 +218,7 @@ impl Linearised {
 
     /// Σ `factor`(cell) p over the cells in contact, numbered as in the grid.
     pub(super) fn sum_over_contact(&self, factor: impl Fn([usize; 2]) -> f64) -> f64 {
-        let [x, y] = self.tangent.window();
+        let [x, y] = &self.tangent.window;
         let cells = x.clone().flat_map(|i| y.clone().map(move |j| [i, j]));
         let loaded = cells.zip(&self.pressure).filter(|(_, p)| **p != 0.0);
         loaded.map(|(cell, p)| p * factor(cell)).sum()
@@ -285,7 +283,6 @@ impl Linearised {
         let span: Vec<&[f64]> = self.columns.iter().map(|column| &*column.values).collect();
         let mut ask = || watch.map_or(ControlFlow::Continue(()), |watch| watch());
         let found = self.tangent.solve_beside(&rest, &span, tolerance, &mut ask)?;
-        let found = found.ok_or(Error::Stopped)?;
         psi.iter_mut().zip(found).for_each(|(psi, y)| *psi += y);
         self.tangent.apply(&psi, &mut image);
         image.iter_mut().zip(right).for_each(|(image, r)| *image -= r);

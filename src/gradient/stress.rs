@@ -2,12 +2,11 @@
 
 use ndarray::Array2;
 
-use super::output::{Measure, StressOutput, StressPlace};
 use super::parameter::Parameter;
-use super::seed::{Seed, bilinear};
+use super::seed::{Measure, Seed, StressOutput, StressPlace, bilinear};
 use super::state::Linearised;
 use crate::contact::{Solution, block};
-use crate::error::{Error, Result, require};
+use crate::error::{Error, Result, positive, require};
 use crate::model::body::{BodyParameter, HalfSpace, Interface};
 use crate::stress::{Section, Side, StressOptions, Tensor, Weights};
 
@@ -131,7 +130,7 @@ impl StressSeed {
             let options = options(solution, output, output.friction, side);
             slopes += &plan.transposed(z, &plane.weights, &options)?;
         }
-        let window = block(&slopes, state.tangent.window());
+        let window = block(&slopes, &state.tangent.window);
         let window: Vec<f64> = window.iter().copied().collect();
         let mut seed = Seed::linear(state, value, state.masked(&window));
         seed.warning = warning;
@@ -263,12 +262,7 @@ fn soft_maximum(
     sharpness: f64,
     planes: &[Weights],
 ) -> Result<(f64, Vec<Weights>, Option<String>)> {
-    require(
-        "sharpness",
-        sharpness,
-        sharpness > 0.0 && sharpness.is_finite(),
-        "finite and above 0",
-    )?;
+    positive("sharpness", sharpness)?;
     let cells = planes[0][0].len();
     let stress = |plane: &Weights, k: usize| std::array::from_fn(|c| plane[c][k]);
     let values: Vec<f64> = planes

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::equation::stack::Parameter;
+use super::equation::stack::IndentParameter;
 use super::tip::{Tip, TipParameter};
 use crate::error::{Result, positive, require};
 
@@ -80,12 +80,8 @@ impl Adhesion {
         }
         if let Self::Maugis { work, strength } = self {
             positive("strength", strength)?;
-            require(
-                "work/strength",
-                work / strength,
-                (1e-100..=1e100).contains(&(work / strength)),
-                "a length between 1e-100 and 1e100",
-            )?;
+            let (length, requirement) = (work / strength, "a length between 1e-100 and 1e100");
+            require("work/strength", length, (1e-100..=1e100).contains(&length), requirement)?;
         }
         Ok(self)
     }
@@ -121,15 +117,15 @@ impl Adhesion {
     }
 
     /// Derivative of the force outside with respect to `parameter`. Where all sections have κ times the area, the end radius is κR.
-    pub(super) fn outside_rate(&self, tip: &Tip, parameter: Parameter) -> f64 {
+    pub(super) fn outside_rate(&self, tip: &Tip, parameter: IndentParameter) -> f64 {
         let (Self::Dmt { work }, Some(radius)) = (*self, tip.end_radius()) else {
             return 0.0;
         };
         match parameter {
-            Parameter::Work => 2.0 * PI * radius,
-            Parameter::Tip(TipParameter::Area) => 2.0 * PI * work * radius,
+            IndentParameter::Work => 2.0 * PI * radius,
+            IndentParameter::Tip(TipParameter::Area) => 2.0 * PI * work * radius,
             // The end radius is the last number of the form.
-            Parameter::Tip(TipParameter::Number(k)) if k + 1 == tip.numbers().len() => {
+            IndentParameter::Tip(TipParameter::Number(k)) if k + 1 == tip.numbers().len() => {
                 2.0 * PI * work
             }
             _ => 0.0,

@@ -24,12 +24,11 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::adhesion::Adhesion;
-use super::density::{Density, bessel_sum};
-use super::equation::stack::{Parameter, StackLevel};
-use super::equation::system::{add, times};
+use super::density::{Answer, Density, Rate, WHOLE, Zone, bessel_sum};
+use super::equation::stack::{IndentParameter, StackLevel};
+use super::equation::{add, times};
 use super::point::{Point, check_distances};
 use super::tip::TipParameter;
-use super::zone::{Answer, Rate, Zone};
 use crate::error::{Error, Result};
 use crate::numerics::parallel::dot;
 
@@ -48,7 +47,7 @@ pub enum Held {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
     /// A number of bodies, tip or adhesion.
-    Parameter(Parameter),
+    Parameter(IndentParameter),
     /// What was given.
     Held,
 }
@@ -177,29 +176,31 @@ impl Point {
             "the state does not depend on this parameter: take one of the bodies, the tip or the adhesion",
         );
         match (parameter, self.adhesion) {
-            (Parameter::Work, Adhesion::Jkr { work }) => effect.edge = self.step() / (2.0 * work),
-            (Parameter::Work, Adhesion::Dmt { .. }) => {}
-            (Parameter::Work, Adhesion::Maugis { strength, .. }) => {
+            (IndentParameter::Work, Adhesion::Jkr { work }) => {
+                effect.edge = self.step() / (2.0 * work)
+            }
+            (IndentParameter::Work, Adhesion::Dmt { .. }) => {}
+            (IndentParameter::Work, Adhesion::Maugis { strength, .. }) => {
                 effect.opening = 1.0 / strength;
             }
-            (Parameter::Strength, Adhesion::Maugis { work, strength }) => {
+            (IndentParameter::Strength, Adhesion::Maugis { work, strength }) => {
                 let zone = self.zone.as_ref().ok_or(unknown)?;
                 effect.stress = 1.0 / strength;
                 effect.opening = -work / (strength * strength);
-                effect.edge = effect.stress * zone.density();
+                effect.edge = effect.stress * zone.density(WHOLE);
             }
-            (Parameter::Work | Parameter::Strength, _) => return Err(unknown),
-            (Parameter::Tip(TipParameter::Number(k)), _) if k >= tip.numbers().len() => {
+            (IndentParameter::Work | IndentParameter::Strength, _) => return Err(unknown),
+            (IndentParameter::Tip(TipParameter::Number(k)), _) if k >= tip.numbers().len() => {
                 return Err(unknown);
             }
-            (Parameter::Tip(own), _) => {
+            (IndentParameter::Tip(own), _) => {
                 effect.rate = Some(own);
                 effect.widening = tip.fixed_radius().map_or(0.0, |a| match own {
                     TipParameter::Area => 0.5 * a,
                     TipParameter::Number(_) => 1.0,
                 });
             }
-            (Parameter::Body(..), adhesion) => {
+            (IndentParameter::Body(..), adhesion) => {
                 let found = stack.parameters().iter().position(|own| *own == parameter);
                 let found = found.ok_or(unknown)?;
                 effect.number = Some(found);
@@ -250,7 +251,8 @@ impl Point {
             outer: 0.0,
         };
         if let (Some(zone), Some(outer)) = (&self.zone, &free.outer) {
-            let displaced = own.displaced(zone.outer) + effect.stress * zone.abel(zone.outer);
+            let displaced =
+                own.displaced(zone.outer) + effect.stress * zone.abel(WHOLE, zone.outer);
             let shape = effect.rate.map_or(0.0, |rate| parts.tip.gap_rate(rate, zone.outer));
             let gap = self.displacement(&[zone.outer])?[0] * effect.short
                 + parts.stack.short() * displaced
@@ -258,7 +260,7 @@ impl Point {
                 - effect.opening;
             fixed.outer = outer.following(gap);
             fixed.edge += outer.answer.edge * fixed.outer;
-            fixed.load += effect.stress * zone.load() + outer.load * fixed.outer;
+            fixed.load += effect.stress * zone.load(WHOLE) + outer.load * fixed.outer;
         }
         Ok(fixed)
     }
@@ -327,7 +329,7 @@ impl Change<'_> {
         let (a, edge) = (self.point.radius, self.point.step());
         let zone = self.point.zone.as_ref();
         let density = Density {
-            edge: self.density.edge - zone.map_or(0.0, |zone| zone.density_rate(self.zone)),
+            edge: self.density.edge - zone.map_or(0.0, |zone| zone.density(self.zone)),
             g: self.density.g.clone(),
             ..self.density
         };
@@ -339,7 +341,7 @@ impl Change<'_> {
                 return 0.0;
             }
             let moved = edge * a * self.radius / ((a - r) * (a + r)).powf(1.5);
-            let from_zone = zone.map_or(0.0, |zone| zone.inside_rate(self.zone, *r));
+            let from_zone = zone.map_or(0.0, |zone| zone.inside(self.zone, *r));
             density.pressure(*r) - moved + from_zone
         };
         Ok(r.iter().map(at).collect())
@@ -371,7 +373,7 @@ impl Change<'_> {
             };
             let layers = waves.as_ref();
             let layers = layers.map_or(0.0, |(g, alpha)| bessel_sum(g, alpha, *r));
-            let from_zone = zone.map_or(0.0, |zone| zone.abel_rate(self.zone, *r));
+            let from_zone = zone.map_or(0.0, |zone| zone.abel(self.zone, *r));
             self.effect.short * u
                 + stack.short() * (self.density.abel(*r) + moved + from_zone + layers)
         };
@@ -391,8 +393,8 @@ impl Change<'_> {
         waves.circular(point.radius, &mut cos, &mut sin);
         add(&mut change, point.step() * self.radius, &cos);
         if let Some(zone) = &point.zone {
-            add(&mut change, 1.0, &zone.transform_rate(self.zone, waves));
-            add(&mut hat, 1.0, &zone.transform(waves));
+            add(&mut change, 1.0, &zone.transform(self.zone, waves));
+            add(&mut hat, 1.0, &zone.transform(WHOLE, waves));
         }
         let mut g = times(&level.excess, &change);
         if let Some(number) = self.effect.number {
@@ -504,12 +506,12 @@ impl Point {
         let of_outer = of_outer.displaced(c);
         // The place itself moves; ∫ ψ/√(c²−t²) is in proportion to c − a.
         let own = Density { edge: self.edge(), ..self.density() };
-        let moved = own.displaced_slope(c) + zone.abel(c) / (c - zone.inner);
+        let moved = own.displaced_slope(c) + zone.abel(WHOLE, c) / (c - zone.inner);
         Outer {
-            load: 2.0 * PI * dot(&answer.values, &system.ones) + zone.load_rate([0.0, 1.0]),
+            load: 2.0 * PI * dot(&answer.values, &system.ones) + zone.load([0.0, 1.0]),
             gap: parts.tip.slope(c) + short * (moved + of_outer),
             gap_of_approach: short * of_approach - 1.0,
-            answer: Answer { edge: answer.edge - zone.density_rate([0.0, 1.0]), ..answer },
+            answer: Answer { edge: answer.edge - zone.density([0.0, 1.0]), ..answer },
         }
     }
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
 use super::change::{Held, Variable};
-use super::equation::stack::Parameter;
+use super::equation::stack::IndentParameter;
 use super::indenter::Indent;
-use super::point::{Point, Warning};
+use super::point::{IndentWarning, Point};
 use crate::error::{Error, Result, finite};
 use crate::numerics::roots::newton;
 use crate::numerics::special::barycentric;
@@ -40,7 +40,7 @@ pub struct Curve {
     /// Derivatives of each load with respect to each parameter, at its approach.
     pub derivatives: Vec<Vec<f64>>,
     /// What makes its deepest point doubtful; empty as a rule.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<IndentWarning>,
 }
 
 /// What is tabulated at a radius: the logarithms of S, P_F, δ_H, and for adhesion within the contact δ_H − δ, each with its
@@ -142,7 +142,7 @@ impl Indent {
     ///
     /// # Errors
     /// As [`Indent::at_approach`] for the largest approach, approaches that are not finite, and the adhesion of Maugis and Dugdale.
-    pub fn curve(&self, approaches: &[f64], parameters: &[Parameter]) -> Result<Curve> {
+    pub fn curve(&self, approaches: &[f64], parameters: &[IndentParameter]) -> Result<Curve> {
         if matches!(self.adhesion(), Adhesion::Maugis { .. }) {
             return Err(Error::Adhesion(
                 "curves of the adhesion of Maugis and Dugdale are not tabulated: take states by radius",
@@ -194,7 +194,7 @@ impl Indent {
         }
         let widest = curve.radius.iter().fold(0.0_f64, |most, a| most.max(*a));
         if widest > 0.0 {
-            curve.warnings = Warning::of(self.tip(), widest, most);
+            curve.warnings = IndentWarning::of(self.tip(), widest, most);
         }
         Ok(curve)
     }
@@ -205,9 +205,9 @@ impl Indent {
     }
 
     /// A point that is solved for.
-    fn solved(&self, approach: f64, parameters: &[Parameter]) -> Result<CurvePoint> {
+    fn solved(&self, approach: f64, parameters: &[IndentParameter]) -> Result<CurvePoint> {
         let point = self.at_approach(approach)?;
-        let rate = |parameter: &Parameter| {
+        let rate = |parameter: &IndentParameter| {
             let variable = Variable::Parameter(*parameter);
             Ok(point.derivative(variable, Held::Approach)?.load)
         };
@@ -226,7 +226,7 @@ impl Indent {
     fn tables(
         &self,
         approaches: &[f64],
-        parameters: &[Parameter],
+        parameters: &[IndentParameter],
     ) -> Result<Option<Vec<CurveTable>>> {
         let is_adhering = self.adheres_within();
         let low = approaches.iter().copied().fold(f64::INFINITY, f64::min);
@@ -238,7 +238,7 @@ impl Indent {
         let high = self.at_approach(high)?.radius;
         let mut ends = vec![low.ln() - 1e-9];
         let mut roots = vec![false];
-        for kink in self.tip().kinks() {
+        for kink in &self.tip().kinks {
             if *kink > low && *kink < high {
                 ends.push(kink.ln());
                 roots.push(true);
@@ -265,7 +265,7 @@ impl Indent {
 
     /// CurveRow of a table at the radius `a`: per quantity its logarithm, the derivative of that with respect to ln a, and one with respect
     /// to each parameter.
-    fn row(&self, a: f64, parameters: &[Parameter]) -> Result<CurveRow> {
+    fn row(&self, a: f64, parameters: &[IndentParameter]) -> Result<CurveRow> {
         let bare = Self::new(self.stack(), self.tip());
         let point = bare.state(a)?;
         let is_adhering = self.adheres_within();
@@ -274,8 +274,8 @@ impl Indent {
         }
         let profile = point.stiffness * point.approach - point.load;
         let [widening, _] = point.along();
-        let own = |parameter: &Parameter| -> Result<[f64; 3]> {
-            if *parameter == Parameter::Work {
+        let own = |parameter: &IndentParameter| -> Result<[f64; 3]> {
+            if *parameter == IndentParameter::Work {
                 return Ok([0.0; 3]);
             }
             let change = point.derivative(Variable::Parameter(*parameter), Held::Radius)?;
@@ -324,7 +324,7 @@ impl Indent {
         &self,
         tables: &[CurveTable],
         approach: f64,
-        parameters: &[Parameter],
+        parameters: &[IndentParameter],
     ) -> Result<CurvePoint> {
         let is_adhering = self.adheres_within();
         let logs = if is_adhering { 4 } else { 3 };

@@ -4,12 +4,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::adhesion::{Adhesion, Control};
-use super::density::{Density, bessel_sum};
+use super::density::{Answer, Density, WHOLE, Zone, bessel_sum};
 use super::equation::stack::StackLevel;
-use super::equation::system::{Parts, add, times};
+use super::equation::{Parts, add, times};
 use super::tip::Tip;
-use super::zone::{Answer, Zone};
-use crate::error::{Result, require};
+use crate::error::{Result, not_negative};
 
 mod disc;
 mod interior;
@@ -131,7 +130,7 @@ impl Point {
                     true => Density { edge: 0.0, ..self.density() }.pressure(*r),
                     false => 0.0,
                 };
-                return from_contact + zone.inside(*r);
+                return from_contact + zone.inside(WHOLE, *r);
             }
             if *r >= a {
                 return match density.edge.abs() > 0.0 {
@@ -162,7 +161,7 @@ impl Point {
             if *r <= self.radius {
                 return self.approach - self.parts.tip.gap(*r);
             }
-            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(*r));
+            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.abel(WHOLE, *r));
             let layers =
                 waves.as_ref().map_or(0.0, |(g, level)| bessel_sum(g, &level.waves.alpha, *r));
             short * (density.abel(*r) + zone + layers)
@@ -175,14 +174,10 @@ impl Point {
     /// # Errors
     /// A distance that is negative or not finite.
     pub fn gap(&self, r: &[f64]) -> Result<Vec<f64>> {
-        let displacement = self.displacement(r)?;
-        let pairs = r.iter().zip(displacement);
-        Ok(pairs
-            .map(|(r, u)| match *r <= self.radius {
-                true => 0.0,
-                false => self.parts.tip.gap(*r) + u - self.approach,
-            })
-            .collect())
+        let gap = |(r, u): (&f64, f64)| {
+            if *r <= self.radius { 0.0 } else { self.parts.tip.gap(*r) + u - self.approach }
+        };
+        Ok(r.iter().zip(self.displacement(r)?).map(gap).collect())
     }
 
     /// Weights times M p̂ at the waves of a level that resolves J₀(αr) up to `far`; none of bare bodies.
@@ -197,7 +192,7 @@ impl Point {
                 let system = &self.parts.system;
                 let [mut hat] = system.transforms_at(&level.waves, [&self.values()]);
                 if let Some(zone) = &self.zone {
-                    add(&mut hat, 1.0, &zone.transform(&level.waves));
+                    add(&mut hat, 1.0, &zone.transform(WHOLE, &level.waves));
                 }
                 hat
             }
@@ -224,8 +219,8 @@ impl Point {
     /// assert_eq!(indent.at_approach(10.0)?.warnings()[0].kind(), "steep");
     /// # Ok::<(), nacre::Error>(())
     /// ```
-    pub fn warnings(&self) -> Vec<Warning> {
-        Warning::of(&self.parts.tip, self.radius, self.approach)
+    pub fn warnings(&self) -> Vec<IndentWarning> {
+        IndentWarning::of(&self.parts.tip, self.radius, self.approach)
     }
 }
 
@@ -236,7 +231,7 @@ const STEEP: f64 = 0.5;
 /// What makes a state of an indentation doubtful.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Warning {
+pub enum IndentWarning {
     /// The tip is steep within the contact, or the surface at the edge of a flat punch.
     Steep {
         /// Largest slope of the tip within the contact; of a flat punch 2/π of its approach over its radius, the slope of a
@@ -245,17 +240,14 @@ pub enum Warning {
     },
 }
 
-impl Warning {
+impl IndentWarning {
     /// Warnings of a contact.
     pub(super) fn of(tip: &Tip, radius: f64, approach: f64) -> Vec<Self> {
         let slope = match tip.fixed_radius() {
             Some(a) => approach.abs() / a * std::f64::consts::FRAC_2_PI,
             None => tip.steepest(radius),
         };
-        match slope > STEEP {
-            true => vec![Self::Steep { slope }],
-            false => vec![],
-        }
+        if slope > STEEP { vec![Self::Steep { slope }] } else { vec![] }
     }
 
     /// Name of the kind of warning, without numbers.
@@ -266,7 +258,7 @@ impl Warning {
     }
 }
 
-impl fmt::Display for Warning {
+impl fmt::Display for IndentWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Steep { slope } => write!(
@@ -297,6 +289,5 @@ pub struct PullOff {
 
 /// An error unless each of `r` is a distance from the axis.
 pub(super) fn check_distances(r: &[f64]) -> Result<()> {
-    let check = |r: &f64| require("r", *r, r.is_finite() && *r >= 0.0, "finite and at least 0");
-    r.iter().try_for_each(|r| check(r).map(|_| ()))
+    r.iter().try_for_each(|r| not_negative("r", *r).map(|_| ()))
 }

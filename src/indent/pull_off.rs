@@ -3,9 +3,8 @@
 use std::f64::consts::PI;
 
 use super::adhesion::{Adhesion, Control};
-use super::cohesion::Apart;
 use super::equation::bracketed;
-use super::indenter::Indent;
+use super::indenter::{Apart, Indent};
 use super::point::{Point, PullOff};
 use crate::error::{Error, Result, positive, require};
 

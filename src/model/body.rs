@@ -1,6 +1,6 @@
 //! Layered half-spaces: a substrate and the layers on it.
 
-use crate::error::{Error, Result, finite, positive, require};
+use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::model::material::Elastic;
 
 /// The kind of interface between a layer and the layer or substrate below it.
@@ -131,11 +131,10 @@ impl HalfSpace {
     ) -> Result<Self> {
         let substrate = substrate.into();
         let layers: Vec<Layer> = layers.into_iter().collect();
-        if layers.is_empty() && substrate == Substrate::Rigid {
-            return Err(Error::Inconsistent(
-                "layers must hold at least one layer where the substrate is rigid",
-            ));
-        }
+        refuse_if(
+            layers.is_empty() && substrate == Substrate::Rigid,
+            "layers must hold at least one layer where the substrate is rigid",
+        )?;
         Ok(Self { substrate, layers, ends: [None; 2] })
     }
 
@@ -163,11 +162,10 @@ impl HalfSpace {
             let requirement = "in ascending order: the body lies between them";
             require("ends", high, low < high, requirement)?;
         }
-        if ends != [None; 2] && self.substrate == Substrate::Rigid {
-            return Err(Error::Inconsistent(
-                "ends must not be given for a body on a rigid substrate: its face is not free there",
-            ));
-        }
+        refuse_if(
+            ends != [None; 2] && self.substrate == Substrate::Rigid,
+            "ends must not be given for a body on a rigid substrate: its face is not free there",
+        )?;
         Ok(Self { ends: ends.map(|end| end.map(|x| x + 0.0)), ..self })
     }
 
@@ -292,20 +290,15 @@ impl HalfSpace {
             "parameter must be one that the body has, as parameters() lists them",
         );
         let mut body = self.clone();
+        let known = |place| self.material(place).ok_or(ABSENT);
         let (place, material) = match parameter {
             BodyParameter::Thickness(place) => {
                 let layer = body.layers.get_mut(place).ok_or(ABSENT)?;
                 layer.thickness = Layer::new(layer.material, value)?.thickness;
                 return Ok(body);
             }
-            BodyParameter::Young(place) => {
-                let material = self.material(place).ok_or(ABSENT)?;
-                (place, Elastic::new(value, material.poisson())?)
-            }
-            BodyParameter::Poisson(place) => {
-                let material = self.material(place).ok_or(ABSENT)?;
-                (place, Elastic::new(material.young(), value)?)
-            }
+            BodyParameter::Young(place) => (place, Elastic::new(value, known(place)?.poisson())?),
+            BodyParameter::Poisson(place) => (place, Elastic::new(known(place)?.young(), value)?),
         };
         match body.layers.get_mut(place) {
             Some(layer) => layer.material = material,
@@ -315,7 +308,7 @@ impl HalfSpace {
     }
 
     /// Material of a layer, or of the substrate, which has the number of layers.
-    fn material(&self, place: usize) -> Option<Elastic> {
+    pub(crate) fn material(&self, place: usize) -> Option<Elastic> {
         match (self.layers.get(place), self.substrate) {
             (Some(layer), _) => Some(layer.material),
             (None, Substrate::Elastic(material)) if place == self.layers.len() => Some(material),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ndarray::Array1;
 
-use crate::error::{Error, Result, finite, positive, require};
+use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::numerics::parallel::check_memory;
 
 /// A uniform grid of `shape` cells over a rectangle of `size` around `center`.
@@ -42,22 +42,17 @@ impl Grid {
         // A padded mesh has up to (2·9/8)² ≈ 5 times as many points of 16 bytes each, together below
         // 128 bytes a cell. This number of bytes must not overflow.
         let cells = shape[0].checked_mul(shape[1]);
-        require(
-            "shape",
-            shape[0] as f64 * shape[1] as f64,
-            cells.and_then(|cells| cells.checked_mul(128)).is_some(),
-            "a number of cells that this machine can count",
-        )?;
+        let holds = cells.and_then(|cells| cells.checked_mul(128)).is_some();
+        let requirement = "a number of cells that this machine can count";
+        require("shape", shape[0] as f64 * shape[1] as f64, holds, requirement)?;
         // At least one array of f64 must fit.
         check_memory(shape, 8 * shape[0] as u64 * shape[1] as u64)?;
         for length in size {
             positive("size", length)?;
-            require(
-                "size",
-                length,
-                (1e-100..=1e100).contains(&length),
-                "between 1e-100 and 1e100, so that products of lengths do not overflow",
-            )?;
+            let holds = (1e-100..=1e100).contains(&length);
+            let requirement =
+                "between 1e-100 and 1e100, so that products of lengths do not overflow";
+            require("size", length, holds, requirement)?;
         }
         Ok(Self { shape, size, center: [0.0; 2], plane_strain: false, periodic: [false; 2] })
     }
@@ -91,12 +86,11 @@ impl Grid {
     /// # Errors
     /// On a grid for line contact.
     pub fn periodic(self, periodic: [bool; 2]) -> Result<Self> {
-        if self.plane_strain && periodic != [false; 2] {
-            return Err(Error::Inconsistent(
-                "a grid for line contact must not be periodic: give a grid of two or more cells along x that is periodic \
+        refuse_if(
+            self.plane_strain && periodic != [false; 2],
+            "a grid for line contact must not be periodic: give a grid of two or more cells along x that is periodic \
                  along x",
-            ));
-        }
+        )?;
         Ok(Self { periodic, ..self })
     }
 

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result, finite, positive, require};
+use crate::error::{Error, Result, finite, positive, refuse_if, require};
 use crate::model::material::Elastic;
 use crate::numerics::special::{arithmetic_geometric_mean, carlson_rd};
 
@@ -159,7 +159,15 @@ impl Line {
     /// # Errors
     /// Unless −1 < `poisson` ≤ 0.5.
     pub fn max_shear(&self, poisson: f64) -> Result<Shear> {
-        below_line(self.half_width, self.peak_pressure, poisson)
+        // In plane strain, Johnson (1985), eq. (4.46), and σ_axial = ν (σ_y + σ_z).
+        let stresses = |z: f64| {
+            let t = (1.0 + z * z).sqrt();
+            // −[(1 + 2z²)/t − 2z], without cancellation.
+            let across = -1.0 / (t * (1.0 + 2.0 * z * (z + t)));
+            let down = -1.0 / t;
+            [poisson * (across + down), across, down]
+        };
+        largest(stresses, poisson, self.peak_pressure, self.half_width)
     }
 }
 
@@ -241,12 +249,11 @@ impl Ellipse {
         let peak_pressure = 1.5 * load / (PI * a * b);
         let approach = 0.75 * load / (contact_modulus * arithmetic_geometric_mean(1.0, k) * a);
         let made = [a, b, peak_pressure, approach];
-        if !made.iter().all(|value| value.is_finite() && *value > 0.0) {
-            return Err(Error::Inconsistent(
-                "radii, contact_modulus and load must be such that semi-axes, pressure and approach are \
+        refuse_if(
+            !made.iter().all(|value| value.is_finite() && *value > 0.0),
+            "radii, contact_modulus and load must be such that semi-axes, pressure and approach are \
                  numbers of the machine: they are too different in size",
-            ));
-        }
+        )?;
         Ok(Self {
             semi_axes: if radii[0] >= radii[1] { [a, b] } else { [b, a] },
             peak_pressure,
@@ -312,7 +319,7 @@ pub struct Shear {
 /// ```
 ///
 /// Derived for nacre; for a = b they are Johnson (1985), eqs (3.45).
-pub(super) fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<Shear> {
+fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<Shear> {
     let [a, b] = axes;
     // In units of the shorter axis.
     let scale = a.min(b);
@@ -334,19 +341,6 @@ pub(super) fn below_ellipse(axes: [f64; 2], peak: f64, poisson: f64) -> Result<S
         [lateral(jx, tx), lateral(jy, ty), -a * b / (tx * ty)]
     };
     largest(stresses, poisson, peak, scale)
-}
-
-/// Largest shear stress below the middle of a strip of pressure, in plane strain. Johnson (1985), eq.
-/// (4.46), and σ_axial = ν (σ_y + σ_z).
-pub(super) fn below_line(half_width: f64, peak: f64, poisson: f64) -> Result<Shear> {
-    let stresses = |z: f64| {
-        let t = (1.0 + z * z).sqrt();
-        // −[(1 + 2z²)/t − 2z], without cancellation.
-        let across = -1.0 / (t * (1.0 + 2.0 * z * (z + t)));
-        let down = -1.0 / t;
-        [poisson * (across + down), across, down]
-    };
-    largest(stresses, poisson, peak, half_width)
 }
 
 /// Points of the search for the depth, up to two half-widths, below which shear only falls.

@@ -2,22 +2,20 @@
 //!
 //! A gap of +∞ means "cannot touch". The approach is measured from the plane h = 0.
 
-use std::fmt;
-use std::ops::Deref;
-
-use ndarray::Array2;
-
-use crate::error::{Error, Result, finite};
-use crate::model::grid::Grid;
-use crate::numerics::parallel::each_row;
-
-mod altered;
 mod height_map;
 mod profile;
 mod quadric;
 mod roller;
 
-pub(crate) use altered::{Lifted, Limited};
+use std::fmt;
+use std::ops::Deref;
+
+use ndarray::{Array2, Axis};
+
+use crate::error::{Error, Result, finite, refuse_if};
+use crate::model::grid::Grid;
+use crate::numerics::parallel::each_row;
+
 pub use height_map::HeightMap;
 pub use profile::{CrownedProfile, FujiwaraKawase, LogarithmicProfile, Profile, SampledProfile};
 pub use quadric::{Cylinder, FlatPunch, Paraboloid, Sphere};
@@ -303,9 +301,7 @@ impl<S> Superposition<S> {
     /// Where there is no shape.
     pub fn new(shapes: impl IntoIterator<Item = S>) -> Result<Self> {
         let shapes: Vec<S> = shapes.into_iter().collect();
-        if shapes.is_empty() {
-            return Err(Error::Inconsistent("shapes must hold at least one shape to be added"));
-        }
+        refuse_if(shapes.is_empty(), "shapes must hold at least one shape to be added")?;
         Ok(Self(shapes))
     }
 
@@ -518,5 +514,94 @@ pub(super) fn absent(name: &str) -> Error {
         name: "parameter of the shape",
         requirement: "one of those that its parameters() lists: numbers on which the gap depends smoothly",
         value: name.to_owned(),
+    }
+}
+
+/// A shape plus a field on the cells of a grid, bilinear between cell centres and constant beyond the outer ones.
+#[derive(Debug)]
+pub(crate) struct Lifted<'a> {
+    shape: &'a dyn Surface,
+    grid: Grid,
+    lift: Array2<f64>,
+}
+
+impl<'a> Lifted<'a> {
+    pub(crate) fn new(shape: &'a dyn Surface, grid: &Grid, lift: Array2<f64>) -> Self {
+        Self { shape, grid: *grid, lift }
+    }
+
+    fn at(&self, x: f64, y: f64) -> f64 {
+        let around = |axis: usize, at: f64| {
+            let (n, spacing) = (self.grid.shape()[axis], self.grid.spacing()[axis]);
+            let first = self.grid.center()[axis] - 0.5 * (n - 1) as f64 * spacing;
+            let position = ((at - first) / spacing).clamp(0.0, (n - 1) as f64);
+            let below = (position as usize).min(n.saturating_sub(2));
+            (below, (below + 1).min(n - 1), position - below as f64)
+        };
+        let ((i, k, s), (j, l, t)) = (around(0, x), around(1, y));
+        let along = |i: usize| self.lift[[i, j]] * (1.0 - t) + self.lift[[i, l]] * t;
+        along(i) * (1.0 - s) + along(k) * s
+    }
+}
+
+impl Surface for Lifted<'_> {
+    fn base(&self) -> Option<&dyn Surface> {
+        Some(self.shape)
+    }
+
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        self.shape.gap(x, y) + self.at(x, y)
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let gaps = self.shape.gaps(grid)?;
+        if *grid == self.grid {
+            return Ok(gaps + &self.lift);
+        }
+        let (x, y) = (grid.x(), grid.y());
+        let lift = Array2::from_shape_fn(gaps.dim(), |(i, j)| self.at(x[i], y[j]));
+        Ok(gaps + lift)
+    }
+}
+
+/// A shape within a range of x.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limited<'a> {
+    shape: &'a dyn Surface,
+    range: [f64; 2],
+}
+
+impl<'a> Limited<'a> {
+    pub(crate) fn new(shape: &'a dyn Surface, range: [f64; 2]) -> Self {
+        Self { shape, range }
+    }
+
+    fn is_within(&self, x: f64) -> bool {
+        x >= self.range[0] && x <= self.range[1]
+    }
+}
+
+impl Surface for Limited<'_> {
+    fn base(&self) -> Option<&dyn Surface> {
+        Some(self.shape)
+    }
+
+    fn gap(&self, x: f64, y: f64) -> f64 {
+        if self.is_within(x) { self.shape.gap(x, y) } else { f64::INFINITY }
+    }
+
+    fn gaps(&self, grid: &Grid) -> Result<Array2<f64>> {
+        let mut gaps = self.shape.gaps(grid)?;
+        for (x, mut row) in grid.x().iter().zip(gaps.axis_iter_mut(Axis(0))) {
+            if !self.is_within(*x) {
+                row.fill(f64::INFINITY);
+            }
+        }
+        Ok(gaps)
+    }
+
+    fn extent(&self) -> [Extent; 2] {
+        let [along_x, along_y] = self.shape.extent();
+        [along_x.and(Extent::CutOff(self.range)), along_y]
     }
 }

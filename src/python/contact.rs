@@ -22,11 +22,7 @@ mod batch;
 mod friction;
 mod single;
 
-pub(super) use friction::{PyFrictionReport, PyFrictionSolution, creep_coefficients, roll, slide};
-use friction::{
-    found_docs, found_signature, roll_docs, roll_signature, rolled_docs, slid_docs, slide_docs,
-    slide_signature,
-};
+pub(super) use friction::{PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide};
 pub(super) use single::solve;
 use single::{Call, setup};
 
@@ -168,7 +164,7 @@ impl PyContact {
         self.contact.grid().check_initial(call.initial.as_ref())?;
         let contact = Arc::clone(&self.contact);
         call.run(py, move |shape, motion, options, progress| {
-            contact.solve_watched(shape, motion, options, progress)
+            contact.solve(shape, motion, options.watched(progress))
         })
     }
 
@@ -231,70 +227,6 @@ impl PyContact {
         let check = keywords.flag("check", true)?;
         keywords.finish("keywords of Contact.solve_many")?;
         batch::solve_many(py, &self.contact, cases, options, progress, check)
-    }
-
-    #[doc = concat!("slide($self, shape, steps=None, *, ", motion_signature!(), ", ", slide_signature!(), ", ", found_signature!(), ")\n--\n")]
-    /// Presses `shape` into the body and moves it tangentially, with friction: in one step, or step after step.
-    ///
-    /// Parameters
-    /// ----------
-    /// shape : Shape
-    ///     Shape that is pressed in.
-    #[doc = slide_docs!()]
-    #[doc = found_docs!()]
-    #[doc = slid_docs!()]
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
-    /// >>> ball = contact.slide(nacre.Sphere(5e-3), load=10.0, friction=0.3, force=(1.5, None))
-    /// >>> round(ball.force[0], 6), ball.report.full_slip
-    /// (1.5, False)
-    #[pyo3(signature = (shape, steps=None, **keywords), text_signature = None)]
-    fn slide<'py>(
-        &self,
-        py: Python<'py>,
-        shape: &Bound<'py, PyAny>,
-        steps: Option<&Bound<'py, PyAny>>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let keywords = Keywords::new(py, keywords)?;
-        let sliding = friction::Sliding::new(shape, steps, &keywords)?;
-        keywords.finish("keywords of Contact.slide")?;
-        sliding.run(py, &self.contact)
-    }
-
-    #[doc = concat!("roll($self, shape, *, ", motion_signature!(), ", ", roll_signature!(), ", ", found_signature!(), ")\n--\n")]
-    /// Presses `shape` into the body, which rolls: at constant speed, or cell by cell from a given state.
-    ///
-    /// Parameters
-    /// ----------
-    /// shape : Shape
-    ///     Shape that is pressed in.
-    #[doc = roll_docs!()]
-    #[doc = found_docs!()]
-    #[doc = rolled_docs!()]
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(2e-4, 2e-4)), steel)
-    /// >>> ball = nacre.Sphere(5e-3)
-    /// >>> wheel = contact.roll(ball, load=10.0, friction=0.3, creepage=(0.02, None), direction="+x")
-    /// >>> wheel.report.full_slip, round(wheel.force[0], 3)
-    /// (True, 3.0)
-    #[pyo3(signature = (shape, **keywords), text_signature = None)]
-    fn roll<'py>(
-        &self,
-        py: Python<'py>,
-        shape: &Bound<'py, PyAny>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let keywords = Keywords::new(py, keywords)?;
-        let rolling = friction::Rolled::new(shape, &keywords)?;
-        keywords.finish("keywords of Contact.roll")?;
-        rolling.run(py, &self.contact)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

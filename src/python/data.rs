@@ -5,7 +5,8 @@ use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::friction::CreepCoefficients;
+use crate::friction::{CreepCoefficients, FrictionReport};
+use crate::stress::{InterfaceSummary, LayerSummary, StressSummary};
 
 /// JSON text of `value`.
 pub(super) fn text(value: &impl Serialize) -> PyResult<String> {
@@ -20,6 +21,17 @@ pub(super) fn read<T: DeserializeOwned>(kind: &str, text: &str) -> PyResult<T> {
     serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))
 }
 
+/// JSON text of a summary and its warnings.
+pub(super) fn summary_text(summary: &StressSummary) -> PyResult<String> {
+    #[derive(Serialize)]
+    struct Told<'a> {
+        #[serde(flatten)]
+        summary: &'a StressSummary,
+        warnings: Vec<String>,
+    }
+    text(&Told { summary, warnings: summary.warnings() })
+}
+
 /// JSON text of the result of a `kind` that `given` describes, read and written again: checked.
 #[pyfunction]
 pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
@@ -28,6 +40,10 @@ pub(super) fn checked(kind: &str, given: &str) -> PyResult<String> {
     }
     match kind {
         "CreepCoefficients" => again::<CreepCoefficients>(kind, given),
+        "StressSummary" => summary_text(&read(kind, given)?),
+        "LayerStress" => again::<LayerSummary>(kind, given),
+        "InterfaceStress" => again::<InterfaceSummary>(kind, given),
+        "FrictionReport" => again::<FrictionReport>(kind, given),
         _ => Err(PyValueError::new_err(format!("no result of nacre is a {kind:?}"))),
     }
 }

@@ -10,21 +10,16 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::arguments::keywords::Keywords;
-use super::arguments::{count, read_only};
+use super::arguments::read_only;
 use super::background::{self, Caller};
 use super::errors::{ConvergenceError, NacreWarning};
 use super::grid::PyGrid;
 use super::shapes::Shape;
 use super::state::{self, Reduced, from_dict_docs, to_dict_docs};
-use super::stress::keywords::{
-    issue_warnings, options, progress_docs, run_signature, section, section_docs,
-    section_signature, strength_docs, strength_signature, strengths, threads_docs, traction_docs,
-    traction_signature, watched,
-};
-use super::stress::{PyStress, PyStressPlan, PyStressSummary, keywords};
+use super::stress::{PyStressPlan, evaluated, planned, summarised};
 use super::words::Word;
 use crate::contact::{Hardness, Solution, Termination};
-use crate::stress::{Member, StressOptions};
+use crate::stress::Member;
 
 mod direction;
 mod gradient;
@@ -75,11 +70,6 @@ impl PySolution {
     /// The solution.
     pub(super) fn solution(&self) -> &Solution {
         &self.solution
-    }
-
-    /// The solution itself.
-    pub(super) fn inner(self) -> Solution {
-        Arc::unwrap_or_clone(self.solution)
     }
 
     /// Solution for a `shape`, whose warnings were issued.
@@ -292,9 +282,9 @@ impl PySolution {
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let solution = Arc::clone(&self.solution);
         let stiffness = background::run(py, None, move |caller: &mut Caller<()>| {
-            solution.stiffness_watched(&mut || caller.go_on())
+            solution.stiffness(Some(&mut || caller.go_on()))
         })??;
-        Ok(PyArray2::from_owned_array(py, Array2::from(stiffness.unwrap_or_default().to_vec())))
+        Ok(PyArray2::from_owned_array(py, Array2::from(stiffness.to_vec())))
     }
 
     /// Derivatives of an output with respect to all parameters of the contact.
@@ -444,179 +434,38 @@ impl PySolution {
         linear.vjp(py, cotangent, wrt)
     }
 
-    #[doc = concat!("stress($self, z, *, body='body', ", section_signature!(), ", ", traction_signature!(), ", ", run_signature!(), ")\n--\n")]
-    /// Stress below the surface, at any depth of either body.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Depths into the body, at least 0 [m].
-    /// body : {"body", "counterbody"}, optional
-    ///     Body in which stress is evaluated. In the counterbody z points into that body, and x and y
-    ///     stay the same.
-    #[doc = section_docs!()]
-    #[doc = traction_docs!()]
-    #[doc = threads_docs!()]
-    #[doc = progress_docs!()]
-    ///
-    /// Returns
-    /// -------
-    /// Stress
-    ///     Components, invariants and displacement.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is out of range, or the counterbody is rigid.
-    /// MemoryError
-    ///     If the fields do not fit.
-    ///
-    /// Notes
-    /// -----
-    /// The pressure varies within cells: inside the contact with the slopes and curvatures that
-    /// neighbouring cells give, near a smooth edge as a square root. `nacre.stress` takes the pressure
-    /// as uniform over a cell; within some cells of the surface the two differ.
-    ///
-    /// Friction does not change the pressure. That is exact where the bodies are alike or
-    /// incompressible, and a good approximation where the friction is small: the neglected coupling
-    /// changes the pressure by the order of ``friction * (1 - 2 nu) / (2 - 2 nu)``.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> body = nacre.HalfSpace(steel, [nacre.Layer(nacre.Elastic(420e9, 0.3), 20e-6)])
-    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), body, load=10.0)
-    /// >>> above = solution.stress(body.interfaces[0], side="above")
-    /// >>> below = solution.stress(body.interfaces[0])
-    /// >>> bool(np.allclose(above.xz, below.xz)), bool(np.allclose(above.xx, below.xx))
-    /// (True, False)
-    #[pyo3(signature = (z, **keywords), text_signature = None)]
-    fn stress<'py>(
+    fn _stress<'py>(
         &self,
-        py: Python<'py>,
         z: &Bound<'py, PyAny>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<PyStress> {
-        let keywords = Keywords::new(py, keywords)?;
+        asked: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let keywords = Keywords::new(z.py(), Some(asked))?;
         let member = keywords.word("body")?;
-        let (depths, one) = keywords::depths(z)?;
-        let mut options = options(&keywords, self.solution.member(member)?)?;
-        options.threads = keywords.count("threads", 1)?;
-        let lines = section(&keywords, &mut options)?;
-        let progress = keywords.callable("progress")?;
-        keywords.finish("keywords of Solution.stress")?;
         let solution = Arc::clone(&self.solution);
-        let evaluated = watched(py, progress, move |progress| {
-            solution.stress(&depths, member, options.watched(progress))
-        })?;
-        issue_warnings(py, evaluated.warnings())?;
-        Ok(PyStress::new(evaluated, one, lines))
+        evaluated(z, &keywords, self.solution.member(member)?, move |depths, options| {
+            solution.stress(depths, member, options)
+        })
     }
 
-    #[doc = concat!("stress_summary($self, *, body='body', ", strength_signature!(), ", ", traction_signature!(), ", ", run_signature!(), ")\n--\n")]
-    /// Extremes of the stress in each layer and at each interface, and safety factors.
-    ///
-    /// Stress is evaluated on the faces of the layers and at some 18 depths inside each, spread over its
-    /// thickness and over the width of the contact. Peaks inside are then refined by parabolas through
-    /// three depths.
-    ///
-    /// Parameters
-    /// ----------
-    /// body : {"body", "counterbody"}, optional
-    ///     Body in which stress is evaluated.
-    #[doc = strength_docs!()]
-    #[doc = traction_docs!()]
-    #[doc = threads_docs!()]
-    #[doc = progress_docs!()]
-    ///
-    /// Returns
-    /// -------
-    /// StressSummary
-    ///     Peaks and their points; printing it shows a table.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is out of range, or the counterbody is rigid.
-    /// MemoryError
-    ///     If the grid does not fit.
-    ///
-    /// Notes
-    /// -----
-    /// The pressure varies within cells, as in `stress`.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> grid = nacre.Grid(shape=(32, 32), size=(4e-4, 4e-4))
-    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0, grid=grid)
-    /// >>> summary = solution.stress_summary(yield_stress={"substrate": 1.8e9})
-    /// >>> bool(summary.layers[0].yield_safety_factor > 1.0)
-    /// True
-    #[pyo3(signature = (**keywords), text_signature = None)]
-    fn stress_summary<'py>(
-        &self,
-        py: Python<'py>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<PyStressSummary> {
-        let keywords = Keywords::new(py, keywords)?;
+    fn _stress_summary(&self, asked: &Bound<'_, PyDict>) -> PyResult<String> {
+        let keywords = Keywords::new(asked.py(), Some(asked))?;
         let member = keywords.word("body")?;
+        let solution = Arc::clone(&self.solution);
         let body = self.solution.member(member)?;
-        let strengths = strengths(&keywords, body)?;
-        let mut options = options(&keywords, body)?;
-        options.threads = keywords.count("threads", 1)?;
-        let progress = keywords.callable("progress")?;
-        keywords.finish("keywords of Solution.stress_summary")?;
-        let solution = Arc::clone(&self.solution);
-        let summary = watched(py, progress, move |progress| {
-            solution.stress_summary(member, &strengths, options.watched(progress))
-        })?;
-        issue_warnings(py, summary.warnings())?;
-        Ok(PyStressSummary(summary))
+        summarised(asked.py(), &keywords, body, move |strengths, options| {
+            solution.stress_summary(member, strengths, options)
+        })
     }
 
-    /// Plan of the stress in one body, to be evaluated any number of times.
-    ///
-    /// Parameters
-    /// ----------
-    /// body : {"body", "counterbody"}, optional
-    ///     Body in which stress is evaluated.
-    /// threads : int, optional
-    ///     Number of threads of the plan; all of the machine's by default.
-    ///
-    /// Returns
-    /// -------
-    /// StressPlan
-    ///     Plan, which keeps the solution alive.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If there is no such body, the counterbody is rigid, or `threads` is below 1.
-    /// MemoryError
-    ///     If the grid does not fit.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> solution = nacre.solve(nacre.Sphere(5e-3), steel, load=10.0)
-    /// >>> plan = solution.stress_plan()
-    /// >>> [plan.stress(z, friction=0.1, direction=(1, 0)).friction for z in (10e-6, 20e-6)]
-    /// [(0.1, 0.0), (0.1, 0.0)]
-    #[pyo3(signature = (body="body", threads=None))]
-    fn stress_plan(
-        slf: &Bound<'_, Self>,
+    fn _stress_plan(
+        &self,
+        py: Python<'_>,
         body: &str,
         threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyStressPlan> {
         let member = Member::from_word(body)?;
-        let threads = threads.map(|n| count("threads", 1, n)).transpose()?;
-        let options = StressOptions::with_threads(threads);
-        let solution = Arc::clone(&slf.get().solution);
-        let plan = watched(slf.py(), None, move |progress| {
-            solution.stress_plan(member, options.watched(progress))
-        })?;
-        Ok(PyStressPlan::new(plan, member, threads, slf.clone().into_any().unbind()))
+        let solution = Arc::clone(&self.solution);
+        planned(py, threads, move |options| solution.stress_plan(member, options))
     }
 
     /// Report: how the solution came about, and how good it is.

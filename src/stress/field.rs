@@ -197,10 +197,16 @@ pub(crate) struct Tensor {
 
 /// A value and its position.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Peak {
     /// The value \[Pa\].
     pub value: f64,
     /// x, y, z \[m\].
+    #[cfg_attr(feature = "serde", serde(rename = "at"))]
     pub position: [f64; 3],
     /// Estimated error of the value \[Pa\], due to the size of the cells: [`Stress::uncertainty`] at this
     /// depth.

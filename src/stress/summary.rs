@@ -25,18 +25,25 @@ pub struct Strengths {
 
 /// The extremes in one layer, or in the substrate.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct LayerSummary {
     /// Number of the layer, from the surface down; the substrate's is the number of layers.
     pub layer: usize,
     /// Name of the layer, if it has one; the substrate has none.
     pub name: Option<String>,
     /// Depths of the top and bottom faces \[m\]; the substrate's bottom is at infinity.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::depths"))]
     pub depths: [f64; 2],
     /// Largest von Mises stress.
     pub von_mises: Peak,
     /// Largest principal stress: tension where it is positive.
     pub tension: Peak,
     /// Largest shear stress on any plane.
+    #[cfg_attr(feature = "serde", serde(rename = "max_shear"))]
     pub shear: Peak,
     /// Safety factor against yield: the yield stress divided by the largest von Mises stress.
     pub yield_safety_factor: Option<f64>,
@@ -47,6 +54,11 @@ pub struct LayerSummary {
 
 /// The extremes at one interface.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct InterfaceSummary {
     /// Number of the interface, from the surface down.
     pub interface: usize,
@@ -65,6 +77,11 @@ pub struct InterfaceSummary {
 
 /// The extremes of all layers and interfaces.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct StressSummary {
     /// Layers from the surface down; the substrate last, unless it is rigid.
     pub layers: Vec<LayerSummary>,

@@ -1,8 +1,6 @@
 //! The grid that is chosen holds every part of the contact, and its cells resolve the peak pressure.
 
-use std::ops::ControlFlow;
-
-use nacre::contact::{choose_grid, solve_watched};
+use nacre::contact::{choose_grid, solve_with};
 use nacre::response::Body;
 use nacre::{
     Algorithm, Discretisation, Error, FlatPunch, Grid, HalfSpace, LogarithmicProfile, Motion,
@@ -259,11 +257,9 @@ fn simple_contacts_keep_their_grids() -> Result<()> {
 fn other_options_solve_on_the_grid_of_the_default_ones() -> Result<()> {
     let (shape, body) = (Sphere::new(5e-3)?, Body::from(HalfSpace::from(steel()?)));
     let (setup, motion) = (Setup::default(), Motion::load(10.0));
-    let mut go_on = |_: &_| ControlFlow::Continue(());
     let default = Options::default();
-    let grid = choose_grid(&shape, &body, &setup, &motion, &default, &mut go_on)?;
-    let mut solve =
-        |options: &Options| solve_watched(&shape, &body, &setup, &motion, options, &mut go_on);
+    let grid = choose_grid(&shape, &body, &setup, &motion, &default)?;
+    let solve = |options: &Options| solve_with(&shape, &body, &setup, &motion, options);
     let found = solve(&default)?;
     assert_eq!(*found.grid(), grid);
     let from = |initial| Options { initial: Some(initial), ..Options::default() };

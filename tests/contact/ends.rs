@@ -6,7 +6,7 @@ mod rollers;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
-use nacre::contact::{Case, Report, solve_watched};
+use nacre::contact::{Case, solve_with};
 use nacre::surface::Extent;
 use nacre::{
     Algorithm, Body, Contact, Elastic, Error, Grid, HalfSpace, HeightMap, Motion, Options,
@@ -302,9 +302,8 @@ fn senseless_ends_are_refused() -> Result<()> {
     let motion = Motion::load(10.0);
     let contact = Contact::plan(steel()?, Grid::new([20, 8], [10e-3, 1e-3])?, setup.clone())?;
     let short = contact.solve(&roller, &motion, &Options::default());
-    let mut go_on = |_: &Report| ControlFlow::Continue(());
     let (body, options) = (Body::from(&steel()?), Options::default());
-    let searched = solve_watched(&roller, &body, &setup, &motion, &options, &mut go_on);
+    let searched = solve_with(&roller, &body, &setup, &motion, &options);
     for found in [short, searched] {
         let named = matches!(found, Err(Error::EndWithinShape { .. }));
         assert!(named, "{found:?}");

@@ -329,21 +329,13 @@ fn a_grid_is_chosen_for_contacts_that_yield() -> Result<()> {
     let shape = sphere()?;
     let elastic = solve(&shape, body, &Motion::load(1e-3))?;
     let options = limited(0.3 * elastic.peak_pressure());
-    let mut go_on = |_: &_| std::ops::ControlFlow::Continue(());
-    let found = nacre::contact::solve_watched(
-        &shape,
-        &body.into(),
-        &Setup::default(),
-        &Motion::load(1e-3),
-        &options,
-        &mut go_on,
-    )?;
+    let (setup, motion) = (Setup::default(), Motion::load(1e-3));
+    let found = nacre::contact::solve_with(&shape, &body.into(), &setup, &motion, &options)?;
     assert!(found.report.converged() && found.report.warnings.is_empty());
     // W = H A within the elastic rim.
     let area = 1e-3 / (0.3 * elastic.peak_pressure());
     assert!((found.contact_area() / area - 1.0).abs() < 0.02);
-    let same = Contact::plan(body, *found.grid(), Setup::default())?;
-    let again = same.solve(&shape, &Motion::load(1e-3), &options)?;
+    let again = Contact::plan(body, *found.grid(), setup)?.solve(&shape, &motion, &options)?;
     assert_eq!(again.pressure, found.pressure);
     Ok(())
 }
@@ -405,7 +397,7 @@ fn a_break_stops_yielding() -> Result<()> {
             false => std::ops::ControlFlow::Continue(()),
         }
     };
-    let stopped = contact.solve_watched(&shape, &motion, &options, &mut progress)?;
+    let stopped = contact.solve(&shape, &motion, options.watched(&mut progress))?;
     assert_eq!(stopped.report.termination, nacre::Termination::Stopped);
     assert!(stopped.report.balance.force < 1e-12);
     Ok(())

@@ -184,7 +184,7 @@ fn shifts_and_controls() -> Result<()> {
         }
         let back = solved(body, &shape, grid, &Motion::approach(one.approach))?;
         near!(back.load(), one.load(), 1e-8);
-        let stiffness = one.stiffness()?;
+        let stiffness = one.stiffness(None)?;
         let step = 1e-4 * one.approach.abs();
         let more = solved(body, &shape, grid, &Motion::approach(one.approach + step))?;
         let secant = (more.load() - one.load()) / step;

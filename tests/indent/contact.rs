@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use nacre::indent::{Adhesion, Form, Held, Indent, Parameter, Stack, Tip, TipParameter, Variable};
+use nacre::indent::{
+    Adhesion, Form, Held, Indent, IndentParameter, Stack, Tip, TipParameter, Variable,
+};
 use nacre::{BodyParameter, Elastic, Error, HalfSpace, Result, Substrate};
 use serde_json::Value;
 
@@ -251,12 +253,12 @@ fn wrong_input_is_refused() -> Result<()> {
 #[test]
 fn curves_equal_states() -> Result<()> {
     let parameters = [
-        Parameter::Body(0, BodyParameter::Young(0)),
-        Parameter::Body(0, BodyParameter::Thickness(0)),
-        Parameter::Body(0, BodyParameter::Young(1)),
-        Parameter::Tip(TipParameter::Area),
+        IndentParameter::Body(0, BodyParameter::Young(0)),
+        IndentParameter::Body(0, BodyParameter::Thickness(0)),
+        IndentParameter::Body(0, BodyParameter::Young(1)),
+        IndentParameter::Tip(TipParameter::Area),
     ];
-    let work = [&parameters[..], &[Parameter::Work]].concat();
+    let work = [&parameters[..], &[IndentParameter::Work]].concat();
     let jkr = Adhesion::Jkr { work: 0.01 };
     let samples = 0..12_i32;
     let sampled = Form::Profile {

@@ -1,7 +1,7 @@
 //! Derivatives of states against two programs and differences.
 
 use nacre::indent::{
-    Adhesion, Form, Held, Indent, Parameter, Point, Stack, Tip, TipParameter, Variable,
+    Adhesion, Form, Held, Indent, IndentParameter, Point, Stack, Tip, TipParameter, Variable,
 };
 use nacre::{BodyParameter, Elastic, HalfSpace, Interface, Layer, Result};
 
@@ -26,8 +26,8 @@ fn coated_spheres() -> Result<()> {
         let point = Indent::new(&stack, &tip).at_load(get("W"))?;
         near!(point.radius, get("a"), 1e-9);
         let central = point.pressure(&[0.0])?[0];
-        let body = |parameter| Variable::Parameter(Parameter::Body(0, parameter));
-        let radius = Variable::Parameter(Parameter::Tip(TipParameter::Number(0)));
+        let body = |parameter| Variable::Parameter(IndentParameter::Body(0, parameter));
+        let radius = Variable::Parameter(IndentParameter::Tip(TipParameter::Number(0)));
         for (key, variable, scale) in [
             ("d/dlnE1", body(BodyParameter::Young(0)), get("E1")),
             ("d/dnu1", body(BodyParameter::Poisson(0)), 1.0),
@@ -130,11 +130,11 @@ fn differences() -> Result<()> {
         variables.extend(of_stack.iter().map(|one| Variable::Parameter(*one)).enumerate());
         let tip = Tip::new(forms[k](3.0, 4.5))?;
         for i in 0..tip.numbers().len() {
-            let number = Parameter::Tip(TipParameter::Number(i));
+            let number = IndentParameter::Tip(TipParameter::Number(i));
             variables.push((10 + i, Variable::Parameter(number)));
         }
         if adheres {
-            variables.push((12, Variable::Parameter(Parameter::Work)));
+            variables.push((12, Variable::Parameter(IndentParameter::Work)));
         }
         variables.push((13, Variable::Held));
         for (number, variable) in variables {
@@ -197,8 +197,8 @@ fn cohesive_zones() -> Result<()> {
     };
     let sizes = of(&point)?;
     let of_stack = stack(&numbers)?.parameters().to_vec();
-    let radius = Parameter::Tip(TipParameter::Number(0));
-    let others = [radius, Parameter::Work, Parameter::Strength];
+    let radius = IndentParameter::Tip(TipParameter::Number(0));
+    let others = [radius, IndentParameter::Work, IndentParameter::Strength];
     let variables = of_stack.into_iter().chain(others).map(Variable::Parameter);
     let variables = variables.chain([Variable::Held]);
     let along = point.derivative(Variable::Held, Held::Radius)?;

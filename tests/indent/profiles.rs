@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use nacre::indent::{Form, Held, Indent, Parameter, Point, Stack, Tip, TipParameter, Variable};
+use nacre::indent::{
+    Form, Held, Indent, IndentParameter, Point, Stack, Tip, TipParameter, Variable,
+};
 use nacre::{Elastic, HalfSpace, Result};
 
 use super::coated;
@@ -139,7 +141,7 @@ fn loads_are_closed_forms() -> Result<()> {
                 load(&with(&form, &moved), 1.0)
             };
             let due = slope(|n| at(f64::from(n) * step)) / step;
-            let variable = Variable::Parameter(Parameter::Tip(TipParameter::Number(k)));
+            let variable = Variable::Parameter(IndentParameter::Tip(TipParameter::Number(k)));
             let found = point.derivative(variable, Held::Radius)?.load;
             // The distance of a radius from the end of a sphere is known to the rounding of both.
             let rounding = match form {

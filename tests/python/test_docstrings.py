@@ -36,8 +36,8 @@ def public_objects() -> dict[str, Any]:
 
 
 def parameters(thing: Any) -> list[inspect.Parameter]:
-    """Return what a caller gives: nothing for results, which nacre makes."""
-    if isinstance(thing, type) and issubclass(thing, Result):
+    """Return what a caller gives: nothing for the classes whose instances nacre makes."""
+    if any(thing is getattr(nacre.types, name) for name in nacre.types.__all__):
         return []
     try:
         signature = inspect.signature(thing)

@@ -153,6 +153,29 @@ def test_a_grid_is_found_that_fits_the_ends() -> None:
     assert free.approach > 1.01 * whole.approach
 
 
+def test_a_grid_is_found_beside_an_end_just_outside_the_contact() -> None:
+    body = nacre.HalfSpace(STEEL, ends=(None, 1.03e-4))
+    radius = 0.97e-4  # without the end
+    load = 4 / 3 * STEEL.plane_strain_modulus / 2 * radius**3 / BALL.radius
+    found = nacre.solve(BALL, body, STEEL, load=load)
+    edges = found.grid.center[0] + np.array([-0.5, 0.5]) * found.grid.size[0]
+    assert edges == pytest.approx([-1.54e-4, 1.03e-4], abs=1e-6)
+    # The end lowers the stiffness: the ball goes deeper.
+    assert found.approach > nacre.solve(BALL, STEEL, STEEL, load=load).approach
+
+
+def test_an_approach_is_refused_where_far_ends_leave_the_operator_indefinite() -> None:
+    """On a grid that repeats along y, u counts from the period; two far ends lower its mean."""
+    unit = nacre.Elastic(1.0, 0.0)
+    bodies = [nacre.HalfSpace(unit, ends=(None, end)) for end in (1.5, 10.5)]
+    grid = nacre.Grid((8, 4), (1.0, 1.0), periodic=(False, True))
+    heights = np.random.default_rng(0).uniform(0.0, 1e-3, grid.shape)
+    shape = nacre.HeightMap(heights, grid.spacing, center=grid.center, periodic=grid.periodic)
+    solution = nacre.solve(shape, *bodies, grid=grid, load=2e-4)
+    with pytest.raises(ValueError, match="approach cannot be prescribed"):
+        nacre.solve(shape, *bodies, grid=grid, approach=solution.approach)
+
+
 def test_the_report_says_how_ends_are_counted() -> None:
     grid = nacre.Grid((48, 48), (2.4e-4, 2.4e-4))
 

@@ -197,6 +197,9 @@ def test_the_command_line_goes_on_from_a_file(tmp_path: Path, capsys: Capture) -
     less = written(tmp_path, text.replace("LOAD", "20"))
     assert command("solve", less, "--initial", saved, "--json") == 0
     direct = CONTACT.solve(BALL, load=20.0, hardness=LIMIT, initial=LOADED)
-    found = json.loads(capsys.readouterr().out)["peak_pressure"]
-    assert found == pytest.approx(direct.peak_pressure)
+    found = json.loads(capsys.readouterr().out)
+    assert found["peak_pressure"] == pytest.approx(direct.peak_pressure)
+    assert found["hardness"] == LIMIT
+    assert found["indentation"] == pytest.approx(direct.indentation.max())
+    assert found["plastic_work"] == pytest.approx(direct.plastic_work)
     assert command("solve", less, "--initial", "nothing.nc") == 2

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._core import FrictionSolution
 from nacre._extras import extra
-from nacre.friction import checked
+from nacre._friction_display import checked, has_friction
 from nacre.plot.style import lengths, new_axes, next_look, styled
 from nacre.units import Scale
 
@@ -20,6 +19,8 @@ with extra("plot"):
 
 if TYPE_CHECKING:
     import xarray
+
+    from nacre._friction_result import FrictionSolution
 
 STICK, SLIP = "#56B4E9", "#E69F00"
 """Colours of cells that stick and slip: blue and orange of the palette of Okabe and Ito."""
@@ -49,7 +50,7 @@ def friction(solution: FrictionSolution, axes: Axes | None = None) -> Axes:
     TypeError
         If `solution` is not one, or `axes` are not axes.
     """
-    if not isinstance(solution, FrictionSolution):
+    if not has_friction(solution):
         raise TypeError(f"solution must be a FrictionSolution, got {solution!r}")
     _check(axes)
     with styled():

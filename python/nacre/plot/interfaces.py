@@ -8,10 +8,11 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Solution, Stress
+from nacre._core import Solution
 from nacre._extras import extra
 from nacre.plot.stress import around, body_of, colourbar
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, new_axes, outline, styled
+from nacre.stresses import Stress
 from nacre.units import Scale, written
 
 with extra("plot"):

@@ -9,9 +9,10 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import HalfSpace, Solution, Stress
+from nacre._core import HalfSpace, Solution
 from nacre._extras import extra
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, look, new_axes, styled
+from nacre.stresses import Stress
 from nacre.units import Scale, written
 
 with extra("plot"):

@@ -1,12 +1,10 @@
 //! The search for the rectangle of a contact, on a coarse grid that is enlarged and reduced until it fits.
 
-use super::outside::{Overlap, overlap};
-use super::relief::{Low, Relief, limited};
-use super::task::{Frame, Task, cells_in_contact, enclosing, frame_of};
 use crate::compliance::response::Body;
+use crate::contact::automatic::relief::{Low, Overlap, Relief, limited, overlap};
+use crate::contact::automatic::task::{Frame, Task, enclosing, frame_of};
 use crate::contact::options::{Algorithm, Options};
-use crate::contact::solution::Solution;
-use crate::contact::solution::report::Progress;
+use crate::contact::solution::{Progress, Solution};
 use crate::contact::solver::Termination;
 use crate::error::{Error, Result};
 use crate::model::grid::{Grid, Window};
@@ -102,7 +100,7 @@ impl<'a> Search<'a> {
             let grid = self.task.grid_over(frame, [cells; 2])?;
             frame = frame_of(&grid);
             let solution = self.task.solve(grid, &self.options, progress)?;
-            let Some(contact) = cells_in_contact(&solution) else {
+            let Some(contact) = solution.cells_in_contact() else {
                 // Nothing touches there: where nothing overlaps anywhere, any grid shows that.
                 match self.deepest() {
                     Some(place) if self.restarts < RESTARTS => {
@@ -223,14 +221,15 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Lower and upper sides of a grid that the `contact` touches although the shape goes on there.
+/// Lower and upper sides of a grid that the `contact` touches although the shape goes on there, by more than rounding.
 pub(super) fn touched_sides(contact: &Window, grid: &Grid, extent: [Extent; 2]) -> [[bool; 2]; 2] {
     let frame = frame_of(grid);
     [0, 1].map(|k| {
         let [low, high] = extent[k].range();
+        let beyond = 1e-9 * grid.size()[k];
         [
-            contact[k].start == 0 && frame[k][0] > low,
-            contact[k].end == grid.shape()[k] && frame[k][1] < high,
+            contact[k].start == 0 && frame[k][0] > low + beyond,
+            contact[k].end == grid.shape()[k] && frame[k][1] < high - beyond,
         ]
     })
 }

@@ -1,15 +1,11 @@
 //! The contact that is solved on one grid after another, and rectangles.
 
 use crate::compliance::response::Body;
-use crate::contact::options::Motion;
-use crate::contact::options::{Options, Setup};
-use crate::contact::plan::Plan;
-use crate::contact::problem::patch::bounds;
-use crate::contact::solution::Solution;
-use crate::contact::solution::report::Progress;
-use crate::contact::start::Sampled;
+use crate::contact::options::{Motion, Options, Setup};
+use crate::contact::plan::Contact;
+use crate::contact::solution::{Progress, Solution};
 use crate::error::Result;
-use crate::model::grid::{Grid, Window, full_window};
+use crate::model::grid::Grid;
 use crate::model::surface::Surface;
 
 /// Ends of a rectangle along x and along y.
@@ -26,12 +22,6 @@ pub(super) fn frame_of(grid: &Grid) -> Frame {
         let half = 0.5 * grid.size()[k];
         [grid.center()[k] - half, grid.center()[k] + half]
     })
-}
-
-/// The smallest window that holds all cells in contact; `None` where nothing touches.
-pub(super) fn cells_in_contact(solution: &Solution) -> Option<Window> {
-    let touches = |i: usize, j: usize| solution.pressure[[i, j]] > 0.0;
-    bounds(&full_window(solution.grid().shape()), touches)
 }
 
 /// A shape that is pressed into a body.
@@ -62,9 +52,11 @@ impl Task<'_> {
         options: &Options,
         progress: &mut Progress,
     ) -> Result<Solution> {
-        let plan = Plan::new(self.body.clone(), grid, self.setup.clone())?;
-        let (shape, motion) = (self.shape, self.motion);
-        plan.run(|| plan.solve(shape, &mut Sampled::default(), motion, options, progress))
+        Contact::plan(self.body, grid, self.setup.clone())?.solve(
+            self.shape,
+            self.motion,
+            options.watched(progress),
+        )
     }
 
     /// The approach and the tilts, where all three are prescribed; a direction without any condition

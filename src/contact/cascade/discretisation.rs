@@ -376,7 +376,12 @@ fn corner(gap: impl Fn(f64) -> f64, length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{GridResult, estimate};
+    use super::{GridResult, Pairs, Unresolved, alternating_sum, corner, estimate};
+    use crate::compliance::response::Body;
+    use crate::error::Result;
+    use crate::model::body::{HalfSpace, Layer, Substrate};
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
 
     /// Errors estimated from `values` on grids from the coarsest on. Peak, approach and load are made from the
     /// values by shifts and factors; the factors are divided out again.
@@ -451,16 +456,6 @@ mod tests {
         assert_eq!(error(&[]), None);
         assert_eq!(error(&[0.3]), None);
     }
-}
-
-#[cfg(test)]
-mod unresolved_tests {
-    use super::{Pairs, Unresolved, alternating_sum};
-    use crate::compliance::response::Body;
-    use crate::error::Result;
-    use crate::model::body::{HalfSpace, Layer, Substrate};
-    use crate::model::grid::Grid;
-    use crate::model::material::Elastic;
 
     #[test]
     fn alternating_sums_are_known() {
@@ -522,11 +517,6 @@ mod unresolved_tests {
         let found = [pairs.squares, pairs.starts, pairs.rim];
         assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits));
     }
-}
-
-#[cfg(test)]
-mod corner_tests {
-    use super::corner;
 
     /// A corner is found wherever it lies in the cell, to the rounding of second differences; circles, parabolas and
     /// logarithms have none.

@@ -1,9 +1,11 @@
 //! Force and moments brought to their targets: a method of nacre's own.
 
-use super::bounds::{Bounds, clip, is_free};
-use super::fit::{add_gram, add_moments};
-use super::freedoms::Freedoms;
-use crate::numerics::parallel::{Lanes, ONE, all, sum};
+use std::ops::Range;
+
+use crate::contact::problem::bounds::{Bounds, clip, in_contact, is_free};
+use crate::contact::problem::freedoms::Freedoms;
+use crate::numerics::dense::eliminate;
+use crate::numerics::parallel::{Lanes, ONE, Row, Total, all, sum, update, where_positive};
 
 /// Largest error of force and scaled moments, relative to the force, that counts as balanced: rounding in
 /// sums over up to 4096² cells.
@@ -183,6 +185,226 @@ fn largest(values: [f64; 3]) -> f64 {
     values.iter().fold(0.0_f64, |a, b| a.max(b.abs()))
 }
 
+/// Sums over cells from which [`Freedoms::fitted`] finds the multipliers of the rigid motion.
+///
+/// Sums with y are 0 where the tilt along y is not loaded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FitSums {
+    /// Number of cells that the step of the pass counted.
+    pub(crate) counted: f64,
+    /// Force and scaled moments Bᵀp of the pressure.
+    pub(crate) moments: [f64; 3],
+    /// Bᵀv of the fitted values v over the contact.
+    right: [f64; 3],
+    /// Elements 11, 12, 13, 22, 23, 33 of BᵀB over the contact.
+    gram: [f64; 6],
+}
+
+impl FitSums {
+    /// Number of cells whose pressure is free.
+    pub(crate) fn cells(&self) -> f64 {
+        self.gram[0]
+    }
+}
+
+impl Total for FitSums {
+    const ZERO: Self = Self { counted: 0.0, moments: [0.0; 3], right: [0.0; 3], gram: [0.0; 6] };
+
+    fn joined(self, other: Self) -> Self {
+        Self {
+            counted: self.counted + other.counted,
+            moments: self.moments.joined(other.moments),
+            right: self.right.joined(other.right),
+            gram: self.gram.joined(other.gram),
+        }
+    }
+}
+
+/// Sums over the contact of a field that is to be made orthogonal to the loaded degrees of freedom.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Products {
+    /// Force and scaled moments of the field.
+    pub(crate) moments: [f64; 3],
+    /// Product with the residual.
+    pub(crate) with_residual: f64,
+    /// Product with the residual of the iteration before.
+    pub(crate) with_last: f64,
+}
+
+impl Total for Products {
+    const ZERO: Self = Self { moments: [0.0; 3], with_residual: 0.0, with_last: 0.0 };
+
+    fn joined(self, other: Self) -> Self {
+        Self {
+            moments: self.moments.joined(other.moments),
+            with_residual: self.with_residual + other.with_residual,
+            with_last: self.with_last + other.with_last,
+        }
+    }
+}
+
+impl Freedoms {
+    /// Rows of the grid: the coordinate x, and the range of cells.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, Range<usize>)> {
+        let ny = self.columns[1].len();
+        let x = self.columns[0].iter().enumerate();
+        x.map(move |(i, &x)| (x, i * ny..(i + 1) * ny))
+    }
+
+    /// Calls `f` with each cell and its Bλ.
+    pub(crate) fn for_each(&self, lambda: [f64; 3], mut f: impl FnMut(usize, f64)) {
+        let [x, y] = &self.columns;
+        let mut cell = 0;
+        for x in x {
+            let row = lambda[0] + lambda[1] * x;
+            for y in y {
+                f(cell, row + lambda[2] * y);
+                cell += 1;
+            }
+        }
+    }
+
+    /// Force and scaled moments Bᵀv of `values` v.
+    pub(crate) fn moments(&self, values: &[f64]) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for (x, row) in self.rows() {
+            let [s, sy] = sum([&values[row], &self.columns[1]], |[v, y]| [v, v * y]);
+            add_moments(&mut sums, x, [s, sy]);
+        }
+        sums
+    }
+
+    /// Force and scaled moments of one row; the moment along y is left out where it is not loaded.
+    pub(crate) fn moments_of(&self, row: Row, values: &[f64]) -> [f64; 3] {
+        let [s, sy] = if self.loaded[2] {
+            sum([values, row.y], |[v, y]| [v, v * y])
+        } else {
+            let [s] = sum([values], |[v]| [v]);
+            [s, 0.0]
+        };
+        [s, s * row.x, sy]
+    }
+
+    /// Sums over the contact cells of one row of a field; `p` is the pressure and `limit` its bound, `r` the residual
+    /// and `before` the residual of the iteration before.
+    pub(crate) fn products(
+        &self,
+        row: Row,
+        [p, limit, r, before]: [&[f64]; 4],
+        values: &[f64],
+    ) -> Products {
+        let inputs = [p, limit, r, before, values, row.y];
+        let terms = |[p, limit, r, before, v, y]: [Lanes; 6]| {
+            let v = in_contact(p, limit, r) & v;
+            [v, r * v, before * v, v * y]
+        };
+        let [s, with_residual, with_last, sy] = if self.loaded[2] {
+            sum(inputs, terms)
+        } else {
+            let [s, now, last] = sum(inputs, |fields| {
+                let [s, now, last, _] = terms(fields);
+                [s, now, last]
+            });
+            [s, now, last, 0.0]
+        };
+        Products { moments: [s, s * row.x, sy], with_residual, with_last }
+    }
+
+    /// Updates `fields` of one row by `step`, and returns the row's sums for a fit over the cells whose pressure is
+    /// free below its `limit`.
+    ///
+    /// `step` gets the cells of three inputs, `limit` and y. It returns the new fields, and pressure, value to be
+    /// fitted, and a number to be counted.
+    pub(crate) fn fit_row<const N: usize>(
+        &self,
+        row: Row,
+        limit: &[f64],
+        [a, b, c]: [&[f64]; 3],
+        fields: [&mut [f64]; N],
+        step: impl Fn([Lanes; 5], [Lanes; N]) -> ([Lanes; N], [Lanes; 3]),
+    ) -> FitSums {
+        let terms = |from: [Lanes; 5], old| {
+            let (new, [p, value, counted]) = step(from, old);
+            let [weight, value] = [ONE, value].map(|value| is_free(p, from[3]) & value);
+            (new, [counted, p, weight, value])
+        };
+        let inputs = [a, b, c, limit, row.y];
+        let [counted, p, py, s, sy, syy, v, vy] = if self.loaded[2] {
+            update(inputs, fields, |from, old| {
+                let y = from[4];
+                let (new, [counted, p, weight, value]) = terms(from, old);
+                let [sy, syy] = [weight * y, weight * y * y];
+                (new, [counted, p, p * y, weight, sy, syy, value, value * y])
+            })
+        } else {
+            let [counted, p, s, v] = update(inputs, fields, terms);
+            [counted, p, 0.0, s, 0.0, 0.0, v, 0.0]
+        };
+        let x = row.x;
+        FitSums {
+            counted,
+            moments: [p, p * x, py],
+            right: [v, v * x, vy],
+            gram: [s, s * x, sy, s * x * x, sy * x, syy],
+        }
+    }
+
+    /// Multipliers λ that make v − Bλ least over the contact, from the sums of [`Freedoms::fit_row`].
+    /// Degrees of freedom that the contact does not determine are 0.
+    pub(crate) fn fitted(&self, sums: FitSums) -> [f64; 3] {
+        let [s, sx, sy, sxx, sxy, syy] = sums.gram;
+        let gram = [[s, sx, sy], [sx, sxx, sxy], [sy, sxy, syy]];
+        self.solve(&gram, sums.right)
+    }
+
+    /// Subtracts from the residual `values` their best fit Bλ over the contact cells of pressure `p`, and
+    /// makes all others 0.
+    pub(crate) fn project(&self, values: &mut [f64], p: &[f64], r: &[f64], bounds: &Bounds) {
+        let inside = |k: usize| bounds.is_free(k, p[k]) || r[k] != 0.0;
+        let member: Vec<f64> = (0..p.len()).map(|k| f64::from(u8::from(inside(k)))).collect();
+        let no_limit = vec![f64::INFINITY; self.columns[1].len()];
+        let mut sums = FitSums::ZERO;
+        for (number, (x, cells)) in self.rows().enumerate() {
+            let row = Row { number, x, y: &self.columns[1] };
+            let (inputs, values) = ([&member[cells.clone()], row.y, row.y], &mut values[cells]);
+            let here = self.fit_row(row, &no_limit, inputs, [values], |[member, ..], [value]| {
+                let value = where_positive(member, value);
+                ([value], [member, value, member])
+            });
+            sums = sums.joined(here);
+        }
+        let mean = self.fitted(sums);
+        self.for_each(mean, |k, b| {
+            if inside(k) {
+                values[k] -= b;
+            }
+        });
+    }
+
+    /// Solves for the loaded degrees of freedom; one that the others determine (a contact of one cell has
+    /// no tilt) stays 0.
+    pub(crate) fn solve(&self, matrix: &[[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
+        let (mut matrix, mut solution) = (*matrix, right);
+        eliminate(&mut matrix, &mut solution, |k, pivot| self.loaded[k] && pivot > 0.0);
+        solution
+    }
+}
+
+/// Adds a row's sums of 1 and y to the sums of 1, x and y.
+pub(crate) fn add_moments(sums: &mut [f64; 3], x: f64, [s, sy]: [f64; 2]) {
+    sums[0] += s;
+    sums[1] += s * x;
+    sums[2] += sy;
+}
+
+/// Adds a row's sums of 1, y and y² to the symmetric matrix Σ b bᵀ, b = (1, x, y).
+pub(crate) fn add_gram(sums: &mut [[f64; 3]; 3], x: f64, [s, sy, syy]: [f64; 3]) {
+    let row = [[s, s * x, sy], [s * x, s * x * x, sy * x], [sy, sy * x, syy]];
+    for (sum, value) in sums.as_flattened_mut().iter_mut().zip(row.as_flattened()) {
+        *sum += value;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::contact::options::Motion;
@@ -190,8 +412,10 @@ mod tests {
     use crate::contact::problem::freedoms::Freedoms;
     use crate::error::Result;
     use crate::model::grid::Grid;
+    use crate::numerics::parallel::{Lanes, Rows, Threads, ZERO};
 
     const CELLS: [usize; 2] = [13, 18];
+    const FIT_CELLS: [usize; 2] = [9, 14];
 
     /// Freedoms under a load of 2 with these eccentricities, on a grid 2 × 3.
     fn freedoms(eccentricity: [Option<f64>; 2]) -> Result<Freedoms> {
@@ -282,6 +506,109 @@ mod tests {
         for (mismatch, expected) in [(1e-13, true), (4e-13, false)] {
             assert_eq!(freedoms.on_target([f, fx + mismatch * f, 7.0]), expected);
             assert_eq!(freedoms.on_target([f * (1.0 - mismatch), fx, 7.0]), expected);
+        }
+        Ok(())
+    }
+
+    /// Freedoms of a load that may tilt both ways, on a grid off the origin.
+    fn tilting() -> Result<Freedoms> {
+        let motion = Motion { eccentricity: [Some(0.1), Some(0.2)], ..Motion::load(1.0) };
+        let grid = Grid::new(FIT_CELLS, [2.0, 3.0])?.centered_at([0.1, 0.2])?;
+        Freedoms::new(&motion, &grid)
+    }
+
+    /// λ that fits `values` where `p` is positive.
+    fn fit(freedoms: &Freedoms, p: &[f64], values: &[f64]) -> Result<[f64; 3]> {
+        let threads = Threads::new(Some(1))?;
+        let rows = Rows::new(&freedoms.columns, &threads);
+        let bounds = Bounds::none(FIT_CELLS[1]);
+        let sums = rows.each([p, values, values], [], |row, fields, []| {
+            let step = |[p, v, ..]: [Lanes; 5], []: [Lanes; 0]| ([], [p, v, ZERO]);
+            freedoms.fit_row(row, bounds.row(row.number), fields, [], step)
+        });
+        Ok(freedoms.fitted(sums))
+    }
+
+    /// An exact plane over the contact is found, whatever there is beside it, and the projection leaves nothing
+    /// of it: 1e-14 is the rounding of a hundred cells.
+    #[test]
+    fn a_plane_is_found() -> Result<()> {
+        let freedoms = tilting()?;
+        let lambda = [0.7, -1.3, 0.4];
+        let cells = FIT_CELLS[0] * FIT_CELLS[1];
+        let p: Vec<f64> = (0..cells).map(|k| (k * k % 11) as f64 - 2.0).collect();
+        let mut values = vec![0.0; cells];
+        freedoms.for_each(lambda, |k, b| {
+            values[k] = if p[k] > 0.0 { b } else { f64::INFINITY };
+        });
+        let found = fit(&freedoms, &p, &values)?;
+        for k in 0..3 {
+            assert!((found[k] - lambda[k]).abs() < 1e-14, "{found:?}");
+        }
+        let member: Vec<f64> = p.iter().map(|p| p.max(0.0)).collect();
+        for (value, p) in values.iter_mut().zip(&p) {
+            *value = if *p > 0.0 { *value } else { 3.0 };
+        }
+        let bounds = Bounds::none(FIT_CELLS[1]);
+        freedoms.project(&mut values, &member, &vec![0.0; cells], &bounds);
+        assert!(values.iter().all(|v| v.abs() < 1e-14));
+        Ok(())
+    }
+
+    /// Moments are those of plain sums, and the best plane through other values leaves a mismatch without them.
+    #[test]
+    fn the_mismatch_has_no_moments() -> Result<()> {
+        let freedoms = tilting()?;
+        let cells = FIT_CELLS[0] * FIT_CELLS[1];
+        let p = vec![1.0; cells];
+        let mut values: Vec<f64> = (0..cells).map(|k| (k * k % 23) as f64).collect();
+        let [x, y] = &freedoms.columns;
+        let mut sums = [0.0; 3];
+        for (k, value) in values.iter().enumerate() {
+            let (x, y) = (x[k / FIT_CELLS[1]], y[k % FIT_CELLS[1]]);
+            sums = [sums[0] + value, sums[1] + value * x, sums[2] + value * y];
+        }
+        for (found, sum) in freedoms.moments(&values).iter().zip(sums) {
+            assert!((found - sum).abs() < 1e-11, "{found} {sum}");
+        }
+        let lambda = fit(&freedoms, &p, &values)?;
+        let mut projected = values.clone();
+        let bounds = Bounds::none(FIT_CELLS[1]);
+        freedoms.project(&mut projected, &p, &vec![0.0; cells], &bounds);
+        freedoms.for_each(lambda, |k, b| values[k] -= b);
+        for moment in freedoms.moments(&values) {
+            assert!(moment.abs() < 1e-11, "{moment:e}");
+        }
+        let apart = values.iter().zip(projected).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f64::max) < 1e-13);
+        Ok(())
+    }
+
+    /// One cell has no tilt; two in a line have one along the line, and none across.
+    #[test]
+    fn few_cells_leave_tilts_alone() -> Result<()> {
+        let freedoms = tilting()?;
+        let [x, y] = &freedoms.columns;
+        let [cell, along_x, along_y] =
+            [4 * FIT_CELLS[1] + 3, 7 * FIT_CELLS[1] + 3, 4 * FIT_CELLS[1] + 8];
+        let with = |cells: &[(usize, f64)]| {
+            let (mut p, mut values) = (vec![0.0; FIT_CELLS[0] * FIT_CELLS[1]], Vec::new());
+            values.resize(p.len(), 9.0);
+            for &(k, value) in cells {
+                (p[k], values[k]) = (2.0, value);
+            }
+            fit(&freedoms, &p, &values)
+        };
+        let sx = 0.5 / (x[7] - x[4]);
+        let sy = 0.5 / (y[8] - y[3]);
+        for (found, expected) in [
+            (with(&[(cell, 2.5)])?, [2.5, 0.0, 0.0]),
+            (with(&[(cell, 2.5), (along_x, 3.0)])?, [2.5 - sx * x[4], sx, 0.0]),
+            (with(&[(cell, 2.5), (along_y, 3.0)])?, [2.5 - sy * y[3], 0.0, sy]),
+        ] {
+            for k in 0..3 {
+                assert!((found[k] - expected[k]).abs() < 1e-13, "{found:?} {expected:?}");
+            }
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Pressures that a cell can carry: surfaces that touch push each other and never pull, up to a hardness.
 //!
 //! ```text
-//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0
+//! p = 0: g ≥ 0      0 < p < H: g = 0      p = H: g ≤ 0, and −g is the depth of the permanent dent
 //! ```
 //!
 //! A pressure between the bounds is free to change. One at a bound is held there until the gap has the wrong sign. The
@@ -9,8 +9,10 @@
 
 use std::borrow::Cow;
 
-use crate::contact::hardness::Hardness;
-use crate::model::grid::Window;
+use ndarray::{Array2, ArrayRef2};
+
+use crate::error::{Error, Result, none_negative, same_shape};
+use crate::model::grid::{Grid, Window};
 use crate::numerics::parallel::{Lanes, ONE, ZERO, all, where_positive};
 
 /// The bounds 0 ≤ p ≤ H of the cells of a grid or window.
@@ -125,4 +127,59 @@ pub(crate) fn clip(p: Lanes, limit: Lanes) -> Lanes {
 /// 1 in cells where `p` is not allowed, 0 in the others.
 pub(crate) fn not_allowed(p: Lanes, limit: Lanes) -> Lanes {
     (p.simd_lt(ZERO) | p.simd_gt(limit)) & ONE
+}
+
+/// Largest pressure that an elastic, perfectly plastic surface bears \[Pa\], above 0; +∞ where it does not yield.
+///
+/// Polonsky & Keer, Wear 231 (1999) 206, §2.3, doi:10.1016/S0043-1648(99)00113-1; Almqvist, Sahlin, Larsson &
+/// Glavatskih, Tribol. Int. 40 (2007) 574, doi:10.1016/j.triboint.2005.11.008.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Hardness {
+    /// One number for all cells.
+    Uniform(f64),
+    /// One for each cell of the grid, (nx, ny).
+    Cells(Array2<f64>),
+}
+
+impl Hardness {
+    /// The hardness as it was given, on `grid`.
+    ///
+    /// # Errors
+    /// An array of another shape than the grid, and a value that is not above 0.
+    pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
+        let (name, requirement) = ("hardness", "above 0");
+        let values = match self {
+            Self::Uniform(value) => std::slice::from_ref(value),
+            Self::Cells(values) => {
+                same_shape(name, values, grid.shape())?;
+                values.as_slice().unwrap_or(&[])
+            }
+        };
+        match values.iter().find(|h| h.is_nan() || **h <= 0.0) {
+            Some(&value) => Err(Error::Parameter { name, requirement, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Hardness of a cell by its number in C order.
+    pub(crate) fn at(&self, cell: usize) -> f64 {
+        match self {
+            Self::Uniform(value) => *value,
+            Self::Cells(values) => values.as_slice().unwrap_or(&[])[cell],
+        }
+    }
+
+    /// Whether any cell may yield.
+    pub(crate) fn is_limited(&self) -> bool {
+        match self {
+            Self::Uniform(value) => value.is_finite(),
+            Self::Cells(values) => values.iter().any(|value| value.is_finite()),
+        }
+    }
+}
+
+/// An error unless an indentation to start with suits `grid`, and is finite and nowhere below 0.
+pub(crate) fn check_indentation(indentation: &ArrayRef2<f64>, grid: &Grid) -> Result<()> {
+    same_shape("indentation", indentation, grid.shape())?;
+    none_negative("indentation", indentation)
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use ndarray::{Array2, ArrayRef2};
 
 use crate::contact::options::Motion;
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, finite, positive, refuse_if};
 use crate::model::grid::Grid;
 
 /// The degrees of freedom in g = h + u − Bλ: the columns of B are the loaded ones 1, (x − x0)/ℓx,
@@ -42,11 +42,6 @@ const PERIODIC: [&str; 2] = [
     "along y the grid is periodic: eccentricity, moment and tilt must be None there",
 ];
 
-/// The error for numbers that are too large to be computed with.
-pub(crate) const OVERFLOW: Error = Error::Inconsistent(
-    "load, lengths, moduli and friction must be in units in which their products neither overflow nor vanish",
-);
-
 impl Freedoms {
     /// Checks `motion` and expresses it on `grid`.
     pub(crate) fn new(motion: &Motion, grid: &Grid) -> Result<Self> {
@@ -69,9 +64,7 @@ impl Freedoms {
         let origin = if loaded[0] { grid.center() } else { [0.0; 2] };
         for k in 0..2 {
             let given = [motion.eccentricity[k], motion.moment[k], motion.tilt[k]];
-            if grid.is_periodic()[k] && given != [None; 3] {
-                return Err(Error::Inconsistent(PERIODIC[k]));
-            }
+            refuse_if(grid.is_periodic()[k] && given != [None; 3], PERIODIC[k])?;
             let moment = match (motion.eccentricity[k], motion.moment[k], motion.tilt[k]) {
                 (None, None, None) => continue,
                 (None, None, Some(tilt)) => {
@@ -87,18 +80,17 @@ impl Freedoms {
                 }
                 _ => return Err(Error::Inconsistent(DIRECTIONS[k])),
             };
-            if k == 0 && grid.is_line() {
-                return Err(Error::Inconsistent(
-                    "along x a line contact has no eccentricity and no moment",
-                ));
-            }
+            refuse_if(
+                k == 0 && grid.is_line(),
+                "along x a line contact has no eccentricity and no moment",
+            )?;
             loaded[k + 1] = true;
             target[k + 1] = (moment / area - origin[k] * target[0]) / scale[k];
         }
         // Products like Σ p u are of second degree in the target.
         let vanishes = loaded[0] && target[0] < f64::MIN_POSITIVE / f64::EPSILON;
         if vanishes || target.iter().any(|sum| !(sum * sum).is_finite()) {
-            return Err(OVERFLOW);
+            return Err(Error::Overflow);
         }
         let coordinates = [0, 1].map(|k| grid.coordinates(k).to_vec());
         let columns = [0, 1].map(|k| {
@@ -210,9 +202,7 @@ impl Freedoms {
     /// moments without a load, the ray along M must cross its inside.
     pub(crate) fn check_feasible(&self, gap: &ArrayRef2<f64>) -> Result<()> {
         let points = outline(gap, &self.columns);
-        if points.is_empty() {
-            return Err(Error::Inconsistent("no cell of the grid can touch: the gap is infinite"));
-        }
+        refuse_if(points.is_empty(), "no cell of the grid can touch: the gap is infinite")?;
         let half_planes = match (self.loaded[1], self.loaded[2]) {
             (false, false) => return Ok(()),
             (true, true) => convex_hull(&points),

@@ -12,8 +12,8 @@ use crate::compliance::response::Body;
 use crate::contact::Solution;
 use crate::contact::options::Setup;
 use crate::contact::plan::{bodies, operator};
-use crate::contact::problem::patch::{block, bounds};
-use crate::contact::solver::linear_cg;
+use crate::contact::problem::patch::block;
+use crate::contact::solver::linear_cg::{self, Watch};
 use crate::error::Result;
 use crate::model::grid::{Grid, Window, full_window, repeating};
 use crate::numerics::parallel::{Threads, check_memory, dot};
@@ -26,14 +26,17 @@ const NOTHING: f64 = 1e-13;
 
 /// K on the contact, and the columns of B, centred and scaled: 1, (x − x0)/ℓx, (y − y0)/ℓy.
 pub(crate) struct Tangent {
-    window: Window,
-    convolution: Convolution,
+    /// The window of the grid's cells.
+    pub(crate) window: Window,
+    /// K on the whole window.
+    pub(crate) convolution: Convolution,
     inverse: Convolution,
     pub(crate) contact: Vec<bool>,
     pub(crate) coordinates: [Vec<f64>; 2],
-    pub(super) origin: [f64; 2],
-    pub(super) scale: [f64; 2],
-    pub(super) cell_area: f64,
+    /// (x0, y0)
+    pub(crate) origin: [f64; 2],
+    scale: [f64; 2],
+    cell_area: f64,
     /// Displacement \[m/Pa\] by which K is raised, per sum of the pressure: that of a line contact's datum.
     pub(crate) raise: f64,
     /// Coefficients at the offsets of the window, and what the ends of bodies add to them.
@@ -109,12 +112,6 @@ impl Tangent {
         inside.map(|(at, &inside)| if inside { value(at) } else { 0.0 }).collect()
     }
 
-    /// Counts the columns of B from the origin instead of the middle of the window, as it must be where the approach is
-    /// prescribed and its column is not among them.
-    pub(crate) fn centre_at_origin(&mut self) {
-        self.origin = [0.0; 2];
-    }
-
     /// A⁻ᵀ `sums`, where (1, x, y) = (columns of B) A.
     pub(crate) fn to_scaled(&self, [one, x, y]: [f64; 3]) -> [f64; 3] {
         let ([x0, y0], [lx, ly]) = (self.origin, self.scale);
@@ -153,26 +150,6 @@ impl Tangent {
         self.far.get().unwrap_or(&self.coefficients)[[i, j]] + added
     }
 
-    /// The window of the grid's cells.
-    pub(crate) fn window(&self) -> &Window {
-        &self.window
-    }
-
-    /// K on the whole window.
-    pub(crate) fn convolution(&self) -> &Convolution {
-        &self.convolution
-    }
-
-    /// `out` = K `input` on the contact, 0 elsewhere.
-    pub(super) fn apply_on_contact(
-        &self,
-        input: &[f64],
-        out: &mut [f64],
-        workspace: &mut Workspace,
-    ) {
-        self.restricted(&self.convolution, input, out, workspace);
-    }
-
     /// `out` = `operator` `input` on the contact, 0 elsewhere.
     fn restricted(
         &self,
@@ -195,21 +172,8 @@ impl Tangent {
         self.restricted(&self.convolution, input, out, &mut workspace);
     }
 
-    /// K_CC⁻¹ `right`, to a residual of `tolerance` relative to `right`; `None` where `watch` breaks.
-    ///
-    /// # Errors
-    /// As [`linear_cg::solve`].
-    pub(super) fn solve(
-        &self,
-        right: &[f64],
-        tolerance: f64,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Vec<f64>>> {
-        self.solve_beside(right, &[], tolerance, watch)
-    }
-
     /// The field y without a part in `span`, which is orthonormal, for which `right` − K y lies in it, to a residual of
-    /// `tolerance` relative to `right` beside the span; `None` where `watch` breaks.
+    /// `tolerance` relative to `right` beside the span. Without a span it is K_CC⁻¹ `right`.
     ///
     /// # Errors
     /// As [`linear_cg::solve`].
@@ -218,8 +182,8 @@ impl Tangent {
         right: &[f64],
         span: &[&[f64]],
         tolerance: f64,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<Vec<f64>>> {
+        watch: &mut Watch,
+    ) -> Result<Vec<f64>> {
         let [mut first, mut second] = [self.convolution.workspace(), self.convolution.workspace()];
         let beside = |values: &mut [f64]| {
             for column in span {
@@ -234,7 +198,7 @@ impl Tangent {
         // What is left beside the span may be rounding.
         let part = dot(&rest, &rest).sqrt() / dot(right, right).sqrt().max(f64::MIN_POSITIVE);
         if part <= NOTHING {
-            return Ok(Some(vec![0.0; right.len()]));
+            return Ok(vec![0.0; right.len()]);
         }
         let tolerance = tolerance.max(ROUNDING / part);
         linear_cg::solve(
@@ -268,51 +232,42 @@ impl Solution {
     /// contact C stays, K p = δ + s_x x + s_y y − h on it, so that the tangent is
     /// dA Bᵀ K_CC⁻¹ B, where B = (1, x, y) on C. All zero where nothing touches.
     ///
+    /// `watch` is asked before each iteration whether to continue.
+    ///
     /// # Errors
-    /// Too little memory, or [`Error::NotConverged`](crate::Error::NotConverged).
+    /// Too little memory, [`Error::NotConverged`](crate::Error::NotConverged), or
+    /// [`Error::Stopped`](crate::Error::Stopped) where `watch` breaks.
     ///
     /// ```
     /// use nacre::{Contact, Elastic, FlatPunch, Grid, Motion, Options, Setup};
     /// // A rigid flat punch of radius a on a half-space: dW/dδ = 2 E* a.
     /// let contact = Contact::plan(Elastic::new(1.0, 0.0)?, Grid::new([64, 64], [2.5, 2.5])?, Setup::default())?;
     /// let solution = contact.solve(&FlatPunch::new(1.0)?, &Motion::load(1.0), &Options::default())?;
-    /// let [[normal, coupled, _], ..] = solution.stiffness()?;
+    /// let [[normal, coupled, _], ..] = solution.stiffness(None)?;
     /// assert!((normal / 2.0 - 1.0).abs() < 0.02 && coupled.abs() < 1e-9);
     /// # Ok::<(), nacre::Error>(())
     /// ```
-    pub fn stiffness(&self) -> Result<[[f64; 3]; 3]> {
-        let never = &mut || ControlFlow::Continue(());
-        Ok(self.stiffness_watched(never)?.unwrap_or_default())
-    }
-
-    /// [`Solution::stiffness`] that asks `watch` before each iteration whether to go on; `None` where
-    /// `watch` breaks.
-    ///
-    /// # Errors
-    /// Too little memory, or [`Error::NotConverged`](crate::Error::NotConverged).
-    pub fn stiffness_watched(
-        &self,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<[[f64; 3]; 3]>> {
-        let touching = |i: usize, j: usize| self.pressure[[i, j]] > 0.0;
-        let Some(window) = bounds(&full_window(self.grid().shape()), touching) else {
-            return Ok(Some([[0.0; 3]; 3]));
+    pub fn stiffness(&self, watch: Option<&mut Watch>) -> Result<[[f64; 3]; 3]> {
+        let go_on = &mut || ControlFlow::Continue(());
+        let watch: &mut Watch = match watch {
+            Some(watch) => watch,
+            None => go_on,
+        };
+        let Some(window) = self.cells_in_contact() else {
+            return Ok([[0.0; 3]; 3]);
         };
         let tangent = Tangent::plan(self, window)?;
         let mut columns: Vec<[Vec<f64>; 2]> = Vec::new();
         for freedom in 0..3 {
             let right = tangent.column(freedom);
-            let Some(pressure) = tangent.solve(&right, TOLERANCE, watch)? else {
-                return Ok(None);
-            };
+            let pressure = tangent.solve_beside(&right, &[], TOLERANCE, watch)?;
             columns.push([right, pressure]);
         }
         // bᵢᵀxⱼ + xᵢᵀ(bⱼ − K xⱼ): symmetric, and in error by the square of the residual alone.
-        let mut workspace = tangent.convolution().workspace();
         let mut stiffness = [[0.0; 3]; 3];
         for (j, [b, x]) in columns.iter().enumerate() {
             let mut rest = vec![0.0; b.len()];
-            tangent.apply_on_contact(x, &mut rest, &mut workspace);
+            tangent.apply(x, &mut rest);
             rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
             for (i, [b, y]) in columns.iter().enumerate() {
                 stiffness[i][j] = dot(b, x) + dot(y, &rest);
@@ -324,7 +279,7 @@ impl Solution {
             stiffness[axis + 1] = [0.0; 3];
             stiffness.iter_mut().for_each(|row| row[axis + 1] = 0.0);
         }
-        Ok(Some(stiffness))
+        Ok(stiffness)
     }
 }
 

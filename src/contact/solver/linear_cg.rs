@@ -5,26 +5,29 @@
 
 use std::ops::ControlFlow;
 
-use crate::contact::problem::INDEFINITE;
 use crate::error::{Error, Result};
 use crate::numerics::parallel::dot;
 
 /// Iterations after which a system counts as unsolvable; solvable ones take some tens.
 const MAX_ITERATIONS: usize = 10_000;
 
+/// Callback that says whether to continue.
+pub type Watch<'a> = dyn FnMut() -> ControlFlow<()> + 'a;
+
 /// Solves A x = `right` to a residual of `tolerance`, relative to `right`. `apply` computes A v, and
-/// `precondition` an approximation of A⁻¹ v. Both must be symmetric and positive definite. `None` where
-/// `watch`, which is asked before each iteration, breaks.
+/// `precondition` an approximation of A⁻¹ v. Both must be symmetric and positive definite. `watch` is asked before each
+/// iteration whether to continue.
 ///
 /// # Errors
-/// [`INDEFINITE`] where A is not positive definite and the iteration meets it; [`Error::NotConverged`].
+/// [`Error::Indefinite`] where A is not positive definite and the iteration meets it; [`Error::NotConverged`]; [`Error::Stopped`]
+/// where `watch` breaks.
 pub(crate) fn solve(
     right: &[f64],
     mut apply: impl FnMut(&[f64], &mut [f64]),
     mut precondition: impl FnMut(&[f64], &mut [f64]),
     tolerance: f64,
-    watch: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Result<Option<Vec<f64>>> {
+    watch: &mut Watch,
+) -> Result<Vec<f64>> {
     let cells = right.len();
     let (mut x, mut r) = (vec![0.0; cells], right.to_vec());
     let (mut z, mut image) = (vec![0.0; cells], vec![0.0; cells]);
@@ -33,10 +36,10 @@ pub(crate) fn solve(
     let size = dot(right, right).sqrt();
     for _ in 0..MAX_ITERATIONS {
         if dot(&r, &r).sqrt() <= tolerance * size {
-            return Ok(Some(x));
+            return Ok(x);
         }
         if watch().is_break() {
-            return Ok(None);
+            return Err(Error::Stopped);
         }
         precondition(&r, &mut z);
         let descent = dot(&r, &z);
@@ -47,7 +50,7 @@ pub(crate) fn solve(
         apply(&direction, &mut image);
         let curvature = dot(&direction, &image);
         if curvature <= 0.0 {
-            return Err(INDEFINITE);
+            return Err(Error::Indefinite);
         }
         let step = descent / curvature;
         for k in 0..cells {
@@ -55,14 +58,8 @@ pub(crate) fn solve(
             r[k] -= step * image[k];
         }
     }
-    Err(Error::NotConverged {
-        iterations: MAX_ITERATIONS,
-        residual: dot(&r, &r).sqrt() / size,
-        overlap: 0.0,
-        balance: 0.0,
-        tolerance,
-        limit: "max_iterations",
-    })
+    let residual = dot(&r, &r).sqrt() / size;
+    Err(Error::not_converged(MAX_ITERATIONS, residual, tolerance, "max_iterations"))
 }
 
 /// Memory of the last direction: d ← z + β d.

@@ -13,9 +13,9 @@
 use super::linear_cg::Conjugacy;
 use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::Workspace;
-use crate::contact::problem::fields::{Fields, slice_mut};
-use crate::contact::problem::{INDEFINITE, Multipliers, Problem, Quality};
-use crate::error::Result;
+use crate::contact::problem::{Multipliers, Problem, Quality};
+use crate::contact::problem::{SolutionFields, slice_mut};
+use crate::error::{Error, Result};
 use crate::model::grid::full_window;
 use crate::numerics::parallel::dot;
 
@@ -27,10 +27,10 @@ const ROUNDING: f64 = 1e-12;
 /// quality.
 ///
 /// # Errors
-/// [`INDEFINITE`].
+/// [`Error::Indefinite`].
 pub(crate) fn solve(
     problem: &Problem,
-    fields: &mut Fields,
+    fields: &mut SolutionFields,
     criteria: StopCriteria,
     tally: &mut Tally,
 ) -> Result<Outcome> {
@@ -47,7 +47,7 @@ pub(crate) fn solve(
     };
     loop {
         let (found, now) = assess(problem, fields, criteria.tolerance, workspace, tally);
-        let Fields { pressure, displacement, .. } = fields;
+        let SolutionFields { pressure, displacement, .. } = fields;
         let (p, u) = (slice_mut(pressure), slice_mut(displacement));
         problem.gap_into(u, found, &mut g);
         let end = |termination| {
@@ -79,12 +79,12 @@ pub(crate) fn solve(
 /// Displacement, multipliers and quality of the pressure.
 fn assess(
     problem: &Problem,
-    fields: &mut Fields,
+    fields: &mut SolutionFields,
     tolerance: f64,
     workspace: &mut Workspace,
     tally: &mut Tally,
 ) -> (Multipliers, Quality) {
-    let Fields { pressure, displacement, window, multipliers, quality } = fields;
+    let SolutionFields { pressure, displacement, window, multipliers, quality } = fields;
     let (p, u) = (slice_mut(pressure), slice_mut(displacement));
     let mut judge = |near| {
         tally.work += problem.convolution.work();
@@ -145,7 +145,12 @@ impl Search {
         loop {
             let (mut slope, mut size, mut energy) = (0.0, 0.0_f64, 0.0);
             for ((t, &inside), &g) in direction.iter_mut().zip(inside).zip(g) {
-                *t = if inside { g + beta * *t } else { 0.0 };
+                // Outside the contact the gap may be infinite.
+                if !inside {
+                    *t = 0.0;
+                    continue;
+                }
+                *t = g + beta * *t;
                 slope += g * *t;
                 size += t.abs();
             }
@@ -163,7 +168,7 @@ impl Search {
             if beta <= 0.0 {
                 let one_cell = problem.self_influence();
                 if one_cell <= 0.0 || energy < -ROUNDING * one_cell * size * size {
-                    return Err(INDEFINITE);
+                    return Err(Error::Indefinite);
                 }
                 // A contact whose gap is exactly zero everywhere has only cells that join; their step is
                 // that of a single cell.

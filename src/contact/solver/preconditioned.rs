@@ -14,30 +14,21 @@
 //! Passes over arrays would take as long as the transforms if each operation were a pass of its own:
 //! operations that can share a pass do. `textbook.rs` has the same iteration with one operation a line.
 
-mod arrays;
-#[cfg(test)]
-mod comparison;
-mod course;
-mod deflation;
 mod steps;
 #[cfg(test)]
 mod textbook;
 
 use std::mem;
 
-use super::active_set;
-use super::linear_cg::Conjugacy;
-use super::{Outcome, Solver, StopCriteria, Tally, Termination};
 use crate::compliance::convolution::{Convolution, Workspace};
+use crate::contact::problem::balance::FitSums;
 use crate::contact::problem::bounds::{in_contact, is_free, residual};
-use crate::contact::problem::fit::FitSums;
 use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
+use crate::contact::solver::linear_cg::Conjugacy;
+use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, active_set};
 use crate::numerics::parallel::{
     Lanes, Lease, ONE, Rows, ZERO, all, update, update_with_largest, where_positive,
 };
-use arrays::Arrays;
-pub(crate) use arrays::Memory;
-use course::Course;
 
 /// Approximations of the convolution, periodic on the window.
 pub(crate) struct Approximation {
@@ -94,7 +85,7 @@ enum Images {
 
 /// Outcome of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Step {
+enum StepOutcome {
     /// The step was made as planned.
     Whole,
     /// Cells lost their pressure on the way.
@@ -144,7 +135,7 @@ impl<'a> Preconditioned<'a> {
         tally: &mut Tally,
     ) -> Outcome {
         let before = tally.work;
-        let mut last = Step::Truncated;
+        let mut last = StepOutcome::Truncated;
         let mut course = Course::new();
         self.start(p);
         for iterations in 0.. {
@@ -168,7 +159,7 @@ impl<'a> Preconditioned<'a> {
             self.prepare_images(p, contact_changed, iterations);
             last = self.step(p, last);
             tally.work = before + self.work;
-            if last == Step::Stalled {
+            if last == StepOutcome::Stalled {
                 return end(Termination::IterationLimit);
             }
             tally.iterations += 1;
@@ -263,5 +254,167 @@ impl<'a> Preconditioned<'a> {
             quality: problem.quality(sums, &fit),
             contact_changed: joined > 0.0 || left.abs() > 0.0,
         }
+    }
+}
+
+/// Memory of the arrays of an iteration; it may be larger than needed.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    u: Vec<f64>,
+    r: Vec<f64>,
+    r_before: Vec<f64>,
+    z: Vec<f64>,
+    direction: Vec<f64>,
+    response: Vec<f64>,
+    trial: Vec<f64>,
+    images: [Vec<f64>; 3],
+}
+
+/// Arrays of an iteration, as long as there are cells.
+struct Arrays<'a> {
+    /// Displacement K p.
+    u: &'a mut [f64],
+    /// Residual −g on contact cells, 0 elsewhere.
+    r: &'a mut [f64],
+    /// Residual of the iteration before.
+    r_before: &'a mut [f64],
+    /// Preconditioned residual M r.
+    z: &'a mut [f64],
+    /// Search direction.
+    direction: &'a mut [f64],
+    /// K applied to the last direction, or to the last change of the pressure.
+    response: &'a mut [f64],
+    /// Trial pressure of a step on which cells leave, and then the change to it.
+    trial: &'a mut [f64],
+    /// M applied to each loaded degree of freedom on a contact; the others are not read.
+    images: [&'a mut [f64]; 3],
+}
+
+impl Memory {
+    /// Makes the arrays long enough for the cells of `rows`. A new array gets room for `most` cells, the
+    /// largest number that a solve may need, which the plan's memory was checked for; most systems hand
+    /// memory out only as it is written.
+    pub(crate) fn reserve(&mut self, rows: &Rows, most: usize, loaded: [bool; 3]) {
+        let Self { u, r, r_before, z, direction, response, trial, images } = self;
+        let arrays = [u, r, r_before, z, direction, response, trial];
+        let images = images.iter_mut().zip(loaded);
+        let images = images.filter_map(|(image, loaded)| loaded.then_some(image));
+        let short = |array: &&mut Vec<f64>| array.len() < rows.cells();
+        let mut short: Vec<_> = arrays.into_iter().chain(images).filter(short).collect();
+        for array in &mut short {
+            if array.capacity() < rows.cells() {
+                **array = Vec::with_capacity(most.max(rows.cells()));
+            }
+        }
+        rows.zero(&mut short);
+    }
+
+    /// The first `cells` elements of each array.
+    fn arrays(&mut self, cells: usize) -> Arrays<'_> {
+        Arrays {
+            u: &mut self.u[..cells],
+            r: &mut self.r[..cells],
+            r_before: &mut self.r_before[..cells],
+            z: &mut self.z[..cells],
+            direction: &mut self.direction[..cells],
+            response: &mut self.response[..cells],
+            trial: &mut self.trial[..cells],
+            images: self.images.each_mut().map(|image| {
+                let kept = cells.min(image.len());
+                &mut image[..kept]
+            }),
+        }
+    }
+
+    /// Makes the residual that of the iteration before.
+    fn keep_residual(&mut self) {
+        std::mem::swap(&mut self.r, &mut self.r_before);
+    }
+}
+
+/// Iterations within which the error must halve. With fifty, contacts that take 250 to 400 iterations were given
+/// up, and the reference took 500 to 5000; chosen by trial.
+const HALVING: usize = 150;
+
+/// Iterations after which the best pressure is kept: far more than most contacts take.
+const KEEPING: usize = 40;
+
+/// Error of an iteration when it last halved, and the pressure of that moment.
+#[derive(Debug)]
+struct Course {
+    /// The larger of residual and overlap.
+    error: f64,
+    /// Number of the iteration.
+    halved: usize,
+    pressure: Option<Vec<f64>>,
+}
+
+impl Course {
+    /// The course of an iteration that has not begun.
+    fn new() -> Self {
+        Self { error: f64::INFINITY, halved: 0, pressure: None }
+    }
+
+    /// Whether the error has not halved for [`HALVING`] iterations, the last of which led to `p`.
+    fn stagnates(&mut self, iterations: usize, quality: Quality, p: &[f64]) -> bool {
+        let error = quality.residual.max(quality.overlap);
+        if error <= 0.5 * self.error {
+            self.error = error;
+            self.halved = iterations;
+            if iterations >= KEEPING {
+                self.pressure = Some(p.to_vec());
+            }
+        }
+        iterations - self.halved >= HALVING
+    }
+
+    /// Makes `p` the best pressure, where one was kept.
+    fn restore(&self, p: &mut [f64]) {
+        if let Some(pressure) = &self.pressure {
+            p.copy_from_slice(pressure);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Course, HALVING, KEEPING};
+    use crate::contact::problem::Quality;
+
+    fn quality(residual: f64, overlap: f64) -> Quality {
+        Quality { residual, overlap, balanced: true, allowed: true, finite: true }
+    }
+
+    /// An error that goes round in circles stagnates when it has not halved for as many iterations as are
+    /// allowed, and the pressure of the last time that it halved is restored. An error that halves in time
+    /// does not stagnate, however long it takes.
+    #[test]
+    fn circles_stagnate() {
+        let mut course = Course::new();
+        let mut stagnates = |k: usize| {
+            let falling = 0.5_f64.powi(k.min(KEEPING + 3) as i32);
+            let circle = [1.0, 1.7, 0.6][k % 3];
+            let error = if k > KEEPING + 3 { circle * falling } else { falling };
+            course.stagnates(k, quality(0.1 * error, error), &[k as f64])
+        };
+        let end = (0..).find(|&k| stagnates(k));
+        assert_eq!(end, Some(KEEPING + 3 + HALVING));
+        let mut p = [0.0];
+        course.restore(&mut p);
+        assert_eq!(p.map(f64::to_bits), [((KEEPING + 3) as f64).to_bits()]);
+
+        let mut slow = Course::new();
+        let slowly = |k: usize| 0.5_f64.powf(k as f64 / (HALVING - 2) as f64);
+        assert!((0..5000).all(|k| !slow.stagnates(k, quality(slowly(k), 0.0), &[1.0])));
+    }
+
+    /// Where the error halves early alone, no pressure was kept.
+    #[test]
+    fn short_iterations_keep_nothing() {
+        let mut course = Course::new();
+        assert!(!course.stagnates(0, quality(1.0, 0.0), &[3.0]));
+        let mut p = [2.0];
+        course.restore(&mut p);
+        assert_eq!(p.map(f64::to_bits), [2.0_f64.to_bits()]);
     }
 }

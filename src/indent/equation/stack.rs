@@ -3,9 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use super::super::tip::TipParameter;
-use super::waves::Waves;
+use super::basis::Waves;
 use crate::compliance::response::{Body, asymptote_derivatives, normal_derivatives};
-use crate::error::{Error, Result};
+use crate::error::{Result, refuse_if};
 use crate::model::body::BodyParameter;
 
 /// Contact radius, in thicknesses of the thinnest top layer, up to which contacts are computed.
@@ -19,7 +19,7 @@ const LEVELS: usize = 12;
 
 /// A number that an indentation depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parameter {
+pub enum IndentParameter {
     /// A number of the body of this position.
     Body(usize, BodyParameter),
     /// A number of the tip.
@@ -60,7 +60,7 @@ pub struct Stack(Arc<Shared>);
 #[derive(Debug)]
 struct Shared {
     bodies: Vec<Body>,
-    parameters: Vec<Parameter>,
+    parameters: Vec<IndentParameter>,
     /// lim α û/p̂ of all bodies for short waves, and its derivatives.
     short: f64,
     short_rates: Vec<f64>,
@@ -86,17 +86,15 @@ impl Stack {
 
     fn with_resolution(bodies: &[Body], finer: f64) -> Result<Self> {
         let short: f64 = bodies.iter().map(|body| body.asymptotes().short).sum();
-        if bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0) {
-            return Err(Error::Inconsistent(
-                "bodies must be at least one, elastic, and without a local compliance",
-            ));
-        }
+        refuse_if(
+            bodies.is_empty() || short <= 0.0 || bodies.iter().any(|body| body.local() > 0.0),
+            "bodies must be at least one, elastic, and without a local compliance",
+        )?;
         let ends = |body: &Body| body.half_space().is_some_and(|body| body.ends() != [None; 2]);
-        if bodies.iter().any(ends) {
-            return Err(Error::Inconsistent(
-                "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
-            ));
-        }
+        refuse_if(
+            bodies.iter().any(ends),
+            "bodies that are indented must go on on all sides: leave out their ends, or use nacre.solve",
+        )?;
         let tops = bodies.iter().filter_map(|body| body.lengths()).map(|[top, _]| top);
         let (mut parameters, mut short_rates) = (Vec::new(), Vec::new());
         for (number, body) in bodies.iter().enumerate() {
@@ -106,7 +104,7 @@ impl Stack {
             let own = body.parameters();
             let rates = asymptote_derivatives(body, &own);
             short_rates.extend(rates.iter().map(|rate| rate.short));
-            parameters.extend(own.iter().map(|own| Parameter::Body(number, *own)));
+            parameters.extend(own.iter().map(|own| IndentParameter::Body(number, *own)));
         }
         Ok(Self(Arc::new(Shared {
             bodies: bodies.to_vec(),
@@ -130,7 +128,7 @@ impl Stack {
     }
 
     /// Numbers of the bodies, with respect to which there are derivatives: those of half-spaces.
-    pub fn parameters(&self) -> &[Parameter] {
+    pub fn parameters(&self) -> &[IndentParameter] {
         &self.0.parameters
     }
 

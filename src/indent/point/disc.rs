@@ -15,8 +15,8 @@ use std::f64::consts::PI;
 use super::Point;
 use crate::error::{Error, Result};
 use crate::indent::adhesion::Adhesion;
-use crate::indent::density::{Density, oscillating};
-use crate::indent::equation::waves::Waves;
+use crate::indent::density::{Density, WHOLE, oscillating};
+use crate::indent::equation::basis::Waves;
 use crate::numerics::special::chebyshev_nodes;
 
 /// Nodes of a panel. What oscillates is analytic up to two thicknesses from the real axis, so that eight nodes on a panel of one
@@ -166,17 +166,14 @@ impl Point {
     /// Ends of panels, at most one thickness long within the contact and half of the distance from it more outside, that do not pass
     /// a kink of the tip.
     fn panels(&self, [low, high]: [f64; 2]) -> Vec<f64> {
-        let kinks = self.parts.tip.kinks().iter().copied();
+        let kinks = self.parts.tip.kinks.iter().copied();
         let mut ends = vec![low];
         let mut start = low;
         for end in kinks.filter(|b| *b > low && *b < high).chain([high]) {
             while start < end {
                 let length = self.parts.stack.thickness().unwrap_or(f64::INFINITY)
                     + 0.5 * (start - self.radius).max(0.0);
-                start = match end - start < 1.5 * length {
-                    true => end,
-                    false => start + length,
-                };
+                start = if end - start < 1.5 * length { end } else { start + length };
                 ends.push(start);
             }
         }
@@ -225,14 +222,11 @@ impl Point {
         // Where it ends at the edge, the pressure does so as a root.
         let ends = density.edge.abs() <= 0.0 && self.zone.is_none();
         let most = least(&places, |r| {
-            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.inside(r) + zone.strength());
+            let zone = self.zone.as_ref().map_or(0.0, |zone| zone.inside(WHOLE, r) + zone.strength);
             let pressure = density.pressure_of(r, slopes) + zone;
-            Ok(match ends {
-                true => pressure / (1.0 - (r / a).powi(2)).sqrt(),
-                false => pressure,
-            })
+            Ok(if ends { pressure / (1.0 - (r / a).powi(2)).sqrt() } else { pressure })
         })?;
-        let strength = self.zone.as_ref().map_or(0.0, |zone| zone.strength());
+        let strength = self.zone.as_ref().map_or(0.0, |zone| zone.strength);
         Ok(most >= -TENSION * mean.max(strength))
     }
 

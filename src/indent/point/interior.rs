@@ -2,12 +2,12 @@
 
 use spec_math::cephes64::{j0, j1};
 
-use super::{Point, check_distances};
 use crate::compliance::response::interior::{Column, Place};
 use crate::error::{Error, Result, require};
-use crate::indent::equation::basis::Panel;
-use crate::indent::equation::system::add;
-use crate::indent::equation::waves::Waves;
+use crate::indent::density::WHOLE;
+use crate::indent::equation::add;
+use crate::indent::equation::basis::{Panel, Waves};
+use crate::indent::point::{Point, check_distances};
 use crate::indent::tip::FEW_KINKS;
 use crate::numerics::quadrature::Rule;
 
@@ -63,12 +63,9 @@ impl Point {
     /// 1e4 of both, and no such half-space.
     pub fn stress(&self, body: usize, z: f64, r: &[f64]) -> Result<Vec<InteriorStress>> {
         check_distances(r)?;
-        require(
-            "z",
-            z,
-            (SHALLOWEST..=DEEPEST).contains(&(z / self.radius)),
-            "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure",
-        )?;
+        let holds = (SHALLOWEST..=DEEPEST).contains(&(z / self.radius));
+        let requirement = "at least 1e-2 of the contact radius and at most 1e6 of it; at the surface, see the pressure";
+        require("z", z, holds, requirement)?;
         let far = r.iter().fold(0.0_f64, |most, r| most.max(*r));
         let is_near = far <= FARTHEST * z.max(self.radius);
         require("r", far, is_near, "at most 1e4 of the depth or of the contact radius")?;
@@ -86,18 +83,11 @@ impl Point {
         }
         place.depth = z;
         place.below_top = z - top;
-        let below = body.layers().get(place.layer);
-        place.material = match (below, body.substrate()) {
-            (Some(layer), _) => layer.material(),
-            (None, crate::model::body::Substrate::Elastic(material)) => material,
-            (None, crate::model::body::Substrate::Rigid) => {
-                return Err(Error::Parameter {
-                    name: "z",
-                    requirement: "above the rigid base",
-                    value: z,
-                });
-            }
-        };
+        place.material = body.material(place.layer).ok_or(Error::Parameter {
+            name: "z",
+            requirement: "above the rigid base",
+            value: z,
+        })?;
         // All decays with e^{−αz}: TAIL/thickness = 48/z ends at e^{−48}; J_ν and p̂ oscillate over r and the outer radius.
         let layers = body.interfaces().into_iter().reduce(f64::min);
         let thinnest = layers.map_or(z / 3.0, |h| h.min(z / 3.0));
@@ -155,7 +145,7 @@ impl Point {
             add(&mut hat, weight, &cos);
         }
         if let Some(zone) = &self.zone {
-            add(&mut hat, 1.0, &zone.transform(waves));
+            add(&mut hat, 1.0, &zone.transform(WHOLE, waves));
         }
         hat
     }

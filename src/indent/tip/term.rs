@@ -67,10 +67,7 @@ impl ProfileTerm {
             }
             Self::ExponentRate { exponent, rate } => {
                 let factor = rate / Self::power(1.0, exponent).rate();
-                match r > 0.0 {
-                    true => factor * r.powf(exponent) * r.ln(),
-                    false => 0.0,
-                }
+                if r > 0.0 { factor * r.powf(exponent) * r.ln() } else { 0.0 }
             }
             Self::PlaceRate { at, slope } if r > at => -slope,
             Self::PlaceRate { .. } => 0.0,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ndarray::{Array2, ArrayRef2};
 
 use super::{Extent, Surface, sampled};
-use crate::error::{Error, Result, require};
+use crate::error::{Result, all_finite, positive, require};
 use crate::model::grid::Grid;
 
 /// A measured surface: heights at the centres of a grid's cells, positive towards the other body.
@@ -38,16 +38,14 @@ impl HeightMap {
     /// Where a height is not finite, there are fewer than two samples in a direction, or the
     /// spacing is not finite and above 0.
     pub fn new(heights: Array2<f64>, spacing: [f64; 2]) -> Result<Self> {
-        if let Some((index, _)) = heights.indexed_iter().find(|(_, h)| !h.is_finite()) {
-            return Err(Error::NonFinite { name: "heights", index: [index.0, index.1] });
-        }
+        all_finite("heights", &heights)?;
         let shape = [heights.nrows(), heights.ncols()];
         for n in shape {
             let name = "number of heights along x and along y";
             require(name, n as f64, n >= 2, "at least 2")?;
         }
         for d in spacing {
-            crate::error::positive("spacing", d)?;
+            positive("spacing", d)?;
         }
         let size = [shape[0] as f64 * spacing[0], shape[1] as f64 * spacing[1]];
         Ok(Self {

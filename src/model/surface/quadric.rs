@@ -65,7 +65,7 @@ impl Sphere {
 
     /// Radii of the counterpart along x and y \[m\]; `None` where it is straight.
     pub fn counter_radii(&self) -> [Option<f64>; 2] {
-        self.counterpart.radii()
+        self.counterpart.radii
     }
 
     /// Equivalent radii along x and y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
@@ -177,7 +177,7 @@ impl Paraboloid {
 
     /// Radii of the counterpart along x and y \[m\]; `None` where it is straight.
     pub fn counter_radii(&self) -> [Option<f64>; 2] {
-        self.counterpart.radii()
+        self.counterpart.radii
     }
 
     /// Equivalent radii along x and y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
@@ -259,7 +259,7 @@ impl Cylinder {
 
     /// Radius of the raceway along y \[m\]; `None` for a plane.
     pub fn counter_radius(&self) -> Option<f64> {
-        self.counterpart.radii()[1]
+        self.counterpart.radii[1]
     }
 
     /// Equivalent radius \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.
@@ -360,7 +360,8 @@ impl Surface for FlatPunch {
 /// is straight.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Counterpart {
-    radii: [Option<f64>; 2],
+    /// Radii along x and y \[m\].
+    pub(super) radii: [Option<f64>; 2],
 }
 
 impl Counterpart {
@@ -385,11 +386,6 @@ impl Counterpart {
     pub(super) fn cylindrical(counter_radius: f64, shape: f64) -> Result<Self> {
         let names = ["counter_radius"; 2];
         Self::new(names, [None, Some(counter_radius)], [shape; 2])
-    }
-
-    /// Radii along x and y \[m\].
-    pub(super) fn radii(&self) -> [Option<f64>; 2] {
-        self.radii
     }
 
     /// Equivalent radii \[m\] of a shape with the radii `shape` on this counterpart.

@@ -99,7 +99,7 @@ impl Roller {
 
     /// Radius of the raceway along y \[m\]; `None` for a plane.
     pub fn counter_radius(&self) -> Option<f64> {
-        self.counterpart.radii()[1]
+        self.counterpart.radii[1]
     }
 
     /// Equivalent radius along y \[m\], 1/(1/R + 1/R_counter), which formulas of Hertz take.

@@ -196,6 +196,12 @@ impl<'py> Keywords<'py> {
         Ok(found)
     }
 
+    /// Argument as it was given; `None` where it was not.
+    pub(in crate::python) fn any(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let none = || self.given.py().None().into_bound(self.given.py());
+        Ok(self.take(name)?.unwrap_or_else(none))
+    }
+
     /// Argument that was given and is not `None`.
     pub(in crate::python) fn given(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.take(name)?.filter(|value| !value.is_none()))

@@ -3,9 +3,9 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::friction::PyFrictionSolution;
+use super::friction::solved;
 use crate::compliance::response::Body;
-use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_watched};
+use crate::contact::{Contact, Motion, Options, Progress, Setup, Solution, solve_with};
 use crate::model::body::HalfSpace;
 use crate::model::grid::Grid;
 use crate::python::arguments::keywords::{
@@ -104,10 +104,10 @@ pub(in crate::python) fn solve<'py>(
     call.run(py, move |shape, motion, options, progress| match grid {
         Some(grid) => {
             grid.check_initial(initial.as_ref())?;
-            Contact::plan(&body, grid, setup)?.solve_watched(shape, motion, options, progress)
+            Contact::plan(&body, grid, setup)?.solve(shape, motion, options.watched(progress))
         }
         None => {
-            let solution = solve_watched(shape, &body, &setup, motion, options, progress)?;
+            let solution = solve_with(shape, &body, &setup, motion, options.watched(progress))?;
             solution.grid().check_initial(initial.as_ref())?;
             Ok(solution)
         }
@@ -135,8 +135,8 @@ impl Call {
                 let before = before.get().solution();
                 options.indentation.clone_from(&before.indentation);
                 grid = Some(*before.grid());
-            } else if let Ok(before) = before.cast::<PyFrictionSolution>() {
-                grid = Some(*before.get().inner().grid());
+            } else if let Some(before) = solved(&before) {
+                grid = Some(*before.grid());
             }
         }
         Ok(Self {

@@ -132,7 +132,7 @@ fn twice_a_period_is_the_same() -> Result<()> {
                 near!(b.approach, a.approach, 1e-6, name);
             };
             same(&a, &b, &name);
-            let [k, l] = [a.stiffness()?, b.stiffness()?].map(|k| k[0][0]);
+            let [k, l] = [a.stiffness(None)?, b.stiffness(None)?].map(|k| k[0][0]);
             near!(l, 2.0 * k, 1e-5, name, k);
             // Under its approach, the contact is the same.
             let motion = Motion::approach(a.approach).with_tilt([Some(a.tilt[0]), None]);

@@ -1,9 +1,8 @@
 //! Contacts near ends, against exact statements, a reference and given grids.
 
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 
-use nacre::contact::{Report, solve_watched};
+use nacre::contact::solve_with;
 use nacre::ends::QuarterSpace;
 use nacre::influence::CellInfluence;
 use nacre::{
@@ -173,8 +172,7 @@ fn the_automatic_grid_ends_where_the_bodies_do() -> Result<()> {
         for (shape, load) in [(flat, 3e3), (&logarithmic, 3e3), (&logarithmic, 300.0)] {
             let motion = Motion::load(load);
             let body = Body::from(&race);
-            let mut go_on = |_: &Report| ControlFlow::Continue(());
-            let found = solve_watched(shape, &body, &setup, &motion, &options, &mut go_on)?
+            let found = solve_with(shape, &body, &setup, &motion, &options)?
                 .require_converged(options.tolerance)?;
             let [length, width] = found.grid().size();
             let [reached, half_width] = found.contact_extent().map(|[_, high]| high);

@@ -13,8 +13,10 @@ use super::state::{PyIndentState, chosen, worked, worst};
 use super::tip::PyTip;
 use crate::Result;
 use crate::compliance::response::Body;
-use crate::indent::{Adhesion, Branch, Control, Held, Indent, Parameter, Stack, TipParameter};
-use crate::python::stress::keywords::issue_warnings;
+use crate::indent::{
+    Adhesion, Branch, Control, Held, Indent, IndentParameter, Stack, TipParameter,
+};
+use crate::python::errors::issue_warnings;
 
 /// An axisymmetric tip on a stack of layers, planned once: exact, and without a grid.
 ///
@@ -47,7 +49,7 @@ pub(in crate::python) struct PyIndentation {
     indent: Indent,
     body: crate::HalfSpace,
     counterbody: Option<crate::HalfSpace>,
-    parameters: Vec<(String, Parameter)>,
+    parameters: Vec<(String, IndentParameter)>,
 }
 
 fn control(word: &str) -> PyResult<Control> {
@@ -69,10 +71,10 @@ fn one<T: Send + 'static>(
 }
 
 /// Names of all parameters, with what they are.
-fn named(indent: &Indent) -> Vec<(String, Parameter)> {
+fn named(indent: &Indent) -> Vec<(String, IndentParameter)> {
     let mut all = Vec::new();
     for parameter in indent.stack().parameters() {
-        if let Parameter::Body(number, own) = parameter {
+        if let IndentParameter::Body(number, own) = parameter {
             let owner = if *number == 0 { "body" } else { "counterbody" };
             let body = indent.stack().bodies()[*number].half_space();
             let path = body.map_or(String::new(), |body| own.path(body));
@@ -82,16 +84,16 @@ fn named(indent: &Indent) -> Vec<(String, Parameter)> {
     let is_sampled = indent.tip().numbers().iter().any(|(name, _)| *name == "depth");
     if !is_sampled {
         for (k, (name, _)) in indent.tip().numbers().into_iter().enumerate() {
-            let parameter = Parameter::Tip(TipParameter::Number(k));
+            let parameter = IndentParameter::Tip(TipParameter::Number(k));
             all.push((format!("tip.{name}"), parameter));
         }
     }
-    all.push(("tip.area".to_owned(), Parameter::Tip(TipParameter::Area)));
+    all.push(("tip.area".to_owned(), IndentParameter::Tip(TipParameter::Area)));
     if indent.adhesion().work().is_some() {
-        all.push(("adhesion.work".to_owned(), Parameter::Work));
+        all.push(("adhesion.work".to_owned(), IndentParameter::Work));
     }
     if matches!(indent.adhesion(), Adhesion::Maugis { .. }) {
-        all.push(("adhesion.strength".to_owned(), Parameter::Strength));
+        all.push(("adhesion.strength".to_owned(), IndentParameter::Strength));
     }
     all
 }
@@ -250,7 +252,7 @@ impl PyIndentation {
         }
         let approach: Vec<f64> = approach.into_iter().collect();
         let parameters = chosen(&self.parameters, Some(wrt))?.into_iter();
-        let parameters: Vec<Parameter> = parameters.map(|(_, parameter)| parameter).collect();
+        let parameters: Vec<IndentParameter> = parameters.map(|(_, parameter)| parameter).collect();
         let count = parameters.len();
         let (indent, at) = (self.indent.clone(), approach.clone());
         let curve = one(py, move || indent.curve(&at, &parameters))?;

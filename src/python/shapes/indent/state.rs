@@ -8,8 +8,8 @@ use pyo3::types::PyDict;
 use super::super::super::arguments::{Real, real_array};
 use super::super::super::background::{self, Caller};
 use crate::Result;
-use crate::indent::{Held, InteriorStress, Parameter, Point, Variable, Warning};
-use crate::python::stress::keywords::issue_warnings;
+use crate::indent::{Held, IndentParameter, IndentWarning, InteriorStress, Point, Variable};
+use crate::python::errors::issue_warnings;
 
 /// One number of a state of stress.
 type Component = fn(&InteriorStress) -> f64;
@@ -72,13 +72,13 @@ pub(in crate::python) struct PyIndentState {
     pub(super) points: Vec<Point>,
     pub(super) shape: Vec<usize>,
     pub(super) held: Held,
-    pub(super) parameters: Vec<(String, Parameter)>,
+    pub(super) parameters: Vec<(String, IndentParameter)>,
 }
 
 /// Sentences of the worst warning of all points.
-pub(super) fn worst(warnings: impl IntoIterator<Item = Warning>) -> Vec<String> {
-    let slope = |warning: &Warning| match warning {
-        Warning::Steep { slope } => *slope,
+pub(super) fn worst(warnings: impl IntoIterator<Item = IndentWarning>) -> Vec<String> {
+    let slope = |warning: &IndentWarning| match warning {
+        IndentWarning::Steep { slope } => *slope,
     };
     let worst = warnings.into_iter().max_by(|a, b| slope(a).total_cmp(&slope(b)));
     worst.iter().map(ToString::to_string).collect()
@@ -269,9 +269,9 @@ impl PyIndentState {
 
 /// Parameters of these paths, or all.
 pub(super) fn chosen(
-    known: &[(String, Parameter)],
+    known: &[(String, IndentParameter)],
     wrt: Option<Vec<String>>,
-) -> PyResult<Vec<(String, Parameter)>> {
+) -> PyResult<Vec<(String, IndentParameter)>> {
     let Some(paths) = wrt else {
         return Ok(known.to_vec());
     };
