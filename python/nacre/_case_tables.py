@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+from collections import defaultdict
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
@@ -51,8 +52,13 @@ def _keyword(value: Any) -> Any:
 
 
 def described(thing: Any) -> dict[str, str]:
-    """Return the descriptions of the parameters in a NumPy-style docstring, by name."""
-    text = inspect.cleandoc(thing.__doc__ or "")
+    """Return the descriptions of the parameters in a NumPy-style docstring, by name.
+
+    Without docstrings, as of ``python -OO``, all are empty.
+    """
+    if thing.__doc__ is None:
+        return defaultdict(str)
+    text = inspect.cleandoc(thing.__doc__)
     section = re.search(
         r"^Parameters\n-+\n(.*?)(?:\n\n\w+\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE
     )

@@ -124,14 +124,14 @@ class RandomSurface(Shape):
     """A self-affine random surface that repeats: `nacre.rough.random_surface`."""
 
     kind: Literal["random_surface"] = Field(description="Kind, which decides on the other keys.")
-    shape: Counts = Field(description=RANDOM.get("shape"))
-    size: Pair = Field(description=RANDOM.get("size"))
-    hurst: Number = Field(description=RANDOM.get("hurst"))
-    shortest: Number = Field(description=RANDOM.get("shortest"))
-    longest: Number = Field(description=RANDOM.get("longest"))
-    rms_slope: Number | None = Field(None, description=RANDOM.get("rms_slope"))
-    rms_height: Number | None = Field(None, description=RANDOM.get("rms_height"))
-    seed: Count = Field(description=RANDOM.get("seed"))
+    shape: Counts = Field(description=RANDOM["shape"])
+    size: Pair = Field(description=RANDOM["size"])
+    hurst: Number = Field(description=RANDOM["hurst"])
+    shortest: Number = Field(description=RANDOM["shortest"])
+    longest: Number = Field(description=RANDOM["longest"])
+    rms_slope: Number | None = Field(None, description=RANDOM["rms_slope"])
+    rms_height: Number | None = Field(None, description=RANDOM["rms_height"])
+    seed: Count = Field(description=RANDOM["seed"])
 
     def unmoved(self, folder: Path, metres: float) -> nacre.types.Shape:
         """Return the shape without its shift."""
