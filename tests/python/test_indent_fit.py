@@ -240,7 +240,7 @@ def test_residuals_are_kept_and_a_changed_state_is_refused() -> None:
         np.testing.assert_array_equal(copy.residuals[0], found.residuals[0])
     with pytest.raises(ValueError, match="another version may read it"):
         Fit.from_dict(state | {"format": 99})
-    with pytest.raises(ValueError, match="missing or unknown"):
+    with pytest.raises(ValueError, match="Fit: the key 'more' is unknown"):
         Fit.from_dict(state | {"more": 1})
 
 
