@@ -19,7 +19,7 @@
 //! These are the derivatives of the discrete contact, exact but for the tolerance of the linear solves: those that an
 //! optimiser needs. They belong to a fixed number of cells in contact, so that they approach those of the continuum at
 //! first order only, erratically, about 2e-4 of their size with 64 cells along the radius of a contact. The adjoint method
-//! is textbook knowledge; its form for contacts with loaded freedoms is nacre's own.
+//! is textbook knowledge; its form for contacts with loaded degrees of freedom was derived here.
 //!
 //! A [`Linearisation`] holds what all outputs and parameters of one solution share. [`Solution::gradient`] makes one for a
 //! single call.

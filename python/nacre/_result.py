@@ -60,10 +60,14 @@ def _finite(value: Any) -> Any:
 
 def as_text(kind: str, state: dict[str, Any]) -> str:
     """Return the state of a kind of result as JSON text, or raise a `ValueError`."""
-    try:
-        return json.dumps(_finite(state))
-    except TypeError as error:
-        raise ValueError(f"{kind}: {error}: {state}") from error
+    fields = []
+    for key, value in _finite(state).items():
+        try:
+            fields.append(f"{json.dumps(key)}: {json.dumps(value)}")
+        except TypeError as error:
+            said = f'{kind}: the value of the key "{key}" does not fit: {value!r}'
+            raise ValueError(said) from error
+    return "{" + ", ".join(fields) + "}"
 
 
 class Result:

@@ -8,7 +8,7 @@
 //!
 //! Stresses are those of two half-spaces, one below the surface and one below the end face.
 //!
-//! The ends of layered bodies are a model of nacre's own. The half-space under the even pressure P(|x|) is taken with its
+//! The ends of layered bodies are a model that was derived here. The half-space under the even pressure P(|x|) is taken with its
 //! layers, so that the mirror image is exact. What keeps the face free is that of the substrate, with a factor for each
 //! wavenumber k along y,
 //!

@@ -1,5 +1,5 @@
-//! Graded coatings: layers thin enough to stand for properties that vary with depth. The method is
-//! nacre's own.
+//! Graded coatings: layers thin enough to stand for properties that vary with depth. The method was
+//! derived here.
 
 use crate::compliance::response::frequency_response;
 use crate::error::{Error, Result, positive, require};

@@ -1,4 +1,4 @@
-//! Sums of kernels over the images of a cell, on grids that repeat: a method of nacre's own.
+//! Sums of kernels over the images of a cell, on grids that repeat; derived here.
 //!
 //! Images nearer than the longer period are summed one by one. The others together are smooth, and interpolated from
 //! Chebyshev nodes. There, M rings of them are summed; all beyond have the means of the kernel over whole periods, which

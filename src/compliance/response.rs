@@ -10,7 +10,7 @@
 //! ```
 //!
 //! All four are computed as α·c, which is finite from α = 0 to ∞, by a recursion from the
-//! substrate up (`layer`), which is nacre's own. Only sums of positive terms occur in it: the result is
+//! substrate up (`layer`), which was derived here. Only sums of positive terms occur in it: the result is
 //! accurate to a few units in the last place for any thickness, contrast and Poisson's ratio up to 0.5.
 
 use std::fmt;

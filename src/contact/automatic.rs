@@ -1,4 +1,4 @@
-//! The grid that is chosen where none is given: a method of nacre's own.
+//! The grid that is chosen where none is given; the method was developed here.
 //!
 //! A coarse grid is enlarged and reduced until it fits the contact. The displacement that its pressure causes
 //! elsewhere shows whether the shape, which is looked at as a whole, overlaps there too; then the grid must hold

@@ -1,4 +1,4 @@
-//! The contact window on nested grids, around preconditioned conjugate gradients: a method of nacre's own.
+//! The contact window on nested grids, around preconditioned conjugate gradients; developed here.
 //!
 //! The problem is solved on a grid of a few cells first; each solution, interpolated, is where the
 //! next finer grid starts. On each grid only a window around the contact is solved. The outside is checked

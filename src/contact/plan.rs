@@ -257,7 +257,7 @@ const TOLERANCE: f64 = 1e-6;
 /// the true displacement at this distance is far less: pressures would lift the surface, and the operator
 /// would not be positive definite. Such contacts are solved with a farther datum ℓ'. Under a load W this
 /// changes no pressure, and displacement and approach by the same A W/π ln(ℓ'/ℓ), which is taken back in the
-/// end. The method is nacre's own.
+/// end. The method was derived here.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Datum {
     /// A of both bodies \[1/Pa\], over the period where a grid repeats in one direction; 0 where there is no datum.

@@ -477,7 +477,7 @@ pub(crate) fn slice_mut(array: &mut Array2<f64>) -> &mut [f64] {
 /// displacement does not change over the contact, and says nothing about how well the surfaces fit. The
 /// local displacement is of the size of the part that does: of contacts of radius a with mean pressure p,
 /// it is a multiple of p a D(1/a), where D(α) = α û/p̂ is the response of both bodies together. The estimate
-/// is nacre's own.
+/// was derived here.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalDisplacement {
     /// Displacement per mean pressure \[m/Pa\] of contacts of 1, 2, 4, … cells.

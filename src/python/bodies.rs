@@ -233,7 +233,7 @@ type LayerArguments<'a> = (PyElastic, f64, &'static str, Option<&'a str>);
 /// -----
 /// Contacts count the ends of both bodies, and so do stresses but for those of friction. A body that ends is
 /// a quarter space: Hetényi, A general solution for the elastic quarter space, J. Appl. Mech. 37 (1970) 75,
-/// doi:10.1115/1.3408508. Its reduction to the half-space, and that of a body with two ends, are nacre's own.
+/// doi:10.1115/1.3408508. Its reduction to the half-space, and that of a body with two ends, were derived here.
 /// What the end of a body with layers adds is a model, and a warning tells of its error. Ends lie on edges of
 /// the cells of a grid, or outside it.
 ///

@@ -1,4 +1,4 @@
-//! Pressure within the cells of a solved contact, and the stress that it adds: a method of nacre's own.
+//! Pressure within the cells of a solved contact, and the stress that it adds; the method was derived here.
 //!
 //! # Idea
 //!

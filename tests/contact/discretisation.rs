@@ -205,7 +205,7 @@ fn estimates_hold_for_random_contacts() -> Result<()> {
 }
 
 #[test]
-#[ignore = "two minutes"]
+#[ignore = "a quarter of an hour of one core"]
 fn estimates_hold_for_99_of_100_random_contacts() -> Result<()> {
     let [cases, wrong] = count(10_000..11_800)?;
     assert!(cases >= 500 && 100 * wrong < cases, "{wrong} of {cases}");

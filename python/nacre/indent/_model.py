@@ -208,7 +208,7 @@ class Model:
         area = values.pop("tip.area", 1.0)
         system = self.system.changed(values)
         # A tip of all sections κ times as large, r → r√κ, is the old one on layers 1/√κ as thick
-        # under √κ of the load: nacre's own, from the similarity of the integral equation.
+        # under √κ of the load: derived here, from the similarity of the integral equation.
         wider = math.sqrt(area)
         if area != 1:
             system = system.narrowed(wider)

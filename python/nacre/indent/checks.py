@@ -209,7 +209,7 @@ def suspicious_units(curve: Curve, *, tip_size: float, modulus: float | None = N
 
     Notes
     -----
-    The test is nacre's own. Without a modulus a range of ten decades is plausible, from 100 Pa to
+    The test was devised here. Without a modulus a range of ten decades is plausible, from 100 Pa to
     2e12 Pa, and a force that is wrong by 1e3 often stays within it.
 
     Examples
@@ -313,11 +313,11 @@ def contact_point(
 
     Notes
     -----
-    nacre's own variant of the sequential search of Lin, Dimitriadis and Horkay, J. Biomech. Eng.
-    129 (2007) 430-440, doi:10.1115/1.2720924, who fit the baseline and the contact separately. The
-    uncertainty is that of linearised least squares with noise of equal size at each point. It does
-    not know of adhesion, roughness, or a wrong exponent; and it is large where the curve starts in
-    contact.
+    A variant, devised here, of the sequential search of Lin, Dimitriadis and Horkay, J. Biomech.
+    Eng. 129 (2007) 430-440, doi:10.1115/1.2720924, who fit the baseline and the contact separately.
+    The uncertainty is that of linearised least squares with noise of equal size at each point. It
+    does not know of adhesion, roughness, or a wrong exponent; and it is large where the curve
+    starts in contact.
 
     Examples
     --------

@@ -120,7 +120,7 @@ def fit(
     A parameter is identifiable if its 95 % interval by profile likelihood closes within the bounds
     and is at most a factor of exp(0.5) either way, if this agrees with the linear interval within a
     factor of 1.5, and if no other start leads to a minimum outside of it with a χ² that is less
-    than 3.84 above the least. These criteria are nacre's own.
+    than 3.84 above the least. These criteria were chosen here.
 
     Moduli, thicknesses, radii and the work of adhesion are fitted by their logarithms.
 

@@ -9,8 +9,8 @@
 //!
 //! D_ab depends on kL and ν. It is tabulated for a, b ≤ 7, which leaves 5e-5 of the displacement; above kL = 15,
 //! it is less than 1e-6. It follows from one equation as that of the quarter space: a half-space under a pressure
-//! that is even and periodic, and a plate under tractions on its faces (`tests/data/make_plate.py`). The method is
-//! nacre's own.
+//! that is even and periodic, and a plate under tractions on its faces (`tests/data/make_plate.py`). The method was
+//! derived here.
 //!
 //! Below kL = 0.1, D_00 and D_11 grow as 1/k: long waves stretch and bend a plate of plane stress. The rest is a
 //! logarithm, that of the quarter spaces, and what goes on from the table.

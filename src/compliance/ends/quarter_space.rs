@@ -169,7 +169,7 @@ pub(super) fn coefficients(
 /// d ≤ x ≤ d + l, |y| ≤ b of its surface z = 0.
 ///
 /// The displacement is that of a half-space under the load and its mirror image, and of what keeps the face
-/// free. The reduction to one equation is nacre's own, after Hetényi, J. Appl. Mech. 37 (1970) 289,
+/// free. The reduction to one equation was derived here, after Hetényi, J. Appl. Mech. 37 (1970) 289,
 /// doi:10.1115/1.3408508.
 ///
 /// ```

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! after Hetényi, J. Appl. Mech. 37 (1970) 289, doi:10.1115/1.3408508, who iterates; that one linear equation
-//! remains, and T in closed form, are nacre's own. With lengths in units of 1/k, one equation serves all k. It
+//! remains, and T in closed form, were derived here. With lengths in units of 1/k, one equation serves all k. It
 //! is solved by Nyström's method on panels that are uniform in ln x.
 
 use std::collections::HashMap;

@@ -11,7 +11,7 @@
 //! transform ([`crate::compliance::kernel::series`]). The first term has Love's closed form over a cell
 //! ([`crate::compliance::kernel::rectangle`]); the others are tabulated, with their means η(r) = 1/r ∫₀ʳ K r' dr',
 //! and integrated over the cell ([`crate::compliance::kernel::quadrature`]). The image and the adaptive sampling of
-//! the remainder are nacre's own.
+//! the remainder were derived here.
 //!
 //! In line contact, strips are endless along x, in plane strain. The displacement of a strip \[0, Y\] under unit pressure,
 //! at its end, is the limit of the sum over the corners of an endless rectangle. With A of the substrate and the datum at
@@ -21,7 +21,7 @@
 //! G(Y) = Y [A/π (1 + ln ℓ/Y) + 2 ∫₀^∞ (η(Y cosh u) − η(∞)) du]        η(∞) = (A − A1)/2π
 //! ```
 //!
-//! and C(y) = G(y + dy/2) − G(y − dy/2). The formula is nacre's own.
+//! and C(y) = G(y + dy/2) − G(y − dy/2). The formula was derived here.
 
 use std::f64::consts::PI;
 

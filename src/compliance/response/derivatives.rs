@@ -1,4 +1,4 @@
-//! Derivatives of the normal response of a half-space with respect to its numbers. The formulas are nacre's own.
+//! Derivatives of the normal response of a half-space with respect to its numbers. The formulas were derived here.
 //!
 //! The recursion of [`response`](crate::compliance::response) makes α c11 = tᵀ C t of tractions t that a unit pressure on the
 //! surface sends down. A change of the body changes it by the energies of the states that it has anyway (reciprocity),

@@ -1,4 +1,4 @@
-//! Frequency response below the surface. The downward step through the layers is nacre's own, as the
+//! Frequency response below the surface. The downward step through the layers was derived here, as the
 //! upward one is.
 //!
 //! Everything is per unit load on the surface: pressure P0, in-plane traction T0 = −i q_L, twist

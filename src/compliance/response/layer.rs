@@ -1,4 +1,4 @@
-//! One layer as an element between its two faces: the step of the recursion, which is nacre's own.
+//! One layer as an element between its two faces: the step of the recursion, which was derived here.
 
 use crate::model::body::{Interface, Substrate};
 use crate::model::material::Elastic;

@@ -49,7 +49,7 @@
 //! Where the gap has a corner at which its slope grows by Δs, as a profile of straight lines has between two of them,
 //! the pressure rises as (E* Δs/2π) ln(2a/|x|): Johnson, Contact Mechanics (1985), §5.2,
 //! doi:10.1017/CBO9781139171731. It has no limit, and cells half as long bear E* Δs ln 2/2π more. The error is what
-//! cells four times shorter would add to the peak. The estimate is nacre's own.
+//! cells four times shorter would add to the peak. The estimate was derived here.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 

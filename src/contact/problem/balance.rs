@@ -1,4 +1,4 @@
-//! Force and moments brought to their targets: a method of nacre's own.
+//! Force and moments brought to their targets; the method was derived here.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Preconditioned conjugate gradients, deflated by the loaded degrees of freedom: a method of nacre's own
+//! Preconditioned conjugate gradients, deflated by the loaded degrees of freedom; developed here
 //! from known parts.
 //!
 //! On the contact C the gap must vanish: K p = Bλ − h. The residual r = Bλ − h − K p is preconditioned by
