@@ -102,7 +102,10 @@ def _table(
     table = Text.of(path).chosen(None)
     values, words = np.array(table.rows), first_words(table.headings)
     if len(values) < 2 or table.width < 2:
-        raise ValueError(f"{str(path)!r} must have two columns, positions and drops or heights")
+        raise ValueError(
+            f"{str(path)!r} must have two columns, positions and drops or heights, of two rows or "
+            f"more, got {table.width} of {len(values)}"
+        )
     counted = int(table.width > 2 and is_counter(values[:, 0]) and not words)
     first = _named(words, AXES[0])
     place = _column(path, table, "x", x, first if first is not None else counted)

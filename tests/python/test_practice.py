@@ -506,6 +506,7 @@ def test_a_profile_is_read(kind: str, tmp_path: Path) -> None:
         ("a.csv", "1,2\n2,3\n3,5\n", {"drop": 4}, "drop= must name a column .*, got 4: it has 2"),
         ("a.csv", "1,2\n2,3\n2,5\n", {"unit": "mm", "drop": 1}, "0.002 m comes twice"),
         ("a.csv", "1,2\n2,3\n", {"drop": 1, "height": 1}, "drop and height must not both be given"),
+        ("a.csv", "a b\n1 2\n", {}, "two columns, .* of two rows or more, got 2 of 1"),
         ("a.prr", "header.begin\n", {}, "points between point.begin and point.end"),
         ("a.prr", simpack(0, 1.0).replace("units", "other"), {}, "must name its unit of length"),
     ],
