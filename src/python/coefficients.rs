@@ -2,15 +2,14 @@
 //! `nacre.influence_coefficients`, `nacre.graded_layers` and `nacre.Convolution`.
 
 use numpy::{IntoPyArray, PyArray2};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::arguments::{Real, Repr, count, items, real_array};
 use super::background::{self, Caller};
 use super::bodies::{PyLayer, body, substrate};
 use super::grid::PyGrid;
-use super::words::{self, REFINEMENT};
-use crate::compliance::influence;
+use crate::compliance::influence::{self, Method};
 use crate::compliance::response::{self, Compliance};
 
 mod convolution;
@@ -120,6 +119,25 @@ pub(super) fn surface_compliance<'py>(
     class.call1(components)
 }
 
+/// Refinement of the spectral mesh where none is given.
+const REFINEMENT: usize = 4;
+
+/// Method with that name and that refinement.
+fn method(word: &str, refinement: usize) -> PyResult<Method> {
+    Ok(match word {
+        "exact" => Method::Exact,
+        "plain" => Method::Plain { refinement },
+        "difference" => Method::Difference { refinement },
+        "image" => Method::Image { refinement },
+        "spectral" => Method::Spectral,
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "method must be \"exact\", \"plain\", \"difference\", \"image\" or \"spectral\", got {other:?}"
+            )));
+        }
+    })
+}
+
 /// Displacement at offsets from a cell under unit pressure.
 ///
 /// Parameters
@@ -167,7 +185,7 @@ pub(super) fn influence_coefficients<'py>(
     refinement: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let refinement = refinement.map_or(Ok(REFINEMENT), |r| count("refinement", 1, r))?;
-    let method = words::method(method, refinement)?;
+    let method = self::method(method, refinement)?;
     let coefficients = background::run(py, None, move |_: &mut Caller<()>| {
         influence::influence_coefficients(&body, &grid.0, method)
     })??;

@@ -10,6 +10,6 @@ mod quadric;
 mod roller;
 mod surface;
 
-pub(super) use base::{PyShape, Shape, register, shape};
+pub(super) use base::{Shape, register, shape};
 pub(super) use logarithmic::PyLogarithmicProfile;
 pub(super) use profiles::PySampledProfile;
