@@ -5,7 +5,7 @@ use std::sync::Arc;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::arguments::{Given, read_only, real_array, real_matrix};
 use super::background::{self, Caller};
@@ -24,7 +24,9 @@ struct ReportData {
     solver: Option<Solver>,
     iterations: usize,
     convolutions: f64,
+    #[serde(deserialize_with = "or_infinite")]
     residual: f64,
+    #[serde(deserialize_with = "or_infinite")]
     overlap: f64,
     balance: Balance,
     discretisation: Option<Discretisation>,
@@ -33,6 +35,11 @@ struct ReportData {
     rolling_direction: Option<[f64; 2]>,
     tolerance: f64,
     seconds: f64,
+}
+
+/// Number that is infinite where it is null, as JSON has it.
+fn or_infinite<'de, D: Deserializer<'de>>(data: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(data)?.unwrap_or(f64::INFINITY))
 }
 
 /// How free ends are counted, as data.
@@ -87,8 +94,8 @@ fn report_of((told, grid, body, counterbody): ReportParts) -> PyResult<Report> {
     let of: ReportData = read("Report", &told)?;
     for (name, value) in [
         ("convolutions", of.convolutions),
-        ("residual", of.residual),
-        ("overlap", of.overlap),
+        ("residual", of.residual.min(f64::MAX)),
+        ("overlap", of.overlap.min(f64::MAX)),
         ("tolerance", of.tolerance),
         ("seconds", of.seconds),
     ] {
