@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,6 +28,12 @@ if TYPE_CHECKING:
 Parts = tuple[str, core.Grid, core.HalfSpace, core.HalfSpace | None]
 """JSON text of a report, its grid and its bodies."""
 
+BODIES: dict[str, Any] = {
+    "grid": core.Grid,
+    "body": core.HalfSpace,
+    "counterbody": core.HalfSpace | None,
+}
+"""Classes of what stands beside the numbers of a report."""
 NESTED = {
     "balance": ("force", "moment"),
     "motion": ("load", "approach", "eccentricity", "moment", "tilt"),
@@ -34,6 +41,10 @@ NESTED = {
 """Tables in the state of a report, each with its keys."""
 OPTIONAL = ("hardness", "indentation", "coefficients")
 """Fields in the state of a solution that has them."""
+ENDLESS = ("residual", "overlap")
+"""Numbers of a report that may be infinite, of which JSON has none."""
+TOLD = ("free_ends", "warning_kinds", "_told")
+"""Fields of a report that follow from its state."""
 
 
 class Numbers(TypedDict):
@@ -148,41 +159,33 @@ class Report(Result):
     @classmethod
     def _of(cls, parts: Parts) -> Self:
         """Return the report of the parts that the compiled module hands over."""
-        text, grid, body, counterbody = parts
+        text, *bodies = parts
         told = json.loads(text)
-        state = told["data"]
-        fields = tuples(state)
-        balance = fields["balance"]
-        return cls(
-            **fields
-            | {
-                "balance": (balance["force"], *balance["moment"]),
-                "discretisation": state["discretisation"],
-                "free_ends": told["free_ends"],
-                "warnings": told["messages"],
-                "warning_kinds": [warning["kind"] for warning in state["warnings"]],
-                "motion": {
-                    name: value
-                    for name, value in fields["motion"].items()
-                    if value not in (None, (None, None))
-                },
-            },
-            grid=grid,
-            body=body,
-            counterbody=counterbody,
-            _told=text,
-        )
+        state = cls._data(told)
+        balance, motion = state["balance"], tuples(state["motion"])
+        found = {
+            "balance": (balance["force"], *balance["moment"]),
+            "free_ends": told["free_ends"],
+            "warnings": told["messages"],
+            "warning_kinds": [warning["kind"] for warning in state["warnings"]],
+            "motion": {k: v for k, v in motion.items() if v not in (None, (None, None))},
+            "rolling_direction": tuples(state["rolling_direction"]),
+        }
+        return cls(**state | found | dict(zip(BODIES, bodies, strict=True)), _told=text)
+
+    @staticmethod
+    def _data(told: dict[str, Any]) -> dict[str, Any]:
+        """Return the state, but for grid and bodies, in what the compiled module tells."""
+        data: dict[str, Any] = told["data"]
+        return data | {name: math.inf for name in ENDLESS if data[name] is None}
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [
-            name for name in super()._names() if name not in ("free_ends", "warning_kinds", "_told")
-        ]
+        return [name for name in super()._names() if name not in TOLD]
 
     def _state(self) -> dict[str, Any]:
-        bodies = {name: getattr(self, name) for name in ("grid", "body", "counterbody")}
-        state: dict[str, Any] = json.loads(self._told)["data"]
-        return state | {name: values.encode(value) for name, value in bodies.items()}
+        bodies = {name: values.encode(getattr(self, name)) for name in BODIES}
+        return self._data(json.loads(self._told)) | bodies
 
     @classmethod
     def _parts(cls, data: Any) -> Parts:
@@ -190,18 +193,17 @@ class Report(Result):
         if not isinstance(data, Mapping):
             raise ValueError(f"report must be a dict of named fields, got {data!r}")
         state = values.named("report", data, cls._names(), cls._LATER)
-        kinds = {"grid": core.Grid, "body": core.HalfSpace, "counterbody": core.HalfSpace | None}
-        made = {name: values.decode(state[name]) for name in kinds}
-        for name, kind in kinds.items():
-            if not isinstance(made[name], kind):
-                raise ValueError(
-                    f'report: the value of the key "{name}" does not fit: {state[name]!r}'
-                )
+        made: Any = []
+        for name, kind in BODIES.items():
+            given = state.pop(name)
+            if not isinstance(value := values.decode(given), kind):
+                raise ValueError(f'report: the value of the key "{name}" does not fit: {given!r}')
+            made.append(value)
         for name, keys in NESTED.items():
             if isinstance(state[name], Mapping):
                 state[name] = values.named(name, state[name], keys)
-        rest = {name: value for name, value in state.items() if name not in kinds}
-        return as_text("Report", rest), made["grid"], made["body"], made["counterbody"]
+        state |= {name: None for name in ENDLESS if state[name] == math.inf}
+        return as_text("Report", state), *made
 
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
