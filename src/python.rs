@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
 //! The files in their order; each imports from earlier ones only: errors, arguments, background, data, bodies,
-//! grid, shapes, coefficients, solved, contact, friction, stress, gradient.
+//! grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient.
 
 use pyo3::prelude::*;
 
@@ -15,6 +15,7 @@ mod errors;
 mod friction;
 mod gradient;
 mod grid;
+mod hertz;
 mod shapes;
 mod solved;
 mod stress;
@@ -42,7 +43,8 @@ mod core {
     use super::gradient::PyLinear;
     #[pymodule_export]
     use super::grid::PyGrid;
-    use super::shapes::hertz::{PyEllipse, PyLine, PyPoint, contact_modulus, equivalent_radius};
+    #[pymodule_export]
+    use super::hertz::{PyHertz, contact_modulus, equivalent_radius};
     #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
@@ -62,12 +64,6 @@ mod core {
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
-        // The names of `nacre.hertz`.
-        module.setattr("Point", module.py().get_type::<PyPoint>())?;
-        module.setattr("Line", module.py().get_type::<PyLine>())?;
-        module.setattr("Ellipse", module.py().get_type::<PyEllipse>())?;
-        module.setattr("equivalent_radius", wrap_pyfunction!(equivalent_radius, module)?)?;
-        module.setattr("contact_modulus", wrap_pyfunction!(contact_modulus, module)?)?;
         // The names of `nacre.indent`.
         let py = module.py();
         module.setattr("Tip", py.get_type::<indent::PyTip>())?;

@@ -20,10 +20,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from nacre import types as types
+from nacre._compliance import (
+    Convolution,
+    frequency_response,
+    graded_layers,
+    influence_coefficients,
+    surface_compliance,
+)
 from nacre._core import (
     RIGID,
     ConvergenceError,
-    Convolution,
     Cylinder,
     Elastic,
     FlatPunch,
@@ -38,10 +44,6 @@ from nacre._core import (
     SampledProfile,
     Sphere,
     __version__,
-    frequency_response,
-    graded_layers,
-    influence_coefficients,
-    surface_compliance,
 )
 from nacre._profiles import read_profile
 from nacre.contact import Contact, roll, slide, solve

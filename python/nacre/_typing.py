@@ -8,10 +8,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+import nacre._core as core
+
 Field = npt.NDArray[np.float64]
 Real = npt.NDArray[np.floating | np.integer | np.bool]
 Vector = Real | Sequence[float]
 Matrix = Real | Sequence[Sequence[float] | Real]
+Body = core.HalfSpace | core.Elastic
 Pair = tuple[float, float]
 Along = tuple[float | None, float | None]
 """Values along x and y; None where one is not given."""

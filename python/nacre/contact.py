@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._friction_result import FrictionReport, FrictionSolution
-from nacre._typing import Algorithm, Along, Field, Matrix
+from nacre._typing import Algorithm, Along, Body, Field, Matrix
 from nacre.solution import Report, Solution
 
 MOTION = ("load", "approach", "eccentricity", "moment", "tilt")
@@ -20,7 +20,6 @@ STEP = (*MOTION, "friction", "shift", "force", "twist", "torque")
 """Keywords of a step of a history."""
 SHOWN = 1000
 """Largest number of coefficients that a plan prints."""
-Body = core.HalfSpace | core.Elastic
 Progress = Callable[[Report], object]
 Told = Callable[[int, FrictionReport], object]
 """Function that is told the number of a step and its report."""

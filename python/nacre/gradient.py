@@ -169,6 +169,7 @@ class Gradient:
     value: float
     """Value of the output."""
     _values: dict[str, float]
+    """Derivatives by path."""
     margin: float
     """How far the contact is from one of other cells, where derivatives jump.
 
@@ -178,10 +179,14 @@ class Gradient:
     warnings: list[str]
     """What makes the derivatives doubtful: a list of sentences, usually empty."""
     gap: Field
-    """Derivative with respect to the undeformed gap of each cell ``(nx, ny)``; heights count
-    ``-gap``."""
+    """Derivative with respect to the undeformed gap of each cell, ``(nx, ny)``.
+
+    Heights count ``-gap``.
+    """
     _linear: core.Linear
+    """Linearisation of the compiled module, for steps that are asked for later."""
     _made: Made
+    """Call that made it."""
 
     @cached_property
     def valid_step(self) -> dict[str, float]:
@@ -263,9 +268,12 @@ class Direction:
     tilt: Pair
     """Change of the tilts."""
     valid_step: float
-    """Largest step along the direction, of either sign, for which the contact keeps its cells to
-    first order."""
+    """Largest step along the direction for which the contact keeps its cells to first order.
+
+    Steps may have either sign.
+    """
     _made: Made
+    """Call that made it."""
 
     def __eq__(self, other: object) -> bool:
         """Return whether all changes are equal, to the bit."""

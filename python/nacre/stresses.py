@@ -436,9 +436,13 @@ class StressPlan:
     """
 
     _plan: core.StressPlan = field(compare=False)
-    _solution: Any  # pickled in place of the plan
+    """Plan of the compiled module."""
+    _solution: Any
+    """Solution, which is pickled in place of the plan."""
     _member: Member
+    """Body of the solution."""
     _threads: int | None
+    """Number of threads that was asked for."""
 
     @property
     def body(self) -> core.HalfSpace:

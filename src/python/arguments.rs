@@ -191,11 +191,15 @@ pub(super) fn mapped<'py>(
     object: &Bound<'py, PyAny>,
     value: impl Fn(f64) -> f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let values = real_array(name, object)?.mapv(value);
-    if values.ndim() == 0 {
-        return Ok(values.sum().into_pyobject(object.py())?.into_any());
+    shaped(object.py(), real_array(name, object)?.mapv(value))
+}
+
+/// Array for Python, or a number where it has no dimension.
+pub(super) fn shaped(py: Python<'_>, values: ArrayD<f64>) -> PyResult<Bound<'_, PyAny>> {
+    match values.ndim() {
+        0 => Ok(values.sum().into_pyobject(py)?.into_any()),
+        _ => Ok(values.into_pyarray(py).into_any()),
     }
-    Ok(values.into_pyarray(object.py()).into_any())
 }
 
 /// Array (nx, ny) of f64 with the numbers of `object`.

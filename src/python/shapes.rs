@@ -1,8 +1,7 @@
-//! Shapes: `nacre.Shape`, its kinds, the profiles of rollers, and closed forms for their contact.
+//! Shapes: `nacre.Shape`, its kinds, the profiles of rollers.
 
 mod base;
 mod height_map;
-pub(super) mod hertz;
 pub(super) mod indent;
 mod logarithmic;
 mod profiles;
