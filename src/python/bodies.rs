@@ -4,7 +4,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyList, PyTuple};
+use pyo3::types::PyTuple;
 
 use super::arguments::{Real, Repr, ends, items, word, word_of};
 use super::value::{self, Arguments, Value, class};
@@ -245,7 +245,7 @@ impl Value for PyHalfSpace {
         let layers = self.0.layers().iter().cloned().map(PyLayer);
         let mut arguments = vec![
             ("substrate", base(py, self.0.substrate())?),
-            ("layers", PyList::new(py, layers)?.into_any()),
+            ("layers", PyTuple::new(py, layers)?.into_any()),
         ];
         if self.0.ends() != [None; 2] {
             let ends = <(Option<f64>, Option<f64>)>::from(self.0.ends());

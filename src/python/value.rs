@@ -36,9 +36,14 @@ pub(super) fn repr<V: Value>(value: &V, py: Python<'_>) -> PyResult<String> {
 pub(super) fn call_text(called: &str, arguments: &Arguments, unnamed: usize) -> PyResult<String> {
     let mut shown = Vec::new();
     for (number, (name, argument)) in arguments.iter().enumerate() {
-        let text = match argument.cast::<PyArrayDyn<f64>>() {
-            Ok(array) => array_repr(argument.py(), array.to_owned_array())?,
-            Err(_) => argument.repr()?.to_string(),
+        let text = if let Ok(array) = argument.cast::<PyArrayDyn<f64>>() {
+            array_repr(argument.py(), array.to_owned_array())?
+        } else if let Ok(layers) = argument.cast::<PyTuple>()
+            && layers.iter().all(|layer| layer.hasattr("thickness").unwrap_or(false))
+        {
+            layers.to_list().repr()?.to_string()
+        } else {
+            argument.repr()?.to_string()
         };
         match text.as_str() {
             "None" | "(None, None)" | "(False, False)" => {}
