@@ -22,7 +22,6 @@ mod stages;
 
 pub(crate) use parity::{Keep, KernelRows, QuarterTransform, Term, Transformed};
 pub(crate) use spectrum::{EvenSpectrum, ParitySpectrum};
-pub(crate) use stages::HalfSpectra;
 
 /// Columns that are transformed together. Four complex numbers fill a cache line of 64 bytes, and
 /// sixteen columns of a few thousand points stay in a second-level cache of 1 MiB or more. The value

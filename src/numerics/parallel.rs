@@ -16,7 +16,7 @@ mod threads;
 pub(crate) use lanes::{
     Lanes, ONE, ZERO, all, dot, sum, update, update_with_largest, where_positive,
 };
-pub(crate) use rows::{Row, Rows, Total, Written};
+pub(crate) use rows::{Row, Rows, Total};
 pub(crate) use threads::{LEAF, SetOnDrop, Threads, each_chunk, each_row, join, number};
 
 /// Bytes of `arrays` arrays of the cells of a grid as transforms keep them: whole blocks of columns, at lengths that are
