@@ -35,7 +35,9 @@ use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
 use crate::contact::solver::linear_cg::Conjugacy;
 use crate::contact::solver::stagnation::Course;
 use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, active_set};
-use crate::numerics::parallel::{ONE, Rows, ZERO, all, dot, sum, update, update_with_largest};
+use crate::numerics::parallel::{
+    ONE, Rows, Total, ZERO, all, dot, sum, update, update_with_largest,
+};
 
 /// Approximations of the convolution, periodic on the window.
 pub(crate) struct Approximation {
@@ -275,9 +277,14 @@ impl<'a> Preconditioned<'a> {
         let [i0, i1, i2] = self.loaded_images();
         let inputs = [p, &self.r, &self.r_before, &self.z, i0, i1, i2];
         let [of_z, of_images @ ..] = self.rows.each(inputs, [], |row, inputs, []| {
-            let [p, r, before, fields @ ..] = inputs;
+            let [p, r, before, z, images @ ..] = inputs;
             let here = [p, bounds.row(row.number), r, before];
-            fields.map(|field| freedoms.products(row, here, field))
+            let mut products: [Products; 4] = Total::ZERO;
+            products[0] = freedoms.products(row, here, z);
+            for (k, image) in images.into_iter().enumerate().filter(|(k, _)| freedoms.loaded[*k]) {
+                products[k + 1] = freedoms.products(row, here, image);
+            }
+            products
         });
         let matrix = [0, 1, 2].map(|row| of_images.map(|image| image.moments[row]));
         let factors = freedoms.solve(&matrix, of_z.moments);
@@ -334,8 +341,9 @@ impl<'a> Preconditioned<'a> {
         };
         operator.apply_slices(&self.direction, &mut self.response, &mut self.workspace);
         self.work += operator.work();
-        let curvature = ratio * self.product(&self.direction, &self.response);
-        let Some(length) = best_length(slope, curvature) else {
+        let fields = [&self.direction[..], &self.response];
+        let [curvature] = self.rows.each(fields, [], |_, fields, []| sum(fields, |[d, k]| [d * k]));
+        let Some(length) = best_length(slope, ratio * curvature) else {
             return false;
         };
         let (inputs, outputs) = ([&p[..], &self.direction], [&mut self.change[..]]);
@@ -368,8 +376,11 @@ impl<'a> Preconditioned<'a> {
         if !approximate {
             return true;
         }
-        let curvature = self.product(&self.change, &self.response);
-        let best = best_length(self.product(&self.change, &self.r), curvature).unwrap_or(0.0);
+        let fields = [&self.change[..], &self.r, &self.response];
+        let [slope, curvature] = self.rows.each(fields, [], |_, fields, []| {
+            sum(fields, |[change, r, response]| [change * r, change * response])
+        });
+        let best = best_length(slope, curvature).unwrap_or(0.0);
         let of_ratio = best.clamp(CHANGE_OF_RATIO[0], CHANGE_OF_RATIO[1]);
         self.curvature_ratio = (ratio / of_ratio).clamp(RATIO[0], RATIO[1]);
         // Where the plan was worth little, an exact step follows.
@@ -397,16 +408,126 @@ impl<'a> Preconditioned<'a> {
             1.0
         })
     }
-
-    /// a · b
-    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
-        let [product] = self.rows.each([a, b], [], |_, [a, b], []| sum([a, b], |[a, b]| [a * b]));
-        product
-    }
 }
 
 /// The length of the step to the least energy; `None` where the energy does not fall.
 fn best_length(slope: f64, curvature: f64) -> Option<f64> {
     let length = slope / curvature;
     (slope > 0.0 && curvature > 0.0 && length.is_finite()).then_some(length)
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array2;
+
+    use super::{Approximation, Preconditioned};
+    use crate::compliance::convolution::Convolution;
+    use crate::compliance::influence::{Method, influence_coefficients};
+    use crate::compliance::response::Body;
+    use crate::contact::options::Motion;
+    use crate::contact::problem::bounds::{Bounds, Hardness};
+    use crate::contact::problem::freedoms::Freedoms;
+    use crate::contact::problem::{LocalDisplacement, Problem};
+    use crate::error::Result;
+    use crate::model::body::{HalfSpace, Layer};
+    use crate::model::grid::Grid;
+    use crate::model::material::Elastic;
+
+    fn largest(values: impl Iterator<Item = f64>) -> f64 {
+        values.fold(0.0, |a, b| a.max(b.abs()))
+    }
+
+    /// In each iteration, until the quality is 1e-10: u = K p, though it is a sum over the steps; a direction that is
+    /// not conjugate changes neither force nor moments, where the images are those of the contact; r is the overlap on the contact;
+    /// and the pressure is within its bounds and in balance. To the rounding of some thousand cells.
+    #[test]
+    fn each_iteration_keeps_its_invariants() -> Result<()> {
+        let rough = |x: f64, y: f64| {
+            let height = ((127.1 * x + 311.7 * y).sin() * 43758.5).fract();
+            if x.hypot(y) > 1.3 { f64::INFINITY } else { 3e-4 * (x * x + y * y) + 1e-4 * height }
+        };
+        let crowned = |x: f64, y: f64| 1e-3 * y * y + 2e-4 * (x.abs() - 0.5).max(0.0).powi(2);
+        let coat = Layer::new(Elastic::new(4.0, 0.2)?, 0.4)?;
+        let coated = Body::from(HalfSpace::new(Elastic::new(1.0, 0.3)?, [coat])?);
+        let bare = Body::from(Elastic::new(1.0, 0.0)?);
+        let turned = Motion { moment: [Some(3e-5), Some(-5e-6)], ..Motion::load(1e-4) };
+        let tilting = Motion { eccentricity: [Some(0.31), Some(-0.02)], ..Motion::load(1e-3) };
+        let tilted = Motion { tilt: [Some(2e-4), Some(-1e-4)], ..Motion::approach(5e-4) };
+        let gaps: [&dyn Fn(f64, f64) -> f64; 2] = [&rough, &crowned];
+        for (body, motion, gap, limit) in [
+            (&bare, Motion::load(1e-3), gaps[0], f64::INFINITY),
+            (&coated, turned, gaps[0], f64::INFINITY),
+            (&bare, tilting, gaps[1], f64::INFINITY),
+            (&coated, Motion::load(1e-3), gaps[0], 4e-3),
+            (&bare, tilted, gaps[1], f64::INFINITY),
+        ] {
+            let grid = Grid::new([60, 55], [3.0, 2.5])?;
+            let [nx, ny] = grid.shape();
+            let coefficients = influence_coefficients(body.clone(), &grid, Method::Exact)?;
+            let convolution = Convolution::plan(&coefficients, Some(1))?;
+            let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
+            let approximation = Approximation { inverse, periodic };
+            let freedoms = Freedoms::new(&motion, &grid)?;
+            let (x, y) = (grid.x(), grid.y());
+            let mut h = Array2::from_shape_fn((nx, ny), |(i, j)| gap(x[i], y[j]));
+            freedoms.prescribe(&mut h);
+            let h = h.into_raw_vec_and_offset().0;
+            let hardness = Hardness::Uniform(limit);
+            let bounds =
+                if limit.is_finite() { Bounds::of(&hardness, ny) } else { Bounds::none(ny) };
+            let problem = Problem {
+                convolution: &convolution,
+                freedoms: &freedoms,
+                gap: &h,
+                local: &LocalDisplacement::new(&[body], &grid),
+                bounds: &bounds,
+            };
+            let mut p: Vec<f64> = h.iter().map(|h| f64::from(u8::from(h.is_finite()))).collect();
+            p.iter_mut().for_each(|p| *p *= 1e-4);
+            assert!(freedoms.balance(&mut p, &bounds));
+            let mut solver = Preconditioned::new(&problem, &approximation);
+            solver.start(&p);
+            let mut workspace = convolution.workspace();
+            let (mut u, mut truncated) = (vec![0.0; p.len()], 0);
+            for iteration in 0.. {
+                assert!(iteration < 200, "{motion:?}: not converged");
+                let quality = solver.assess(&p);
+                problem.apply(&p, &mut u, &mut workspace);
+                let scale = largest(u.iter().copied());
+                let apart = largest(u.iter().zip(&solver.u).map(|(a, b)| a - b));
+                assert!(apart <= 1e-12 * scale, "{motion:?} {iteration}: {apart:e}");
+                freedoms.for_each(solver.lambda, |k, b| {
+                    let overlap = b - h[k] - u[k];
+                    if bounds.is_free(k, p[k]) {
+                        assert!((solver.r[k] - overlap).abs() <= 1e-12 * scale);
+                    } else if p[k] <= 0.0 {
+                        assert!((solver.r[k] - overlap.max(0.0)).abs() <= 1e-12 * scale);
+                    }
+                });
+                if quality.meets(1e-10) {
+                    break;
+                }
+                // A conjugate direction loses the balance of the cells that left since the last one.
+                let fresh = iteration % 2 == 0;
+                if fresh {
+                    solver.conjugacy.restart();
+                }
+                assert!(solver.step(&mut p), "{motion:?} {iteration}");
+                let size: f64 = solver.direction.iter().map(|d| d.abs()).sum();
+                let changed = freedoms.moments(&solver.direction);
+                for k in (0..3).filter(|&k| fresh && !solver.stale && freedoms.loaded[k]) {
+                    assert!(
+                        changed[k].abs() <= 1e-13 * size,
+                        "{motion:?} {iteration}: {k} {:e}",
+                        changed[k] / size
+                    );
+                }
+                assert!((0..p.len()).all(|k| (0.0..=bounds.limit(k)).contains(&p[k])));
+                assert!(freedoms.on_target(freedoms.moments(&p)), "{motion:?} {iteration}");
+                truncated += usize::from(solver.losing);
+            }
+            assert!(truncated > 0, "{motion:?}: no step on which cells leave");
+        }
+        Ok(())
+    }
 }
