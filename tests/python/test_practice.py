@@ -28,6 +28,8 @@ from nacre.surfaces import read_profile
 Array = npt.NDArray[np.float64]
 
 CASES = Path(__file__).parents[1] / "data" / "cases"
+FILM = nacre.HalfSpace(nacre.RIGID, [nacre.Layer(nacre.Elastic(3e9, 0.4), 1e-3)])
+STEEL = nacre.Elastic(210e9, 0.3)
 DIGITS = 1e-5
 """Relative error of right values, which were printed with six digits and more."""
 
@@ -659,3 +661,56 @@ def test_labelled_axes_are_put_in_order() -> None:
         plain("heights", image.rename(y="z"))
     with pytest.raises(TypeError, match="with a unit"):
         plain("heights", image.assign_attrs(units="µm"))
+
+
+# Solves.
+
+
+def printed(solution: nacre.Solution, name: str) -> str:
+    """Return the value of a row of the printed solution."""
+    rows = [line for line in str(solution).splitlines() if line.startswith(f"{name}  ")]
+    assert len(rows) == 1
+    return rows[0].removeprefix(name).strip()
+
+
+@MARK(
+    ("grid", "body", "counterbody", "datum"),
+    [
+        (nacre.Grid.line(256, 1e-3), STEEL, STEEL, "1 mm"),
+        (nacre.Grid.line(384, 1.5e-3), STEEL, None, "1.5 mm"),
+        (nacre.Grid.line(256, 1e-3), FILM, STEEL, "1 mm"),
+        (nacre.Grid.line(256, 1e-3), FILM, None, None),
+        (nacre.Grid((8, 512), (1e-3, 2e-3), periodic=(True, False)), STEEL, None, "2 mm"),
+        (nacre.Grid((8, 512), (1e-3, 2e-3), periodic=(True, False)), FILM, None, None),
+        (nacre.Grid((64, 64), (1e-3, 1e-3)), STEEL, None, None),
+    ],
+)
+def test_the_approach_of_a_line_contact_names_its_datum(
+    grid: nacre.Grid, body: nacre.Elastic, counterbody: nacre.Elastic | None, datum: str | None
+) -> None:
+    shape = nacre.Cylinder(10e-3) if sum(grid.shape) > 128 else nacre.Sphere(10e-3)
+    load = 1e4 if grid.is_line else 10.0
+    row = printed(nacre.solve(shape, body, counterbody, load=load, grid=grid), "approach")
+    if datum is None:
+        assert "away" not in row
+    else:
+        assert row.endswith(f"m, from the surface {datum} away")
+        assert "±" not in row
+
+
+def test_two_rollers_approach_as_johnson_says() -> None:
+    # Johnson (1985), section 5.6, from the approach of a grid: theory/influence.md, eq. (datum).
+    load, radii, width = 1e5, (15e-3, 30e-3), 2e-3
+    bodies = (STEEL, nacre.Elastic(100e9, 0.2))
+    radius = nacre.hertz.equivalent_radius(*radii)
+    hertz = nacre.hertz.Line(radius, nacre.hertz.contact_modulus(*bodies), load)
+    solution = nacre.solve(
+        nacre.Cylinder(radius), *bodies, load=load, grid=nacre.Grid.line(512, width)
+    )
+    approach, expected = solution.approach, 0.0
+    for one, of in zip(bodies, radii, strict=True):
+        compliance = load * (1 - one.poisson**2) / (np.pi * one.young)
+        approach += 2 * compliance * np.log(2 * of / (np.e * width))
+        expected += compliance * (2 * np.log(4 * of / hertz.half_width) - 1)
+    # The contact is 85 cells wide, of which the rim may err by a part.
+    assert abs(approach / expected - 1) < 1e-4
