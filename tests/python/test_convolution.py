@@ -1,6 +1,5 @@
 """The convolution is the double sum and SciPy's operator; compliances are the closed forms."""
 
-
 import numpy as np
 import numpy.typing as npt
 import pytest
