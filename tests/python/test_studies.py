@@ -613,7 +613,7 @@ nacre.sweep(ball, parameters, outputs=[cases.logged, "approach"], store="study.n
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
-    count, kills = 200, 3
+    count, kills = 110, 2
     (tmp_path / "cases.py").write_text(MODULE)
     (tmp_path / "script.py").write_text(KILLED)
     store, journal, log = (tmp_path / name for name in ("study.nc", "study.journal", "cases.log"))
@@ -625,7 +625,7 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
     rng = random.Random(7)
     kept: list[str] = []
     for kill in range(kills):
-        target = len(kept) + rng.randint(5, 50)
+        target = len(kept) + rng.randint(5, 45)
         with subprocess.Popen(command, cwd=tmp_path) as process:
             while process.poll() is None and len(finished()) < target:
                 time.sleep(1e-4)
@@ -645,7 +645,7 @@ def test_a_killed_study_loses_no_case_and_repeats_none(tmp_path: Path) -> None:
     assert sum(solved.values()) - count <= kills * (os.cpu_count() or 1)
     study = xarray.load_dataset(store, engine="h5netcdf")
     assert (study.error == "").all()
-    for load in (5.0, 5.5, 6.99):
+    for load in (5.0, 5.5, 6.09):
         one = study.sel(load=load, method="nearest")
         expected = nacre.solve(**ball(1e-5, 1e11, one["load"].item()))
         assert one.logged.item() == expected.peak_pressure
