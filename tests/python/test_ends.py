@@ -17,7 +17,6 @@ import nacre
 from bodies import BALL, STEEL
 from nacre import values
 from nacre.case import Case
-from support import Capture, command
 
 LAYERS = [nacre.Layer(nacre.Elastic(420e9, 0.25), 2e-6)]
 COATED = nacre.HalfSpace(STEEL, LAYERS)
@@ -226,12 +225,6 @@ def test_the_ends_of_a_case_can_be_swept(tmp_path: Path) -> None:
     case = Case(CASE | {"sweep": sweep})
     single = nacre.sweep(case, progress=False, **case.study())
     assert single.approach.values.tolist() == [both, one]
-
-
-def test_the_reference_of_case_files_has_the_ends(capsys: Capture) -> None:
-    assert command("schema") == 0
-    told = " ".join(capsys.readouterr().out.split())
-    assert "`ends`: pair of numbers, or of -inf and inf where the body goes on [m]" in told
 
 
 def test_no_warning_without_contact_at_the_ends() -> None:
