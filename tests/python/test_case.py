@@ -274,7 +274,7 @@ STRESS_ERRORS = {
 }
 STRESS_STUDY_ERRORS = {
     '"solve.load" -> "stress.friction"': "'stress.friction' changes nothing in a",
-    '"materials.dlc.young" -> "materials.steel.strength"': "steel.strength' changes nothing in a solve",
+    '"materials.dlc.young" -> "materials.steel.strength"': "strength' changes nothing in a solve",
 }
 
 CALLS = [
