@@ -37,12 +37,12 @@ test: $(WHEEL) $(DEV) ## Rust tests and doctests, a crate that depends on nacre,
 	else echo cargo test --tests --examples --features serde; cargo test --tests --examples --features serde; fi
 	cargo test --doc
 	PYO3_PYTHON=none cargo run --release --manifest-path tests/dependent/Cargo.toml --target-dir $(TARGET)
-	$(BIN)/pytest
+	$(BIN)/pytest -n 2
 
 # Unit tests of Rust, and Python without what takes seconds each: two minutes once built.
 quick: $(WHEEL) $(DEV) ## the tests of a daily edit: Rust unit tests, and those of Python that are fast
 	cargo test --lib --features serde
-	$(BIN)/pytest -q -m "not slow"
+	$(BIN)/pytest -q -n 2 -m "not slow"
 
 check: $(WHEEL) $(DEV) ## formatting, lints, types, house rules, documentation links, stubs; changes nothing
 	cargo fmt --check

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import pyvista
 
 import nacre
 import results
@@ -74,25 +73,6 @@ def test_other_units_change_the_names_of_units_alone() -> None:
         assert f"{shift_of(solution)[0] * 1e9:.4g} pm" in str(solution)  # its numbers are mm now
         assert "spin           3 /mm" in str(solved("rolled"))
     np.testing.assert_array_equal(dataset.traction, solution.traction)
-
-
-@every
-def test_pyvista_reads_the_vtk_file_back(kind: str, tmp_path: Path) -> None:
-    solution = solved(kind)
-    mesh = pyvista.read(solution.save(tmp_path / "a.vtr"))
-    assert isinstance(mesh, pyvista.RectilinearGrid)
-    shape = solution.grid.shape
-    for name in ("pressure", "stick"):
-        read = np.asarray(mesh.cell_data[name]).reshape(shape, order="F")
-        np.testing.assert_array_equal(read, getattr(solution, name))
-    for name in ("traction", "displacement", "slip"):
-        vectors = np.asarray(mesh.cell_data[name]).reshape(*shape, 3, order="F")
-        expected = np.moveaxis(getattr(solution, name), 0, -1)
-        np.testing.assert_array_equal(vectors[..., :2], expected)
-        assert not vectors[..., 2].any()
-    edges = np.asarray(mesh.x)
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    np.testing.assert_allclose(middles, solution.x, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", ["slid", "rolled", "line slid"])

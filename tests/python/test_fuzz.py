@@ -71,33 +71,6 @@ def pressed(
 
 
 @fuzz
-@given(shapes, bodies, grids, depths, st.tuples(*[st.floats(-1e-2, 1e-2)] * 2))
-def test_given_grid(
-    shape: nacre.types.Shape,
-    body: nacre.HalfSpace,
-    grid: nacre.Grid,
-    depth: float,
-    tilt: tuple[float, float],
-) -> None:
-    assume(np.isfinite(shape.gaps(grid)).any())
-    solution = pressed(shape, body, grid=grid, approach=depth, tilt=tilt)
-    assert solution is not None
-    # The displacement from the coefficients of the same body, and the gap from the definition.
-    displacement = nacre.Convolution(nacre.influence_coefficients(body, grid)).apply(
-        solution.pressure
-    )
-    largest = max(np.abs(displacement).max(), depth)
-    np.testing.assert_allclose(solution.displacement, displacement, rtol=0, atol=1e-10 * largest)
-    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
-    gap = shape.gaps(grid) + displacement - depth - tilt[0] * x - tilt[1] * y
-    touching = np.isfinite(gap)
-    assert (gap[touching] >= -1e-7 * largest).all()
-    assert (solution.pressure[~touching] == 0).all()
-    pressure, work = solution.pressure[touching], (solution.pressure * np.abs(displacement)).sum()
-    assert (pressure * np.abs(gap[touching])).sum() <= 1e-7 * work
-
-
-@fuzz
 @given(shapes, bodies, grids, depths, st.floats(0.0, 0.5), powers(-6, -3))
 def test_stresses_are_finite_and_linear_in_friction(
     shape: nacre.types.Shape,
