@@ -216,22 +216,35 @@ def test_csv_holds_the_sections_through_the_peak(tmp_path: Path) -> None:
     assert {float(row["y [m]"]) for row in rows if row["along"] == "x"} == {solution.y[j]}
 
 
-@pytest.mark.parametrize("kind", ["both coated, tilted", "infinite gaps", "line"])
+CELLS = ["both coated, tilted", "infinite gaps", "line", "slid", "rolled", "line slid"]
+
+
+@pytest.mark.parametrize("kind", CELLS)
 def test_csv_may_hold_every_cell_after_a_block_of_comments(kind: str, tmp_path: Path) -> None:
     solution = solved(kind)
-    lines = solution.save(tmp_path / "a.csv", whole=True).read_text(encoding="utf-8").splitlines()
+    slides = kind in results.FRICTION
+    path = solution.save(tmp_path / "a.csv", **({} if slides else {"whole": True}))
+    lines = path.read_text(encoding="utf-8").splitlines()
     said = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-    unit = "N/m" if kind == "line" else "N"
-    assert float(said[f"load [{unit}]"]) == solution.load
-    assert float(said["peak pressure [Pa]"]) == solution.peak_pressure
-    nx, ny = solution.pressure.shape
-    assert said["cells"] == f"{nx} x {ny}, y varies fastest"
+    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
+    expected = {"x [m]": x, "y [m]": y, "pressure [Pa]": solution.pressure}
+    if slides:
+        assert said["source"] == f"nacre {nacre.__version__}"
+        slip = "1" if kind == "rolled" else "m"
+        expected["stick"] = solution.stick
+        for n, axis in enumerate("xy"):
+            expected[f"traction {axis} [Pa]"] = solution.traction[n]
+            expected[f"slip {axis} [{slip}]"] = solution.slip[n]
+    else:
+        expected |= {"gap [m]": solution.gap, "displacement [m]": solution.displacement}
+        assert float(said[f"load [{'N/m' if kind == 'line' else 'N'}]"]) == solution.load
+        assert float(said["peak pressure [Pa]"]) == solution.peak_pressure
+        nx, ny = solution.pressure.shape
+        assert said["cells"] == f"{nx} x {ny}, y varies fastest"
     rows = list(csv.DictReader(lines[len(said) :]))
-    for name, unit in (("pressure", "Pa"), ("gap", "m"), ("displacement", "m")):
-        read = np.array([float(row[f"{name} [{unit}]"]) for row in rows]).reshape(nx, ny)
-        np.testing.assert_array_equal(read, getattr(solution, name))
-    assert [float(row["x [m]"]) for row in rows[::ny]] == solution.x.tolist()
-    assert [float(row["y [m]"]) for row in rows[:ny]] == solution.y.tolist()
+    assert set(rows[0]) == set(expected)
+    for name, field in expected.items():
+        assert [float(row[name]) for row in rows] == field.ravel().tolist()
 
 
 @pytest.mark.parametrize("ending", [".png", ".pdf", ".svg"])
