@@ -22,7 +22,6 @@ import support
 from bodies import BALL, STEEL
 from nacre import values
 from results import DLC, GRID, solved
-from results import LAYERED as COATED
 from support import Patch, python, resealed
 
 SAVED = {**results.NORMAL, **results.FRICTION, **results.INDENT, **results.FITS}
@@ -447,27 +446,6 @@ def test_what_is_no_solution_is_refused(tmp_path: Path) -> None:
     for name in ("text.nc", "other.nc"):
         with pytest.raises(ValueError, match="must be a solution that nacre saved"):
             nacre.load(tmp_path / name)
-
-
-@pytest.mark.parametrize(
-    "value",
-    [
-        COATED,
-        nacre.HalfSpace(nacre.RIGID, [nacre.Layer(DLC, 1e-5)]),
-        GRID,
-        nacre.Grid.line(64, 2e-4, 1e-6),
-        nacre.Paraboloid(1e-3, 2e-3),
-        nacre.Roller(5e-3, 1e-2, 7.5, 1.5e-2),
-        nacre.Roller(5e-3, profile=nacre.LogarithmicProfile(1e-6, 1e-2)),
-        nacre.Roller(5e-3, profile=([0.0, 1e-3, 2e-3], [0.0, 0.0, 1e-6])),
-        (nacre.Sphere(1.0) + nacre.HeightMap([[0.1, 0.2], [1 / 3, 0.4]], 1e-6)).shifted(1e-7, 0),
-        nacre.FlatPunch(1e-3) + (nacre.Cylinder(1.0) + nacre.Sphere(2.0)),
-    ],
-    ids=repr,
-)
-def test_every_value_survives_as_plain_data(value: object) -> None:
-    data = json.loads(json.dumps(values.encode(value)))
-    assert values.decode(data) == value
 
 
 def test_digests_tell_arrays_apart() -> None:
