@@ -135,7 +135,7 @@ fn nothing_is_found_where_nothing_touches() -> Result<()> {
 }
 
 /// Cells of a grid that closes in on a place; odd, so that the axis of a roller is a line of centres.
-const LOOKED_AT: [usize; 2] = [481, 481];
+const LOOKED_AT: [usize; 2] = [241, 241];
 
 /// Heights of a tilted shape above the plane, and where they are, on a grid.
 fn heights(shape: &dyn Surface, tilt: [f64; 2], grid: &Grid) -> Result<Vec<(f64, [f64; 2])>> {

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import pickle
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -73,25 +71,6 @@ def test_other_units_change_the_names_of_units_alone() -> None:
         assert f"{shift_of(solution)[0] * 1e9:.4g} pm" in str(solution)  # its numbers are mm now
         assert "spin           3 /mm" in str(solved("rolled"))
     np.testing.assert_array_equal(dataset.traction, solution.traction)
-
-
-@pytest.mark.parametrize("kind", ["slid", "rolled", "line slid"])
-def test_csv_holds_every_cell(kind: str, tmp_path: Path) -> None:
-    solution = solved(kind)
-    lines = solution.save(tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
-    comments = [line for line in lines if line.startswith("# ")]
-    assert comments[0] == f"# source: nacre {nacre.__version__}"
-    rows = list(csv.DictReader(lines[len(comments) :]))
-    slip = "slip {} [1]" if kind == "rolled" else "slip {} [m]"
-    x, y = np.meshgrid(solution.x, solution.y, indexing="ij")
-    expected = {
-        **{"x [m]": x, "y [m]": y, "pressure [Pa]": solution.pressure, "stick": solution.stick},
-        **{f"traction {n} [Pa]": q for n, q in zip("xy", solution.traction, strict=True)},
-        **{slip.format(n): s for n, s in zip("xy", solution.slip, strict=True)},
-    }
-    assert set(rows[0]) == set(expected)
-    for name, field in expected.items():
-        assert [float(row[name]) for row in rows] == field.ravel().tolist()
 
 
 # Text.

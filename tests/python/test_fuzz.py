@@ -6,12 +6,9 @@ A hundred calls that are the same in every run; ``make fuzz`` tries many others.
 from __future__ import annotations
 
 import math
-import pickle
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -92,27 +89,6 @@ def test_stresses_are_finite_and_linear_in_friction(
         assert np.isfinite(b).all()
         size = max(np.abs(a).max(), np.abs(c).max())
         np.testing.assert_allclose(b, a + friction * (c - a), rtol=0, atol=1e-10 * size)
-
-
-@fuzz
-@given(shapes, bodies, grids, depths)
-def test_files_and_pickles_keep_every_bit(
-    tmp_path_factory: pytest.TempPathFactory,
-    shape: nacre.types.Shape,
-    body: nacre.HalfSpace,
-    grid: nacre.Grid,
-    depth: float,
-) -> None:
-    assume(np.isfinite(shape.gaps(grid)).any())
-    solution = pressed(shape, body, grid=grid, approach=depth)
-    assert solution is not None
-    path: Path = tmp_path_factory.mktemp("fuzz") / "a.nc"
-    solution.save(path)
-    for again in (nacre.load(path), pickle.loads(pickle.dumps(solution))):
-        assert again.report.body == body
-        assert again.pressure.tobytes() == solution.pressure.tobytes()
-        assert again.gap.tobytes() == solution.gap.tobytes()
-        assert again.approach == solution.approach
 
 
 @fuzz

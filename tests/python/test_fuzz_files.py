@@ -14,6 +14,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -184,8 +185,8 @@ def main(name: str, count: int, seed: int, folder: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no measure of the memory")
 def test_a_damaged_file_is_refused_or_read_soon(tmp_path: Path) -> None:
     seed = random.randrange(1 << 30) if ASKED else 1
-    options = {"timeout": len(KINDS) * (10 + SECONDS * COUNT)}
-    done = python(__file__, COUNT, seed, tmp_path, *KINDS, **options)
+    seconds = len(KINDS) * (10 + SECONDS * COUNT)
+    done = python(__file__, COUNT, seed, tmp_path, *KINDS, timeout=seconds)
     assert (done.returncode, done.stdout.splitlines()) == (0, [*KINDS]), (seed, done.stderr[-3000:])
 
 

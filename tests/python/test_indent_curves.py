@@ -207,7 +207,9 @@ def test_tables_are_chosen_by_number(tmp_path: Path) -> None:
 def test_times_have_units_too(unit: str, size: float, tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     path.write_text(f"h (nm)\tF (mN)\tt ({unit})\n" + rows(DEPTH, FORCE, TIME))
-    np.testing.assert_allclose(read(path).time, size * TIME, rtol=ROUNDING)
+    found = read(path).time
+    assert found is not None
+    np.testing.assert_allclose(found, size * TIME, rtol=ROUNDING)
 
 
 def test_a_time_that_falls_is_left_out(tmp_path: Path) -> None:

@@ -37,20 +37,16 @@ def results(out: Path) -> list[paper.Result]:
 @functools.cache
 def demo(out: Path) -> tuple[list[paper.Result], str]:
     """Return what the demonstration found and printed, whose progress is told of each case."""
-    calls: list[tuple[int, int]] = []
+    calls: list[Any] = []
     found: list[paper.Result] = []
-    arguments = ["paper", "--quick", "--out", str(out)]
 
     def run(*given: Any, progress: Any, **options: Any) -> list[paper.Result]:
-        def told(*call: int) -> None:
-            calls.append(cast(tuple[int, int], call))
-            progress(*call)
-
-        found.extend(paper.run(*given, progress=told, **options))
+        found.extend(paper.run(*given, progress=lambda *c: calls.append(c), **options))
+        progress(*calls[-1])
         return found
 
     with (
-        mock.patch.object(sys, "argv", arguments),
+        mock.patch.object(sys, "argv", ["paper", "--quick", "--out", str(out)]),
         mock.patch.object(program, "run", run),
         contextlib.redirect_stdout(io.StringIO()) as printed,
         contextlib.redirect_stderr(io.StringIO()) as errors,

@@ -105,20 +105,16 @@ def test_friction_acts_along_the_rolling_direction(tmp_path: Path) -> None:
 
 
 def test_friction_is_asked_for_its_direction(solution: nacre.Solution) -> None:
-    message = (
-        r"^direction must be given where friction is above 0: only rollers, cylinders and line"
-    )
-    calls: list[Any] = [
-        lambda: solution.stress(0.0, friction=0.1),
-        lambda: solution.stress_summary(friction=0.1),
-        lambda: solution.stress_plan().stress(0.0, friction=0.1),
-        lambda: nacre.stress(COATED, GRID, solution.pressure, 0.0, friction=0.1),
-    ]
-    for call in calls:
+    message = r"^direction must be given where friction is above 0: only rollers, cylinders and li"
+    plan = solution.stress_plan()
+    for call in (solution.stress, plan.stress):
         with pytest.raises(ValueError, match=message):
-            call()
+            call(0.0, friction=0.1)
+    with pytest.raises(ValueError, match=message):
+        solution.stress_summary(friction=0.1)
+    with pytest.raises(ValueError, match=message):
+        nacre.stress(COATED, GRID, solution.pressure, 0.0, friction=0.1)
     assert solution.report.rolling_direction is None
-    assert nacre.Sphere(1.0).rolling_direction is None
     # A report of an earlier version does not know it, and reads as one without.
     roller = nacre.solve(nacre.Roller(5e-3, 1e-4, 0.01), COATED, grid=NARROW, load=5.0)
     state = roller.to_dict()
