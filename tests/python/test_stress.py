@@ -147,7 +147,8 @@ def test_a_stress_says_how_well_its_depth_is_resolved(solution: nacre.Solution) 
     assert coating.uncertainty.keys() == {"von_mises", "tension", "max_shear"}
     value, (_, _, z) = substrate.von_mises
     (error,) = solution.stress([z]).uncertainty  # type: ignore[misc]
-    assert substrate.uncertainty["von_mises"] <= error < 5e-2 * value
+    # The same sum, in another order.
+    assert substrate.uncertainty["von_mises"] <= (1.0 + 1e-14) * error < 5e-2 * value
 
 
 def test_stresses_that_cells_do_not_resolve_are_warned_of() -> None:
