@@ -6,6 +6,7 @@ use ndarray::Array2;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::contact::Warning;
 use crate::error::{Error, Result};
 use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::model::grid::Grid;
@@ -209,6 +210,55 @@ value! {
         Self::new(heights, given.spacing)?
             .centered_at(given.center)?
             .periodic(given.periodic)
+    }
+}
+
+/// A warning by its kind, axis and figure, which are 0 where it has none.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WarningData {
+    kind: String,
+    axis: usize,
+    figure: f64,
+}
+
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let (axis, figure) = match *self {
+            Self::GridEdge | Self::SharpEdge | Self::FreeEnd | Self::CoatedEnd => (0, 0.0),
+            Self::SharpEnd { axis } | Self::MapRim { axis } => (axis, 0.0),
+            Self::Coarse { axis, cells } => (axis, cells as f64),
+            Self::CoarseSpots { axis, cells } => (axis, cells),
+            Self::LargeContact { axis, ratio } => (axis, ratio),
+            Self::OutsideGrid { depth } => (0, depth),
+            Self::PeakError { error } => (0, error),
+            Self::LargeMotion { size } => (0, size),
+        };
+        WarningData { kind: self.kind().into(), axis, figure }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Warning {
+    fn deserialize<D: Deserializer<'de>>(data: D) -> std::result::Result<Self, D::Error> {
+        let WarningData { kind, axis, figure } = WarningData::deserialize(data)?;
+        let all = [
+            Self::GridEdge,
+            Self::SharpEnd { axis },
+            Self::FreeEnd,
+            Self::CoatedEnd,
+            Self::SharpEdge,
+            Self::MapRim { axis },
+            Self::Coarse { axis, cells: figure as usize },
+            Self::CoarseSpots { axis, cells: figure },
+            Self::LargeContact { axis, ratio: figure },
+            Self::OutsideGrid { depth: figure },
+            Self::PeakError { error: figure },
+            Self::LargeMotion { size: figure },
+        ];
+        let found = all.iter().find(|warning| warning.kind() == kind);
+        found
+            .copied()
+            .ok_or_else(|| D::Error::custom(format!("no warning is of the kind {kind:?}")))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
-//! The files in their order; each imports from earlier ones only: errors, words, arguments, background,
-//! data, state, bodies, grid, shapes, coefficients, stress, solution, contact.
+//! The files in their order; each imports from earlier ones only: errors, arguments, background, data, bodies,
+//! grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient.
 
 use pyo3::prelude::*;
 
@@ -12,15 +12,18 @@ mod coefficients;
 mod contact;
 mod data;
 mod errors;
+mod friction;
+mod gradient;
 mod grid;
+mod hertz;
 mod shapes;
-mod solution;
-mod state;
+mod solved;
 mod stress;
-mod words;
 
 #[pymodule(name = "_core")]
 mod core {
+    #[pymodule_export]
+    use super::arguments::plain;
     #[pymodule_export]
     use super::bodies::{PyElastic, PyHalfSpace, PyLayer};
     #[pymodule_export]
@@ -29,23 +32,29 @@ mod core {
         surface_compliance,
     };
     #[pymodule_export]
-    use super::contact::{
-        PyContact, PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide, solve,
-    };
+    use super::contact::{PyPlan, solve};
     #[pymodule_export]
     use super::data::checked;
     #[pymodule_export]
     use super::errors::{ConvergenceError, NacreWarning};
     #[pymodule_export]
+    use super::friction::{PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide};
+    #[pymodule_export]
+    use super::gradient::PyLinear;
+    #[pymodule_export]
     use super::grid::PyGrid;
-    use super::shapes::hertz::{PyEllipse, PyLine, PyPoint, contact_modulus, equivalent_radius};
+    #[pymodule_export]
+    use super::hertz::{PyHertz, contact_modulus, equivalent_radius};
     #[pymodule_export]
     use super::shapes::{PyLogarithmicProfile, PySampledProfile};
     #[pymodule_export]
-    use super::solution::{PyDirection, PyGradient, PyReport, PySolution};
+    use super::solved::{PySolved, checked_report};
     #[pymodule_export]
-    use super::stress::{PyStressPlan, checked_stress, stress, stress_invariants};
-    use super::{bodies::PyRigid, shapes, shapes::indent, state};
+    use super::stress::{
+        PyStressPlan, checked_stress, stress, stress_invariants, stress_plan, stress_summary,
+        stress_under,
+    };
+    use super::{bodies::PyRigid, shapes, shapes::indent};
     use pyo3::prelude::*;
 
     #[pymodule_init]
@@ -55,13 +64,6 @@ mod core {
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;
-        module.setattr("_FORMAT", state::FORMAT)?;
-        // The names of `nacre.hertz`.
-        module.setattr("Point", module.py().get_type::<PyPoint>())?;
-        module.setattr("Line", module.py().get_type::<PyLine>())?;
-        module.setattr("Ellipse", module.py().get_type::<PyEllipse>())?;
-        module.setattr("equivalent_radius", wrap_pyfunction!(equivalent_radius, module)?)?;
-        module.setattr("contact_modulus", wrap_pyfunction!(contact_modulus, module)?)?;
         // The names of `nacre.indent`.
         let py = module.py();
         module.setattr("Tip", py.get_type::<indent::PyTip>())?;

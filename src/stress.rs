@@ -88,6 +88,11 @@ pub fn stress<'a>(
 
 /// One of the two bodies of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Member {
     /// The body that the shape is pressed into.
     #[default]

@@ -20,11 +20,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from nacre import types as types
+from nacre._compliance import (
+    Convolution,
+    frequency_response,
+    graded_layers,
+    influence_coefficients,
+    surface_compliance,
+)
 from nacre._core import (
     RIGID,
-    Contact,
     ConvergenceError,
-    Convolution,
     Cylinder,
     Elastic,
     FlatPunch,
@@ -37,18 +42,14 @@ from nacre._core import (
     Paraboloid,
     Roller,
     SampledProfile,
-    Solution,
     Sphere,
     __version__,
-    frequency_response,
-    graded_layers,
-    influence_coefficients,
-    solve,
-    surface_compliance,
 )
 from nacre._profiles import read_profile
+from nacre.contact import Contact, roll, slide, solve
 from nacre.files import load
-from nacre.friction import creep_coefficients, roll, slide
+from nacre.friction import creep_coefficients
+from nacre.solution import Solution
 from nacre.stresses import stress
 from nacre.studies import sweep
 from nacre.units import display_units

@@ -15,6 +15,9 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._parameters import MOTIONS, number, put
+from nacre.contact import Contact
+from nacre.gradient import Gradient
+from nacre.solution import Solution
 from nacre.studies import ARGUMENTS
 
 Array = npt.NDArray[np.float64]
@@ -31,7 +34,7 @@ ABSENT = {"initial", "progress", "check"}
 SECOND = "a contact has first derivatives only: they cannot be differentiated again"
 """What a derivative of a derivative says."""
 PLANNED = ("body", "counterbody", "grid", "threads")
-READ: dict[str, Callable[[core.Solution], float]] = {
+READ: dict[str, Callable[[Solution], float]] = {
     "approach": lambda solution: solution.approach,
     "tilt[0]": lambda solution: solution.tilt[0],
     "tilt[1]": lambda solution: solution.tilt[1],
@@ -46,12 +49,12 @@ class Point:
 
     names: tuple[str, ...]
     shape: core.Shape | None
-    solution: core.Solution
+    solution: Solution
     lowest: float
-    gradients: dict[str, core.Gradient] = field(default_factory=dict)
+    gradients: dict[str, Gradient] = field(default_factory=dict)
     told: set[str] | None = None
 
-    def tell(self, *gradients: core.Gradient) -> None:
+    def tell(self, *gradients: Gradient) -> None:
         """Warn of what makes derivatives doubtful, once."""
         found = {sentence for gradient in gradients for sentence in gradient.warnings}
         fresh, self.told = found - (self.told or set()), found | (self.told or set())
@@ -208,7 +211,7 @@ class Differentiable:
                 if "approach" in made:
                     made["approach"] -= lowest
             planned = {name: made.pop(name) for name in PLANNED if name in made}
-            plan = self.plans.at(repr(planned), lambda: core.Contact(**planned))
+            plan = self.plans.at(repr(planned), lambda: Contact(**planned))
             return Point(names, given, plan.solve(shape, **made), lowest)
         except Exception as error:
             at = ", ".join(f"{k} = {v:.6g}" for k, v in zip(names, x[:n], strict=True))
@@ -221,7 +224,7 @@ class Differentiable:
         heights = np.tile(-gap, (2, 1)) if grid.is_line else -gap
         return core.HeightMap(heights, grid.spacing, grid.center, grid.periodic)
 
-    def _gradients(self, point: Point, wanted: list[str]) -> dict[str, core.Gradient]:
+    def _gradients(self, point: Point, wanted: list[str]) -> dict[str, Gradient]:
         """Return the derivatives of outputs, those that are not known in one go."""
         if fresh := [name for name in wanted if name not in point.gradients]:
             outputs = [self.outputs[name] for name in fresh]
@@ -231,7 +234,7 @@ class Differentiable:
         return {name: point.gradients[name] for name in wanted}
 
 
-def _row(gradient: core.Gradient, names: tuple[str, ...], size: int) -> Array:
+def _row(gradient: Gradient, names: tuple[str, ...], size: int) -> Array:
     """Return derivatives by a vector of `size`: by the numbers at `names`, then by the gap."""
     numbers = [gradient[name] for name in names]
     gap = gradient.gap.ravel() if size > len(numbers) else np.zeros(0)

@@ -11,16 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import (
-    Elastic,
-    HalfSpace,
-    Report,
-    Rigid,
-    Solution,
-)
+from nacre._core import Elastic, HalfSpace, Rigid
 from nacre.units import printable, rounded, written
 
 if TYPE_CHECKING:
+    from nacre.solution import Report, Solution
     from nacre.stresses import InterfaceStress, LayerStress, StressSummary
 
 Peak = tuple[float, tuple[float, float, float]]

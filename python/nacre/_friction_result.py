@@ -18,6 +18,7 @@ from nacre import values
 from nacre._friction_display import line, markup, text
 from nacre._friction_files import VECTORS, save, to_xarray
 from nacre._result import Result, as_text, tuples
+from nacre.solution import Solution
 from nacre.stresses import Stressed
 
 if TYPE_CHECKING:
@@ -132,9 +133,9 @@ class FrictionSolution(Result, Stressed):
         return cls(solved, report=report, **numbers)
 
     @functools.cached_property
-    def normal(self) -> core.Solution:
+    def normal(self) -> Solution:
         """Normal contact: pressure, gap, approach, tilt."""
-        return self._solved.normal()
+        return Solution._of(self._solved.normal())
 
     @property
     def pressure(self) -> Field:
@@ -314,8 +315,8 @@ class FrictionSolution(Result, Stressed):
         if not isinstance(state["normal"], dict):
             raise ValueError(f"normal must be a dict of named fields, got {state['normal']!r}")
         with values.refusing(cls.__name__):
-            normal = core.Solution.from_dict(values.heading("Solution") | state["normal"])
+            normal = Solution.from_dict(values.heading("Solution") | state["normal"])
             fields = {name: state[name] for name in ("friction", *VECTORS)}
             rest = {name: state[name] for name in ("motion", "report")}
             told = as_text(cls.__name__, rest)
-            return cls._of(core.FrictionSolved(normal, rest=told, **fields))
+            return cls._of(core.FrictionSolved(normal._solved, rest=told, **fields))

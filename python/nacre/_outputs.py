@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import nacre._core as core
+from nacre.values import RESULTS
 
 if TYPE_CHECKING:
     from nacre._friction_result import FrictionSolution
     from nacre.indent.solution import IndentSolution
+    from nacre.solution import Solution
     from nacre.stresses import StressSummary
 
 Output = str | Callable[[Any], Any]
@@ -28,13 +29,6 @@ OUTPUTS = (
 )
 AXES = {"tilt", "eccentricity", "moment", "peak_position", "force", "shift", "creepage"}
 """Outputs with a value along x and one along y."""
-
-NUMBERS = sorted(
-    name
-    for name, value in vars(core.Solution).items()
-    if isinstance(value, types.GetSetDescriptorType) and name != "report"
-)
-"""Attributes of a solution: numbers and arrays of them."""
 
 FRICTION = (
     "force",
@@ -71,6 +65,18 @@ ERROR = "_discretisation"
 """Ending of the name under which such an error stands beside its output."""
 
 
+@cache
+def numbers() -> list[str]:
+    """Return the attributes of a solution that are numbers and arrays of them."""
+    return sorted(
+        name
+        for name, value in vars(RESULTS["Solution"]).items()
+        if isinstance(value, property | cached_property)
+        and name not in ("report", "grid")
+        and not name.startswith("_")
+    )
+
+
 def named(
     outputs: Sequence[Output] | Mapping[str, Output], indents: bool | None = None
 ) -> dict[str, Output]:
@@ -82,11 +88,11 @@ def named(
     else:
         items = [(o if isinstance(o, str) else getattr(o, "__name__", repr(o)), o) for o in outputs]
     told = {
-        False: f"attributes of Solution that hold numbers ({', '.join(NUMBERS)}), or of "
+        False: f"attributes of Solution that hold numbers ({', '.join(numbers())}), or of "
         f"FrictionSolution ({', '.join(FRICTION)}), stresses ({', '.join(STRESSES)})",
         True: f"attributes of nacre.indent.IndentSolution that hold numbers ({', '.join(INDENT)})",
     }
-    known = {False: {*NUMBERS, *FRICTION, *STRESSES}, True: {*INDENT}}
+    known = {False: {*numbers(), *FRICTION, *STRESSES}, True: {*INDENT}}
     kinds = [True, False] if indents is None else [indents]
     for name, output in items:
         if not (any(output in known[kind] for kind in kinds) or callable(output)):
@@ -122,7 +128,7 @@ def errors(outputs: Mapping[str, Output], taken: Iterable[str]) -> dict[str, str
 
 
 def evaluated(
-    solution: core.Solution | FrictionSolution,
+    solution: Solution | FrictionSolution,
     outputs: Mapping[str, Output],
     stress: Mapping[str, Any],
     unresolved: list[str],
@@ -145,7 +151,7 @@ def evaluated(
         else:
             value = _number(solution, output)
         found[name] = np.asarray(value, dtype=np.float64).tolist()
-    normal = solution if isinstance(solution, core.Solution) else solution.normal
+    normal: Any = getattr(solution, "normal", solution)
     estimates = normal.report.discretisation or {}
     for name, quantity in errors(outputs, outputs).items():
         estimate = estimates.get(quantity)
@@ -153,16 +159,17 @@ def evaluated(
     return found
 
 
-def _number(solution: core.Solution | FrictionSolution, name: str) -> Any:
+def _number(solution: Any, name: str) -> Any:
     """Return an attribute of a solution, or of the normal contact of one with friction."""
-    if name in INDENT and name not in NUMBERS:
+    if name in INDENT and name not in numbers():
         raise ValueError(f"the output {name} needs an indentation, a case with a tip")
-    if isinstance(solution, core.Solution):
+    normal = getattr(solution, "normal", None)
+    if normal is None:
         if name in FRICTION:
             raise ValueError(f"the output {name} needs friction in the case")
         return getattr(solution, name)
     if name not in FRICTION:
-        return getattr(solution.normal, name)
+        return getattr(normal, name)
     value = getattr(solution, name)
     if value is None:
         raise ValueError(

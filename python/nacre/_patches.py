@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,23 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._extras import extra
 
+if TYPE_CHECKING:
+    from nacre.solution import Solution
+
 Labels = npt.NDArray[np.int64]
+
+CURVE = {
+    "load": ("load", "N"),
+    "contact_area": ("contact area of counted cells", "m²"),
+    "corrected_area": ("contact area, corrected for the perimeter", "m²"),
+    "share": ("share of the cells in contact", "1"),
+    "corrected_share": ("share of the area in contact, corrected", "1"),
+    "mean_gap": ("mean gap", "m"),
+    "approach": ("approach", "m"),
+    "stiffness": ("stiffness, change of the mean pressure over that of the approach", "Pa/m"),
+    "patches": ("number of patches", "1"),
+}
+"""Columns of `rough.load_curve`: words and units."""
 
 
 @contextmanager
@@ -92,7 +109,7 @@ def crosses(cells: npt.NDArray[np.bool_], grid: core.Grid, axis: int) -> bool:
     return any(place[a] + step != place[b] for a in neighbours for b, step in neighbours[a])
 
 
-def sides(solution: core.Solution) -> tuple[int, int]:
+def sides(solution: Solution) -> tuple[int, int]:
     """Return how many sides of cells along x and along y lie between contact and gap."""
     contact, repeats = solution.in_contact, solution.report.grid.periodic
     counts = []

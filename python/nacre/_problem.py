@@ -12,6 +12,8 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._parameters import Scale, numbers, put
+from nacre.contact import Contact, solve
+from nacre.solution import Solution
 from nacre.studies import ARGUMENTS
 
 Build = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
@@ -37,7 +39,7 @@ class Point:
     slack: Array
     d_slack: Array
     outputs: Array
-    solutions: list[core.Solution]
+    solutions: list[Solution]
     warnings: list[str]
 
 
@@ -57,7 +59,7 @@ class Problem:
     solves: int = 0
     grids: list[core.Grid] = field(default_factory=list)
     known: dict[bytes, Point] = field(default_factory=dict)
-    plans: dict[int, tuple[core.Contact, str]] = field(default_factory=dict)
+    plans: dict[int, tuple[Contact, str]] = field(default_factory=dict)
 
     def named(self, x: Array) -> dict[str, float]:
         pairs = zip(self.scales, x, strict=True)
@@ -82,7 +84,7 @@ class Problem:
         self.known, self.plans = {}, {}
         self.grids = [grid or g["grid"] for g in made if grid or g.get("grid") is not None]
         if len(self.grids) < len(made):
-            self.grids = [core.solve(**arguments).report.grid for arguments in made]
+            self.grids = [solve(**arguments).report.grid for arguments in made]
             self.solves += len(made)
 
     def best(self) -> Point:
@@ -146,14 +148,14 @@ class Problem:
         rates = shares @ slopes[:, 0] / self.unit
         return Point(x, mean / self.unit, rates, slack, d_slack, outputs, solutions, told)
 
-    def solved(self, k: int, made: dict[str, Any], last: core.Solution | None) -> core.Solution:
+    def solved(self, k: int, made: dict[str, Any], last: Solution | None) -> Solution:
         """Solve a case, with the plan of an equal body and from the last solution."""
         made = {"tolerance": ACCURATE, **made, "grid": self.grids[k]}
         names = ("body", "counterbody", "grid", "threads")
         planned = {name: made.pop(name) for name in names if name in made}
         told = repr(planned)
         plan = next((p for p, text in self.plans.values() if text == told), None)
-        plan = plan or core.Contact(**planned)
+        plan = plan or Contact(**planned)
         self.plans[k] = plan, told
         return plan.solve(made.pop("shape"), **({"initial": last} | made))
 

@@ -58,13 +58,16 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def as_text(kind: str, state: dict[str, Any]) -> str:
-    """Return the state of a kind of result as JSON text, or raise a `ValueError`."""
+def as_text(kind: str, state: dict[str, Any], *, infinite: bool = False) -> str:
+    """Return the state of a kind of result as JSON text, or raise a `ValueError`.
+
+    JSON has no infinite numbers: they are refused, or null where they may be.
+    """
     fields = []
-    for key, value in _finite(state).items():
+    for key, value in (_finite(state) if infinite else state).items():
         try:
-            fields.append(f"{json.dumps(key)}: {json.dumps(value)}")
-        except TypeError as error:
+            fields.append(f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}")
+        except (TypeError, ValueError) as error:
             said = f'{kind}: the value of the key "{key}" does not fit: {value!r}'
             raise ValueError(said) from error
     return "{" + ", ".join(fields) + "}"
@@ -135,8 +138,8 @@ class Result:
     @classmethod
     def _restored(cls, state: dict[str, Any]) -> Self:
         """Return the result with these fields, which the compiled module checks."""
-        return cls._made(core.checked(cls.__name__, as_text(cls.__name__, state)))
+        return cls._made(core.checked(cls.__name__, as_text(cls.__name__, state, infinite=True)))
 
     def __reduce__(self) -> tuple[Any, tuple[dict[str, Any]]]:
         """Return the function and the state that make the result again."""
-        return type(self).from_dict, (self.to_dict(),)
+        return values.decode, (self.to_dict(),)

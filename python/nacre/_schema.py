@@ -23,11 +23,11 @@ import numpy as np
 from pydantic import Field, create_model, field_validator, model_validator
 
 import nacre
-from nacre import _keywords
 from nacre._case_tables import TWO, Count, Counts, Flags, Number, Pair, Table, described, said
 from nacre._friction_tables import AnyAlong, Roll, Slide
 from nacre._outputs import OUTPUTS
 from nacre._shape_tables import AnyShape
+from nacre._typing import Along
 from nacre.units import System
 
 CONSTANTS = described(nacre.Elastic)
@@ -125,8 +125,10 @@ class Grid(Table):
         return nacre.Grid(self.shape, self.size, **center, **repeats)  # type: ignore[arg-type]
 
 
-KNOWN = {float: Number, int: Count, _keywords.Along: AnyAlong}
+KNOWN = {float: Number, int: Count, Along: AnyAlong}
 """Types that case files have for those of keywords."""
+OBJECTS = ("grid", "initial", "progress", "check")
+"""Keywords of a solve that are no numbers and no words."""
 
 
 def _checked(hint: Any) -> Any:
@@ -137,13 +139,16 @@ def _checked(hint: Any) -> Any:
 
 
 def _solve() -> type[Table]:
-    """Return the table of those keywords."""
-    groups = (_keywords.Motion, _keywords.Threads, _keywords.Search)
-    hints = {name: hint for group in groups for name, hint in get_type_hints(group).items()}
-    signature = inspect.signature(nacre.solve).parameters
+    """Return the table of the keywords of `nacre.solve`."""
+    hints = get_type_hints(nacre.solve)
+    keywords = inspect.signature(nacre.solve).parameters.values()
     fields: dict[str, Any] = {
-        name: (_checked(hint), Field(default=signature[name].default, description=SOLVE[name]))
-        for name, hint in hints.items()
+        one.name: (
+            _checked(hints[one.name]),
+            Field(default=one.default, description=SOLVE[one.name]),
+        )
+        for one in keywords
+        if one.kind is one.KEYWORD_ONLY and one.name not in OBJECTS
     }
     told = "The keywords of `nacre.solve`: exactly one of load and approach, and any of the others."
     return create_model("Solve", __base__=Table, __doc__=told, **fields)

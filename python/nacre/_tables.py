@@ -15,6 +15,8 @@ from nacre.units import UNITS, symbol
 if TYPE_CHECKING:
     from _csv import Writer
 
+    from nacre.solution import Solution
+
 FIELDS = ("pressure", "gap", "displacement")
 """Fields of every solution's state."""
 YIELDED = ("indentation", "hardness")
@@ -23,7 +25,7 @@ GIVEN = ("coefficients",)
 """Further arrays, of contacts that were given them."""
 
 
-def shown(solution: core.Solution) -> tuple[str, ...]:
+def shown(solution: Solution) -> tuple[str, ...]:
     """Return the fields that tables and pictures show."""
     return (*FIELDS, "indentation") if solution.indentation.any() else FIELDS
 
@@ -34,7 +36,7 @@ def columns(fields: Iterable[str]) -> list[str]:
     return [f"{name} [{symbol(unit)}]" for name, unit in units.items()]
 
 
-def write_sections(solution: core.Solution, path: Path) -> None:
+def write_sections(solution: Solution, path: Path) -> None:
     """Write the sections along x and along y through the largest pressure."""
     i, j = (
         int(np.argmin(np.abs(side - place)))
@@ -47,7 +49,7 @@ def write_sections(solution: core.Solution, path: Path) -> None:
         _write(writer, solution, ((i, k) for k in range(solution.y.size)), "y")
 
 
-def write_cells(solution: core.Solution, path: Path) -> None:
+def write_cells(solution: Solution, path: Path) -> None:
     """Write every cell, after a block of comments with the most important numbers."""
     report, grid = solution.report, solution.report.grid
     head = {
@@ -70,7 +72,7 @@ def write_cells(solution: core.Solution, path: Path) -> None:
 
 
 def _write(
-    writer: Writer, solution: core.Solution, cells: Iterable[tuple[int, int]], *first: str
+    writer: Writer, solution: Solution, cells: Iterable[tuple[int, int]], *first: str
 ) -> None:
     x, y = solution.x.tolist(), solution.y.tolist()
     fields = [getattr(solution, name).tolist() for name in shown(solution)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,9 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre._extras import extra
 from nacre._tables import shown
+
+if TYPE_CHECKING:
+    from nacre.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
@@ -22,7 +25,7 @@ TOLERANCE = 1e-12
 """Relative distance below which a depth lies on an interface, as in `Solution.stress`."""
 
 
-def write_surface(solution: core.Solution, path: Path) -> None:
+def write_surface(solution: Solution, path: Path) -> None:
     """Write the fields as the cells of a plane."""
     with extra("files"):
         from pyevtk.hl import gridToVTK
@@ -38,7 +41,7 @@ def write_surface(solution: core.Solution, path: Path) -> None:
 
 
 def write_stress(
-    solution: core.Solution, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
+    solution: Solution, path: Path, depths: npt.ArrayLike, options: Mapping[str, Any]
 ) -> None:
     """Write stresses at points below the cell centres, and pressure and gap at the same x and y.
 
@@ -64,7 +67,7 @@ def write_stress(
 
 
 def _planes(
-    solution: core.Solution, depths: Array, options: Mapping[str, Any]
+    solution: Solution, depths: Array, options: Mapping[str, Any]
 ) -> tuple[Array, dict[str, Array]]:
     """Return depths, those on an interface twice, and the fields on them: (nx, ny, nz)."""
     if depths.ndim != 1 or depths.size == 0 or (np.diff(depths) <= 0).any():

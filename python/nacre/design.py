@@ -15,9 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._keywords import Direction
 from nacre._outputs import Output, check_direction
+from nacre._typing import Direction
 from nacre.optimise import Optimum, optimise
+from nacre.solution import Solution
 from nacre.studies import ARGUMENTS, sweep
 from nacre.units import symbol
 
@@ -206,7 +207,7 @@ def tilt_curve(
 
 
 def coating_tension(
-    solution: core.Solution, friction: float = 0.0, direction: Direction | None = None
+    solution: Solution, friction: float = 0.0, direction: Direction | None = None
 ) -> float:
     """Return the largest principal stress on the faces of the only layer [Pa]."""
     (bottom,) = solution.report.body.interfaces
@@ -216,7 +217,7 @@ def coating_tension(
 
 
 def interface_shear(
-    solution: core.Solution, friction: float = 0.0, direction: Direction | None = None
+    solution: Solution, friction: float = 0.0, direction: Direction | None = None
 ) -> float:
     """Return the largest shear traction at the only interface [Pa]."""
     (bottom,) = solution.report.body.interfaces
@@ -225,7 +226,7 @@ def interface_shear(
     return float(np.hypot(field.xz, field.yz).max())
 
 
-def normal_stiffness(solution: core.Solution) -> float:
+def normal_stiffness(solution: Solution) -> float:
     """Return dW/dδ with the tilts held [N/m]."""
     return float(np.asarray(solution.stiffness())[0, 0])
 

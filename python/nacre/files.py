@@ -17,7 +17,7 @@ from nacre._extras import extra
 from nacre._tables import FIELDS, GIVEN, YIELDED, write_cells, write_sections
 from nacre._vtk import write_stress, write_surface
 from nacre.units import UNITS, symbol, system
-from nacre.values import check_format, encode, refusing
+from nacre.values import RESULTS, check_format, encode, refusing
 
 if TYPE_CHECKING:
     import xarray
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from nacre._friction_result import FrictionSolution
     from nacre.indent._result import Fit
     from nacre.indent.solution import IndentSolution
+    from nacre.solution import Solution
 
 AnyPath = str | os.PathLike[str]
 Array = npt.NDArray[np.float64]
@@ -59,7 +60,7 @@ FRICTION = ("traction", "slip", "normal_displacement", "friction")
 """Further variables of contacts with friction."""
 
 
-def to_xarray(solution: core.Solution) -> xarray.Dataset:
+def to_xarray(solution: Solution) -> xarray.Dataset:
     """Return the fields with coordinates, units and the whole problem.
 
     Attributes hold main numbers, bodies, motion and options as JSON. A repetition needs only
@@ -107,7 +108,7 @@ def to_xarray(solution: core.Solution) -> xarray.Dataset:
 
 
 def save(
-    solution: core.Solution,
+    solution: Solution,
     path: AnyPath,
     depths: npt.ArrayLike | None = None,
     whole: bool = False,
@@ -115,7 +116,7 @@ def save(
 ) -> Path:
     """Write a file, whole or not at all; its ending chooses the kind."""
     path = Path(path)
-    writers: dict[str, Callable[[core.Solution, Path], None]] = {
+    writers: dict[str, Callable[[Solution, Path], None]] = {
         ".nc": _write_netcdf,
         ".vtr": write_surface,
         ".csv": write_cells if whole else write_sections,
@@ -185,7 +186,7 @@ def load(path: AnyPath) -> Any:
         raise ValueError(f"{str(path)!r} must be a solution that nacre saved: {error}") from error
 
 
-def _split(solution: core.Solution) -> tuple[dict[str, Any], dict[str, Array]]:
+def _split(solution: Solution) -> tuple[dict[str, Any], dict[str, Array]]:
     """Return the named state of a solution without its fields, and the fields."""
     state = solution.to_dict()
     names = [
@@ -197,7 +198,7 @@ def _split(solution: core.Solution) -> tuple[dict[str, Any], dict[str, Array]]:
 
 def _solution(
     text: str, arrays: Mapping[str, Array]
-) -> core.Solution | FrictionSolution | IndentSolution | Fit:
+) -> Solution | FrictionSolution | IndentSolution | Fit:
     try:
         state = json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -215,14 +216,15 @@ def _solution(
         from nacre.indent.solution import IndentSolution
 
         return (Fit if state["kind"] == "Fit" else IndentSolution).from_dict(state)
-    return core.Solution.from_dict(state | dict(arrays))
+    solution: Solution = RESULTS["Solution"].from_dict(state | dict(arrays))
+    return solution
 
 
-def _write_netcdf(solution: core.Solution, path: Path) -> None:
+def _write_netcdf(solution: Solution, path: Path) -> None:
     write_dataset(to_xarray(solution), path)
 
 
-def _write_picture(solution: core.Solution, path: Path) -> None:
+def _write_picture(solution: Solution, path: Path) -> None:
     """Write the picture that `Solution.plot` draws."""
     axes: Any = next(iter(solution.plot().values()))
     try:

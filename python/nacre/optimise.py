@@ -15,6 +15,7 @@ import nacre._core as core
 from nacre._extras import extra
 from nacre._parameters import Bounds, scales_of
 from nacre._problem import Array, Build, Enough, Problem
+from nacre.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +56,7 @@ class Optimum:
     objective: float
     limits: tuple[tuple[Any, float, tuple[float, ...]], ...]
     course: dict[str, Array]
-    solutions: list[core.Solution]
+    solutions: list[Solution]
     solves: int
     termination: str
     warnings: list[str]

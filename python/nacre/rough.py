@@ -14,7 +14,9 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre._extras import extra
-from nacre._patches import crosses, patch_labels, sides, surfaces
+from nacre._patches import CURVE, crosses, patch_labels, sides, surfaces
+from nacre.contact import Contact
+from nacre.solution import Solution
 from nacre.units import symbol
 
 if TYPE_CHECKING:
@@ -168,10 +170,10 @@ def load_curve(
         raise ValueError("grid must be given for a shape that is not a map")
     cells = _grid(shape) if grid is None else grid
     planned = {name: keywords.pop(name) for name in ("coefficients", "threads") if name in keywords}
-    contact = core.Contact(body, cells, counterbody, **planned)
+    contact = Contact(body, cells, counterbody, **planned)
     area = cells.size[0] * cells.size[1]
     columns: dict[str, list[float]] = {name: [] for name in CURVE}
-    last: core.Solution | None = None
+    last: Solution | None = None
     for value in values:
         last = contact.solve(shape, load=value * area, initial=last, **keywords)
         corrected = corrected_area(last)
@@ -200,21 +202,7 @@ def load_curve(
     return dataset
 
 
-CURVE = {
-    "load": ("load", "N"),
-    "contact_area": ("contact area of counted cells", "m²"),
-    "corrected_area": ("contact area, corrected for the perimeter", "m²"),
-    "share": ("share of the cells in contact", "1"),
-    "corrected_share": ("share of the area in contact, corrected", "1"),
-    "mean_gap": ("mean gap", "m"),
-    "approach": ("approach", "m"),
-    "stiffness": ("stiffness, change of the mean pressure over that of the approach", "Pa/m"),
-    "patches": ("number of patches", "1"),
-}
-"""Columns of `load_curve`: words and units."""
-
-
-def corrected_area(solution: core.Solution) -> float:
+def corrected_area(solution: Solution) -> float:
     """Contact area without the error of counting cells [m²], to the first order.
 
     Cells that the edge of the contact cuts count as a whole where more than a part of them is
@@ -237,7 +225,7 @@ def corrected_area(solution: core.Solution) -> float:
     return float(max(solution.contact_area - PERIMETER * perimeter * np.sqrt(dx * dy), 0.0))
 
 
-def patches(solution: core.Solution) -> Array:
+def patches(solution: Solution) -> Array:
     """Areas of the patches of the contact [m²], the largest first.
 
     Cells that share a side belong to one patch, across the seam of a periodic grid as well.
@@ -249,7 +237,7 @@ def patches(solution: core.Solution) -> Array:
     return areas
 
 
-def percolates(solution: core.Solution) -> tuple[bool, bool]:
+def percolates(solution: Solution) -> tuple[bool, bool]:
     """Whether the gap is open from side to side, along x and along y: whether it leaks.
 
     Cells that share a side are connected. Along a periodic direction, a path must lead from a cell
@@ -259,7 +247,7 @@ def percolates(solution: core.Solution) -> tuple[bool, bool]:
     return crosses(gap, solution.report.grid, 0), crosses(gap, solution.report.grid, 1)
 
 
-def pressure_distribution(solution: core.Solution, bins: int = 50) -> xarray.DataArray:
+def pressure_distribution(solution: Solution, bins: int = 50) -> xarray.DataArray:
     """Probability density of the pressure in the contact [1/Pa], over the pressure.
 
     Its integral is the share of the cells in contact. The others, without pressure, are the
@@ -269,7 +257,7 @@ def pressure_distribution(solution: core.Solution, bins: int = 50) -> xarray.Dat
     return _distribution(solution.pressure[contact], contact.size, bins, "pressure", "Pa")
 
 
-def gap_distribution(solution: core.Solution, bins: int = 50) -> xarray.DataArray:
+def gap_distribution(solution: Solution, bins: int = 50) -> xarray.DataArray:
     """Probability density of the gap outside the contact [1/m], over the gap.
 
     Its integral is the share of the cells that do not touch. Those in contact are the attribute
@@ -303,7 +291,7 @@ def _distribution(values: Array, count: int, bins: int, name: str, unit: str) ->
     return found
 
 
-def spectrum(solution: core.Solution) -> xarray.Dataset:
+def spectrum(solution: Solution) -> xarray.Dataset:
     """Power spectra of the undeformed and of the deformed surface, averaged over directions.
 
     The deformed surface is minus the gap: flat where the bodies touch. The density is that of

@@ -14,11 +14,10 @@ import numpy.typing as npt
 
 import nacre._core as core
 from nacre import _display, values
-from nacre._keywords import ByLayer, Direction, Member, Side
 from nacre._result import Result, same
+from nacre._typing import ByLayer, Direction, Member, Real, Side
 
 Array = npt.NDArray[np.float64]
-Real = npt.NDArray[np.floating | np.integer | np.bool]
 Depths = float | Sequence[float] | Real
 Peak = tuple[float, tuple[float, float, float]]
 """Value, and point (x, y, z) where it occurs."""
@@ -437,9 +436,13 @@ class StressPlan:
     """
 
     _plan: core.StressPlan = field(compare=False)
-    _solution: Any  # pickled in place of the plan
+    """Plan of the compiled module."""
+    _solution: Any
+    """Solution, which is pickled in place of the plan."""
     _member: Member
+    """Body of the solution."""
     _threads: int | None
+    """Number of threads that was asked for."""
 
     @property
     def body(self) -> core.HalfSpace:
@@ -487,7 +490,7 @@ class StressPlan:
         >>> solution.stress_plan().stress(10e-6) == solution.stress(10e-6)
         True
         """
-        return _warned(Stress(**self._plan.stress(z, _asked(locals()))))
+        return _warned(Stress(**core.stress(self._plan, z, locals())))
 
     def summary(
         self,
@@ -527,7 +530,7 @@ class StressPlan:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        return _warned(StressSummary._made(self._plan.summary(_asked(locals()))))
+        return _warned(StressSummary._made(core.stress_summary(self._plan, locals())))
 
     def __repr__(self) -> str:
         """Return which body the plan is of."""
@@ -542,18 +545,6 @@ class Stressed:
     """Stresses below a solved contact, with or without friction."""
 
     _solved: Any
-
-    def _stress(self, z: Depths, asked: dict[str, Any]) -> dict[str, Any]:
-        fields: dict[str, Any] = self._solved.stress(z, asked)
-        return fields
-
-    def _stress_summary(self, asked: dict[str, Any]) -> str:
-        text: str = self._solved.stress_summary(asked)
-        return text
-
-    def _stress_plan(self, body: Member, threads: int | None) -> core.StressPlan:
-        plan: core.StressPlan = self._solved.stress_plan(body, threads)
-        return plan
 
     def stress(
         self,
@@ -638,7 +629,7 @@ class Stressed:
         >>> bool(np.allclose(above.xz, below.xz)), bool(np.allclose(above.xx, below.xx))
         (True, False)
         """
-        return _warned(Stress(**self._stress(z, _asked(locals()))))
+        return _warned(Stress(**core.stress(self._solved, z, locals())))
 
     def stress_summary(
         self,
@@ -696,7 +687,7 @@ class Stressed:
         >>> bool(summary.layers[0].yield_safety_factor > 1.0)
         True
         """
-        return _warned(StressSummary._made(self._stress_summary(_asked(locals()))))
+        return _warned(StressSummary._made(core.stress_summary(self._solved, locals())))
 
     def stress_plan(self, body: Member = "body", threads: int | None = None) -> StressPlan:
         """Plan of the stress in one body, to be evaluated any number of times.
@@ -728,7 +719,7 @@ class Stressed:
         >>> [plan.stress(z, friction=0.1, direction=(1, 0)).friction for z in (10e-6, 20e-6)]
         [(0.1, 0.0), (0.1, 0.0)]
         """
-        return StressPlan(self._stress_plan(body, threads), self, body, threads)
+        return StressPlan(core.stress_plan(self._solved, locals()), self, body, threads)
 
 
 def stress(
@@ -792,13 +783,7 @@ def stress(
     >>> bool(abs(field.zz[0, 32] + 1e9) < 1.0)
     True
     """
-    asked = _asked(locals(), "body", "grid", "pressure")
-    return Stress(**core.stress(body, grid, pressure, z, asked))
-
-
-def _asked(arguments: dict[str, Any], *others: str) -> dict[str, Any]:
-    """Return the arguments of a function that are keywords of the compiled module."""
-    return {k: value for k, value in arguments.items() if k not in ("self", "z", *others)}
+    return Stress(**core.stress_under(body, grid, pressure, z, locals()))
 
 
 Told = TypeVar("Told", Stress, StressSummary)
@@ -809,8 +794,3 @@ def _warned(result: Told) -> Told:
     for message in result.warnings:
         warnings.warn(message, core.NacreWarning, stacklevel=3)
     return result
-
-
-# A class of the compiled module takes its methods here; it has its own ones in place of `_solved`.
-for _name in ("stress", "stress_summary", "stress_plan"):
-    setattr(core.Solution, _name, vars(Stressed)[_name])

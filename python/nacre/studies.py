@@ -32,7 +32,8 @@ from nacre._outputs import (
 )
 from nacre._parameters import put
 from nacre._progress import shown
-from nacre.friction import roll, slide
+from nacre.contact import roll, slide, solve
+from nacre.solution import Solution
 
 if TYPE_CHECKING:
     import xarray
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 Case = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 
-ARGUMENTS = frozenset(inspect.signature(core.solve).parameters)
+ARGUMENTS = frozenset(inspect.signature(solve).parameters)
 SLIDE = frozenset(inspect.signature(slide).parameters) - ARGUMENTS
 ROLL = frozenset(inspect.signature(roll).parameters) - ARGUMENTS
 """Arguments of contacts with friction besides those of `nacre.solve`."""
@@ -358,13 +359,13 @@ def _solve(
         warnings.filterwarnings("ignore", category=core.NacreWarning)  # the record has them
     try:
         if "tip" in arguments:
-            from nacre.indent.solution import solve
+            from nacre.indent import solution as indentation
 
-            found = solve(**arguments)
+            found = indentation.solve(**arguments)
             told = {"warnings": list(found.warnings), "kinds": ["steep"] * len(found.warnings)}
             return {"values": indented(found, outputs), "indents": True} | told
         solution = _solution(arguments)
-        normal = solution if isinstance(solution, core.Solution) else solution.normal
+        normal = solution if isinstance(solution, Solution) else solution.normal
         unresolved: list[str] = []
         threads = {"threads": arguments["threads"]}
         values = evaluated(solution, outputs, threads | stress, unresolved)
@@ -374,18 +375,18 @@ def _solve(
             "warnings": normal.report.warnings + unresolved,
             "kinds": kinds + ["unresolved stress"] * len(unresolved),
         }
-        rolling = not isinstance(solution, core.Solution) and rolls(solution)
+        rolling = not isinstance(solution, Solution) and rolls(solution)
         marks = {"line": normal.report.grid.is_line, "rolls": rolling}
         return record | {name: True for name, holds in marks.items() if holds}
     except Exception as error:  # whatever it is, the other cases go on
         return {"error": _reason(error)}
 
 
-def _solution(arguments: dict[str, Any]) -> core.Solution | FrictionSolution:
+def _solution(arguments: dict[str, Any]) -> Solution | FrictionSolution:
     """Return the solution of a case: with friction where it has any, and the last of a history."""
     own = set(arguments) - ARGUMENTS
     if not own:
-        return core.solve(**arguments)
+        return solve(**arguments)
     solved = slide(**arguments) if own <= SLIDE else roll(**arguments)
     found: FrictionSolution = solved[-1] if isinstance(solved, list) else solved
     return found

@@ -20,7 +20,7 @@ import numpy as np
 
 import nacre._core as core
 
-FORMAT: int = core._FORMAT
+FORMAT = 1
 """Number of the format in which states are written."""
 
 FIELDS: dict[type, tuple[str, ...]] = {
@@ -66,14 +66,8 @@ LATER = {"name", "counter_radius", "counter_radius_x", "counter_radius_y", "ends
 still read, and older studies found again. Versions that do not know them refuse them by name."""
 ABSENT = (None, (None, None), (False, False))
 """Values of those arguments that say nothing; the second one is of ends."""
-RESULTS: dict[str, Any] = {
-    kind.__name__: kind
-    for kind in (
-        core.Report,
-        core.Solution,
-    )
-}
-"""Classes of results by their names: those of the compiled module, and each `Result`."""
+RESULTS: dict[str, Any] = {}
+"""Classes of results by their names."""
 BEGUN = ("traction", "displacement", "friction", "motion")
 """Fields of a contact with friction on which a history depends that goes on from it."""
 
@@ -114,7 +108,7 @@ def encode(value: Any, *, digest: bool = False) -> Any:
             if any(value.periodic):
                 made["periodic"] = value.periodic
             return {"Grid": of(made)}
-        if digest and isinstance(value, core.Solution):
+        if digest and type(value) is RESULTS.get("Solution"):
             return {"Solution": of(value.pressure)}
         if digest and type(value) is RESULTS.get("FrictionSolution"):
             state, normal = value.to_dict(), value.normal
@@ -156,7 +150,7 @@ def checked_state(
     """
     if not isinstance(data, Mapping):
         raise ValueError(f"{kind} must be a dict of named fields, got {data!r}")
-    state = dict.fromkeys(later) | dict(data)
+    state = dict(data)
     for key in ("format", "nacre", "kind"):
         if key not in state:
             raise ValueError(f'{kind}: the key "{key}" is missing')
@@ -165,12 +159,20 @@ def checked_state(
         raise ValueError(f'the key "nacre" must hold a version, got {writer!r}')
     if (found := state.pop("kind")) != kind:
         raise ValueError(f'the key "kind" must be "{kind}", got "{found}"')
+    return named(kind, state, names, later)
+
+
+def named(
+    place: str, data: Mapping[str, Any], names: Collection[str], later: Collection[str] = ()
+) -> dict[str, Any]:
+    """Return data with these names and no others; those of `later` may be missing, and are None."""
+    state = dict.fromkeys(later) | dict(data)
     for key in names:
         if key not in state:
-            raise ValueError(f'{kind}: the key "{key}" is missing')
+            raise ValueError(f'{place}: the key "{key}" is missing')
     for key in state:
         if key not in names:
-            raise ValueError(f"{kind}: the key {key!r} is unknown")
+            raise ValueError(f"{place}: the key {key!r} is unknown")
     return state
 
 

@@ -494,6 +494,11 @@ pub type Progress<'a> = dyn FnMut(&Report) -> ControlFlow<()> + Send + 'a;
 
 /// Errors of force and moments, relative to what was asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Balance {
     /// |Σ p dA − W| / W; 0 where the force is not given.
     pub force: f64,

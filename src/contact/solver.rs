@@ -34,6 +34,8 @@ pub enum Termination {
 
 /// Iterative solver that produced a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Solver {
     /// Preconditioned conjugate gradients on nested grids: what

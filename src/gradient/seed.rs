@@ -403,6 +403,11 @@ pub(super) fn parabola([before, at, after]: [f64; 3]) -> Option<[f64; 3]> {
 
 /// A number that a solved contact gives, and that has a derivative.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
 pub enum Output {
     /// Approach of the origin \[m\].
     Approach,
@@ -433,6 +438,7 @@ pub enum Output {
     /// Ends of the contact, which have no derivative: refused.
     ContactExtent,
     /// Σ w p with given weights (nx, ny).
+    #[cfg_attr(feature = "serde", serde(skip))]
     Weighted(Array2<f64>),
     /// A stress.
     Stress(StressOutput),
@@ -440,6 +446,7 @@ pub enum Output {
 
 /// A stress under the pressure as uniform over each cell, which is what [`stress`](crate::stress()) computes.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StressOutput {
     /// The body.
     pub member: Member,
@@ -462,6 +469,11 @@ impl StressOutput {
 
 /// A scalar made of a stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
 pub enum Measure {
     /// σ_xx, σ_yy, σ_zz, σ_xy, σ_yz, σ_xz, by number.
     Component(usize),
@@ -477,6 +489,11 @@ pub enum Measure {
 
 /// Where a stress is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
 pub enum StressPlace {
     /// The point (x, y, z), bilinear between cell centres, above or below an interface.
     Point([f64; 3], Side),

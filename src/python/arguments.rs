@@ -1,15 +1,17 @@
 //! Arrays and numbers from Python, checked, and arrays for Python.
 
+use std::fmt;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use ndarray::{Array2, ArrayD, Ix2};
-use numpy::{IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyComplex, PyDict, PyFloat, PyTuple, PyType};
-
-pub(super) mod keywords;
+use pyo3::types::{PyComplex, PyDict, PyFloat, PyInt, PyList, PyTuple, PyType};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde::de::value::StrDeserializer;
 
 /// A real number from Python, for arguments. An integer beyond the largest f64 becomes infinite, so that
 /// whoever takes the number refuses it by name.
@@ -20,7 +22,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Real {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        if object.cast_exact::<PyFloat>().is_err() && is_complex(&object)? {
+        if object.cast_exact::<PyFloat>().is_err() && (is_complex(&object)? || has_unit(&object)?) {
             return Err(no_real_number(&object));
         }
         match object.extract::<f64>() {
@@ -90,18 +92,86 @@ pub(super) fn items<'py, T: FromPyObjectOwned<'py>>(
         .collect()
 }
 
-/// Array of f64 with the numbers of `object`, which may have any real dtype, order and stride.
-///
-/// Complex numbers, objects and text raise a `TypeError` that names the argument.
-pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
-    let numpy = object.py().import("numpy")?;
-    if object.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
+/// Units of arrays whose numbers are what is meant.
+const PLAIN_UNITS: [&str; 11] =
+    ["", "1", "dimensionless", "m", "N", "Pa", "s", "N/m", "m/N", "N m", "m²"];
+
+/// Whether `object` carries a unit: of pint, astropy, unyt, quantities or xarray.
+fn has_unit(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if object.is_exact_instance_of::<PyInt>() {
+        return Ok(false);
+    }
+    if object.hasattr("magnitude")? || object.hasattr("to_base_units")? {
+        let dimensionless = object.getattr_opt("dimensionless")?;
+        return Ok(!dimensionless.is_some_and(|is| is.is_truthy().unwrap_or(false)));
+    }
+    let unit = match object.getattr_opt("unit")? {
+        Some(unit) if !unit.is_none() => Some(unit),
+        _ => object.getattr_opt("units")?,
+    };
+    match unit {
+        Some(unit) if !unit.is_none() && !unit.is_callable() => {
+            Ok(!PLAIN_UNITS.contains(&unit.str()?.to_str()?))
+        }
+        _ => Ok(false),
+    }
+}
+
+/// Argument as it is, or as an array without labels: one (y, x) of xarray or scipp becomes (x, y). What would be read
+/// with another meaning is refused: masked arrays, numbers with a unit, other labels beside x or y.
+#[pyfunction]
+pub(super) fn plain<'py>(name: &str, value: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    if value.is_exact_instance_of::<PyFloat>() || value.cast_exact::<PyUntypedArray>().is_ok() {
+        return Ok(value);
+    }
+    if value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>() {
+        for item in value.try_iter()? {
+            plain(name, item?)?;
+        }
+        return Ok(value);
+    }
+    let numpy = value.py().import("numpy")?;
+    if value.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
         return Err(PyTypeError::new_err(format!(
             "{name} must be a real array without a mask: fill the missing values first"
         )));
     }
+    if has_unit(&value)? {
+        return Err(PyTypeError::new_err(format!(
+            "{name} must be a real number or array in SI units, got {:.60} with a unit: convert it, and pass its \
+             magnitude",
+            Repr(&value).to_string()
+        )));
+    }
+    let (Some(axes), Some(values)) = (value.getattr_opt("dims")?, value.getattr_opt("values")?)
+    else {
+        return Ok(value);
+    };
+    let axes: Vec<String> = axes
+        .try_iter()?
+        .map(|axis| Ok(axis?.str()?.to_string().to_lowercase()))
+        .collect::<PyResult<_>>()?;
+    let axes: Vec<&str> = axes.iter().map(String::as_str).collect();
+    match axes[..] {
+        ["y", "x"] => values.getattr("T"),
+        ["x" | "y"] | ["x", "y"] => Ok(values),
+        _ if axes.contains(&"x") || axes.contains(&"y") => Err(PyValueError::new_err(format!(
+            "{name} must have the dimensions x and y, got {}",
+            axes.join(", ")
+        ))),
+        _ => Ok(values),
+    }
+}
+
+/// Array of f64 with the numbers of `object`, which may have any real dtype, order and stride; what [`plain`] refuses
+/// is refused.
+///
+/// Complex numbers, objects and text raise a `TypeError` that names the argument.
+pub(super) fn real_array(name: &str, object: &Bound<'_, PyAny>) -> PyResult<ArrayD<f64>> {
+    let numpy = object.py().import("numpy")?;
     let ragged =
         |error: PyErr| PyTypeError::new_err(format!("{name} must be a real array: {error}"));
+    let object = plain(name, object.clone())?;
     let array = numpy.call_method1("asarray", (object,)).map_err(ragged)?;
     let dtype = array.getattr("dtype")?;
     let kind: String = dtype.getattr("kind")?.extract()?;
@@ -121,11 +191,15 @@ pub(super) fn mapped<'py>(
     object: &Bound<'py, PyAny>,
     value: impl Fn(f64) -> f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let values = real_array(name, object)?.mapv(value);
-    if values.ndim() == 0 {
-        return Ok(values.sum().into_pyobject(object.py())?.into_any());
+    shaped(object.py(), real_array(name, object)?.mapv(value))
+}
+
+/// Array for Python, or a number where it has no dimension.
+pub(super) fn shaped(py: Python<'_>, values: ArrayD<f64>) -> PyResult<Bound<'_, PyAny>> {
+    match values.ndim() {
+        0 => Ok(values.sum().into_pyobject(py)?.into_any()),
+        _ => Ok(values.into_pyarray(py).into_any()),
     }
-    Ok(values.into_pyarray(object.py()).into_any())
 }
 
 /// Array (nx, ny) of f64 with the numbers of `object`.
@@ -211,6 +285,116 @@ pub(super) fn number(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<O
     value.map(extract).transpose()
 }
 
+/// Arguments of a call by name, as a Python function hands them over. `None` stands for what was not given.
+#[derive(Clone)]
+pub(super) struct Given<'py>(pub(super) Bound<'py, PyDict>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Given<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self(object.cast::<PyDict>()?.to_owned()))
+    }
+}
+
+impl<'py> Given<'py> {
+    /// Argument that was given.
+    pub(super) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
+    }
+
+    /// Argument of type `T`, which `kind` describes in the error.
+    pub(super) fn of<T: FromPyObjectOwned<'py>>(&self, name: &str, kind: &str) -> PyResult<T> {
+        let none = || self.0.py().None().into_bound(self.0.py());
+        let value = self.0.get_item(name)?.unwrap_or_else(none);
+        value.extract().map_err(|_| {
+            PyTypeError::new_err(format!("{name} must be {kind}, got {}", Repr(&value)))
+        })
+    }
+
+    /// Real number.
+    pub(super) fn real(&self, name: &str) -> PyResult<f64> {
+        Ok(self.of::<Real>(name, "a real number")?.0)
+    }
+
+    /// Real number that may be missing.
+    pub(super) fn number(&self, name: &str) -> PyResult<Option<f64>> {
+        number(name, self.get(name)?.as_ref())
+    }
+
+    /// Pair of numbers, each of which may be missing.
+    pub(super) fn pair(&self, name: &str) -> PyResult<[Option<f64>; 2]> {
+        pair(name, self.get(name)?.as_ref())
+    }
+
+    /// Truth value.
+    pub(super) fn flag(&self, name: &str) -> PyResult<bool> {
+        self.of(name, "a bool")
+    }
+
+    /// Value that a word stands for.
+    pub(super) fn word<T: DeserializeOwned>(&self, name: &str) -> PyResult<T> {
+        word(name, &self.of::<String>(name, "a str")?)
+    }
+
+    /// Integer of at least `least`, which may be missing.
+    pub(super) fn count(&self, name: &str, least: usize) -> PyResult<Option<usize>> {
+        self.get(name)?.map(|value| count(name, least, &value)).transpose()
+    }
+
+    /// Function, which may be missing.
+    pub(super) fn callable(&self, name: &str) -> PyResult<Option<Py<PyAny>>> {
+        match self.get(name)? {
+            Some(value) if !value.is_callable() => {
+                Err(PyTypeError::new_err(format!("{name} must be callable, got {}", Repr(&value))))
+            }
+            value => Ok(value.map(Bound::unbind)),
+        }
+    }
+}
+
+/// Value of the argument `name` that a word stands for.
+pub(super) fn word<T: DeserializeOwned>(name: &str, word: &str) -> PyResult<T> {
+    T::deserialize(StrDeserializer::<Unknown>::new(word)).map_err(|Unknown(words)| {
+        let words: Vec<_> = words.iter().map(|word| format!("{word:?}")).collect();
+        let listed = match words.split_last() {
+            Some((last, others)) if !others.is_empty() => {
+                format!("{} or {last}", others.join(", "))
+            }
+            _ => words.concat(),
+        };
+        PyValueError::new_err(format!("{name} must be {listed}, got {word:?}"))
+    })
+}
+
+/// Words among which one was not.
+#[derive(Debug, Clone, Copy)]
+struct Unknown(&'static [&'static str]);
+
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(self, f)
+    }
+}
+
+impl std::error::Error for Unknown {}
+
+impl serde::de::Error for Unknown {
+    fn custom<T: fmt::Display>(_: T) -> Self {
+        Self(&[])
+    }
+
+    fn unknown_variant(_: &str, expected: &'static [&'static str]) -> Self {
+        Self(expected)
+    }
+}
+
+/// Word that stands for a value.
+pub(super) fn word_of(value: &impl Serialize) -> String {
+    let told = serde_json::to_value(value).unwrap_or_default();
+    told.as_str().unwrap_or_default().to_owned()
+}
+
 /// Callable and arguments with which a pickle of any protocol makes an object of `class` again.
 pub(super) fn remade<'py>(
     class: Bound<'py, PyType>,
@@ -232,8 +416,8 @@ pub(super) fn hash(repr: &str) -> u64 {
 /// Displays a Python object by its `repr`, in messages.
 pub(super) struct Repr<'a, 'py>(pub(super) &'a Bound<'py, PyAny>);
 
-impl std::fmt::Display for Repr<'_, '_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Repr<'_, '_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0.repr() {
             Ok(repr) => write!(f, "{repr}"),
             Err(_) => write!(f, "a {}", self.0.get_type()),

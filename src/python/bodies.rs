@@ -4,8 +4,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-use super::arguments::{Real, Repr, ends, hash, items, remade};
-use super::words::Word;
+use super::arguments::{Real, Repr, ends, hash, items, remade, word, word_of};
 use crate::compliance::response::Body;
 use crate::model::body::{HalfSpace, Interface, Layer, Substrate};
 use crate::model::material::Elastic;
@@ -138,7 +137,7 @@ impl PyLayer {
         interface: &str,
         name: Option<&str>,
     ) -> PyResult<Self> {
-        let interface = Interface::from_word(interface)?;
+        let interface: Interface = word("interface", interface)?;
         let layer = Layer::new(material.0, thickness.0)?.with_interface(interface);
         Ok(Self(match name {
             Some(name) => layer.with_name(name)?,
@@ -160,8 +159,8 @@ impl PyLayer {
 
     /// Interface below the layer: "bonded" or "frictionless".
     #[getter]
-    fn interface(&self) -> &'static str {
-        self.0.interface().word()
+    fn interface(&self) -> String {
+        word_of(&self.0.interface())
     }
 
     /// Name of the layer; None where it has none.
@@ -209,7 +208,7 @@ fn quoted(text: &str) -> String {
     literal
 }
 
-type LayerArguments<'a> = (PyElastic, f64, &'static str, Option<&'a str>);
+type LayerArguments<'a> = (PyElastic, f64, String, Option<&'a str>);
 
 /// A half-space: a substrate, and layers from the surface down; free ends cut it off along x.
 ///

@@ -1,52 +1,27 @@
-//! Response of a body to loads on its surface: `nacre.frequency_response`, `nacre.surface_compliance`,
-//! `nacre.influence_coefficients`, `nacre.graded_layers` and `nacre.Convolution`.
+//! Response of a body to loads on its surface, and planned convolutions: what `nacre._compliance` is around.
 
+use std::sync::Arc;
+
+use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::arguments::{Real, Repr, count, items, real_array};
+use super::arguments::{Real, Repr, count, items, read_only, real_array, real_matrix, shaped};
 use super::background::{self, Caller};
 use super::bodies::{PyLayer, body, substrate};
 use super::grid::PyGrid;
-use super::words::{self, REFINEMENT};
-use crate::compliance::influence;
-use crate::compliance::response::{self, Compliance};
+use crate::compliance::convolution::Convolution;
+use crate::compliance::influence::{self, Method, coefficients_on};
+use crate::compliance::response::{self, Body, Compliance};
+use crate::model::body::HalfSpace;
+use crate::numerics::parallel::{Threads, check_memory};
 
-mod convolution;
-
-pub(super) use convolution::PyConvolution;
-
-/// Normal surface displacement per unit pressure of one wavenumber.
-///
-/// Parameters
-/// ----------
-/// body : HalfSpace or Elastic
-///     Body under the pressure; its free ends are not counted.
-/// wavenumber : float or array_like
-///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
-///
-/// Returns
-/// -------
-/// float or numpy.ndarray
-///     ``u_z/p`` [m/Pa], in the shape of `wavenumber`. For one layer it equals the formula of Nogi &
-///     Kato, J. Tribol. 119 (1997) 493, with the sign of its denominator corrected.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If a wavenumber is not finite and above 0.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> alpha = 1e3
-/// >>> round(nacre.frequency_response(steel, alpha) * alpha * steel.plane_strain_modulus, 12)
-/// 2.0
+/// Normal surface displacements per unit pressure of wavenumbers.
 #[pyfunction]
 pub(super) fn frequency_response<'py>(
     py: Python<'py>,
-    #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+    #[pyo3(from_py_with = body)] body: HalfSpace,
     wavenumber: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut values = real_array("wavenumber", wavenumber)?;
@@ -56,51 +31,16 @@ pub(super) fn frequency_response<'py>(
             Ok::<_, crate::Error>(())
         })
     })?;
-    if values.ndim() == 0 {
-        return Ok(values.sum().into_pyobject(py)?.into_any());
-    }
-    Ok(values.into_pyarray(py).into_any())
+    shaped(py, values)
 }
 
-/// Surface displacements per unit traction of one wavenumber, normal and lateral.
-///
-/// With the x axis along the wave, under pressure p and tractions q_x, q_y on the body::
-///
-///     u_z = c11 p - i c12 q_x      u_x = i c12 p + c22 q_x      u_y = ct q_y
-///
-/// Parameters
-/// ----------
-/// body : HalfSpace or Elastic
-///     Body under the tractions; its free ends are not counted.
-/// wavenumber : float or array_like
-///     ``alpha = sqrt(m**2 + n**2)`` [1/m], above 0, of any shape.
-///
-/// Returns
-/// -------
-/// SurfaceCompliance
-///     Named tuple ``(c11, c12, c22, ct)`` of numbers or arrays [m/Pa] in the shape of `wavenumber`;
-///     ``c11`` equals `frequency_response`.
-///
-/// Raises
-/// ------
-/// TypeError
-///     If the wavenumbers are not real numbers.
-/// ValueError
-///     If a wavenumber is not finite and above 0.
-///
-/// Examples
-/// --------
-/// On a half-space ``c12/c11 = (1 - 2 nu)/(2 - 2 nu)``:
-///
-/// >>> compliance = nacre.surface_compliance(nacre.Elastic(young=1.0, poisson=0.25), [1.0, 2.0])
-/// >>> (compliance.c12 / compliance.c11).round(12)
-/// array([0.33333333, 0.33333333])
+/// Surface displacements per unit traction of wavenumbers: c11, c12, c22 and ct.
 #[pyfunction]
 pub(super) fn surface_compliance<'py>(
     py: Python<'py>,
-    #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+    #[pyo3(from_py_with = body)] body: HalfSpace,
     wavenumber: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<[Bound<'py, PyAny>; 4]> {
     let wavenumbers = real_array("wavenumber", wavenumber)?;
     let at = |alpha: &f64| response::surface_compliance(&body, *alpha);
     let compliances =
@@ -109,65 +49,41 @@ pub(super) fn surface_compliance<'py>(
         let mut values = wavenumbers.clone();
         let targets = values.iter_mut().zip(&compliances);
         targets.for_each(|(target, compliance)| *target = value(compliance));
-        match values.ndim() {
-            0 => values.sum().into_pyobject(py).map(Bound::into_any),
-            _ => Ok(values.into_pyarray(py).into_any()),
-        }
+        shaped(py, values)
     };
-    let components =
-        (component(|c| c.c11)?, component(|c| c.c12)?, component(|c| c.c22)?, component(|c| c.ct)?);
-    let class = py.import("nacre._compliance")?.getattr("SurfaceCompliance")?;
-    class.call1(components)
+    Ok([component(|c| c.c11)?, component(|c| c.c12)?, component(|c| c.c22)?, component(|c| c.ct)?])
 }
 
-/// Displacement at offsets from a cell under unit pressure.
-///
-/// Parameters
-/// ----------
-/// body : HalfSpace or Elastic
-///     Body under the pressure; its free ends are not counted.
-/// grid : Grid
-///     Grid with that cell; there is an offset for each of its cells.
-/// method : {"exact", "plain", "difference", "image", "spectral"}, optional
-///     ``"exact"`` has no aliasing, for any thickness and any cell. The other methods sample a
-///     frequency response and transform it back: ``"plain"`` the response of the body;
-///     ``"difference"`` its difference from the response of a half-space of the coating's material;
-///     ``"image"`` the remainder of that difference beside an image potential. ``"plain"`` and
-///     ``"difference"`` are inaccurate on long thin domains; ``"image"`` needs layers thicker than a
-///     cell. On a periodic grid, ``"exact"`` sums over the images of the cell; ``"spectral"`` samples the response at
-///     the waves of a grid that repeats in both directions, as other programs do.
-/// refinement : int, optional
-///     Refinement of the spectral mesh of the conversions.
-///
-/// Returns
-/// -------
-/// numpy.ndarray
-///     Coefficients ``(nx, ny)`` [m/Pa] of the offsets ``(i dx, j dy)``, ``i, j >= 0``.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If the method is another word or the refinement is below 1.
-/// MemoryError
-///     If the grid does not fit.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> grid = nacre.Grid(shape=(8, 8), size=(8e-6, 8e-6))
-/// >>> nacre.influence_coefficients(steel, grid).shape
-/// (8, 8)
+/// Refinement of the spectral mesh where none is given.
+const REFINEMENT: usize = 4;
+
+/// Method with that name and that refinement.
+fn method(word: &str, refinement: usize) -> PyResult<Method> {
+    Ok(match word {
+        "exact" => Method::Exact,
+        "plain" => Method::Plain { refinement },
+        "difference" => Method::Difference { refinement },
+        "image" => Method::Image { refinement },
+        "spectral" => Method::Spectral,
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "method must be \"exact\", \"plain\", \"difference\", \"image\" or \"spectral\", got {other:?}"
+            )));
+        }
+    })
+}
+
+/// Displacements at offsets from a cell under unit pressure.
 #[pyfunction]
-#[pyo3(signature = (body, grid, method="exact", refinement=None))]
 pub(super) fn influence_coefficients<'py>(
     py: Python<'py>,
-    #[pyo3(from_py_with = body)] body: crate::HalfSpace,
+    #[pyo3(from_py_with = body)] body: HalfSpace,
     grid: PyGrid,
     method: &str,
     refinement: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let refinement = refinement.map_or(Ok(REFINEMENT), |r| count("refinement", 1, r))?;
-    let method = words::method(method, refinement)?;
+    let method = self::method(method, refinement)?;
     let coefficients = background::run(py, None, move |_: &mut Caller<()>| {
         influence::influence_coefficients(&body, &grid.0, method)
     })??;
@@ -175,61 +91,7 @@ pub(super) fn influence_coefficients<'py>(
 }
 
 /// Layers that replace a coating whose properties vary with depth.
-///
-/// The functions are evaluated at two thousand depths, and wherever neighbours differ, the interval is
-/// bisected: jumps are located to rounding, and steep parts are set apart. Each section between them is
-/// cut into equal layers with the properties at their middle, and their number is doubled until the
-/// frequency response, at wavelengths down to a fifth of the thickness, is within `tolerance` of its limit
-/// by two estimates: the last two doublings, and the mean properties that the search found in each layer.
-///
-/// No number of samples shows what lies between them: a feature thinner than a thousandth of the
-/// thickness may be missed, unless one of `breakpoints` lies on it.
-///
-/// Parameters
-/// ----------
-/// substrate : Elastic or nacre.RIGID
-///     Material below the coating.
-/// thickness : float
-///     Thickness of the coating [m].
-/// young : float or callable
-///     Young's modulus [Pa], or a function of the depth z [m] that returns it.
-/// poisson : float or callable
-///     Poisson's ratio, or a function of the depth.
-/// tolerance : float, optional
-///     Relative error of the frequency response.
-/// breakpoints : sequence of float, optional
-///     Depths [m] of jumps and of thin features that are known. A section begins at each, and its
-///     neighbourhood is searched down to a trillionth of the thickness.
-///
-/// Returns
-/// -------
-/// list of Layer
-///     Layers from the surface down.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If an argument is out of range, the functions vary at every scale, as noise does, or 4096 layers do
-///     not meet the tolerance.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> layers = nacre.graded_layers(steel, 10e-6, young=lambda z: 420e9 - 21e15 * z, poisson=0.3)
-/// >>> len(layers)
-/// 64
-/// >>> body = nacre.HalfSpace(steel, layers)
-///
-/// An adhesive of 20 nm is found where a breakpoint tells of it:
-///
-/// >>> glued = lambda z: 1e9 if abs(z - 5e-6) < 10e-9 else 210e9
-/// >>> len(nacre.graded_layers(steel, 10e-6, glued, 0.3, breakpoints=[5e-6]))
-/// 3
 #[pyfunction]
-#[pyo3(
-    signature = (substrate, thickness, young, poisson, tolerance=Real(1e-3), breakpoints=None),
-    text_signature = "(substrate, thickness, young, poisson, tolerance=0.001, breakpoints=None)"
-)]
 pub(super) fn graded_layers(
     #[pyo3(from_py_with = substrate)] substrate: crate::Substrate,
     thickness: Real,
@@ -266,5 +128,93 @@ pub(super) fn graded_layers(
     match failure {
         Some(error) => Err(error),
         None => Ok(layers?.into_iter().map(PyLayer).collect()),
+    }
+}
+
+/// A planned convolution.
+#[pyclass(name = "Convolution", module = "nacre._core", frozen)]
+pub(super) struct PyConvolution {
+    convolution: Arc<Convolution>,
+    coefficients: Array2<f64>,
+    /// Number of threads that was asked for.
+    #[pyo3(get)]
+    asked_threads: Option<usize>,
+}
+
+impl PyConvolution {
+    /// Plan of the coefficients that `coefficients` finds, on threads of its own.
+    fn plan(
+        py: Python<'_>,
+        threads: Option<&Bound<'_, PyAny>>,
+        coefficients: impl FnOnce(&Threads) -> crate::Result<Array2<f64>> + Send + 'static,
+    ) -> PyResult<Self> {
+        let asked_threads = threads.map(|n| count("threads", 1, n)).transpose()?;
+        Ok(background::run(py, None, move |_: &mut Caller<()>| {
+            let threads = Arc::new(Threads::new(asked_threads)?);
+            let coefficients = coefficients(&threads)?;
+            let convolution = Arc::new(Convolution::plan_on(&coefficients, threads)?);
+            Ok::<_, crate::Error>(Self { convolution, coefficients, asked_threads })
+        })??)
+    }
+}
+
+#[pymethods]
+impl PyConvolution {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        coefficients: &Bound<'_, PyAny>,
+        threads: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let coefficients = real_matrix("coefficients", coefficients)?;
+        Self::plan(py, threads, move |_| Ok(coefficients))
+    }
+
+    /// Convolution with the exact influence coefficients of one or two bodies.
+    #[staticmethod]
+    fn of_bodies(
+        py: Python<'_>,
+        #[pyo3(from_py_with = body)] body: HalfSpace,
+        grid: PyGrid,
+        counterbody: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let counterbody = counterbody.map(self::body).transpose()?;
+        Self::plan(py, threads, move |threads| {
+            let grid = grid.0;
+            check_memory(grid.shape(), Convolution::memory(grid.shape()))?;
+            let mut sum = coefficients_on(&*Body::from(body), &grid, Method::Exact, threads)?;
+            if let Some(counterbody) = counterbody {
+                let body = Body::from(counterbody);
+                sum += &coefficients_on(&*body, &grid, Method::Exact, threads)?;
+            }
+            Ok(sum)
+        })
+    }
+
+    fn apply<'py>(
+        &self,
+        py: Python<'py>,
+        pressure: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let pressure = real_matrix("pressure", pressure)?;
+        let displacement = py.detach(|| self.convolution.apply(&pressure))?;
+        Ok(displacement.into_pyarray(py))
+    }
+
+    fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        read_only(py, self.coefficients.clone())
+    }
+
+    fn shape(&self) -> (usize, usize) {
+        self.convolution.shape().into()
+    }
+
+    fn threads(&self) -> usize {
+        self.convolution.threads()
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.coefficients == other.coefficients && self.asked_threads == other.asked_threads
     }
 }

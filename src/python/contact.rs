@@ -1,264 +1,261 @@
-//! `nacre.Contact` and `nacre.solve`.
+//! Handle of a planned contact, and solves; `nacre.Contact` and `nacre.solve` are around them.
 
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use super::arguments::keywords::{
-    self, Keywords, motion_docs, motion_signature, search_docs, search_signature, single_docs,
-    single_signature,
-};
-use super::arguments::{array_repr, read_only, real_matrix, remade};
+use super::arguments::{Given, count, read_only, real_matrix};
 use super::background::{self, Caller};
 use super::bodies::{PyHalfSpace, body};
 use super::grid::PyGrid;
-use super::solution::PySolution;
-use crate::contact::Contact;
+use super::shapes::{Shape, shape};
+use super::solved::{PySolved, ReportParts, hardness, report_parts};
+use crate::compliance::response::Body;
+use crate::contact::{Case, Contact, Motion, Options, Report, Setup, Solution, solve_with};
+use crate::error::Result;
 use crate::model::body::HalfSpace;
+use crate::model::grid::Grid;
 
-mod batch;
-mod friction;
-mod single;
-
-pub(super) use friction::{PyFrictionSolved, PyFrictionSteps, creep_coefficients, roll, slide};
-pub(super) use single::solve;
-use single::{Call, setup};
-
-/// A body on a grid, planned once: influence coefficients and their transform.
-///
-/// Parameters
-/// ----------
-/// body : HalfSpace or Elastic
-///     Body that the shape is pressed into.
-/// grid : Grid
-///     Cells of the pressure.
-/// counterbody : HalfSpace or Elastic, optional
-///     Body that carries the shape; rigid where there is none.
-/// coefficients : array_like, optional
-///     Influence coefficients ``(nx, ny)`` [m/Pa] of both bodies together, such as those of another method of
-///     `influence_coefficients`; by default the exact ones of the bodies.
-/// threads : int, optional
-///     Number of threads; all of the machine's by default.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If an argument is out of range.
-/// MemoryError
-///     If the grid does not fit into memory: a plan and a solve take up to 170 bytes a cell, with a hardness 210.
-///
-/// Examples
-/// --------
-/// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-/// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
-/// >>> solution = contact.solve(nacre.Sphere(5e-3), load=10.0)
-/// >>> round(solution.load, 6)
-/// 10.0
-#[pyclass(name = "Contact", module = "nacre", frozen)]
-pub(super) struct PyContact {
-    contact: Arc<Contact>,
-}
+/// A body on a grid, planned.
+#[pyclass(name = "Plan", module = "nacre._core", frozen)]
+pub(super) struct PyPlan(pub(super) Arc<Contact>);
 
 #[pymethods]
-impl PyContact {
+impl PyPlan {
     #[new]
-    #[pyo3(
-        signature = (body, grid, counterbody=None, **keywords),
-        text_signature = "(body, grid, counterbody=None, *, coefficients=None, threads=None)"
-    )]
-    fn new<'py>(
-        py: Python<'py>,
+    fn new(
+        py: Python<'_>,
         #[pyo3(from_py_with = body)] body: HalfSpace,
         grid: PyGrid,
-        counterbody: Option<&Bound<'py, PyAny>>,
-        keywords: Option<&Bound<'py, PyDict>>,
+        counterbody: Option<&Bound<'_, PyAny>>,
+        coefficients: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let keywords = Keywords::new(py, keywords)?;
-        let mut setup = setup(counterbody, &keywords)?;
-        if let Some(given) = keywords.given("coefficients")? {
-            setup.coefficients = Some(real_matrix("coefficients", &given)?.into_shared());
-        }
-        keywords.finish("keywords of Contact")?;
+        let coefficients = coefficients.map(|given| real_matrix("coefficients", given));
+        let setup = Setup {
+            counterbody: counterbody.map(self::body).transpose()?.map(Body::from),
+            coefficients: coefficients.transpose()?.map(|given| given.into_shared()),
+            threads: threads.map(|given| count("threads", 1, given)).transpose()?,
+        };
         let contact = background::run(py, None, move |_: &mut Caller<()>| {
             Contact::plan(&body, grid.0, setup)
         })??;
-        Ok(Self { contact: Arc::new(contact) })
+        Ok(Self(Arc::new(contact)))
     }
 
-    /// Body that the shape is pressed into.
-    #[getter]
     fn body(&self) -> PyHalfSpace {
-        PyHalfSpace::of(self.contact.body())
+        PyHalfSpace::of(self.0.body())
     }
 
-    /// Body that carries the shape; rigid where `None`.
-    #[getter]
     fn counterbody(&self) -> Option<PyHalfSpace> {
-        self.contact.setup().counterbody.as_ref().map(PyHalfSpace::of)
+        self.0.setup().counterbody.as_ref().map(PyHalfSpace::of)
     }
 
-    /// Cells of the pressure.
-    #[getter]
     fn grid(&self) -> PyGrid {
-        PyGrid(*self.contact.grid())
+        PyGrid(*self.0.grid())
     }
 
-    /// Influence coefficients ``(nx, ny)`` [m/Pa] that were given; None where they are those of the bodies.
-    #[getter]
     fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let given = self.contact.setup().coefficients.as_ref();
+        let given = self.0.setup().coefficients.as_ref();
         given.map(|given| read_only(py, given.to_owned())).transpose()
     }
 
-    /// Number of threads of the plan.
-    #[getter]
     fn threads(&self) -> usize {
-        self.contact.convolution().threads()
+        self.0.convolution().threads()
     }
 
-    #[doc = concat!("solve($self, shape, *, ", motion_signature!(), ", ", search_signature!(), ", ", single_signature!(), ")\n--\n")]
-    /// Presses `shape` into the body.
-    ///
-    /// Each of the three degrees of freedom of the rigid motion is prescribed or loaded, in any
-    /// mixture. Exactly one of `load` and `approach` is given, and along x and along y at most one of
-    /// `eccentricity`, `moment` and `tilt`; with none of them the tilt is locked at 0.
-    ///
-    /// Parameters
-    /// ----------
-    /// shape : Shape
-    ///     Shape that is pressed in.
-    #[doc = motion_docs!()]
-    #[doc = search_docs!()]
-    #[doc = single_docs!()]
-    ///
-    /// Returns
-    /// -------
-    /// Solution
-    ///     Pressure, gap, displacement, approach and tilt.
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     If an argument is out of range, or the arguments contradict each other.
-    /// ConvergenceError
-    ///     If the tolerance was not met; the unfinished solution is its `solution`.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
-    /// >>> contact.solve(nacre.Sphere(5e-3), approach=-1e-6).load
-    /// 0.0
-    #[pyo3(signature = (shape, **keywords), text_signature = None)]
-    fn solve<'py>(
-        &self,
-        py: Python<'py>,
-        shape: &Bound<'py, PyAny>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<PySolution> {
-        let keywords = Keywords::new(py, keywords)?;
-        let call = Call::new(shape, &keywords)?;
-        keywords.finish("keywords of Contact.solve")?;
-        self.contact.grid().check_initial(call.initial.as_ref())?;
-        let contact = Arc::clone(&self.contact);
-        call.run(py, move |shape, motion, options, progress| {
-            contact.solve(shape, motion, options.watched(progress))
-        })
-    }
-
-    #[doc = concat!("solve_many($self, cases, *, ", search_signature!(), ", progress=None, check=True)\n--\n")]
-    /// Solves many load cases side by side, each on a thread of its own.
-    ///
-    /// Parameters
-    /// ----------
-    /// cases : iterable of mapping
-    ///     Cases, each with `shape` and the keywords of `solve` that say how it is pressed: `load`,
-    ///     `approach`, `eccentricity`, `moment`, `tilt`.
-    #[doc = search_docs!()]
-    /// progress : callable, optional
-    ///     Function that is called with the number of finished cases and of all cases, at most 50 times
-    ///     a second, and at the end. Its result is ignored.
-    /// check : bool, optional
-    ///     Whether to raise an error if the tolerance was not met.
-    ///
-    /// Returns
-    /// -------
-    /// list of Solution
-    ///     Solutions in the order of the cases; each has the bits that `solve` gives.
-    ///
-    /// Raises
-    /// ------
-    /// TypeError
-    ///     If a case is not a mapping of keywords of `solve`.
-    /// ValueError
-    ///     If a case is out of range. A note of the error says which case it is.
-    /// ConvergenceError
-    ///     If the tolerance was not met in a case.
-    ///
-    /// Notes
-    /// -----
-    /// Once the solves have begun, every exception that ends them, `KeyboardInterrupt` included, carries
-    /// the finished ones as `solutions`: a list in the order of the cases, with `None` for a case that
-    /// is not finished.
-    ///
-    /// Under a load, successive cases whose shape is the same object share its undeformed gap: they take
-    /// two thirds of the memory.
-    ///
-    /// Examples
-    /// --------
-    /// >>> steel = nacre.Elastic(young=210e9, poisson=0.3)
-    /// >>> contact = nacre.Contact(steel, nacre.Grid(shape=(64, 64), size=(4e-4, 4e-4)))
-    /// >>> ball = nacre.Sphere(5e-3)
-    /// >>> cases = [{"shape": ball, "load": load} for load in (5.0, 10.0)]
-    /// >>> [round(solution.load, 6) for solution in contact.solve_many(cases)]
-    /// [5.0, 10.0]
-    #[pyo3(signature = (cases, **keywords), text_signature = None)]
-    fn solve_many<'py>(
-        &self,
-        py: Python<'py>,
-        cases: &Bound<'py, PyAny>,
-        keywords: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Vec<Py<PySolution>>> {
-        let keywords = Keywords::new(py, keywords)?;
-        let options = keywords::options(&keywords)?;
-        let progress = keywords.callable("progress")?;
-        let check = keywords.flag("check", true)?;
-        keywords.finish("keywords of Contact.solve_many")?;
-        batch::solve_many(py, &self.contact, cases, options, progress, check)
+    /// Number of threads that was asked for.
+    fn asked_threads(&self) -> Option<usize> {
+        self.0.setup().threads
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        let (a, b) = (&self.contact, &other.contact);
+        let (a, b) = (&self.0, &other.0);
         (a.grid(), a.body(), a.setup()) == (b.grid(), b.body(), b.setup())
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (setup, none) = (self.contact.setup(), || "None".to_owned());
-        let coefficients = setup.coefficients.as_ref();
-        let coefficients =
-            coefficients.map(|given| array_repr(py, given.to_owned())).transpose()?;
-        Ok(format!(
-            "Contact({}, {}, counterbody={}, coefficients={}, threads={})",
-            self.body().__repr__(),
-            self.grid().__repr__(),
-            self.counterbody().map_or_else(none, |body| body.__repr__()),
-            coefficients.unwrap_or_else(none),
-            setup.threads.map_or_else(none, |threads| threads.to_string()),
-        ))
-    }
-
-    /// Callable and arguments that make the plan again.
-    fn __reduce__<'py>(
+    /// Solutions of cases, each a shape and its motion by name: of each the solution, an error, or `None` where it was
+    /// not finished; and the error that interrupted it.
+    fn solve_many<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let setup = self.contact.setup();
-        let keywords = PyDict::new(py);
-        keywords.set_item("coefficients", self.coefficients(py)?)?;
-        keywords.set_item("threads", setup.threads)?;
-        let arguments = (self.body(), self.grid(), self.counterbody());
-        remade(py.get_type::<Self>(), arguments, keywords)
+        cases: Vec<Given<'py>>,
+        given: Given<'py>,
+    ) -> PyResult<Outcomes<'py>> {
+        let options = options(&given)?;
+        let progress = given.callable("progress")?;
+        given.flag("check")?;
+        let mut parsed = Vec::new();
+        for (number, case) in cases.iter().enumerate() {
+            let parts = shape_of(case).and_then(|shape| Ok((shape, motion(case)?)));
+            parsed.push(parts.map_err(|error| of_case(py, error, number))?);
+        }
+        let finished: Finished = Arc::default();
+        lock(&finished).resize_with(parsed.len(), || None);
+        let (contact, kept) = (Arc::clone(&self.0), Arc::clone(&finished));
+        let ended = background::run(py, progress, move |caller| {
+            solve_each(&contact, &parsed, &options, &kept, caller)
+        });
+        let interrupt = match ended {
+            Ok(solved) => solved.map(|()| None)?,
+            Err(interrupt) => Some(interrupt.into_value(py).into_bound(py).into_any()),
+        };
+        let solved = std::mem::take(&mut *lock(&finished));
+        let outcome = |(number, solved): (usize, Option<Result<Solution>>)| match solved {
+            None => Ok(py.None().into_bound(py)),
+            Some(Ok(solution)) => Ok(Bound::new(py, PySolved::from(solution))?.into_any()),
+            Some(Err(error)) => {
+                Ok(of_case(py, error.into(), number).into_value(py).into_bound(py).into_any())
+            }
+        };
+        Ok((solved.into_iter().enumerate().map(outcome).collect::<PyResult<_>>()?, interrupt))
     }
+}
+
+/// What became of each case, and what interrupted them.
+type Outcomes<'py> = (Vec<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>);
+
+/// Finished solutions, at the place of their case.
+type Finished = Arc<Mutex<Vec<Option<Result<Solution>>>>>;
+
+fn lock(finished: &Finished) -> MutexGuard<'_, Vec<Option<Result<Solution>>>> {
+    finished.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// `error` with a note that names its case.
+fn of_case(py: Python<'_>, error: PyErr, number: usize) -> PyErr {
+    let _ = error.add_note(py, format!("in case {number}"));
+    error
+}
+
+/// Solves `cases`, and tells the caller how many of them are `finished`.
+fn solve_each(
+    contact: &Contact,
+    cases: &[(Shape, Motion)],
+    options: &Options,
+    finished: &Finished,
+    caller: &mut Caller<(usize, usize)>,
+) -> Result<()> {
+    let cases: Vec<Case> =
+        cases.iter().map(|(shape, motion)| Case { shape, motion: *motion }).collect();
+    contact.check_memory_for(&cases)?;
+    let done = AtomicUsize::new(0);
+    let keep = |number: usize, solved| {
+        // After an interrupt there is no place left.
+        if let Some(place) = lock(finished).get_mut(number) {
+            *place = Some(solved);
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+    };
+    let mut told = 0;
+    contact.solve_each(&cases, options, &keep, &mut || {
+        let done = done.load(Ordering::Relaxed);
+        if done > told {
+            told = done;
+            caller.tell(|| (done, cases.len()));
+        }
+        caller.go_on()
+    })
+}
+
+/// Shape that is pressed in.
+pub(super) fn shape_of(given: &Given) -> PyResult<Shape> {
+    let object = given.of::<Bound<PyAny>>("shape", "a nacre.Shape")?;
+    Ok(shape(&object)?.get().0.clone())
+}
+
+/// Rigid motion that is asked.
+pub(super) fn motion(given: &Given) -> PyResult<Motion> {
+    Ok(Motion {
+        load: given.number("load")?,
+        approach: given.number("approach")?,
+        eccentricity: given.pair("eccentricity")?,
+        moment: given.pair("moment")?,
+        tilt: given.pair("tilt")?,
+    })
+}
+
+/// Way in which a solution is found, from a uniform pressure.
+fn options(given: &Given) -> PyResult<Options> {
+    Ok(Options {
+        tolerance: given.real("tolerance")?,
+        max_iterations: given.count("max_iterations", 0)?,
+        algorithm: given.word("algorithm")?,
+        initial: None,
+        hardness: given.get("hardness")?.map(|given| hardness(&given)).transpose()?,
+        indentation: None,
+    })
+}
+
+/// Bodies and grid of a call that plans, where one is given.
+pub(super) fn planning(given: &Given) -> PyResult<(Body, Setup, Option<Grid>)> {
+    let grid: Option<PyGrid> = given.of("grid", "a nacre.Grid")?;
+    let setup = Setup {
+        counterbody: given.get("counterbody")?.as_ref().map(body).transpose()?.map(Body::from),
+        coefficients: None,
+        threads: given.count("threads", 1)?,
+    };
+    let body = body(&given.of::<Bound<PyAny>>("body", "a body")?)?;
+    Ok((body.into(), setup, grid.map(|grid| grid.0)))
+}
+
+/// Where a contact is solved: on a plan, or on one that is made.
+enum On {
+    Plan(Arc<Contact>),
+    Bodies(Body, Setup, Option<Grid>),
+}
+
+/// Solution of what a call asks for, on `plan` or on one that is made for it.
+#[pyfunction]
+#[pyo3(signature = (given, plan=None))]
+pub(super) fn solve(
+    py: Python<'_>,
+    given: Given<'_>,
+    plan: Option<&Bound<'_, PyPlan>>,
+) -> PyResult<PySolved> {
+    let (shape, motion, mut options) = (shape_of(&given)?, motion(&given)?, options(&given)?);
+    let mut first = None;
+    if let Some(initial) = given.get("initial")? {
+        if let Ok(before) = initial.cast::<PySolved>() {
+            let before = &before.get().0;
+            options.initial = Some(before.pressure.clone());
+            options.indentation.clone_from(&before.indentation);
+            first = Some(*before.grid());
+        } else {
+            options.initial = Some(real_matrix("initial", &initial)?);
+        }
+    }
+    let on = match plan {
+        Some(plan) => On::Plan(Arc::clone(&plan.get().0)),
+        None => {
+            let (body, setup, grid) = planning(&given)?;
+            // A permanent indentation lies on its grid.
+            let dented = first.filter(|_| options.indentation.is_some());
+            On::Bodies(body, setup, grid.or(dented))
+        }
+    };
+    let progress = given.callable("progress")?;
+    given.flag("check")?;
+    let solution = background::run(py, progress, move |caller: &mut Caller<ReportParts>| {
+        let tell = &mut |report: &Report| caller.ask(|| report_parts(report));
+        let watched = options.watched(tell);
+        match on {
+            On::Bodies(body, setup, None) => {
+                let solution = solve_with(&shape, &body, &setup, &motion, watched)?;
+                solution.grid().check_initial(first.as_ref())?;
+                Ok(solution)
+            }
+            On::Bodies(body, setup, Some(grid)) => {
+                grid.check_initial(first.as_ref())?;
+                Contact::plan(&body, grid, setup)?.solve(&shape, &motion, watched)
+            }
+            On::Plan(plan) => {
+                plan.grid().check_initial(first.as_ref())?;
+                plan.solve(&shape, &motion, watched)
+            }
+        }
+    })?;
+    Ok(solution?.into())
 }

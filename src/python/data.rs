@@ -18,7 +18,20 @@ pub(super) fn text(value: &impl Serialize) -> PyResult<String> {
 /// # Errors
 /// A `ValueError` if a field is missing, unknown, or holds a value that does not fit.
 pub(super) fn read<T: DeserializeOwned>(kind: &str, text: &str) -> PyResult<T> {
-    serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))
+    serde_json::from_str(text).map_err(|error| {
+        let said = error.to_string();
+        let said = said.split(" at line ").next().unwrap_or_default();
+        let is_field = said.starts_with("missing field") || said.starts_with("unknown field");
+        let key = key_before(text, error.column()).filter(|_| !is_field);
+        let place = key.map(|key| format!("the value of the key {key:?} does not fit: "));
+        PyValueError::new_err(format!("{kind}: {}{said}", place.unwrap_or_default()))
+    })
+}
+
+/// The last key of JSON text before a column.
+fn key_before(text: &str, column: usize) -> Option<&str> {
+    let (before, _) = text.get(..column)?.rsplit_once("\":")?;
+    Some(before.rsplit_once('"')?.1)
 }
 
 /// JSON text of a summary and its warnings.

@@ -1,8 +1,7 @@
-//! Shapes: `nacre.Shape`, its kinds, the profiles of rollers, and closed forms for their contact.
+//! Shapes: `nacre.Shape`, its kinds, the profiles of rollers.
 
 mod base;
 mod height_map;
-pub(super) mod hertz;
 pub(super) mod indent;
 mod logarithmic;
 mod profiles;
@@ -10,6 +9,6 @@ mod quadric;
 mod roller;
 mod surface;
 
-pub(super) use base::{PyShape, Shape, register, shape};
+pub(super) use base::{Shape, register, shape};
 pub(super) use logarithmic::PyLogarithmicProfile;
 pub(super) use profiles::PySampledProfile;

@@ -2,90 +2,28 @@
 
 use std::sync::Arc;
 
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arguments::keywords::Keywords;
-use super::arguments::{count, real_matrix};
+use super::arguments::{Given, Pair, Real, Repr, real_array, real_matrix};
+use super::background;
 use super::bodies::{PyHalfSpace, body};
 use super::data::summary_text;
+use super::friction::PyFrictionSolved;
 use super::grid::PyGrid;
-use crate::model::body::HalfSpace;
-use crate::stress::{Strengths, Stress, StressOptions, StressPlan, StressSummary, WatchedStress};
+use super::solved::PySolved;
+use crate::model::body::{HalfSpace, Layer, Substrate};
+use crate::stress::{
+    Member, Section, Strengths, Stress, StressOptions, StressPlan, StressProgress, WatchedStress,
+};
 
 mod field;
-mod keywords;
 
 pub(super) use field::{checked_stress, stress_invariants};
 
-use keywords::{depths, options, section, strengths, watched};
-
-/// Fields of `nacre.types.Stress` for the stress of `body` that `evaluate` finds at the depths `z`.
-pub(super) fn evaluated<'py>(
-    z: &Bound<'py, PyAny>,
-    keywords: &Keywords<'py>,
-    body: &HalfSpace,
-    evaluate: impl FnOnce(&[f64], WatchedStress) -> crate::Result<Stress> + Send + 'static,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (depths, one) = depths(z)?;
-    let mut options = options(keywords, body)?;
-    options.threads = keywords.count("threads", 1)?;
-    let [x, y] = section(keywords, &mut options)?;
-    let progress = keywords.callable("progress")?;
-    keywords.finish("keywords of a stress")?;
-    let stress =
-        watched(z.py(), progress, move |progress| evaluate(&depths, options.watched(progress)))?;
-    field::fields(z.py(), stress, [one, x, y])
-}
-
-/// JSON text of the summary of the stress of `body` that `evaluate` finds.
-pub(super) fn summarised(
-    py: Python<'_>,
-    keywords: &Keywords,
-    body: &HalfSpace,
-    evaluate: impl FnOnce(&Strengths, WatchedStress) -> crate::Result<StressSummary> + Send + 'static,
-) -> PyResult<String> {
-    let strengths = strengths(keywords, body)?;
-    let mut options = options(keywords, body)?;
-    options.threads = keywords.count("threads", 1)?;
-    let progress = keywords.callable("progress")?;
-    keywords.finish("keywords of a summary")?;
-    let summary =
-        watched(py, progress, move |progress| evaluate(&strengths, options.watched(progress)))?;
-    summary_text(&summary)
-}
-
-/// The plan that `plan` makes on a number of threads.
-pub(super) fn planned(
-    py: Python<'_>,
-    threads: Option<&Bound<'_, PyAny>>,
-    plan: impl FnOnce(WatchedStress) -> crate::Result<StressPlan> + Send + 'static,
-) -> PyResult<PyStressPlan> {
-    let threads = threads.map(|given| count("threads", 1, given)).transpose()?;
-    let options = StressOptions::with_threads(threads);
-    let plan = watched(py, None, move |progress| plan(options.watched(progress)))?;
-    Ok(PyStressPlan(Arc::new(plan)))
-}
-
-/// Fields of the stress under a pressure that is uniform over each cell; `nacre.stress`.
-#[pyfunction]
-pub(super) fn stress<'py>(
-    #[pyo3(from_py_with = body)] body: HalfSpace,
-    grid: PyGrid,
-    pressure: &Bound<'py, PyAny>,
-    z: &Bound<'py, PyAny>,
-    asked: &Bound<'py, PyDict>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let pressure = real_matrix("pressure", pressure)?;
-    let keywords = Keywords::new(z.py(), Some(asked))?;
-    let loaded = body.clone();
-    evaluated(z, &keywords, &body, move |depths, options| {
-        crate::stress::stress(&loaded, &grid.0, &pressure, depths, options)
-    })
-}
-
 /// Handle of a plan, for `nacre.types.StressPlan`.
-#[pyclass(name = "StressPlan", module = "nacre", frozen)]
+#[pyclass(name = "StressPlan", module = "nacre._core", frozen)]
 pub(super) struct PyStressPlan(Arc<StressPlan>);
 
 #[pymethods]
@@ -94,22 +32,222 @@ impl PyStressPlan {
     fn body(&self) -> PyHalfSpace {
         PyHalfSpace(self.0.body().clone())
     }
+}
 
-    fn stress<'py>(
-        &self,
-        z: &Bound<'py, PyAny>,
-        asked: &Bound<'py, PyDict>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let keywords = Keywords::new(z.py(), Some(asked))?;
-        let plan = Arc::clone(&self.0);
-        evaluated(z, &keywords, self.0.body(), move |depths, options| plan.stress(depths, options))
+/// What a stress is evaluated of: a solved contact, one with friction, or a plan for one of its bodies.
+#[derive(FromPyObject)]
+pub(super) enum Of {
+    Solved(Py<PySolved>),
+    Friction(Py<PyFrictionSolved>),
+    Plan(Py<PyStressPlan>),
+}
+
+impl Of {
+    /// The body that `given` names, and its layers.
+    fn body(&self, given: &Given) -> PyResult<(Member, HalfSpace)> {
+        let solution = match self {
+            Self::Plan(plan) => return Ok((Member::Body, plan.get().0.body().clone())),
+            Self::Solved(solved) => &*solved.get().0,
+            Self::Friction(solved) => &solved.get().0.normal,
+        };
+        let member = given.word("body")?;
+        Ok((member, solution.member(member)?.clone()))
     }
+}
 
-    fn summary(&self, asked: &Bound<'_, PyDict>) -> PyResult<String> {
-        let keywords = Keywords::new(asked.py(), Some(asked))?;
-        let plan = Arc::clone(&self.0);
-        summarised(asked.py(), &keywords, self.0.body(), move |strengths, options| {
-            plan.summary(strengths, options)
+/// Fields of the stress at the depths `z`, for `nacre.types.Stress`.
+#[pyfunction]
+pub(super) fn stress<'py>(
+    of: Of,
+    z: &Bound<'py, PyAny>,
+    given: Given<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (member, body) = of.body(&given)?;
+    evaluated(z, &given, &body, move |depths, options| match of {
+        Of::Solved(solved) => solved.get().0.stress(depths, member, options),
+        Of::Friction(solved) => solved.get().0.stress(depths, member, options),
+        Of::Plan(plan) => plan.get().0.stress(depths, options),
+    })
+}
+
+/// Fields of the stress under a pressure that is uniform over each cell; `nacre.stress`.
+#[pyfunction]
+pub(super) fn stress_under<'py>(
+    #[pyo3(from_py_with = body)] body: HalfSpace,
+    grid: PyGrid,
+    pressure: &Bound<'py, PyAny>,
+    z: &Bound<'py, PyAny>,
+    given: Given<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let pressure = real_matrix("pressure", pressure)?;
+    let loaded = body.clone();
+    evaluated(z, &given, &body, move |depths, options| {
+        crate::stress::stress(&loaded, &grid.0, &pressure, depths, options)
+    })
+}
+
+fn evaluated<'py>(
+    z: &Bound<'py, PyAny>,
+    given: &Given,
+    body: &HalfSpace,
+    evaluate: impl FnOnce(&[f64], WatchedStress) -> crate::Result<Stress> + Send + 'static,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (depths, one) = depths(z)?;
+    let mut options = options(given, body)?;
+    let [x, y] = section(given, &mut options)?;
+    let stress = watched(z.py(), given.callable("progress")?, move |progress| {
+        evaluate(&depths, options.watched(progress))
+    })?;
+    field::fields(z.py(), stress, [one, x, y])
+}
+
+/// JSON text of the summary of the stress.
+#[pyfunction]
+pub(super) fn stress_summary(py: Python<'_>, of: Of, given: Given<'_>) -> PyResult<String> {
+    let (member, body) = of.body(&given)?;
+    let strengths = Strengths {
+        yield_stress: by_layer(&given, "yield_stress", &body)?,
+        strength: by_layer(&given, "strength", &body)?,
+    };
+    let options = options(&given, &body)?;
+    let summary = watched(py, given.callable("progress")?, move |progress| {
+        let options = options.watched(progress);
+        match of {
+            Of::Solved(solved) => solved.get().0.stress_summary(member, &strengths, options),
+            Of::Friction(solved) => solved.get().0.stress_summary(member, &strengths, options),
+            Of::Plan(plan) => plan.get().0.summary(&strengths, options),
+        }
+    })?;
+    summary_text(&summary)
+}
+
+/// Plan of the stress in a body of a solved contact.
+#[pyfunction]
+pub(super) fn stress_plan(py: Python<'_>, of: Of, given: Given<'_>) -> PyResult<PyStressPlan> {
+    let (member, _) = of.body(&given)?;
+    let options = StressOptions::with_threads(given.count("threads", 1)?);
+    let plan = watched(py, None, move |progress| {
+        let options = options.watched(progress);
+        Ok(match of {
+            Of::Solved(solved) => Arc::new(solved.get().0.stress_plan(member, options)?),
+            Of::Friction(solved) => Arc::new(solved.get().0.stress_plan(member, options)?),
+            Of::Plan(plan) => Arc::clone(&plan.get().0),
         })
+    })?;
+    Ok(PyStressPlan(plan))
+}
+
+/// Puts section, side and displacement into the options; returns whether x and y were given.
+fn section(given: &Given, options: &mut StressOptions) -> PyResult<[bool; 2]> {
+    options.side = given.word("side")?;
+    let (x, y) = (given.number("x")?, given.number("y")?);
+    options.section = match (x, y) {
+        (None, None) => Section::Plane,
+        (Some(x), None) => Section::X(x),
+        (None, Some(y)) => Section::Y(y),
+        (Some(x), Some(y)) => Section::Axis([x, y]),
+    };
+    options.displacement = given.flag("displacement")?;
+    Ok([x.is_some(), y.is_some()])
+}
+
+/// Options with friction, residual stress and threads.
+fn options(given: &Given, body: &HalfSpace) -> PyResult<StressOptions> {
+    let direction: Option<Pair> = given.of("direction", "a pair of numbers")?;
+    let residual = by_layer(given, "residual", body)?;
+    Ok(StressOptions {
+        friction: given.real("friction")?,
+        direction: direction.map(|direction| direction.0),
+        residual: residual.into_iter().map(|s| s.unwrap_or(0.0)).collect(),
+        threads: given.count("threads", 1)?,
+        ..StressOptions::default()
+    })
+}
+
+/// Values of some layers, from the surface down and the substrate last. The argument is a sequence of
+/// them, or a dict from layers, by number or name, and "substrate". A name stands for all layers that
+/// have it.
+fn by_layer(given: &Given, name: &str, body: &HalfSpace) -> PyResult<Vec<Option<f64>>> {
+    let Some(given) = given.get(name)? else {
+        return Ok(Vec::new());
+    };
+    let layers = body.layers().len();
+    let count = layers + usize::from(body.substrate() != Substrate::Rigid);
+    let number = |value: &Bound<'_, PyAny>| match value.extract::<Real>() {
+        Ok(number) => Ok(number.0),
+        Err(_) => {
+            Err(PyTypeError::new_err(format!("{name} must hold real numbers, got {}", Repr(value))))
+        }
+    };
+    let Ok(mapping) = given.cast::<PyDict>() else {
+        let values: Vec<Option<Real>> = given.extract().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "{name} must be a dict from layers to numbers, or a sequence of them, got {}",
+                Repr(&given)
+            ))
+        })?;
+        if values.len() > count {
+            return Err(PyValueError::new_err(format!(
+                "{name} must hold at most {count} values, one for each layer and the substrate, \
+                 got {}",
+                values.len()
+            )));
+        }
+        return Ok(values.iter().map(|value| value.map(|v| v.0)).collect());
+    };
+    let mut values = vec![None; count];
+    for (key, value) in mapping {
+        let is_meant = |layer: usize| match key.extract::<String>() {
+            Ok(word) if layer == layers => word == "substrate",
+            Ok(word) => body.layers()[layer].name() == Some(&word),
+            Err(_) => key.extract().is_ok_and(|number: usize| number == layer),
+        };
+        let meant: Vec<_> = (0..count).filter(|layer| is_meant(*layer)).collect();
+        if meant.is_empty() {
+            return Err(PyValueError::new_err(format!(
+                "keys of {name} must be \"substrate\" (where it is elastic), numbers of layers from 0 \
+                 at the surface to {}, or names of layers ({}), got {}",
+                count - 1,
+                names(body),
+                Repr(&key)
+            )));
+        }
+        let value = number(&value)?;
+        for layer in meant {
+            values[layer] = Some(value);
+        }
     }
+    Ok(values)
+}
+
+/// Names of the layers of a body, for a message.
+fn names(body: &HalfSpace) -> String {
+    let names: Vec<_> = body.layers().iter().filter_map(Layer::name).collect();
+    match names.is_empty() {
+        true => "here they have none".into(),
+        false => names.join(", "),
+    }
+}
+
+/// Depths, and whether the argument was a single number.
+fn depths(z: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
+    let values = real_array("z", z)?;
+    if values.ndim() > 1 {
+        return Err(PyValueError::new_err(format!(
+            "z must be a depth or a sequence of depths, got shape {:?}",
+            values.shape()
+        )));
+    }
+    Ok((values.iter().copied().collect(), values.ndim() == 0))
+}
+
+/// Runs `work` in the background; Ctrl-C and the callback can stop it.
+fn watched<R: Send + 'static>(
+    py: Python<'_>,
+    callback: Option<Py<PyAny>>,
+    work: impl FnOnce(&mut StressProgress) -> crate::Result<R> + Send + 'static,
+) -> PyResult<R> {
+    let result =
+        background::run(py, callback, move |caller| work(&mut |part: f64| caller.ask(|| (part,))))?;
+    Ok(result?)
 }

@@ -8,6 +8,11 @@ use crate::model::body::{HalfSpace, Interface, Layer};
 
 /// Side of an interface, for a depth that lies on one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Side {
     /// The layer above the interface.
     Above,

@@ -43,7 +43,7 @@ def test_cases_take_every_freedom_and_any_iterable() -> None:
     ("case", "error", "message"),
     [
         ({"shape": BALL, "load": -1.0}, ValueError, "load must be"),
-        ({"shape": BALL, "laod": 1.0}, TypeError, "keys must be among shape, load"),
+        ({"shape": BALL, "laod": 1.0}, TypeError, "keys of a case must be among shape, load"),
         ({"load": 1.0}, TypeError, "a case must have a shape"),
         ({"shape": 5.0, "load": 1.0}, TypeError, "shape must be a nacre.Shape"),
         (7, TypeError, "a case must be a mapping"),

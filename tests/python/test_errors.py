@@ -185,7 +185,7 @@ TYPES = {
     "Contact(STEEL, (16, 20))": r"(?s)Grid.*grid",
     "Contact(STEEL, GRID, 'steel')": r"counterbody.*must be a HalfSpace.*steel",
     "Contact(STEEL, GRID, coefficients='exact')": r"coefficients must be a real array.*<U5",
-    "Contact(STEEL, GRID, method='exact')": "keywords of Contact must be among .*coefficients",
+    "Contact(STEEL, GRID, method='exact')": r"unexpected keyword argument 'method'",
     "influence_coefficients(STEEL, GRID, 3)": "(?s)int.*method",
     "influence_coefficients(STEEL, GRID, 'plain', 1.5)": r"refinement must be an integer, got 1\.5",
     "Contact(STEEL, GRID, threads='all')": r"threads must be an integer, got .*all",
@@ -220,7 +220,7 @@ TYPES = {
     "press(load=1.0, algorithm=1)": r"algorithm must be a str, got 1",
     "press(load=1.0, progress=3)": r"progress must be callable, got 3",
     "press(load=1.0, check='no')": r"check must be a bool, got 'no'",
-    "press(load=1.0, weight=1.0)": r"Contact\.solve must be among load, .* got 'weight'",
+    "press(load=1.0, weight=1.0)": r"unexpected keyword argument 'weight'",
     "press(1.0)": r"positional",
 }
 

@@ -404,11 +404,13 @@ CHANGED: dict[str, dict[str, Any]] = {
     "it has format None, written by nacre None": {"nacre_solution": "{}"},
     "it has format 0, written by nacre None": {"nacre_solution": '{"format": 0}'},
     'Solution: the key "nacre" is missing': {"nacre_solution": '{"format": 1}'},
-    "approach must be finite, got NaN": {"state": {"approach": np.nan}},
-    'value of the key "residual" does not fit: NaN': {"state": damaged("residual", np.nan)},
-    'value of the key "seconds" does not fit: -1': {"state": damaged("seconds", -1.0)},
-    'value of the key "iterations" does not fit: -1': {"state": damaged("iterations", -1)},
-    'value of the key "balance" does not fit: inf': {
+    'value of the key "approach" does not fit: nan': {"state": {"approach": np.nan}},
+    'value of the key "residual" does not fit: nan': {"state": damaged("residual", np.nan)},
+    "seconds must be finite and at least 0, got -1": {"state": damaged("seconds", -1.0)},
+    'value of the key "iterations" does not fit: invalid value: integer `-1`': {
+        "state": damaged("iterations", -1)
+    },
+    'value of the key "balance" does not fit: .*inf': {
         "state": damaged("balance", {"force": np.inf, "moment": [0.0, 0.0]})
     },
     'value of the key "tolerance" does not fit': {"state": damaged("tolerance", 10**400)},

@@ -19,11 +19,11 @@ SOLUTION = CONTACT.solve(BALL, load=10.0)
 PLAN = SOLUTION.stress_plan()
 MOTION = {"load", "approach", "eccentricity", "moment", "tilt"}
 
-FUNCTIONS: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
-    "solve": (nacre.solve, lambda **k: nacre.solve(BALL, STEEL, **k)),
-    "Contact": (nacre.Contact, lambda **k: nacre.Contact(STEEL, GRID, **k)),
-    "Contact.solve": (nacre.Contact.solve, lambda **k: CONTACT.solve(BALL, **k)),
-    "Contact.solve_many": (nacre.Contact.solve_many, lambda **k: CONTACT.solve_many([], **k)),
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "solve": lambda **k: nacre.solve(BALL, STEEL, **k),
+    "Contact": lambda **k: nacre.Contact(STEEL, GRID, **k),
+    "Contact.solve": lambda **k: CONTACT.solve(BALL, **k),
+    "Contact.solve_many": lambda **k: CONTACT.solve_many([], **k),
 }
 DEFAULTS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]] = {
     "solve": (nacre.solve, (BALL, STEEL), {"load": 10.0}),
@@ -42,12 +42,9 @@ def defaults(function: Callable[..., Any]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_an_error_lists_the_keywords_of_the_signature(name: str) -> None:
-    function, call = FUNCTIONS[name]
-    with pytest.raises(TypeError, match=f"^keywords of {name} must be among ") as caught:
-        call(nonsense=1)
-    listed = str(caught.value).partition(" among ")[2].partition(", got ")[0]
-    assert set(listed.split(", ")) == set(defaults(function))
+def test_a_keyword_that_there_is_not_is_refused(name: str) -> None:
+    with pytest.raises(TypeError, match="unexpected keyword argument 'nonsense'"):
+        FUNCTIONS[name](nonsense=1)
 
 
 @pytest.mark.parametrize("name", DEFAULTS)
@@ -63,7 +60,7 @@ def test_the_defaults_are_those_of_the_signature(name: str) -> None:
 
 
 def test_a_case_names_all_that_says_how_it_is_pressed() -> None:
-    with pytest.raises(TypeError, match="a case's keys must be among ") as caught:
+    with pytest.raises(TypeError, match="keys of a case must be among ") as caught:
         CONTACT.solve_many([{"nonsense": 1}])
     listed = str(caught.value).partition(" among ")[2].partition(", got ")[0]
     assert set(listed.split(", ")) == {"shape", *MOTION}
@@ -105,3 +102,11 @@ def test_arguments_of_a_constructor_are_attributes(kind: str) -> None:
 
 def test_a_study_knows_every_argument_of_an_indentation() -> None:
     assert set(inspect.signature(nacre.indent.solve).parameters) == nacre.studies.INDENT
+
+
+def test_the_public_names_are_those_of_the_stub() -> None:
+    named = {*nacre.__all__, *nacre.types.__all__}
+    compiled = vars(nacre._core)
+    own = {name for name in named if getattr(nacre, name) is compiled.get(name)}
+    assert own <= {*nacre._core.__all__}
+    assert not [name for name in nacre._core.__all__ if name.startswith("_") and "__" not in name]

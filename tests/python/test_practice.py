@@ -21,7 +21,7 @@ import numpy.typing as npt
 import pytest
 
 import nacre
-from nacre._arrays import plain
+from nacre._core import plain
 from nacre.indent import Adhesion, Curve, Indentation, Tip, fit, read
 from nacre.surfaces import read_profile
 

@@ -121,16 +121,16 @@ WRONG_INSIDE: dict[str, Callable[[dict[str, Any]], object]] = {
     ].update(hue=1),
     r'the value of the key "body" does not fit': lambda s: s["report"].update(body={"Ball": {}}),
     r'the value of the key "grid" does not fit': lambda s: s["report"].update(grid="rigid"),
-    r'"running", "converged", "iteration limit" or "stopped", got "bored"': lambda s: s[
+    r"unknown variant `bored`, expected one of `running`, `converged`": lambda s: s[
         "report"
     ].update(termination="bored"),
-    r'the array of the key "pressure" has the wrong number of dimensions: shape \[3\]': lambda s: (
-        s.update(pressure=np.zeros(3))
+    r"pressure must have two dimensions \(nx, ny\), got shape \[3\]": lambda s: s.update(
+        pressure=np.zeros(3)
     ),
     r"gap: expected shape \[24, 20\], got \[3, 3\]|gap: expected shape": lambda s: s.update(
         gap=np.zeros((3, 3))
     ),
-    r'the key "kind" is missing': lambda s: s["report"].update(warnings=[{"axis": 0}]),
+    r"missing field `kind`": lambda s: s["report"].update(warnings=[{"axis": 0}]),
 }
 
 

@@ -245,7 +245,7 @@ def test_each_solve_has_one_thread_unless_the_case_says_otherwise(
         asked.append(arguments["threads"])
         return nacre.solve(**arguments)
 
-    monkeypatch.setattr("nacre._core.solve", solve)
+    monkeypatch.setattr("nacre.studies.solve", solve)
     nacre.sweep(ball, {"thickness": [1e-5], "young": YOUNG})
     assert asked == [1, 1]
     nacre.sweep(lambda load: ball(1e-5, 1e11, load) | {"threads": 2}, {"load": [5.0]})
@@ -317,7 +317,7 @@ def count_solves(monkeypatch: Patch) -> list[None]:
         solves.append(None)
         return nacre.solve(**arguments)
 
-    monkeypatch.setattr("nacre._core.solve", solve)
+    monkeypatch.setattr("nacre.studies.solve", solve)
     return solves
 
 
@@ -489,7 +489,7 @@ def test_failed_cases_are_tried_again_when_asked(tmp_path: Path, monkeypatch: Pa
         raise MemoryError("no room")
 
     with monkeypatch.context() as patch:
-        patch.setattr("nacre._core.solve", exhausted)
+        patch.setattr("nacre.studies.solve", exhausted)
         with pytest.warns(nacre.NacreWarning, match="1 of 1"):
             nacre.sweep(ball, case, store=store)
     with pytest.warns(nacre.NacreWarning, match="1 of 1"):

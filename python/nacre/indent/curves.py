@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal, TypedDict, Unpack, overload
 import numpy as np
 import numpy.typing as npt
 
-from nacre._arrays import plain
+from nacre._core import plain
 from nacre.indent._columns import checked_units, chosen_tables, has_curve, quantities
 from nacre.indent._text import tables
 from nacre.units import written

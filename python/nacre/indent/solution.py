@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import nacre._core as core
-from nacre._arrays import plain
+from nacre._core import plain
 from nacre._display import aligned, table
 from nacre.indent._system import System
 from nacre.units import INDENT_UNITS, printable, written

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Solution
 from nacre._extras import extra
 from nacre.plot.stress import around, body_of, colourbar
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, new_axes, outline, styled
@@ -17,6 +16,9 @@ from nacre.units import Scale, written
 
 with extra("plot"):
     from matplotlib.axes import Axes
+
+if TYPE_CHECKING:
+    from nacre.solution import Solution
 
 Array = npt.NDArray[np.float64]
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre._core import Solution
 from nacre._display import numbers
 from nacre._extras import extra
 from nacre.plot.sections import section
@@ -17,6 +16,9 @@ from nacre.units import Scale
 with extra("plot"):
     import matplotlib.pyplot as plt
     from matplotlib.axes import Axes
+
+if TYPE_CHECKING:
+    from nacre.solution import Solution
 
 
 def overview(solution: Solution, axes: Axes | Mapping[str, Axes] | None = None) -> dict[str, Axes]:

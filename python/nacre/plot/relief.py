@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Solution
 from nacre._extras import extra
 from nacre.plot.style import COLOURMAP, WIDTH, styled
 from nacre.units import Scale
 
 with extra("plot"):
     import matplotlib.pyplot as plt
+
+if TYPE_CHECKING:
+    from nacre.solution import Solution
 
 MOST = 120
 """Largest number of facets along one side of a relief; chosen by trial for a quick drawing."""

@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nacre import rough
-from nacre._core import Solution
 from nacre._extras import extra
-from nacre._patches import patch_labels
+from nacre._patches import CURVE, crosses, patch_labels
 from nacre.plot.style import COLOURS, lengths, new_axes, next_look, styled
 from nacre.units import Scale, symbol
 
@@ -19,6 +17,8 @@ with extra("plot"):
 
 if TYPE_CHECKING:
     import xarray
+
+    from nacre.solution import Solution
 
 
 def load_curve(
@@ -47,9 +47,9 @@ def load_curve(
     ValueError
         If there is no such column.
     """
-    if quantity not in rough.CURVE:
-        raise ValueError(f"quantity must be one of {', '.join(rough.CURVE)}, got {quantity!r}")
-    words, unit = rough.CURVE[quantity]
+    if quantity not in CURVE:
+        raise ValueError(f"quantity must be one of {', '.join(CURVE)}, got {quantity!r}")
+    words, unit = CURVE[quantity]
     pressure = Scale.of(float(curve["pressure"].max()), "Pa")
     values = curve[quantity].values
     scale = None if unit in ("1", "Pa/m") else Scale.of(float(np.abs(values).max()), unit)
@@ -127,9 +127,8 @@ def patches(solution: Solution, axes: Axes | None = None) -> Axes:
         scale.factor * np.linspace(low, high, cells + 1)
         for scale, (low, high), cells in zip(scales, ends, grid.shape, strict=True)
     ]
-    along = [
-        name for name, is_open in zip("xy", rough.percolates(solution), strict=True) if is_open
-    ]
+    gap = ~solution.in_contact
+    along = [name for axis, name in enumerate("xy") if crosses(gap, grid, axis)]
     count = int((sizes > 0).sum())
     words = f"{count} {'patch' if count == 1 else 'patches'}"
     with styled():

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import Solution
 from nacre._extras import extra
 from nacre.plot.style import look, new_axes, next_look, styled
 from nacre.units import UNITS, Scale, written
 
 with extra("plot"):
     from matplotlib.axes import Axes
+
+if TYPE_CHECKING:
+    from nacre.solution import Solution
 
 Array = npt.NDArray[np.float64]
 Direction = Literal["x", "y"]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from nacre._core import HalfSpace, Solution
+from nacre._core import HalfSpace
 from nacre._extras import extra
 from nacre.plot.style import COLOURMAP, SIGNED, lengths, look, new_axes, styled
 from nacre.stresses import Stress
@@ -18,6 +18,9 @@ from nacre.units import Scale, written
 with extra("plot"):
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
+
+if TYPE_CHECKING:
+    from nacre.solution import Solution
 
 Array = npt.NDArray[np.float64]
 

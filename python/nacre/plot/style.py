@@ -18,7 +18,7 @@ with extra("plot"):
     from matplotlib.axes import Axes
 
 if TYPE_CHECKING:
-    from nacre._core import Solution
+    from nacre.solution import Solution
 
 WIDTH = 18 / 2.54
 """Width of a page between its margins [inch]."""

@@ -63,6 +63,11 @@ use crate::numerics::parallel::{Lanes, ONE, update_with_largest, where_positive}
 
 /// Estimated discretisation errors: differences from the limit of ever finer cells.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Discretisation {
     /// Error of the peak pressure \[Pa\]. `None` where the pressure is singular, at a sharp edge of the
     /// shape or where the grid cuts the contact: then the peak has no limit, and a warning says so.

@@ -1,0 +1,28 @@
+"""Types of arguments and results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+import nacre._core as core
+
+Field = npt.NDArray[np.float64]
+Real = npt.NDArray[np.floating | np.integer | np.bool]
+Vector = Real | Sequence[float]
+Matrix = Real | Sequence[Sequence[float] | Real]
+Body = core.HalfSpace | core.Elastic
+Pair = tuple[float, float]
+Along = tuple[float | None, float | None]
+"""Values along x and y; None where one is not given."""
+Direction = tuple[float, float]
+Side = Literal["below", "above"]
+Member = Literal["body", "counterbody"]
+ByLayer = Mapping[int | str, float] | Sequence[float | None]
+"""Values from the surface down; or by number or name of a layer, or "substrate"."""
+Algorithm = Literal["cascade", "polonsky-keer"]
+Ending = Literal["running", "converged", "iteration limit", "stopped"]
+"""How an iteration ended; "running" before its end."""

@@ -1,0 +1,411 @@
+//! Friction: steps of `nacre.slide` and `nacre.roll`, handles of their solutions, and `nacre.creep_coefficients`.
+
+use std::sync::Arc;
+
+use ndarray::{Array2, Axis, Ix3, stack};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::arguments::{Given, Pair, count, read_only, real_array, real_matrix, word};
+use super::background::{self, Caller};
+use super::bodies::body;
+use super::contact::{PyPlan, motion, planning, shape_of};
+use super::data::{read, text};
+use super::shapes::Shape;
+use super::solved::PySolved;
+use crate::compliance::response::Body;
+use crate::contact::{Contact, Motion, Options, Solution, choose_grid};
+use crate::friction::{
+    Friction, FrictionOptions, FrictionReport, FrictionSolution, Last, Move, Rolling,
+    RollingDirection, Step, TangentialMotion,
+};
+use crate::model::body::HalfSpace;
+use crate::model::surface::Surface;
+
+/// A solved contact with friction.
+#[pyclass(name = "FrictionSolved", module = "nacre._core", frozen, eq)]
+#[derive(PartialEq)]
+pub(super) struct PyFrictionSolved(pub(super) Arc<FrictionSolution>);
+
+/// Coefficient of friction: a number, or one for each cell.
+fn coefficient(given: &Bound<'_, PyAny>) -> PyResult<Friction> {
+    let values = real_array("friction", given)?;
+    Ok(match values.ndim() {
+        0 => Friction::Uniform(values.sum()),
+        _ => Friction::Cells(real_matrix("friction", given)?),
+    })
+}
+
+/// Both components of a field (2, nx, ny).
+fn components(name: &str, given: &Bound<'_, PyAny>) -> PyResult<[Array2<f64>; 2]> {
+    let field = real_array(name, given)?;
+    let shape = field.shape().to_vec();
+    match field.into_dimensionality::<Ix3>() {
+        Ok(field) if field.len_of(Axis(0)) == 2 => {
+            Ok([0, 1].map(|axis| field.index_axis(Axis(0), axis).to_owned()))
+        }
+        Ok(field) => {
+            let count = field.len_of(Axis(0));
+            Err(PyValueError::new_err(format!("{name} must have 2 components, got {count}")))
+        }
+        Err(_) => Err(PyValueError::new_err(format!(
+            "{name} must have three dimensions (2, nx, ny), got shape {shape:?}"
+        ))),
+    }
+}
+
+/// What a state holds beside fields.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rest {
+    motion: TangentialMotion,
+    report: FrictionReport,
+}
+
+/// Numbers that follow from the fields, with the rest.
+#[derive(Serialize)]
+struct Numbers<'a> {
+    force: [f64; 2],
+    torque: f64,
+    dissipated: f64,
+    tangential_energy: f64,
+    #[serde(flatten)]
+    motion: TangentialMotion,
+    report: &'a FrictionReport,
+}
+
+#[pymethods]
+impl PyFrictionSolved {
+    /// Solution with this normal contact, these fields, and JSON text of motion and report.
+    #[new]
+    fn new(
+        normal: &Bound<'_, PySolved>,
+        friction: &Bound<'_, PyAny>,
+        traction: &Bound<'_, PyAny>,
+        displacement: &Bound<'_, PyAny>,
+        slip: &Bound<'_, PyAny>,
+        rest: &str,
+    ) -> PyResult<Self> {
+        let Rest { motion, report } = read("FrictionSolution", rest)?;
+        let solution = FrictionSolution {
+            normal: Solution::clone(&normal.get().0),
+            friction: coefficient(friction)?,
+            traction: components("traction", traction)?,
+            displacement: components("displacement", displacement)?,
+            slip: components("slip", slip)?,
+            motion,
+            report,
+        };
+        Ok(Self(Arc::new(solution.checked()?)))
+    }
+
+    fn normal(&self) -> PySolved {
+        self.0.normal.clone().into()
+    }
+
+    /// JSON text of all numbers, with motion and report.
+    fn numbers(&self) -> PyResult<String> {
+        text(&Numbers {
+            force: self.0.force(),
+            torque: self.0.torque(),
+            dissipated: self.0.dissipated(),
+            tangential_energy: self.0.tangential_energy(),
+            motion: self.0.motion,
+            report: &self.0.report,
+        })
+    }
+
+    /// Array of that name; `friction` may be a number.
+    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let solution = &self.0;
+        let vector = |[x, y]: &[Array2<f64>; 2]| {
+            read_only(py, stack(Axis(0), &[x.view(), y.view()]).unwrap_or_default())
+        };
+        Ok(match name {
+            "traction" => vector(&solution.traction)?.into_any(),
+            "displacement" => vector(&solution.displacement)?.into_any(),
+            "slip" => vector(&solution.slip)?.into_any(),
+            "stick" => read_only(py, solution.stick())?.into_any(),
+            "bound" => read_only(py, solution.bound())?.into_any(),
+            "dissipation" => read_only(py, solution.dissipation())?.into_any(),
+            _ => match &solution.friction {
+                Friction::Uniform(coefficient) => coefficient.into_pyobject(py)?.into_any(),
+                Friction::Cells(cells) => read_only(py, cells.clone())?.into_any(),
+            },
+        })
+    }
+
+    /// Message of the error where the tolerance was not met.
+    fn not_converged(&self) -> Option<String> {
+        let checked = FrictionSolution::clone(&self.0).require_converged();
+        checked.err().map(|error| error.to_string())
+    }
+}
+
+/// Steps that are asked for.
+enum Asked {
+    Slide(Vec<Step>),
+    RollSteadily(Rolling),
+    /// Rolling by so many cells, one at a time.
+    RollCells(Rolling, usize),
+}
+
+impl Asked {
+    /// The move of the step `number`; none after the last one.
+    fn step(&self, number: usize) -> Option<Move<'_>> {
+        match self {
+            Self::Slide(steps) => steps.get(number).map(Move::Slide),
+            Self::RollSteadily(rolling) => (number == 0).then_some(Move::RollSteadily(rolling)),
+            Self::RollCells(rolling, cells) => {
+                (number < *cells).then_some(Move::RollOneCell(rolling))
+            }
+        }
+    }
+
+    /// The motion of the step with the largest load, or the deepest one, for the choice of a grid.
+    fn widest(&self) -> Option<Motion> {
+        let size = |motion: &Motion| motion.load.or(motion.approach).unwrap_or(0.0);
+        match self {
+            Self::Slide(steps) => {
+                let motions = steps.iter().filter_map(|step| step.motion);
+                motions.max_by(|a, b| size(a).total_cmp(&size(b)))
+            }
+            Self::RollSteadily(rolling) | Self::RollCells(rolling, _) => Some(rolling.motion),
+        }
+    }
+}
+
+/// A contact with friction, and all that is asked of it.
+struct Problem {
+    contact: Arc<Contact>,
+    shape: Shape,
+    asked: Asked,
+    options: FrictionOptions,
+}
+
+/// Iterator of solutions, step after step. Each is solved in the background; Ctrl-C and the callback can stop it.
+#[pyclass(name = "FrictionSteps", module = "nacre._core")]
+pub(super) struct PyFrictionSteps {
+    problem: Arc<Problem>,
+    /// Whether the steps were asked for as a history, whose errors name the step.
+    #[pyo3(get)]
+    several: bool,
+    progress: Option<Py<PyAny>>,
+    number: usize,
+    last: Option<Arc<FrictionSolution>>,
+}
+
+#[pymethods]
+impl PyFrictionSteps {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<PyFrictionSolved>> {
+        let (number, problem) = (self.number, Arc::clone(&self.problem));
+        let progress = self.progress.as_ref().map(|progress| progress.clone_ref(py));
+        let last = self.last.take();
+        let found = background::run(py, progress, move |caller: &mut Caller<(usize, String)>| {
+            let mut tell =
+                |report: &FrictionReport| caller.ask(|| (number, text(report).unwrap_or_default()));
+            // The first step begins where another call ended.
+            let last = last.as_deref().map(|solution| Last { solution, is_own: number > 0 });
+            let Problem { contact, shape, asked, options } = &*problem;
+            let next = asked.step(number)?;
+            Some(contact.friction_step(shape, next, options, last, &mut tell))
+        })?;
+        let Some(found) = found else {
+            return Ok(None);
+        };
+        let found = found.map_err(|error| {
+            let error = PyErr::from(error);
+            if self.several {
+                let _ = error.add_note(py, format!("step {number}"));
+            }
+            error
+        })?;
+        let found = Arc::new(found);
+        self.last = Some(Arc::clone(&found));
+        self.number += 1;
+        Ok(Some(PyFrictionSolved(found)))
+    }
+}
+
+/// Steps of sliding, as the arguments of `nacre.slide` or of `Contact.slide` say: one step, or those of a history.
+#[pyfunction]
+#[pyo3(signature = (given, steps=None, plan=None))]
+pub(super) fn slide(
+    py: Python<'_>,
+    given: Given<'_>,
+    steps: Option<Vec<Given<'_>>>,
+    plan: Option<&Bound<'_, PyPlan>>,
+) -> PyResult<PyFrictionSteps> {
+    let (first, several) = (step(&given)?, steps.is_some());
+    let asked = match steps {
+        Some(steps) => history(py, first, &steps)?,
+        None => vec![first],
+    };
+    begun(py, &given, plan, |_| Ok((Asked::Slide(asked), several)))
+}
+
+/// Steps of rolling, as the arguments of `nacre.roll` or of `Contact.roll` say.
+#[pyfunction]
+#[pyo3(signature = (given, plan=None))]
+pub(super) fn roll(
+    py: Python<'_>,
+    given: Given<'_>,
+    plan: Option<&Bound<'_, PyPlan>>,
+) -> PyResult<PyFrictionSteps> {
+    let cells = given.count("cells", 1)?;
+    if cells.is_none() && given.get("initial")?.is_some() {
+        return Err(PyValueError::new_err(
+            "initial must be given with cells: the steady state does not depend on it",
+        ));
+    }
+    begun(py, &given, plan, |shape| {
+        let rolling = rolling(shape, &given)?;
+        Ok(match cells {
+            Some(cells) => (Asked::RollCells(rolling, cells), true),
+            None => (Asked::RollSteadily(rolling), false),
+        })
+    })
+}
+
+/// What `asked` says of a shape, on `plan` or on one that is made for it.
+fn begun(
+    py: Python<'_>,
+    given: &Given,
+    plan: Option<&Bound<'_, PyPlan>>,
+    asked: impl FnOnce(&Shape) -> PyResult<(Asked, bool)>,
+) -> PyResult<PyFrictionSteps> {
+    let last: Option<Bound<'_, PyFrictionSolved>> =
+        given.of("initial", "a nacre.types.FrictionSolution")?;
+    let last = last.map(|last| Arc::clone(&last.get().0));
+    let default = FrictionOptions::default();
+    let most = given.count("max_convolutions", 1)?;
+    let options = FrictionOptions {
+        tolerance: given.real("tolerance")?,
+        max_convolutions: most.unwrap_or(default.max_convolutions),
+        coupling: given.flag("coupling")?,
+    };
+    let progress = given.callable("progress")?;
+    given.flag("check")?;
+    let shape = shape_of(given)?;
+    let (asked, several) = asked(&shape)?;
+    let contact = match plan {
+        Some(plan) => Arc::clone(&plan.get().0),
+        None => planned(py, given, &shape, asked.widest())?,
+    };
+    let problem = Arc::new(Problem { contact, shape, asked, options });
+    Ok(PyFrictionSteps { problem, several, progress, number: 0, last })
+}
+
+/// A contact of the given bodies, on the given grid or on that which fits the shape.
+fn planned(
+    py: Python<'_>,
+    given: &Given,
+    shape: &Shape,
+    motion: Option<Motion>,
+) -> PyResult<Arc<Contact>> {
+    let (body, setup, grid) = planning(given)?;
+    let motion = motion.ok_or_else(|| {
+        PyValueError::new_err("load or approach must be given, in the call or in the first step")
+    })?;
+    let shape = shape.clone();
+    let contact = background::run(py, None, move |caller: &mut Caller<()>| {
+        let grid = match grid {
+            Some(grid) => grid,
+            None => {
+                let (options, ask) = (Options::default(), &mut |_: &_| caller.ask(|| ()));
+                choose_grid(&shape, &body, &setup, &motion, options.watched(ask))?
+            }
+        };
+        Contact::plan(&body, grid, setup)
+    })??;
+    Ok(Arc::new(contact))
+}
+
+/// One step. Along z it moves as `given` says, if it says anything.
+fn step(given: &Given) -> PyResult<Step> {
+    let motion = motion(given)?;
+    Ok(Step {
+        motion: (motion != Motion::default()).then_some(motion),
+        friction: friction(given)?,
+        shift: given.pair("shift")?,
+        force: given.pair("force")?,
+        twist: given.number("twist")?,
+        torque: given.number("torque")?,
+    })
+}
+
+/// Steps of a history. The first one moves along z, and has the friction, as the call says where it does not say it.
+fn history(py: Python<'_>, call: Step, given: &[Given]) -> PyResult<Vec<Step>> {
+    let plain = Step { motion: call.motion, friction: call.friction.clone(), ..Step::default() };
+    if plain != call {
+        return Err(PyValueError::new_err(
+            "shift, force, twist and torque must be given in the steps, where there are steps",
+        ));
+    }
+    let mut steps = Vec::new();
+    for (number, given) in given.iter().enumerate() {
+        steps.push(step(given).inspect_err(|error| {
+            let _ = error.add_note(py, format!("step {number}"));
+        })?);
+    }
+    let Some(first) = steps.first_mut() else {
+        return Err(PyValueError::new_err("steps must hold a step at least"));
+    };
+    first.motion = first.motion.or(call.motion);
+    first.friction = first.friction.take().or(call.friction);
+    Ok(steps)
+}
+
+/// Rolling of a shape; it says in which direction if it rolls in one alone.
+fn rolling(shape: &Shape, given: &Given) -> PyResult<Rolling> {
+    let friction = friction(given)?
+        .ok_or_else(|| PyValueError::new_err("friction must be given in rolling"))?;
+    let direction: Option<String> = given.of("direction", "a str")?;
+    let direction = match (direction, shape.rolling_direction()) {
+        (Some(direction), _) => word("direction", &direction)?,
+        (None, Some([x, _])) if x.abs() < 0.5 => RollingDirection::PlusY,
+        (None, Some(_)) => RollingDirection::PlusX,
+        (None, None) => {
+            return Err(PyValueError::new_err(
+                "direction must be \"+x\", \"-x\", \"+y\" or \"-y\" for a shape that rolls in any direction",
+            ));
+        }
+    };
+    Ok(Rolling {
+        creepage: given.pair("creepage")?,
+        force: given.pair("force")?,
+        spin: given.real("spin")?,
+        ..Rolling::new(motion(given)?, friction, direction)
+    })
+}
+
+fn friction(given: &Given) -> PyResult<Option<Friction>> {
+    given.get("friction")?.map(|given| coefficient(&given)).transpose()
+}
+
+fn cells(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count("cells", 8, given)
+}
+
+/// JSON text of Kalker's linear coefficients of two bodies with any layers; `nacre.creep_coefficients`.
+#[pyfunction]
+pub(super) fn creep_coefficients(
+    py: Python<'_>,
+    #[pyo3(from_py_with = body)] body: HalfSpace,
+    counterbody: Option<&Bound<'_, PyAny>>,
+    semi_axes: Pair,
+    #[pyo3(from_py_with = cells)] cells: usize,
+) -> PyResult<String> {
+    let counterbody = counterbody.map(self::body).transpose()?.map(Body::from);
+    let Pair(axes) = semi_axes;
+    let found = background::run(py, None, move |caller: &mut Caller<()>| {
+        let mut watch = || caller.ask(|| ());
+        crate::friction::creep_coefficients(body, counterbody, axes, Some(cells), Some(&mut watch))
+    })??;
+    text(&found)
+}
