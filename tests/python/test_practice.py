@@ -7,6 +7,7 @@ from how its input was made, or from the reader of the format alone.
 from __future__ import annotations
 
 import copy
+import math
 import os
 import pickle
 import re
@@ -683,8 +684,10 @@ except MemoryError as error:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits are those of Linux")
 @MARK("work", ["solve", "plan", "keep", "slide", "apply"])
-@MARK(("limit", "used"), [("RLIMIT_AS", "VmSize:"), ("RLIMIT_DATA", "VmData:")])
-@MARK("left", [60, 100, 170])
+@MARK(
+    ("limit", "used", "left"),
+    [("RLIMIT_AS", "VmSize:", 60), ("RLIMIT_AS", "VmSize:", 170), ("RLIMIT_DATA", "VmData:", 100)],
+)
 def test_a_limit_of_memory_is_an_error(limit: str, used: str, left: int, work: str) -> None:
     command = [sys.executable, "-c", LIMITED, limit, used, str(left), work]
     # Otherwise glibc reserves 64 MiB for each of the first threads, beside what they use.
@@ -806,7 +809,7 @@ def test_two_rollers_approach_as_johnson_says() -> None:
     approach, expected = solution.approach, 0.0
     for one, of in zip(bodies, radii, strict=True):
         compliance = load * (1 - one.poisson**2) / (np.pi * one.young)
-        approach += 2 * compliance * np.log(2 * of / (np.e * width))
+        approach += 2 * compliance * np.log(2 * of / (math.e * width))
         expected += compliance * (2 * np.log(4 * of / hertz.half_width) - 1)
     # The contact is 85 cells wide, of which the rim may err by a part.
     assert abs(approach / expected - 1) < 1e-4
