@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import warnings
 from pathlib import Path
 from typing import Annotated, Any
@@ -21,6 +20,7 @@ from nacre.case import Case, CaseError
 from nacre.files import FIGURES
 from nacre.indent.solution import IndentSolution
 from nacre.indent.solution import solve as solve_indentation
+from nacre.studies import default_threads
 from nacre.units import system, written
 
 app = typer.Typer(
@@ -64,7 +64,7 @@ def info() -> None:
     """Print versions and the number of threads."""
     print(f"nacre   {nacre.__version__}")
     print(f"numpy   {np.__version__}")
-    print(f"threads {os.cpu_count()}")
+    print(f"threads {default_threads()}")
 
 
 @app.command()

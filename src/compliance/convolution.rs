@@ -12,7 +12,7 @@ use ndarray::{Array2, ArrayRef2};
 
 use crate::error::{Error, Result, all_finite, same_shape};
 use crate::numerics::fft::{EvenSpectrum, PaddedTransform, TransformMemory};
-use crate::numerics::parallel::{Lease, Pool, Threads, memory_of};
+use crate::numerics::parallel::{Lease, Pool, Threads, check_memory, memory_of};
 
 mod addition;
 mod periodic;
@@ -78,7 +78,7 @@ impl Convolution {
     /// threads; `None` stands for all threads of the machine.
     ///
     /// # Errors
-    /// Where a coefficient is not finite, the shape is empty, or `threads` is 0.
+    /// Where a coefficient is not finite, the shape is empty, `threads` is 0, or there is too little memory.
     pub fn plan(coefficients: &ArrayRef2<f64>, threads: Option<usize>) -> Result<Self> {
         Self::plan_on(coefficients, Arc::new(Threads::new(threads)?))
     }
@@ -99,6 +99,7 @@ impl Convolution {
             return Err(Error::Shape { name: "coefficients", expected: [1, 1], found: shape });
         }
         all_finite("coefficients", coefficients)?;
+        check_memory(shape, Self::memory(shape))?;
         let transform = PaddedTransform::plan_repeated(shape, periodic, &threads);
         Ok(Self::with(coefficients, transform, &threads, Pool::default(), Arc::default()))
     }
@@ -110,9 +111,11 @@ impl Convolution {
         idle: Pool<ConvolutionMemory>,
         clock: Arc<Clock>,
     ) -> Self {
-        let mut workspace = lease(&idle, &transform);
+        let mut workspace = idle.lease();
+        transform.reserve(&mut workspace.fft);
         let spectrum =
-            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.0.fft, threads));
+            clock.during(|| transform.even_spectrum(coefficients, &mut workspace.fft, threads));
+        drop(workspace);
         Self {
             shape: [coefficients.nrows(), coefficients.ncols()],
             self_influence: coefficients[[0, 0]],
@@ -219,7 +222,7 @@ impl Convolution {
 
     /// Memory for [`Convolution::apply_into`].
     pub fn workspace(&self) -> Workspace {
-        lease(&self.idle, &self.transform)
+        Workspace(self.idle.lease())
     }
 
     /// Displacement (nx, ny) \[m\] under `pressure` (nx, ny) \[Pa\].
@@ -227,16 +230,17 @@ impl Convolution {
     /// # Errors
     /// As [`Convolution::apply_into`].
     pub fn apply(&self, pressure: &ArrayRef2<f64>) -> Result<Array2<f64>> {
+        check_memory(self.shape, memory_of(self.shape, 1))?;
         let mut displacement = Array2::zeros(self.shape);
         self.apply_into(pressure, &mut displacement, &mut self.workspace())?;
         Ok(displacement)
     }
 
     /// Writes the displacement under `pressure` into `displacement`, as [`Convolution::apply`] computes
-    /// it. No memory is allocated where both arrays are in C order.
+    /// it. Where both arrays are in C order, memory is allocated at the first use of the workspace only.
     ///
     /// # Errors
-    /// Where an array does not have the shape of the convolution, or a pressure is not finite.
+    /// Where an array does not have the shape of the convolution, a pressure is not finite, or there is too little memory.
     pub fn apply_into(
         &self,
         pressure: &ArrayRef2<f64>,
@@ -246,6 +250,9 @@ impl Convolution {
         same_shape("pressure", pressure, self.shape)?;
         same_shape("displacement", displacement, self.shape)?;
         all_finite("pressure", pressure)?;
+        if let missing @ 1.. = self.transform.missing(&workspace.0.fft) {
+            check_memory(self.shape, missing)?;
+        }
         let standard = pressure.as_standard_layout();
         let input = standard.as_slice().unwrap_or(&[]);
         if let Some(output) = displacement.as_slice_mut() {
@@ -306,13 +313,6 @@ impl Convolution {
             addition.respond(input, occupied.clone(), memory, &self.threads);
         }
     }
-}
-
-/// A workspace from idle memory, large enough for `transform`.
-fn lease(idle: &Pool<ConvolutionMemory>, transform: &PaddedTransform) -> Workspace {
-    let mut memory = idle.lease();
-    transform.reserve(&mut memory.fft);
-    Workspace(memory)
 }
 
 #[cfg(test)]

@@ -66,7 +66,7 @@ impl Contact {
     /// Presses `shape` into the body. The solution says whether it converged.
     ///
     /// # Errors
-    /// Bad input only.
+    /// Bad input, and too little memory.
     pub fn solve<'a>(
         &self,
         shape: &dyn Surface,
@@ -91,6 +91,7 @@ impl Contact {
     ) -> Result<Solution> {
         check_carried(self.setup.counterbody.as_ref(), shape)?;
         check_seam(shape, &self.grid)?;
+        self.check_memory_of_solve(options.hardness.is_some())?;
         let Some(before) = &options.indentation else {
             return self.press(shape, sampled, motion, options, progress);
         };

@@ -211,6 +211,7 @@ impl<'a> Session<'a> {
                 break (normal, None);
             }
             task.check(grid, &bound, tolerance)?;
+            task.check_memory(grid, &bound)?;
             let is_settled = !self.coupled || !is_first && change <= tolerance;
             // While the pressure still changes, tractions need not be exact.
             let goal = if is_settled { tolerance } else { tolerance.max(LOOSE * change.min(1.0)) };

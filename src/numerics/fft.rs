@@ -208,6 +208,12 @@ impl PaddedTransform {
         workspace
     }
 
+    /// Bytes by which the mesh of `workspace` is too small for this transform; all else is far smaller.
+    pub(crate) fn missing(&self, workspace: &TransformMemory) -> u64 {
+        let elements = self.blocks() * self.block_rows();
+        (elements.saturating_sub(workspace.mesh.len()) * size_of::<[Complex64; BLOCK]>()) as u64
+    }
+
     /// Enlarges `workspace` where it is too small for this transform.
     pub(crate) fn reserve(&self, workspace: &mut TransformMemory) {
         fn at_least<T: Clone>(memory: &mut Vec<T>, length: usize, zero: T) {

@@ -36,12 +36,11 @@ fn carters_force() -> Result<()> {
         let solution = rolled(&contact, &shape, &creeping, &options)?;
         let force = solution.force()[1];
         // The stick zone leads, and is √(1 − force) of the contact.
-        let columns = |of: &dyn Fn(usize) -> bool| (0..cells + 12).filter(|&j| of(j)).collect::<Vec<_>>();
+        let columns =
+            |of: &dyn Fn(usize) -> bool| (0..cells + 12).filter(|&j| of(j)).collect::<Vec<_>>();
         let stick = solution.stick();
-        let (sticks, touches) = (
-            columns(&|j| stick[[0, j]]),
-            columns(&|j| solution.normal.pressure[[0, j]] > 0.0),
-        );
+        let (sticks, touches) =
+            (columns(&|j| stick[[0, j]]), columns(&|j| solution.normal.pressure[[0, j]] > 0.0));
         assert_eq!(sticks.last(), touches.last());
         let share = (1.0 - force / (friction * load)).sqrt();
         below!((sticks.len() as f64 - share * touches.len() as f64).abs(), 1.5, cells);

@@ -7,6 +7,7 @@ from how its input was made, or from the reader of the format alone.
 from __future__ import annotations
 
 import copy
+import math
 import os
 import pickle
 import re
@@ -604,6 +605,104 @@ def test_a_result_is_printed_in_any_encoding(encoding: str) -> None:
     assert ("ν 0.3" if encoding in ("utf-8", "cp932", "gbk") else "nu 0.3") in said
 
 
+def run(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a program without other numbers of threads than those in `environment`."""
+    kept = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+    return subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=kept | environment
+    )
+
+
+THREADS = """
+import nacre
+from nacre.studies import default_threads
+steel, grid = nacre.Elastic(210e9, 0.3), nacre.Grid((16, 16), (1e-4, 1e-4))
+print(nacre.Contact(steel, grid).threads, default_threads(), nacre.Convolution([[1.0]]).threads)
+print(nacre.Contact(steel, grid, threads=3).threads)
+"""
+
+
+@MARK(
+    "environment",
+    [
+        {"NACRE_NUM_THREADS": "1"},
+        {"RAYON_NUM_THREADS": "1"},
+        {"OMP_NUM_THREADS": "1"},
+        {"OMP_NUM_THREADS": "1,8", "RAYON_NUM_THREADS": "0"},
+        {"NACRE_NUM_THREADS": "1", "RAYON_NUM_THREADS": "8", "OMP_NUM_THREADS": "8"},
+        {"NACRE_NUM_THREADS": " ", "RAYON_NUM_THREADS": "1", "OMP_NUM_THREADS": "8"},
+    ],
+    ids=str,
+)
+def test_the_environment_limits_the_threads(environment: dict[str, str]) -> None:
+    assert run(THREADS, **environment).stdout.split() == ["1", "1", "1", "3"]
+
+
+def test_the_environment_adds_no_threads() -> None:
+    free = run(THREADS).stdout
+    assert free.split()[-1] == "3"
+    assert run(THREADS, NACRE_NUM_THREADS="4000", OMP_NUM_THREADS="1").stdout == free
+    assert run(THREADS, OMP_NUM_THREADS="many").stdout == free
+
+
+def test_a_wrong_number_of_threads_is_named() -> None:
+    said = run(THREADS, NACRE_NUM_THREADS="two", OMP_NUM_THREADS="1").stderr
+    assert 'ValueError: NACRE_NUM_THREADS must be a whole number of at least 1, got "two"' in said
+
+
+LIMITED = """
+import resource, sys
+import numpy as np
+import nacre
+steel, shape = nacre.Elastic(210e9, 0.3), nacre.Sphere(5e-3)
+grid = nacre.Grid((256, 256), (2e-4, 2e-4))
+nacre.solve(shape, steel, load=1.0, grid=nacre.Grid((64, 64), (2e-4, 2e-4)))
+name, key, left, work = sys.argv[1:]
+with open("/proc/self/status") as status:
+    used = next(int(line.split()[1]) for line in status if line.startswith(key))
+resource.setrlimit(getattr(resource, name), ((used << 10) + (int(left) << 20),) * 2)
+kept = []
+contact = nacre.Contact(steel, grid) if work == "keep" else None
+try:
+    for _ in range(400):
+        if work == "solve":
+            nacre.solve(shape, steel, load=10.0, grid=nacre.Grid((2048, 2048), (2e-4, 2e-4)))
+        elif work == "plan":
+            kept.append(nacre.Contact(steel, grid))
+        elif work == "keep":
+            kept.append(contact.solve(shape, load=10.0))
+        elif work == "slide":
+            arguments = dict(load=10.0, friction=0.3, force=(1.0, 0.0), grid=grid)
+            kept.append(nacre.slide(shape, steel, **arguments))
+        else:
+            kept.append(nacre.Convolution.of_bodies(steel, grid).apply(np.ones((256, 256))))
+except MemoryError as error:
+    kept.clear()
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are those of Linux")
+@MARK("work", ["solve", "plan", "keep", "slide", "apply"])
+@MARK(
+    ("limit", "used", "left"),
+    [("RLIMIT_AS", "VmSize:", 60), ("RLIMIT_AS", "VmSize:", 170), ("RLIMIT_DATA", "VmData:", 100)],
+)
+def test_a_limit_of_memory_is_an_error(limit: str, used: str, left: int, work: str) -> None:
+    command = [sys.executable, "-c", LIMITED, limit, used, str(left), work]
+    # Otherwise glibc reserves 64 MiB for each of the first threads, beside what they use.
+    environment = {**os.environ, "MALLOC_ARENA_MAX": "1"}
+    ended = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert ended.returncode == 0, ended.stderr
+    said = re.fullmatch(
+        r"a grid of \[(\d+), \1\] cells needs about (\d+) MiB, and (\d+) MiB are available; take "
+        "fewer cells\n",
+        ended.stdout,
+    )
+    assert said is not None, ended.stdout
+    assert int(said[2]) >= int(said[3])
+
+
 def test_without_docstrings_all_works() -> None:
     program = "import nacre.case, nacre.cli; nacre.cli.main(['schema'])"
     run = subprocess.run([sys.executable, "-OO", "-c", program], capture_output=True)
@@ -710,7 +809,7 @@ def test_two_rollers_approach_as_johnson_says() -> None:
     approach, expected = solution.approach, 0.0
     for one, of in zip(bodies, radii, strict=True):
         compliance = load * (1 - one.poisson**2) / (np.pi * one.young)
-        approach += 2 * compliance * np.log(2 * of / (np.e * width))
+        approach += 2 * compliance * np.log(2 * of / (math.e * width))
         expected += compliance * (2 * np.log(4 * of / hertz.half_width) - 1)
     # The contact is 85 cells wide, of which the rim may err by a part.
     assert abs(approach / expected - 1) < 1e-4
