@@ -223,7 +223,8 @@ pub enum Error {
     },
     /// A load above what the surfaces bear at their hardness.
     #[error(
-        "load must be below what the hardness bears on the cells that can touch, {bears:.6e}, was {load:.6e}"
+        "load must be below what the hardness bears on the cells that can touch, {bears:.6e}, was {load:.6e}: where all \
+         of them yield, no approach is determined"
     )]
     Overload {
         /// The load \[N\].
