@@ -49,7 +49,7 @@ pub(super) struct TractionResult {
 pub(super) struct Misfit {
     /// Largest slip of a sticking cell, or slip across the traction, over the largest displacement.
     pub(super) violation: f64,
-    /// Largest error of a force or torque, over the largest that friction bears.
+    /// Largest error of a force or torque, over the largest that friction can carry.
     pub(super) imbalance: f64,
 }
 
@@ -153,7 +153,7 @@ impl TractionProblem<'_> {
         numbers.max_by(|a, b| self.imbalance(*a, q).abs().total_cmp(&self.imbalance(*b, q).abs()))
     }
 
-    /// Error of a force or torque for the tractions `q`, over the largest that friction bears.
+    /// Error of a force or torque for the tractions `q`, over the largest that friction can carry.
     fn imbalance(&self, number: usize, q: &[f64]) -> f64 {
         let column = &self.columns[number];
         let (x, y) = q.split_at(self.law.cells());
