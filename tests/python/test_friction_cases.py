@@ -242,7 +242,7 @@ def test_a_study_of_rolling() -> None:
     for name in ("force", "creepage", "dissipated"):
         np.testing.assert_array_equal(one[name], getattr(expected, name))
     assert one.von_mises == expected.stress_summary(threads=1).layers[0].von_mises[0]
-    assert study.dissipated.attrs["units"] == "N"
+    assert study.dissipated.attrs["units"] == "J/m"
 
 
 def test_outputs_that_the_case_has_not_are_the_cases_error() -> None:
