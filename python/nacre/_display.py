@@ -286,9 +286,8 @@ def _estimated(solution: Solution, name: str, unit: str) -> str:
     error = (solution.report.discretisation or {}).get(name, 0.0)
     if error is None:
         return f"{written(value, unit)} (error not known: see the warning)"
-    return written(value, unit) + (
-        f" ± {rounded(100 * abs(error / value), 1)} %" if error and value else ""
-    )
+    share = abs(error / value) if value else 0.0
+    return written(value, unit) + (f" ± {rounded(100 * share, 1)} %" if share > NOISE else "")
 
 
 def _approach(solution: Solution) -> str:

@@ -112,7 +112,7 @@ impl TractionTask<'_> {
                 return Err(Error::FullSlip { name, value, bears });
             }
             let counts = value <= 0.0 || value >= 1e-100 * bears;
-            let requirement = "0, or at least 1e-100 of what friction bears";
+            let requirement = "0, or at least 1e-100 of what friction can carry";
             require(name, value, counts, requirement)?;
         }
         let leaves = |direction: RollingDirection| {

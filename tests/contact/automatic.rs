@@ -232,9 +232,10 @@ fn cells_are_divided_until_the_peak_is_resolved() -> Result<()> {
     assert!(error < 0.01 * peak && solution.report.warnings.is_empty());
     let [nx, ny] = grid.shape();
     assert!(nx > 1400, "{nx} cells");
-    let finer = Grid::new([4 * nx, ny], grid.size())?.centered_at(grid.center())?;
+    let finer = Grid::new([2 * nx, ny], grid.size())?.centered_at(grid.center())?;
     let finer = on_grid(&roller, &motion, finer)?.peak_pressure();
-    assert!((peak - finer).abs() < ESTIMATES * error);
+    // Of second order, half the cells have a quarter of the error left.
+    assert!(4.0 / 3.0 * (peak - finer).abs() < ESTIMATES * error);
     Ok(())
 }
 

@@ -350,7 +350,8 @@ fn wrong_input_is_refused() -> Result<()> {
     };
     assert_eq!(
         message(&limited(1e-4)),
-        "load must be below what the hardness bears on the cells that can touch, 4.000000e-4, was 1.000000e-3"
+        "load must be below what the hardness can carry on the cells that can touch, 0.0004, was 0.001: where all of them \
+         yield, no approach is determined"
     );
     // A punch that bears 99 % of what it can has 1 % of its area left to shift the force with: by 1 % of its radius, not
     // by a tenth.

@@ -329,7 +329,7 @@ FRICTION_VALUES = {
     "slides(shift=(1e300, None))": "shift must be at most a million times",
     "rolls(creepage=(1e300, None))": "creepage must be at most a million",
     "rolls(spin=1e300)": "spin must be at most a million over",
-    "slides(torque=1.0)": "torque must be below what friction bears",
+    "slides(torque=1.0)": "torque must be below what friction can carry",
     "slide(BALL, STEEL, steps=[], **HELD)": "steps must",
     "slides(friction=np.ones(28))": "friction must have two dimensions",
     "coefficients(STEEL, STEEL, (1.0, 1.0), cells=-4)": "cells must be .*at least 8",
@@ -556,7 +556,7 @@ def test_missing_samples_are_refused() -> None:
     ("wrong", "words"),
     [
         ({"force": (NAN, None)}, "force must be finite"),
-        ({"force": (3.1, None)}, "force must be below what friction bears"),
+        ({"force": (3.1, None)}, "force must be below what friction can carry"),
         ({"friction": np.ones((3, 3))}, "friction: expected shape"),
     ],
 )

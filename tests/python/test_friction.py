@@ -233,7 +233,7 @@ def test_the_report_certifies_the_solution() -> None:
     assert not uncoupled.report.coupled
 
 
-BEARS = r"force must be below what friction bears, (3|2\.9999)"
+BEARS = r"force must be below what friction can carry, (3|2\.9999)"
 
 
 def test_the_force_that_friction_does_not_bear() -> None:
@@ -242,7 +242,7 @@ def test_the_force_that_friction_does_not_bear() -> None:
             CONTACT.slide(BALL, **HELD, force=force)
         with pytest.raises(ValueError, match=BEARS):
             CONTACT.roll(BALL, **HELD, force=force, direction="+x")
-    with pytest.raises(ValueError, match=r"friction bears, 0\.0000e0, was 1\.0000e0") as caught:
+    with pytest.raises(ValueError, match=r"friction can carry, 0, was 1:") as caught:
         CONTACT.slide(BALL, [*pulled(2.0), {"approach": -1e-6, "force": (1.0, None)}], **HELD)
     assert len(getattr(caught.value, "solutions")) == 1  # noqa: B009
     assert CONTACT.slide(BALL, **HELD, force=(2.99, None)).force[0] == pytest.approx(2.99)

@@ -813,3 +813,65 @@ def test_two_rollers_approach_as_johnson_says() -> None:
         expected += compliance * (2 * np.log(4 * of / hertz.half_width) - 1)
     # The contact is 85 cells wide, of which the rim may err by a part.
     assert abs(approach / expected - 1) < 1e-4
+
+
+ALUMINIUM, HARD = nacre.Elastic(2 * 23e9 * 1.31, 0.31), nacre.Elastic(2 * 82e9 * 1.28, 0.28)
+
+
+def rolled(friction: float, force: float, cells: int = 216, **keywords: Any) -> Any:
+    """Return a roller of aluminium on one of steel, half-width 0.1 mm, at a part of full slip."""
+    load = 16.2019e3
+    return nacre.roll(
+        nacre.Cylinder(25e-3),
+        ALUMINIUM,
+        HARD,
+        grid=nacre.Grid.line(cells, 0.216e-3),
+        load=load,
+        friction=friction,
+        force=(force * friction * load, None),
+        **keywords,
+    )
+
+
+@MARK(
+    ("friction", "creepage"),
+    # CONTACT prints 5.260e-4 for the first; the others by bisection with given creepages.
+    [(1e-4, 5.261e-4), (1e-3, 5.253e-4), (2e-3, 5.236e-4), (5e-3, 5.166e-4)],
+)
+def test_free_rolling_with_little_friction_converges(friction: float, creepage: float) -> None:
+    # The right values have four digits.
+    assert rolled(friction, 0.0).creepage[0] == pytest.approx(creepage, rel=2e-4)
+
+
+@MARK("friction", [1e-5, 1e-4, 7e-4, 3e-3])
+@MARK("force", [-0.97, 0.0, 0.4, 0.97])
+@MARK("direction", ["+y", "-y"])
+def test_rolling_with_little_friction_is_that_of_its_creepage(
+    friction: float, force: float, direction: str
+) -> None:
+    found = rolled(friction, force, 150, direction=direction)
+    again = nacre.roll(
+        nacre.Cylinder(25e-3),
+        ALUMINIUM,
+        HARD,
+        grid=nacre.Grid.line(150, 0.216e-3),
+        load=found.normal.load,
+        friction=friction,
+        creepage=found.creepage,
+        direction=direction,
+    )
+    # Displacements within the tolerance of 1e-8 tell a force to 1e-8 of the load, or less.
+    np.testing.assert_allclose(again.force, found.force, atol=1e-8 * found.normal.load)
+
+
+def test_a_load_at_the_limit_of_the_hardness_is_refused() -> None:
+    shape = nacre.rough.random_surface(
+        (32, 32), (64e-6, 48e-6), hurst=0.8, rms_slope=0.08, shortest=8e-6, longest=48e-6, seed=2
+    )
+    hardness = 0.1 * STEEL.plane_strain_modulus
+    bears = hardness * 64e-6 * 48e-6
+    full = nacre.solve(shape, STEEL, load=(1 - 1e-9) * bears, hardness=hardness)
+    assert full.contact_area == pytest.approx(64e-6 * 48e-6)
+    for part in (1 - 1e-15, 1.0, 1 + 1e-15, 1.1):
+        with pytest.raises(ValueError, match="all of them yield, no approach is determined"):
+            nacre.solve(shape, STEEL, load=part * bears, hardness=hardness)

@@ -11,6 +11,8 @@ import numpy.typing as npt
 import nacre._core as core
 from nacre.indent.curves import Curve
 
+__all__ = ["Classical", "classical", "gao_weights", "oliver_pharr"]
+
 Array = npt.NDArray[np.float64]
 
 EPSILON = 0.75
