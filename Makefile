@@ -25,7 +25,7 @@ WHEEL := $(VENV)/.wheel
 .PHONY: help demo test test-rust test-python quick check check-rust check-python bench fuzz peers kappa torch develop stubs docs publishable
 
 help: ## list these commands
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
 
 demo: $(WHEEL) ## solve the paper's cases: a table here, figures and CSV under out/
 	PYTHONPATH=examples $(BIN)/python -m paper --out out

@@ -19,7 +19,7 @@ use crate::contact::problem::bounds::Bounds;
 use crate::contact::problem::freedoms::Freedoms;
 use crate::contact::problem::patch::{self, Patch, block, bounds, copied, enclosing, widened};
 use crate::contact::problem::{LocalDisplacement, Problem, SolutionFields};
-use crate::contact::solver::preconditioned::{Approximation, Preconditioned};
+use crate::contact::solver::preconditioned::Preconditioned;
 use crate::contact::solver::{
     Outcome, StopCriteria, Tally, Termination, active_set, polonsky_keer,
 };
@@ -414,9 +414,8 @@ impl Level<'_> {
             let bounds = self.bounds.in_window(window);
             let first = window[0].start;
             let windowed = (!whole).then(|| self.convolution.on_window(&corner, first));
-            let [periodic, inverse] = self.convolution.preconditioner(&corner, repeats);
+            let approximation = self.convolution.approximation(&corner, repeats);
             let gap = copied(&self.gap, window);
-            let approximation = Approximation { inverse, periodic };
             let problem = Problem {
                 convolution: windowed.as_ref().unwrap_or(self.convolution),
                 freedoms: &freedoms,

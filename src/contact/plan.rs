@@ -432,7 +432,7 @@ fn total_pressure(
     let repeats = grid.is_periodic();
     let convolution = Convolution::plan_repeated(coefficients, repeats, Arc::clone(threads))?;
     let convolution = convolution.plus(additions.to_vec());
-    let [_, inverse] = convolution.preconditioner(coefficients, repeats);
+    let inverse = convolution.approximation(coefficients, repeats).inverse;
     let [mut first, mut second] = [convolution.workspace(), convolution.workspace()];
     let pressure = linear_cg::solve(
         &vec![1.0; coefficients.len()],

@@ -123,10 +123,16 @@ impl PaddedTransform {
         Self::with_periods(shape, shape, [false; 2], threads)
     }
 
-    /// Transforms that are padded by an eighth. Convolutions are periodic, with n as the period along directions that
-    /// are `periodic`, and the fast length ≥ 9/8 n along others.
-    pub(crate) fn plan_margin(shape: [usize; 2], periodic: [bool; 2], threads: &Threads) -> Self {
-        Self::with_periods(shape, shape.map(|n| n + n.div_ceil(8)), periodic, threads)
+    /// Transforms that are padded by the share `margin` of n. Convolutions are periodic, with n as the period along
+    /// directions that are `periodic`, and the fast length ≥ (1 + margin) n along others.
+    pub(crate) fn plan_margin(
+        shape: [usize; 2],
+        margin: f64,
+        periodic: [bool; 2],
+        threads: &Threads,
+    ) -> Self {
+        let longer = |n: usize| n + (margin * n as f64).ceil() as usize;
+        Self::with_periods(shape, shape.map(longer), periodic, threads)
     }
 
     /// Transforms of fast lengths of at `least` so many points, but along directions that are `periodic`.

@@ -127,6 +127,10 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
         {"solve": {"load": 1, "max_iterations": 3}, "slide": {"friction": 0.3}},
         "solve.max_iterations: must not be given beside the table slide",
     ),
+    "hardness": (
+        {"solve": {"load": 1, "hardness": 1e9}, "roll": {"friction": 0.3}},
+        "solve.hardness: must not be given beside the table roll",
+    ),
     "stress": (
         {"slide": {"friction": 0.3}, "stress": {"friction": 0.1}},
         "stress.friction: must be 0 beside the table slide: its tractions are known",

@@ -28,7 +28,7 @@
 use std::mem;
 use std::ops::Range;
 
-use crate::compliance::convolution::{Convolution, Workspace};
+use crate::compliance::convolution::{Approximation, Workspace};
 use crate::contact::problem::balance::Products;
 use crate::contact::problem::bounds::{clip, in_contact, is_free, not_allowed, residual};
 use crate::contact::problem::{Problem, Quality, QualitySums, depths, works};
@@ -38,14 +38,6 @@ use crate::contact::solver::{Outcome, Solver, StopCriteria, Tally, Termination, 
 use crate::numerics::parallel::{
     ONE, Rows, Total, ZERO, all, dot, sum, update, update_with_largest,
 };
-
-/// Approximations of the convolution, periodic on the window.
-pub(crate) struct Approximation {
-    /// M, an approximation of the inverse.
-    pub(crate) inverse: Convolution,
-    /// An approximation of the convolution itself, at a quarter of its cost.
-    pub(crate) periodic: Convolution,
-}
 
 /// Iterations by which most contacts have converged. After them a contact of a few cells is left to
 /// [`active_set`]; chosen by trial.
@@ -94,7 +86,7 @@ pub(crate) struct Preconditioned<'a> {
     /// Curvature of the energy by the exact convolution, relative to that by the periodic one, in the last
     /// step that used both.
     curvature_ratio: f64,
-    /// Work done so far, in the unit of [`Convolution::work`].
+    /// Work done so far, in the unit of `Convolution::work`.
     work: f64,
 }
 
@@ -420,7 +412,7 @@ fn best_length(slope: f64, curvature: f64) -> Option<f64> {
 mod tests {
     use ndarray::Array2;
 
-    use super::{Approximation, Preconditioned};
+    use super::Preconditioned;
     use crate::compliance::convolution::Convolution;
     use crate::compliance::influence::{Method, influence_coefficients};
     use crate::compliance::response::Body;
@@ -474,8 +466,7 @@ mod tests {
         let [nx, ny] = grid.shape();
         let coefficients = influence_coefficients(body.clone(), &grid, Method::Exact)?;
         let convolution = Convolution::plan(&coefficients, Some(1))?;
-        let [periodic, inverse] = convolution.preconditioner(&coefficients, [false; 2]);
-        let approximation = Approximation { inverse, periodic };
+        let approximation = convolution.approximation(&coefficients, [false; 2]);
         let freedoms = Freedoms::new(motion, &grid)?;
         let (x, y) = (grid.x(), grid.y());
         let mut h = Array2::from_shape_fn((nx, ny), |(i, j)| gap(x[i], y[j]));
