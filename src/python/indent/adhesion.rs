@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::super::super::arguments::{Real, hash};
 use crate::indent::Adhesion;
+use crate::python::arguments::{Real, hash};
 
 /// Adhesion of tip and surface, made by one of its static methods.
 ///

@@ -4,8 +4,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::super::super::arguments::{Real, hash, mapped, real_array};
 use crate::indent::{self, Form, Tip};
+use crate::python::arguments::{Real, hash, mapped, real_array};
 
 /// Half angle of the cone whose area at each depth is that of Berkovich's pyramid, 24.5 times the depth squared [rad].
 const BERKOVICH: f64 = 24.5;
