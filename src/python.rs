@@ -1,7 +1,7 @@
 //! Python bindings: newtypes and thin wrappers. Nothing else in the crate knows Python.
 //!
-//! The files in their order; each imports from earlier ones only: errors, arguments, background, data, bodies,
-//! grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient, indent.
+//! The files in their order; each imports from earlier ones only: errors, arguments, background, data, value,
+//! bodies, grid, hertz, shapes, coefficients, solved, contact, friction, stress, gradient, indent.
 
 use pyo3::prelude::*;
 
@@ -20,11 +20,13 @@ mod indent;
 mod shapes;
 mod solved;
 mod stress;
+mod value;
 
 #[pymodule(name = "_core")]
 mod core {
     #[pymodule_export]
     use super::arguments::plain;
+    use super::bodies::{self, PyRigid};
     #[pymodule_export]
     use super::bodies::{PyElastic, PyHalfSpace, PyLayer};
     #[pymodule_export]
@@ -57,13 +59,13 @@ mod core {
         PyStressPlan, checked_stress, stress, stress_invariants, stress_plan, stress_summary,
         stress_under,
     };
-    use super::{bodies::PyRigid, indent, shapes};
+    use super::{indent, shapes};
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         shapes::register(module)?;
-        module.add("RIGID", Py::new(module.py(), PyRigid)?)?;
+        module.add("RIGID", bodies::rigid(module.py())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         // Not among the public names.
         module.setattr("Rigid", module.py().get_type::<PyRigid>())?;

@@ -1,10 +1,12 @@
 import os
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, ClassVar, Final, Literal, Protocol, Self, TypeAlias, final, overload
+from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, final, overload
 
 import numpy as np
 import numpy.typing as npt
 from typing_extensions import disjoint_base
+
+from nacre._typing import Topography
 
 __all__ = [
     "RIGID",
@@ -65,15 +67,6 @@ _Report: TypeAlias = tuple[str, Grid, HalfSpace, HalfSpace | None]
 _Ends: TypeAlias = tuple[float | None, float | None]
 _Interface: TypeAlias = Literal["bonded", "frictionless"]
 _Method: TypeAlias = Literal["exact", "plain", "difference", "image", "spectral"]
-
-class _Topography(Protocol):
-    @property
-    def dim(self) -> int: ...
-    @property
-    def unit(self) -> str | None: ...
-    @property
-    def physical_sizes(self) -> tuple[float, ...] | None: ...
-    def heights(self) -> npt.NDArray[Any]: ...
 
 __version__: Final[str]
 RIGID: Final[Rigid]
@@ -148,8 +141,8 @@ class Grid:
         cls,
         shape: tuple[int, int],
         size: _Pair,
-        center: _Pair = (0.0, 0.0),
-        periodic: tuple[bool, bool] = (False, False),
+        center: _Pair | None = None,
+        periodic: tuple[bool, bool] | None = None,
     ) -> Self: ...
     @staticmethod
     def line(cells: int, width: float, center: float = 0.0) -> Grid: ...
@@ -180,6 +173,7 @@ class Shape:
     def shifted(self, x: float, y: float) -> Shape: ...
     def __add__(self, value: Shape, /) -> Shape: ...
     def __radd__(self, value: Shape, /) -> Shape: ...
+    def _parts(self) -> list[tuple[Shape, _Pair]]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
 
@@ -348,12 +342,12 @@ class HeightMap(Shape):
         cls,
         heights: _Matrix,
         spacing: float | _Pair,
-        center: _Pair = (0.0, 0.0),
-        periodic: tuple[bool, bool] = (False, False),
+        center: _Pair | None = None,
+        periodic: tuple[bool, bool] | None = None,
     ) -> Self: ...
     @staticmethod
     def read(
-        path: str | os.PathLike[str] | _Topography,
+        path: str | os.PathLike[str] | Topography,
         *,
         spacing: float | _Pair | None = None,
         unit: str | None = None,

@@ -30,7 +30,7 @@ def coated(ratio: float, thickness: float, poisson: float = 0.3) -> core.HalfSpa
 def _numbers(name: str, values: npt.ArrayLike, low: float, high: float) -> Array:
     """Return numbers, at least one, or an error unless they lie between two others."""
     try:
-        numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
+        numbers = np.atleast_1d(np.asarray(core.plain(name, values), dtype=np.float64))
     except OverflowError:
         numbers = np.array([math.inf])
     if (wrong := numbers[~((numbers >= low) & (numbers <= high))]).size:
